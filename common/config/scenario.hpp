@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/circle.hpp"
+#include "common/geometry/field.hpp"
+#include "common/motion/limits.hpp"
+#include "common/motion/version.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+enum class Team { kBlue, kYellow };
+
+struct Goal {
+  Vec2 position_m{0, 0};
+  std::optional<double> heading_rad;   ///< none: as it comes
+};
+
+struct RobotSpec {
+  RobotId id = 0;
+  Team team = Team::kBlue;
+  Vec2 start_m{0, 0};
+  double start_heading_rad = 0;
+  std::vector<Goal> goals;   ///< visited in order; at least one
+};
+
+struct BallSpec {
+  Vec2 position_m{0, 0};
+  Vec2 velocity_mps{0, 0};
+};
+
+/// The cameras hang over the field in a grid and see overlapping rectangles of it.
+struct VisionSpec {
+  double rate_hz = 60;
+  int columns = 2;                 ///< cameras along the length
+  int rows = 1;                    ///< cameras along the width
+  double overlap_m = 0.5;          ///< by which a camera sees beyond its share of the field
+  double position_noise_m = 0.0005;     ///< standard deviation per axis
+  double heading_noise_rad = 0.005;     ///< standard deviation
+  Duration delay{10'000'000};      ///< from capture to publication
+  double missed = 0;               ///< probability that a visible robot is not in a frame
+  double ghosts = 0;               ///< probability that a frame holds a detection of a robot that is not there
+};
+
+struct OdometrySpec {
+  double scale_error = 0.005;          ///< standard deviation of each robot's constant relative error
+  double velocity_noise_mps = 0.01;    ///< standard deviation per axis and millisecond of measurement
+};
+
+/// What SimBus does to messages between processes; over DDS the network is what it is.
+struct NetworkSpec {
+  double loss = 0;
+  double duplicate = 0;
+  Duration delay_min{200'000};
+  Duration delay_max{600'000};     ///< drawn uniformly and independently for each message, so it reorders too
+};
+
+/// Which processes `sidestep run` starts again when they die.
+struct RestartSpec {
+  bool agents = false;
+  bool coordinator = false;
+  bool vision = false;
+  bool simulator = false;
+};
+
+/// One run of the system, as a scenario file describes it (deploy/scenarios/README.md). Always valid: the loader
+/// refuses everything else.
+struct Scenario {
+  std::string name;
+  Field field;
+  std::vector<RobotSpec> robots;       ///< ascending by id
+  std::vector<Circle> obstacles;
+  std::optional<BallSpec> ball;
+  MotionLimits limits;
+  double radius_m = 0.09;
+  double margin_m = 0.01;
+  Duration cycle{16'666'667};
+  double goal_tolerance_m = 0.02;
+  double time_limit_s = 60;            ///< for all robots to arrive, from the first moment on which the coordinator grants
+  VisionSpec vision;
+  OdometrySpec odometry;
+  double command_loss = 0;             ///< probability that a command is lost on the radio between agent and robot
+  NetworkSpec network;
+  RestartSpec restart;
+};
+
+/// The robot with this id, or nullptr.
+const RobotSpec* find_robot(const Scenario& scenario, RobotId id);
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+
+namespace sidestep {
+
+struct DdsSettings {
+  int domain = 0;                          ///< 0 .. 99
+  std::string interface = "127.0.0.1";     ///< address of the one interface to use; "all": every interface
+  std::string participant = "sidestep";    ///< name that listeners see
+};
+
+/// The bus over Fast DDS (dds.md): one participant, UDPv4 only. Samples are taken and timers fire in the thread that
+/// calls run(). Throws std::runtime_error when the participant or an endpoint cannot be created, saying why.
+class DdsBus : public Bus {
+ public:
+  explicit DdsBus(const DdsSettings& settings);
+  ~DdsBus() override;
+  DdsBus(const DdsBus&) = delete;
+  DdsBus& operator=(const DdsBus&) = delete;
+
+  Time now() const override;
+  void at(Time when, std::function<void()> callback) override;
+
+  /// Calls back until stop().
+  void run();
+  /// Calls back until then, or stop(); for tests and tools that look between callbacks.
+  void run_until(Time when);
+  /// Makes run() return soon. From any thread, and from a signal handler.
+  void stop();
+
+  /// The addresses this participant really listens on, for the log.
+  std::string locators() const;
+
+ protected:
+  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
+  void make_reader(const TopicInfo& topic, const std::string& channel,
+                   std::function<void(const void*)> callback) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace sidestep {
+
+/// Who a message's head.sender is. Robots and their agents go by the robot's number; everybody else by these.
+enum class Sender : std::uint32_t {
+  kCoordinator = 10000,
+  kVision = 20000,
+  kSimulator = 30000,
+  kMonitor = 40000,
+};
+
+}  // namespace sidestep

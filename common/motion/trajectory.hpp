@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/geometry/vec2.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+struct State {
+  Vec2 position_m{0, 0};
+  Vec2 velocity_mps{0, 0};
+};
+
+/// A stretch of constant acceleration.
+struct Phase {
+  Duration duration{0};
+  Vec2 acceleration_mps2{0, 0};
+};
+
+/// The state after a time in a phase that began in `from`.
+State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s);
+
+/// A robot's reference motion over absolute time: from its start on a few phases of constant acceleration, then at
+/// rest for ever. It says nothing about the time before its start.
+class Trajectory {
+ public:
+  static constexpr int kMaxPhases = 4;
+
+  Trajectory() = default;
+  Trajectory(Time start, const State& at_start) : start_(start), at_start_(at_start) {}
+
+  /// At rest for ever.
+  static Trajectory resting(Time start, const Vec2& position_m) { return {start, {position_m, Vec2::Zero()}}; }
+
+  /// Appends a phase; the caller keeps to kMaxPhases.
+  void append(Duration duration, const Vec2& acceleration_mps2);
+
+  Time start() const { return start_; }
+  Time end() const;
+  const State& at_start() const { return at_start_; }
+  std::span<const Phase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
+
+  /// The state at a time; at rest at the end point from end() on; the start state before the start.
+  State state_at(Time t) const;
+  /// The acceleration in force at a time (of the phase that begins, at a boundary); zero from end() on.
+  Vec2 acceleration_at(Time t) const;
+  Vec2 rest_position_m() const;
+  /// What is left of the velocity when the last phase ends: nearly zero for a valid trajectory.
+  double residual_speed_mps() const;
+
+ private:
+  Time start_{};
+  State at_start_;
+  Phase phases_[kMaxPhases];
+  int count_ = 0;
+};
+
+/// Deceleration against the velocity until rest (Bruce, ch. 5): the tail of every trajectory. Appends nothing when
+/// the trajectory already ends at rest.
+void append_stop(Trajectory& trajectory, double deceleration_mps2);
+
+/// Bounds how far a trajectory gets from its start position, over all time.
+double reach_m(const Trajectory& trajectory);
+
+}  // namespace sidestep

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+using RobotId = std::uint32_t;
+using VersionNumber = std::uint64_t;
+/// One life of a process: nanoseconds of its clock when it began, so a later life has a higher one.
+using Incarnation = std::uint64_t;
+using Epoch = std::uint64_t;
+
+/// Robots are numbered 0 .. kMaxRobots - 1.
+inline constexpr RobotId kMaxRobots = 1024;
+
+/// One trajectory of one robot. An agent counts its versions upwards from its incarnation, so that they grow over
+/// the robot's life although agents come and go. Numbers below 1 are not used; 0 stands for "none".
+struct Version {
+  RobotId robot = 0;
+  Incarnation incarnation = 0;
+  VersionNumber number = 0;
+  VersionNumber base = 0;
+  Trajectory trajectory;
+};
+
+}  // namespace sidestep

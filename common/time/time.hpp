@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace sidestep {
+
+/// The one clock of the system: nanoseconds since 1970 on the host's clock over DDS, virtual on SimBus.
+struct Clock {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<Clock>;
+  static constexpr bool is_steady = false;
+};
+
+using Duration = Clock::duration;
+using Time = Clock::time_point;
+
+constexpr Time time_from_ns(std::int64_t ns) { return Time{Duration{ns}}; }
+constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
+
+/// Exact to a nanosecond's rounding; callers keep seconds within what a nanosecond count of 64 bits holds.
+constexpr Duration from_seconds(double s) {
+  return Duration{static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
+}
+constexpr double to_seconds(Duration d) { return static_cast<double>(d.count()) * 1e-9; }
+
+}  // namespace sidestep
