@@ -1,1 +1,182 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/motion/clearance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kForEver = Duration::max();
+
+/// Walks along a trajectory from a time on.
+class Walker {
+ public:
+  Walker(const Trajectory& trajectory, Time from) : trajectory_(trajectory) {
+    state_ = trajectory.at_start();
+    Duration into = from - trajectory.start();
+    const auto phases = trajectory.phases();
+    while (index_ < phases.size() && into >= phases[index_].duration) {
+      state_ = state_after(state_, phases[index_].acceleration_mps2, to_seconds(phases[index_].duration));
+      into -= phases[index_].duration;
+      ++index_;
+    }
+    begin_phase();
+    if (index_ < phases.size()) advance(into);
+  }
+
+  const State& state() const { return state_; }
+  const Vec2& acceleration() const { return acceleration_; }
+  /// Until the acceleration changes.
+  Duration left() const { return left_; }
+
+  void advance(Duration step) {
+    if (left_ == kForEver) return;
+    state_ = state_after(state_, acceleration_, to_seconds(step));
+    left_ -= step;
+    if (left_ > Duration::zero()) return;
+    ++index_;
+    begin_phase();
+  }
+
+ private:
+  void begin_phase() {
+    const auto phases = trajectory_.phases();
+    while (index_ < phases.size() && phases[index_].duration == Duration::zero()) ++index_;
+    if (index_ < phases.size()) {
+      acceleration_ = phases[index_].acceleration_mps2;
+      left_ = phases[index_].duration;
+    } else {
+      acceleration_ = state_.velocity_mps = Vec2::Zero();
+      left_ = kForEver;
+    }
+  }
+
+  const Trajectory& trajectory_;
+  State state_;
+  Vec2 acceleration_{0, 0};
+  Duration left_ = kForEver;
+  std::size_t index_ = 0;
+};
+
+/// Relative motion d + v t + a t^2 / 2 on [0, seconds].
+struct Piece {
+  Vec2 d, v, a;
+  double seconds;
+
+  double squared_distance(double t) const { return (d + t * (v + (0.5 * t) * a)).squaredNorm(); }
+};
+
+/// Half the derivative of the squared distance: c0 + c1 t + c2 t^2 + c3 t^3.
+struct Slope {
+  double c0, c1, c2, c3;
+
+  explicit Slope(const Piece& p)
+      : c0(p.d.dot(p.v)), c1(p.v.squaredNorm() + p.d.dot(p.a)), c2(1.5 * p.v.dot(p.a)), c3(0.5 * p.a.squaredNorm()) {}
+  double at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
+  double derivative(double t) const { return c1 + t * (2 * c2 + t * (3 * c3)); }
+
+  /// Where the slope itself turns, ascending; the number of them.
+  int turning_points(std::array<double, 2>& roots) const {
+    const double a = 3 * c3, b = c2;   // a t^2 + 2 b t + c1 = 0
+    const double discriminant = b * b - a * c1;
+    if (discriminant < 0) return 0;
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    int count = 0;
+    // Numerically stable form: neither root is the difference of near numbers.
+    if (a != 0) roots[static_cast<std::size_t>(count++)] = q / a;
+    if (q != 0) roots[static_cast<std::size_t>(count++)] = c1 / q;
+    if (count == 2 && roots[0] > roots[1]) std::swap(roots[0], roots[1]);
+    return count;
+  }
+
+  /// The zero in [low, high], where the slope is negative at low, positive at high and monotonous between.
+  double zero(double low, double high) const {
+    double t = 0.5 * (low + high);
+    for (int i = 0; i < 100 && high - low > 1e-15 * high; ++i) {
+      const double value = at(t);
+      if (value == 0) return t;
+      (value < 0 ? low : high) = t;
+      const double rate = derivative(t);
+      const double newton = rate > 0 ? t - value / rate : low;
+      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+      if (std::abs(next - t) <= 1e-14) return next;
+      t = next;
+    }
+    return t;
+  }
+};
+
+/// The smallest squared distance inside the piece; its ends are the caller's.
+double smallest_inside(const Piece& piece) {
+  const Slope slope(piece);
+  std::array<double, 2> turns{};
+  const int count = slope.turning_points(turns);
+  double smallest = std::numeric_limits<double>::infinity();
+  double low = 0, slope_low = slope.c0;
+  for (int i = 0; i <= count; ++i) {
+    double high = i < count ? turns[static_cast<std::size_t>(i)] : piece.seconds;
+    if (!(high > low)) continue;
+    high = std::min(high, piece.seconds);
+    const double slope_high = slope.at(high);
+    if (slope_low < 0 && slope_high > 0) {
+      smallest = std::min(smallest, piece.squared_distance(slope.zero(low, high)));
+    } else {
+      // A minimum that only just touches a bound of the bracket.
+      smallest = std::min(smallest, piece.squared_distance(high));
+    }
+    low = high;
+    slope_low = slope_high;
+    if (high >= piece.seconds) break;
+  }
+  return smallest;
+}
+
+/// Goes through the pieces of the relative motion until `stop(squared distance)` says so for one that it has to look
+/// at; returns the smallest squared distance seen. Pieces that stay beyond `far_m` for sure are not looked at closely.
+template <typename Stop>
+double smallest_squared_distance(const Trajectory& a, const Trajectory& b, double far_m, Stop stop) {
+  const Time from = std::max(a.start(), b.start());
+  Walker walk_a(a, from), walk_b(b, from);
+  double smallest = (walk_a.state().position_m - walk_b.state().position_m).squaredNorm();
+  while (!stop(smallest)) {
+    const Duration step = std::min(walk_a.left(), walk_b.left());
+    if (step == kForEver) break;
+    const Piece piece{walk_a.state().position_m - walk_b.state().position_m,
+                      walk_a.state().velocity_mps - walk_b.state().velocity_mps,
+                      walk_a.acceleration() - walk_b.acceleration(), to_seconds(step)};
+    const double travel =
+        piece.seconds * (piece.v.norm() + 0.5 * piece.seconds * piece.a.norm()) + kClearanceTolerance_m;
+    if (piece.d.norm() - travel < far_m) smallest = std::min(smallest, smallest_inside(piece));
+    walk_a.advance(step);
+    walk_b.advance(step);
+    smallest = std::min(smallest, (walk_a.state().position_m - walk_b.state().position_m).squaredNorm());
+  }
+  return smallest;
+}
+
+}  // namespace
+
+double clearance_m(const Trajectory& a, const Trajectory& b, double keep_m) {
+  const double squared = smallest_squared_distance(a, b, std::numeric_limits<double>::infinity(),
+                                                   [](double) { return false; });
+  return std::sqrt(squared) - keep_m - kClearanceTolerance_m;
+}
+
+bool is_clear(const Trajectory& a, const Trajectory& b, double keep_m) {
+  const double keep = keep_m + kClearanceTolerance_m;
+  const double too_near = keep * keep;
+  return smallest_squared_distance(a, b, keep, [=](double squared) { return squared < too_near; }) >= too_near;
+}
+
+double clearance_m(const Trajectory& a, const Vec2& centre_m, double keep_m) {
+  return clearance_m(a, Trajectory::resting(a.start(), centre_m), keep_m);
+}
+
+bool is_clear(const Trajectory& a, const Vec2& centre_m, double keep_m) {
+  return is_clear(a, Trajectory::resting(a.start(), centre_m), keep_m);
+}
+
+}  // namespace sidestep

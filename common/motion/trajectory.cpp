@@ -1,1 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/motion/trajectory.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace sidestep {
+
+State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s) {
+  return {from.position_m + elapsed_s * (from.velocity_mps + (0.5 * elapsed_s) * acceleration_mps2),
+          from.velocity_mps + elapsed_s * acceleration_mps2};
+}
+
+void Trajectory::append(Duration duration, const Vec2& acceleration_mps2) {
+  assert(count_ < kMaxPhases);
+  phases_[count_++] = {duration, acceleration_mps2};
+}
+
+Time Trajectory::end() const {
+  Time t = start_;
+  for (const Phase& phase : phases()) t += phase.duration;
+  return t;
+}
+
+State Trajectory::state_at(Time t) const {
+  State state = at_start_;
+  if (t < start_) return state;
+  Duration left = t - start_;
+  for (const Phase& phase : phases()) {
+    if (left < phase.duration) return state_after(state, phase.acceleration_mps2, to_seconds(left));
+    state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
+    left -= phase.duration;
+  }
+  return {state.position_m, Vec2::Zero()};
+}
+
+Vec2 Trajectory::acceleration_at(Time t) const {
+  if (t < start_) return Vec2::Zero();
+  Duration left = t - start_;
+  for (const Phase& phase : phases()) {
+    if (left < phase.duration) return phase.acceleration_mps2;
+    left -= phase.duration;
+  }
+  return Vec2::Zero();
+}
+
+namespace {
+State state_after_phases(const Trajectory& trajectory) {
+  State state = trajectory.at_start();
+  for (const Phase& phase : trajectory.phases()) {
+    state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
+  }
+  return state;
+}
+}  // namespace
+
+Vec2 Trajectory::rest_position_m() const { return state_after_phases(*this).position_m; }
+
+double Trajectory::residual_speed_mps() const { return state_after_phases(*this).velocity_mps.norm(); }
+
+void append_stop(Trajectory& trajectory, double deceleration_mps2) {
+  const Vec2 velocity = state_after_phases(trajectory).velocity_mps;
+  const double speed = velocity.norm();
+  if (speed < 1e-12) return;
+  // Rounded up to whole nanoseconds and then braked a little less hard, so that it ends at rest exactly.
+  const Duration duration{static_cast<std::int64_t>(std::ceil(speed / deceleration_mps2 * 1e9))};
+  trajectory.append(duration, -velocity / to_seconds(duration));
+}
+
+double reach_m(const Trajectory& trajectory) {
+  double reach = 0;
+  State state = trajectory.at_start();
+  for (const Phase& phase : trajectory.phases()) {
+    const double seconds = to_seconds(phase.duration);
+    // The speed is convex over a phase, so its larger end bounds it.
+    const State next = state_after(state, phase.acceleration_mps2, seconds);
+    reach += seconds * std::max(state.velocity_mps.norm(), next.velocity_mps.norm());
+    state = next;
+  }
+  return reach;
+}
+
+}  // namespace sidestep

@@ -1,1 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/motion/trapezoid.hpp"
+
+#include <cmath>
+
+namespace sidestep {
+
+Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limits) : velocity_(velocity) {
+  const double accelerate = limits.acceleration_mps2, brake = limits.deceleration_mps2, top = limits.speed_mps;
+  // Seen from the side of the point where an immediate stop would end, the rest is always forward.
+  const double stop = velocity * std::abs(velocity) / (2 * brake);
+  const double sign = distance >= stop ? 1 : -1;
+  double d = sign * distance, v = sign * velocity;
+  if (v < 0) {
+    append(-v / brake, sign * brake);
+    d += v * v / (2 * brake);
+    v = 0;
+  } else if (v > top) {
+    append((v - top) / brake, -sign * brake);
+    d -= (v * v - top * top) / (2 * brake);
+    v = top;
+  }
+  double peak = std::sqrt(std::max(0.0, 2 * accelerate * brake * (d + v * v / (2 * accelerate)) / (accelerate + brake)));
+  double cruise_s = 0;
+  if (peak > top) {
+    cruise_s = (d - (top * top - v * v) / (2 * accelerate) - top * top / (2 * brake)) / top;
+    peak = top;
+  }
+  append((peak - v) / accelerate, sign * accelerate);
+  append(cruise_s, 0);
+  append(peak / brake, -sign * brake);
+}
+
+void Trapezoid::append(double seconds, double acceleration) {
+  if (seconds > 0) stretches_[static_cast<std::size_t>(count_++)] = {seconds, acceleration};
+}
+
+double Trapezoid::duration_s() const {
+  double total = 0;
+  for (int i = 0; i < count_; ++i) total += stretches_[static_cast<std::size_t>(i)].seconds;
+  return total;
+}
+
+double Trapezoid::velocity_after(double seconds) const {
+  double v = velocity_;
+  for (int i = 0; i < count_; ++i) {
+    const Stretch& stretch = stretches_[static_cast<std::size_t>(i)];
+    if (seconds <= stretch.seconds) return v + seconds * stretch.acceleration;
+    v += stretch.seconds * stretch.acceleration;
+    seconds -= stretch.seconds;
+  }
+  return 0;
+}
+
+Vec2 trapezoidal_velocity(const Vec2& to_go, const Vec2& velocity, const MotionLimits& limits, double horizon_s) {
+  const double distance = to_go.norm();
+  const double speed = velocity.norm();
+  if (distance < 1e-9 && speed < 1e-9) return Vec2::Zero();
+  const Vec2 along = distance >= 1e-9 ? Vec2(to_go / distance) : Vec2(velocity / speed);
+  const Vec2 across = left_of(along);
+  const double v_along = velocity.dot(along), v_across = velocity.dot(across);
+  const auto share = [&](double part) {
+    return MotionLimits{limits.acceleration_mps2 * part, limits.deceleration_mps2 * part, limits.speed_mps * part};
+  };
+  // Angle 0 gives all effort to the way along.
+  double low = 0, high = 1.5707963267948966;
+  if (std::abs(v_across) < 1e-6) high = 1e-3;
+  for (int i = 0; i < 20 && high - low > 1e-4; ++i) {
+    const double angle = 0.5 * (low + high);
+    const double along_s = Trapezoid(distance, v_along, share(std::cos(angle))).duration_s();
+    const double across_s = Trapezoid(0, v_across, share(std::sin(angle))).duration_s();
+    (along_s < across_s ? low : high) = angle;
+  }
+  const double angle = 0.5 * (low + high);
+  return Trapezoid(distance, v_along, share(std::cos(angle))).velocity_after(horizon_s) * along +
+         Trapezoid(0, v_across, share(std::sin(angle))).velocity_after(horizon_s) * across;
+}
+
+}  // namespace sidestep

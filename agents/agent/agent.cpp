@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/agent.hpp"
+
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+namespace {
+
+// Others that begin farther away than this are nobody's concern in this cycle and the next few.
+constexpr double kHorizon_m = 2.5;
+// Robots keep this much more from obstacles where they plan than where they must.
+constexpr double kPlanningRoom_m = 0.03;
+// Nearer to the goal than this a robot does not try to do better.
+constexpr double kCloseEnough_m = 0.001;
+
+const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find_robot(scenario, robot); }
+
+}  // namespace
+
+Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
+    : robot_(spec_of(scenario, robot)),
+      rules_(floor_rules(scenario)),
+      cycle_(scenario.cycle),
+      goal_tolerance_m_(scenario.goal_tolerance_m),
+      negotiation_(robot, incarnation),
+      neighbours_(robot),
+      safety_search_(rules_, {}),
+      rng_(incarnation ^ (std::uint64_t{robot} << 40)),
+      estimate_{robot_.start_m, Vec2::Zero()} {
+  choose_goal();
+}
+
+void Agent::choose_goal() {
+  ways_.emplace(rules_.obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m,
+                goal().position_m);
+}
+
+void Agent::on_feedback(const msg::Feedback& feedback) {
+  negotiation_.on_feedback(feedback);
+  const Vec2 position(feedback.x_m(), feedback.y_m()), velocity(feedback.vx_mps(), feedback.vy_mps());
+  if (feedback.robot() != robot_.id || !position.allFinite() || !velocity.allFinite()) return;
+  estimate_ = {position, velocity};
+  if (!negotiation_.is_fenced()) return;
+  const Trajectory& executing = negotiation_.executing().trajectory;
+  const bool at_rest = time_from_ns(feedback.at_ns()) >= executing.end();
+  arrived_ = at_rest && (executing.rest_position_m() - goal().position_m).norm() < goal_tolerance_m_;
+  if (arrived_ && goal_index_ + 1 < robot_.goals.size()) {
+    ++goal_index_;
+    arrived_ = false;
+    choose_goal();
+  }
+}
+
+void Agent::on_world(const msg::WorldState& world) {
+  for (const msg::TrackedRobot& seen : world.robots()) {
+    if (seen.robot() != robot_.id || seen.seen_at_ns() <= last_fix_ns_) continue;
+    last_fix_ns_ = seen.seen_at_ns();
+    fix_.emplace();
+    fix_->captured_at_ns(seen.seen_at_ns());
+    fix_->x_m(seen.seen_x_m());
+    fix_->y_m(seen.seen_y_m());
+    fix_->heading_rad(seen.seen_heading_rad());
+  }
+}
+
+void Agent::on_ledger(const msg::LedgerPage& page) { neighbours_.on_page(page, estimate_.position_m, kHorizon_m); }
+
+void Agent::on_coordinator_state(const msg::CoordinatorState& state) { negotiation_.on_coordinator_state(state); }
+
+std::optional<SearchQuery> Agent::plan(Time start) {
+  ++cycles_;
+  if (!negotiation_.may_propose()) return std::nullopt;
+  const Version& base = negotiation_.base_at(start);
+  const Vec2 rest = base.trajectory.rest_position_m();
+  if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start()) return std::nullopt;
+  base_ = base.number;
+  const State there = base.trajectory.state_at(start);
+  const auto route = ways_->route_from(there.position_m);
+  const Vec2 waypoint = route ? route->waypoint_m : goal().position_m;
+  const double length = route ? route->length_m : (goal().position_m - there.position_m).norm();
+  return SearchQuery{start, there,
+                     wished_acceleration(there, waypoint, length, rules_.limits, {}, to_seconds(cycle_)), cycle_};
+}
+
+std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
+  const SearchResult result = safety_search_.search(query, neighbours_.versions(), rng_);
+  if (result.count == 0) return std::nullopt;
+  return negotiation_.propose({result.candidates.data(), result.count}, base_, now);
+}
+
+std::optional<msg::Command> Agent::on_verdict(const msg::Verdict& verdict, Time now) {
+  const auto granted = negotiation_.on_verdict(verdict, now);
+  if (!granted) return std::nullopt;
+  msg::Command forwarded = command();
+  forwarded.has_version(true);
+  forwarded.granted(encode(*granted));
+  return forwarded;
+}
+
+msg::Command Agent::command() {
+  msg::Command command;
+  command.robot(robot_.id);
+  command.has_version(false);
+  command.has_fix(fix_.has_value());
+  if (fix_) command.fix(*fix_);
+  fix_.reset();
+  command.heading_rad(goal().heading_rad.value_or(robot_.start_heading_rad));
+  return command;
+}
+
+msg::AgentStatus Agent::status() const {
+  msg::AgentStatus status;
+  status.robot(robot_.id);
+  const Negotiation& n = negotiation_;
+  status.agent_phase(!n.is_fenced()           ? msg::AGENT_FENCING
+                     : n.needs_registration() ? msg::AGENT_REGISTERING
+                     : arrived_               ? msg::AGENT_ARRIVED
+                     : n.may_propose()        ? msg::AGENT_DRIVING
+                                              : msg::AGENT_WAITING);
+  status.goal_index(static_cast<std::uint32_t>(goal_index_));
+  status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());
+  status.speed_mps(estimate_.velocity_mps.norm());
+  status.cycles(cycles_);
+  status.missed_cycles(n.counts().missed);
+  status.lost_versions(n.counts().lost);
+  status.proposals(n.counts().proposals);
+  status.grants(n.counts().grants);
+  status.denials(n.counts().denials);
+  status.invalid(n.counts().invalid + neighbours_.invalid());
+  return status;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "agents/agent/negotiation.hpp"
+#include "agents/agent/neighbours.hpp"
+#include "agents/navigation/motion_control.hpp"
+#include "agents/planning/visibility_graph.hpp"
+#include "agents/safety/safety_search.hpp"
+#include "common/config/scenario.hpp"
+#include "idl/monitor.h"
+#include "idl/vision.h"
+
+namespace sidestep {
+
+/// One robot's mind: from what it sees and is told to what it proposes and commands, one decision a cycle.
+class Agent {
+ public:
+  /// `scenario` has to have the robot.
+  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation);
+
+  void on_feedback(const msg::Feedback& feedback);
+  void on_world(const msg::WorldState& world);
+  void on_ledger(const msg::LedgerPage& page);
+  void on_coordinator_state(const msg::CoordinatorState& state);
+  /// The command that forwards a granted version.
+  std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
+
+  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal.
+  std::optional<SearchQuery> plan(Time start);
+  /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot brakes).
+  std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
+
+  /// A command without a version: fences the robot, and forwards what vision saw of it.
+  msg::Command command();
+  Negotiation& negotiation() { return negotiation_; }
+
+  /// Without the durations, which the caller measures.
+  msg::AgentStatus status() const;
+
+ private:
+  const Goal& goal() const { return robot_.goals[goal_index_]; }
+  void choose_goal();
+
+  const RobotSpec robot_;
+  const FloorRules rules_;
+  const Duration cycle_;
+  const double goal_tolerance_m_;
+  Negotiation negotiation_;
+  Neighbours neighbours_;
+  SafetySearch safety_search_;
+  Rng rng_;
+  std::size_t goal_index_ = 0;
+  std::optional<VisibilityGraph> ways_;   // to the current goal
+  bool arrived_ = false;
+  State estimate_;                        // the robot's own
+  std::optional<msg::PoseFix> fix_;       // seen, not yet forwarded
+  std::int64_t last_fix_ns_ = 0;
+  VersionNumber base_ = 0;                // of the query that plan() made
+  std::uint64_t cycles_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/agent_node.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kStatusPeriod{200'000'000};
+constexpr int kCyclesBetweenRegistrations = 6;
+
+/// Where in the cycle a robot's own cycle begins.
+Duration phase_of(const Scenario& scenario, RobotId robot) {
+  const auto before = std::ranges::count_if(scenario.robots, [&](const RobotSpec& r) { return r.id < robot; });
+  return scenario.cycle * before / static_cast<std::int64_t>(scenario.robots.size());
+}
+
+/// Adds the time that `work` takes; this is measured on the wall even when time is virtual.
+template <typename Work>
+auto timed(DurationHistogram& histogram, Work work) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = work();
+  histogram.add(std::chrono::steady_clock::now() - begin);
+  return result;
+}
+
+}  // namespace
+
+AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation)
+    : bus_(bus),
+      robot_(robot),
+      incarnation_(incarnation),
+      cycle_(scenario.cycle),
+      agent_(scenario, robot, incarnation),
+      command_writer_(bus.advertise(topics::kCommand, robot)),
+      registration_writer_(bus.advertise(topics::kRegistration)),
+      proposal_writer_(bus.advertise(topics::kProposal)),
+      status_writer_(bus.advertise(topics::kStatus)) {
+  bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
+                   agent_.on_feedback(feedback);
+                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4) negotiate();
+                 }));
+  bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
+  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) { agent_.on_world(w); }));
+  bus_.subscribe(topics::kLedger, std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
+  bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
+                   agent_.on_coordinator_state(state);
+                 }));
+  const Time now = bus_.now();
+  next_cycle_ = now - now.time_since_epoch() % cycle_ + phase_of(scenario, robot) + cycle_;
+  bus_.at(next_cycle_, [this] { begin_cycle(); });
+  publish_status();
+}
+
+void AgentNode::begin_cycle() {
+  const Time now = bus_.now();
+  while (next_cycle_ <= now) next_cycle_ += cycle_;
+  bus_.at(next_cycle_, [this] { begin_cycle(); });
+  agent_.negotiation().close_cycle(now);
+  if (agent_.negotiation().is_superseded()) return;
+  if (!commanded_) {
+    auto command = agent_.command();
+    publish(command_writer_, command);
+  }
+  commanded_ = false;
+  if (!agent_.negotiation().needs_registration()) {
+    registration_wait_ = 0;
+  } else if (registration_wait_-- == 0) {
+    registration_wait_ = kCyclesBetweenRegistrations;
+    auto registration = agent_.negotiation().registration();
+    publish(registration_writer_, registration);
+  }
+  negotiate();
+}
+
+void AgentNode::negotiate() {
+  const auto query = timed(plan_, [&] { return agent_.plan(next_cycle_); });
+  if (!query) return;
+  auto proposal = timed(search_, [&] { return agent_.search(*query, bus_.now()); });
+  if (proposal) publish(proposal_writer_, *proposal);
+}
+
+void AgentNode::on_verdict(const msg::Verdict& verdict) {
+  const auto& counts = agent_.negotiation().counts();
+  const auto answered = [&] { return counts.grants + counts.denials; };
+  const auto before = answered();
+  auto command = agent_.on_verdict(verdict, bus_.now());
+  if (answered() != before) negotiation_.add(agent_.negotiation().last_round_trip());
+  if (!command) return;
+  commanded_ = true;
+  publish(command_writer_, *command);
+}
+
+void AgentNode::publish_status() {
+  bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
+  auto status = agent_.status();
+  status.negotiation(negotiation_.to_message());
+  status.plan(plan_.to_message());
+  status.search(search_.to_message());
+  publish(status_writer_, status);
+}
+
+template <typename Message>
+void AgentNode::publish(Writer<Message>& writer, Message& message) {
+  message.head().sender(robot_);
+  message.head().incarnation(incarnation_);
+  writer.publish(message, bus_.now());
+}
+
+}  // namespace sidestep

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "agents/agent/agent.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/time/histogram.hpp"
+
+namespace sidestep {
+
+/// Connects an agent to the bus and runs its control cycle. Robots' cycles are spread evenly over the cycle time, so
+/// that proposals do not all come at once.
+class AgentNode {
+ public:
+  AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
+  AgentNode(const AgentNode&) = delete;
+  AgentNode& operator=(const AgentNode&) = delete;
+
+ private:
+  void begin_cycle();
+  /// Proposes what to do from the next cycle's begin on.
+  void negotiate();
+  void on_verdict(const msg::Verdict& verdict);
+  void publish_status();
+  template <typename Message>
+  void publish(Writer<Message>& writer, Message& message);
+
+  Bus& bus_;
+  RobotId robot_;
+  Incarnation incarnation_;
+  Duration cycle_;
+  Agent agent_;
+  Time next_cycle_;
+  bool commanded_ = false;   // in this cycle
+  int registration_wait_ = 0;
+  DurationHistogram negotiation_, plan_, search_;
+  Writer<msg::Command> command_writer_;
+  Writer<msg::Registration> registration_writer_;
+  Writer<msg::Proposal> proposal_writer_;
+  Writer<msg::AgentStatus> status_writer_;
+};
+
+}  // namespace sidestep

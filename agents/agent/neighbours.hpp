@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/motion/version.hpp"
+#include "idl/negotiation.h"
+
+namespace sidestep {
+
+/// What the other robots nearby may be executing, as the coordinator last published it. The coordinator has the last
+/// word; this is for proposing what it will grant.
+class Neighbours {
+ public:
+  explicit Neighbours(RobotId self) : self_(self) {}
+
+  /// Takes over a page of the ledger, unless it is older than what is known of that page. Versions that begin
+  /// farther than `horizon_m` from `here` are left out.
+  void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
+
+  std::span<const Version> versions() const { return versions_; }
+  std::uint64_t invalid() const { return invalid_; }
+
+ private:
+  struct Page {
+    Epoch epoch = 0;
+    std::uint64_t number = 0;
+    std::vector<Version> versions;
+  };
+  RobotId self_;
+  std::vector<Page> pages_;
+  std::vector<Version> versions_;   // of all pages
+  std::uint64_t invalid_ = 0;
+};
+
+}  // namespace sidestep

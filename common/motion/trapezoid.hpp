@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "common/geometry/vec2.hpp"
+#include "common/motion/limits.hpp"
+
+namespace sidestep {
+
+/// Time-optimal motion along one axis from a velocity to rest at a distance: up to four stretches of constant
+/// acceleration (brake what points the wrong way, accelerate, cruise, brake).
+class Trapezoid {
+ public:
+  /// Reaches `distance_m` (either sign) from velocity `velocity_mps`; all limits > 0. A velocity beyond the speed
+  /// limit is braked down to it first.
+  Trapezoid(double distance_m, double velocity_mps, const MotionLimits& limits);
+
+  double duration_s() const;
+  double velocity_after(double seconds) const;
+
+ private:
+  void append(double seconds, double acceleration);
+
+  struct Stretch {
+    double seconds, acceleration;
+  };
+  std::array<Stretch, 5> stretches_{};
+  int count_ = 0;
+  double velocity_;
+};
+
+/// Two-dimensional trapezoidal motion control (Bruce, app. B): the axis along the way and the one across it share the
+/// robot's acceleration, and the share is balanced by binary search so that both finish at the same time.
+/// Returns the velocity to have after `horizon_s` on the way from `velocity_mps` to rest at the offset `to_go_m`.
+Vec2 trapezoidal_velocity(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits, double horizon_s);
+
+}  // namespace sidestep

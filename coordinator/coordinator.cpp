@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/coordinator.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+namespace {
+
+// Leaves room above for coordinators to come.
+constexpr Epoch kHighestEpoch = Epoch{1} << 62;
+
+}  // namespace
+
+Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
+    : ledger_(rules, std::move(roster)), epoch_(epoch), missing_(ledger_.roster().size()), records_(kMaxRobots) {}
+
+void Coordinator::begin_epoch(Epoch epoch) {
+  epoch_ = epoch;
+  ledger_.clear();
+  for (Record& record : records_) record = {};
+  missing_ = ledger_.roster().size();
+}
+
+void Coordinator::on_coordinator_state(const msg::CoordinatorState& state) {
+  if (state.epoch() > epoch_) superseded_ = true;
+}
+
+void Coordinator::on_registration(const msg::Registration& registration) {
+  const RobotId robot = registration.robot();
+  if (superseded_) return;
+  if (!ledger_.knows(robot) || registration.head().sender() != robot || registration.version_count() == 0 ||
+      registration.version_count() > VersionSet::kCapacity || registration.epoch() > kHighestEpoch) {
+    ++invalid_;
+    return;
+  }
+  // Agents have obeyed a coordinator that this one has never seen. As long as it has granted nothing it may begin
+  // again above that one.
+  if (registration.epoch() > epoch_ && !is_granting()) begin_epoch(registration.epoch() + 1);
+  if (registration.epoch() != epoch_) return;
+
+  std::vector<Version> versions;
+  for (std::size_t i = 0; i < registration.version_count(); ++i) {
+    const auto version = decode(registration.versions()[i]);
+    if (!version || version->robot != robot || version->trajectory.residual_speed_mps() > 1e-6) {
+      ++invalid_;
+      return;
+    }
+    versions.push_back(*version);
+  }
+  Record& record = record_of(robot);
+  const Incarnation incarnation = registration.head().incarnation();
+  if (record.registered && incarnation <= record.incarnation) return;
+  if (!record.registered) {
+    ledger_.enter(robot, versions);
+    record.registered = true;
+    --missing_;
+  } else {
+    // A new agent for the robot: what its robot executes is in the ledger already, and nothing may be added unchecked.
+    const auto known = [&](const Version& v) {
+      return std::ranges::any_of(ledger_.versions(robot), [&](const Version& w) { return w.number == v.number; });
+    };
+    if (!std::ranges::all_of(versions, known)) {
+      ++invalid_;
+      return;
+    }
+  }
+  record.incarnation = incarnation;
+  record.answered = 0;
+}
+
+void Coordinator::on_feedback(const msg::Feedback& feedback) {
+  const RobotId robot = feedback.robot();
+  if (superseded_) return;
+  if (!ledger_.knows(robot) || feedback.executing().robot() != robot) {
+    ++invalid_;
+    return;
+  }
+  if (record_of(robot).registered) {
+    ledger_.forget(robot, feedback.executing().version_number(), time_from_ns(feedback.at_ns()));
+  }
+}
+
+std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& proposal) {
+  const RobotId robot = proposal.robot();
+  if (superseded_) return std::nullopt;
+  if (!ledger_.knows(robot) || proposal.head().sender() != robot) {
+    ++invalid_;
+    return std::nullopt;
+  }
+  Record& record = record_of(robot);
+  msg::Verdict verdict;
+  verdict.robot(robot);
+  verdict.epoch(epoch_);
+  verdict.proposal_number(proposal.candidates().front().version_number());
+  verdict.granted(0);
+  if (const auto refusal = refusal_of(proposal, record); refusal != msg::REASON_GRANTED) {
+    if (refusal == msg::REASON_MALFORMED) ++invalid_;
+    verdict.reasons().fill(refusal);
+    return verdict;
+  }
+  if (const msg::Verdict* known = remembered(record, verdict.proposal_number())) return *known;
+  ++proposals_;
+  verdict.reasons().fill(msg::REASON_NOT_TRIED);
+  rule_on(proposal, record, verdict);
+  ++(verdict.granted() ? grants_ : denials_);
+  record.verdicts[record.answered++ % kRememberedVerdicts] = verdict;
+  return verdict;
+}
+
+msg::Reason Coordinator::refusal_of(const msg::Proposal& proposal, const Record& record) const {
+  if (proposal.epoch() != epoch_) return msg::REASON_WRONG_EPOCH;
+  if (!is_granting() || proposal.head().incarnation() > record.incarnation) return msg::REASON_NOT_ALL_REGISTERED;
+  if (proposal.head().incarnation() < record.incarnation) return msg::REASON_OLD_INCARNATION;
+  if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES) {
+    return msg::REASON_MALFORMED;
+  }
+  return msg::REASON_GRANTED;
+}
+
+const msg::Verdict* Coordinator::remembered(const Record& record, std::uint64_t proposal_number) const {
+  const std::size_t count = std::min<std::size_t>(record.answered, kRememberedVerdicts);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (record.verdicts[i].proposal_number() == proposal_number) return &record.verdicts[i];
+  }
+  return nullptr;
+}
+
+void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict) {
+  const auto& first = proposal.candidates().front();
+  for (std::size_t i = 0; i < proposal.candidate_count(); ++i) {
+    const auto& message = proposal.candidates()[i];
+    const auto candidate = decode(message);
+    Ruling ruling{msg::REASON_MALFORMED};
+    if (candidate && candidate->robot == proposal.robot() && candidate->incarnation == record.incarnation &&
+        message.base() == first.base() && message.start_ns() == first.start_ns()) {
+      ruling = candidate->number > record.newest ? ledger_.grant(*candidate) : Ruling{msg::REASON_OLD_VERSION};
+      record.newest = std::max(record.newest, candidate->number);
+    }
+    verdict.reasons()[i] = ruling.reason;
+    verdict.blockers()[i] = ruling.blocker;
+    if (ruling.granted()) {
+      verdict.granted(candidate->number);
+      break;
+    }
+  }
+}
+
+msg::CoordinatorState Coordinator::state() const {
+  msg::CoordinatorState state;
+  state.epoch(epoch_);
+  state.coordinator_phase(is_granting() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
+  state.proposals(proposals_);
+  state.grants(grants_);
+  state.denials(denials_);
+  state.invalid(invalid_);
+  for (const RobotId robot : ledger_.roster()) {
+    if (!records_[robot].registered) state.missing().push_back(robot);
+  }
+  return state;
+}
+
+std::size_t Coordinator::page_count() const {
+  return (ledger_.roster().size() + kRobotsPerPage - 1) / kRobotsPerPage;
+}
+
+msg::LedgerPage Coordinator::page(std::size_t index) const {
+  msg::LedgerPage page;
+  page.page_index(static_cast<std::uint32_t>(index));
+  page.page_count(static_cast<std::uint32_t>(page_count()));
+  page.epoch(epoch_);
+  const std::size_t end = std::min(ledger_.roster().size(), (index + 1) * kRobotsPerPage);
+  for (std::size_t i = index * kRobotsPerPage; i < end; ++i) {
+    for (const Version& version : ledger_.versions(ledger_.roster()[i])) page.versions().push_back(encode(version));
+  }
+  return page;
+}
+
+}  // namespace sidestep

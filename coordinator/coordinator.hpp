@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "coordinator/ledger.hpp"
+#include "idl/negotiation.h"
+#include "idl/robot.h"
+
+namespace sidestep {
+
+/// The one place where versions are compared: registration, verdicts and the ledger of one epoch. It needs no clock.
+/// Every message that reaches it may be late, repeated, wrong or hostile; what it cannot use changes nothing.
+class Coordinator {
+ public:
+  Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
+
+  /// The answer to a proposal; none for one that names no robot of the roster.
+  std::optional<msg::Verdict> on_proposal(const msg::Proposal& proposal);
+  void on_registration(const msg::Registration& registration);
+  /// A fact from a robot.
+  void on_feedback(const msg::Feedback& feedback);
+  /// A sign of life of a coordinator, this one's own included. One of a higher epoch supersedes this one for good.
+  void on_coordinator_state(const msg::CoordinatorState& state);
+
+  /// False until every robot of the roster has registered, and again once superseded.
+  bool is_granting() const { return !superseded_ && missing_ == 0; }
+  bool is_superseded() const { return superseded_; }
+  Epoch epoch() const { return epoch_; }
+  const Ledger& ledger() const { return ledger_; }
+
+  msg::CoordinatorState state() const;
+  /// The ledger in pages of kRobotsPerPage robots of the roster.
+  static constexpr std::size_t kRobotsPerPage = 32;
+  std::size_t page_count() const;
+  msg::LedgerPage page(std::size_t index) const;
+
+ private:
+  static constexpr std::size_t kRememberedVerdicts = 8;
+
+  /// What it knows of a robot besides its versions.
+  struct Record {
+    bool registered = false;
+    Incarnation incarnation = 0;
+    VersionNumber newest = 0;   // highest version number proposed so far
+    std::array<msg::Verdict, kRememberedVerdicts> verdicts;
+    std::uint64_t answered = 0;   // how many proposals, in this incarnation
+  };
+
+  Record& record_of(RobotId robot) { return records_[robot]; }
+  void begin_epoch(Epoch epoch);
+  const msg::Verdict* remembered(const Record& record, std::uint64_t proposal_number) const;
+  void rule_on(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict);
+  msg::Reason refusal_of(const msg::Proposal& proposal, const Record& record) const;
+
+  Ledger ledger_;
+  Epoch epoch_;
+  bool superseded_ = false;
+  std::size_t missing_;
+  std::vector<Record> records_;   // by robot
+  std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/motion/clearance.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/unit/common/motion/random_trajectory.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const Time kBegin = time_from_ns(1'000'000'000);
+
+Trajectory moving(Time start, Vec2 position, Vec2 velocity, Vec2 acceleration, double seconds) {
+  Trajectory trajectory(start, {position, velocity});
+  trajectory.append(from_seconds(seconds), acceleration);
+  append_stop(trajectory, 5);
+  return trajectory;
+}
+
+/// Independent and slow: dense samples from the later start to the later end, then ternary search about the best few.
+double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
+  const Time from = std::max(a.start(), b.start()), to = std::max({a.end(), b.end(), from});
+  const double seconds = to_seconds(to - from);
+  const auto at = [&](double t) { return distance_at(a, b, from + from_seconds(t)); };
+  double smallest = std::min(at(0), at(seconds));
+  const double step = seconds / samples;
+  for (int i = 0; i <= samples; ++i) {
+    const double here = at(i * step);
+    if (here > smallest + 10 * step) continue;   // nothing moves faster than 10 m/s relative to another
+    double low = std::max(0.0, (i - 1) * step), high = std::min(seconds, (i + 1) * step);
+    while (high - low > 1e-8) {
+      const double third = (high - low) / 3;
+      (at(low + third) < at(high - third) ? high : low) += at(low + third) < at(high - third) ? -third : third;
+    }
+    smallest = std::min({smallest, here, at(0.5 * (low + high))});
+  }
+  return smallest;
+}
+
+}  // namespace
+
+TEST_CASE("clearance is never above the distance at any instant, over two million random pairs") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int pair = 0; pair < 500'000; ++pair) {
+    const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
+    const double clearance = clearance_m(a, b, 0);
+    const Time from = std::max(a.start(), b.start());
+    const double seconds = std::max(0.01, to_seconds(std::max(a.end(), b.end()) - from));
+    for (int i = 0; i < 8; ++i) {
+      const double distance = distance_at(a, b, from + from_seconds(rng.uniform(0, 1.1 * seconds)));
+      if (clearance > distance) FAIL("pair " << pair << ": " << clearance << " > " << distance);
+    }
+    const double keep = rng.uniform(0, 0.5);
+    if (is_clear(a, b, keep) != (clearance_m(a, b, keep) >= 0)) FAIL("pair " << pair << " at " << keep);
+  }
+}
+
+TEST_CASE("clearance is the smallest distance of a dense search to a micrometre") {
+  const std::uint64_t seed = GENERATE(11u, 12u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int pair = 0; pair < 4000; ++pair) {
+    const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
+    const double expected = sampled_distance(a, b, 400), computed = clearance_m(a, b, 0);
+    CAPTURE(pair, expected, computed);
+    REQUIRE(computed <= expected);
+    REQUIRE(computed >= expected - 1e-6);
+  }
+}
+
+TEST_CASE("clearance does not depend on the order of the two robots") {
+  Rng rng(21);
+  for (int pair = 0; pair < 10'000; ++pair) {
+    const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
+    REQUIRE(clearance_m(a, b, 0.19) == Approx(clearance_m(b, a, 0.19)).margin(1e-9));
+  }
+}
+
+TEST_CASE("robots that meet between two samples are not clear") {
+  // Relative speed 4 m/s: within 0.19 m of each other for less than 0.1 s.
+  const auto a = moving(kBegin, {-1, 0}, {2, 0}, {0, 0}, 0.6), b = moving(kBegin, {1, 0.1}, {-2, 0}, {0, 0}, 0.6);
+  CHECK(distance_at(a, b, a.start()) > 1.9);
+  CHECK(distance_at(a, b, a.end()) > 0.5);
+  CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-6));
+  CHECK_FALSE(is_clear(a, b, 0.19));
+}
+
+TEST_CASE("robots are compared at the same time, so that one may pass where the other has been") {
+  // b crosses the origin 0.5 s after a has.
+  const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 0.5);
+  const auto b = moving(kBegin + from_seconds(0.3), {0, -0.6}, {0, 1.5}, {0, 0}, 0.4);
+  CHECK(is_clear(a, b, 0.19));
+  // And one that is not in the same place at the same elapsed time may be in the same place at the same time.
+  const auto late = moving(kBegin + from_seconds(0.25), {0.6, -0.1}, {0, 1}, {0, 0}, 0.2);
+  CHECK_FALSE(is_clear(a, late, 0.19));
+}
+
+TEST_CASE("the overlap begins at the later of the two starts") {
+  // At a's start b is elsewhere: what b's trajectory says of the time before its own start is not to be judged.
+  const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 1.0);
+  const auto b = Trajectory::resting(kBegin + from_seconds(0.5), {0, 0});
+  CHECK(clearance_m(a, b, 0) == Approx(1.0).margin(1e-6));
+  CHECK(is_clear(a, b, 0.19));
+}
+
+TEST_CASE("of two minima the deeper one counts, whichever it is") {
+  // a flies past b, turns round and comes back past it: one parabola, two near passes.
+  const auto b = Trajectory::resting(kBegin, {0, 0.3});
+  const auto first_deeper = moving(kBegin, {-0.5, 0.25}, {2.4, 0.1}, {-4, 0}, 1.0);
+  const auto second_deeper = moving(kBegin, {-0.5, 0.45}, {2.4, -0.1}, {-4, 0}, 1.0);
+  for (const auto* a : {&first_deeper, &second_deeper}) {
+    CHECK(clearance_m(*a, b, 0) == Approx(sampled_distance(*a, b, 2000)).margin(1e-6));
+  }
+  CHECK(clearance_m(second_deeper, b, 0) < 0.08);
+}
+
+TEST_CASE("equal motions, standing robots and empty phases have a clearance") {
+  const auto a = moving(kBegin, {0, 0}, {1, 1}, {1, 0}, 0.2), b = moving(kBegin, {0.3, 0}, {1, 1}, {1, 0}, 0.2);
+  CHECK(clearance_m(a, b, 0) == Approx(0.3).margin(1e-8));
+  const auto c = Trajectory::resting(kBegin, {0, 0}), d = Trajectory::resting(kBegin + from_seconds(3), {0.2, 0});
+  CHECK(clearance_m(c, d, 0.19) == Approx(0.01).margin(1e-8));
+  CHECK(is_clear(c, d, 0.19));
+  CHECK_FALSE(is_clear(c, d, 0.2));
+  Trajectory empty(kBegin, {{0, 0.5}, {0, 0}});
+  empty.append(Duration{0}, {5, 0});
+  empty.append(Duration{0}, {0, 5});
+  CHECK(clearance_m(c, empty, 0) == Approx(0.5).margin(1e-8));
+}
+
+TEST_CASE("what happens after the last start for ever counts, long after both have ended") {
+  const auto a = moving(kBegin, {0, 0}, {1, 0}, {0, 0}, 0.1);
+  const auto b = Trajectory::resting(kBegin + std::chrono::hours(24), a.rest_position_m() + Vec2(0.1, 0));
+  CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
+}
+
+TEST_CASE("a disc that never moves is a robot at rest") {
+  Rng rng(31);
+  for (int i = 0; i < 10'000; ++i) {
+    const Trajectory a = random_trajectory(rng);
+    const Vec2 centre = random_vector(rng, 1);
+    const auto resting = Trajectory::resting(a.start(), centre);
+    REQUIRE(clearance_m(a, centre, 0.2) == clearance_m(a, resting, 0.2));
+    REQUIRE(is_clear(a, centre, 0.2) == is_clear(a, resting, 0.2));
+  }
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/motion/trajectory.hpp"
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+
+inline Vec2 random_vector(Rng& rng, double largest) {
+  return {rng.uniform(-largest, largest), rng.uniform(-largest, largest)};
+}
+
+/// Up to three phases of anything and then a stop, starting within half a second of `around`, near the origin.
+inline Trajectory random_trajectory(Rng& rng, Time around = time_from_ns(1'000'000'000)) {
+  Trajectory trajectory(around + from_seconds(rng.uniform(-0.5, 0.5)),
+                        {random_vector(rng, 0.6), rng.chance(0.1) ? Vec2(0, 0) : random_vector(rng, 2)});
+  const auto phases = rng.below(4);
+  for (std::uint64_t i = 0; i < phases; ++i) {
+    const Duration duration = rng.chance(0.05) ? Duration{static_cast<std::int64_t>(rng.below(3))}
+                                               : from_seconds(rng.uniform(0, 0.4));
+    trajectory.append(duration, rng.chance(0.1) ? Vec2(0, 0) : random_vector(rng, 5));
+  }
+  append_stop(trajectory, rng.uniform(3, 6));
+  return trajectory;
+}
+
+inline double distance_at(const Trajectory& a, const Trajectory& b, Time t) {
+  return (a.state_at(t).position_m - b.state_at(t).position_m).norm();
+}
+
+}  // namespace sidestep
