@@ -95,9 +95,9 @@ void AgentNode::on_verdict(const msg::Verdict& verdict) {
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
   auto status = agent_.status();
-  status.negotiation(negotiation_.to_message());
-  status.plan(plan_.to_message());
-  status.search(search_.to_message());
+  negotiation_.to_message(status.negotiation());
+  plan_.to_message(status.plan());
+  search_.to_message(status.search());
   publish(status_writer_, status);
 }
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/sim/ideal_robots.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+
+IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
+    : bus_(bus), radius_m_(scenario.radius_m), cycle_(scenario.cycle) {
+  for (const RobotSpec& spec : scenario.robots) {
+    Robot& robot = robots_[spec.id];
+    robot.id = spec.id;
+    robot.executing = {spec.id, 0, 0, 0, Trajectory::resting(time_from_ns(0), spec.start_m)};
+    robot.writer = bus.advertise(topics::kFeedback, spec.id);
+    bus.subscribe(topics::kCommand, spec.id,
+                  std::function([this, &robot](const msg::Command& command) { on_command(robot, command); }));
+    report_periodically(robot);
+  }
+}
+
+void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
+  const Time now = bus_.now();
+  advance(robot, now);
+  if (command.head().incarnation() < robot.obeyed) return;
+  if (command.head().incarnation() > robot.obeyed) {
+    robot.obeyed = command.head().incarnation();
+    std::erase_if(robot.pending, [&](const Version& v) { return v.incarnation < robot.obeyed; });
+    report(robot);
+  }
+  if (!command.has_version()) return;
+  const auto version = decode(command.granted());
+  if (!version || version->trajectory.start() <= now) return;
+  robot.pending.push_back(*version);
+  std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
+  bus_.at(version->trajectory.start(), [this, &robot] {
+    advance(robot, bus_.now());
+    report(robot);
+  });
+}
+
+void IdealRobots::advance(Robot& robot, Time now) {
+  while (!robot.pending.empty() && robot.pending.front().trajectory.start() <= now) {
+    if (robot.pending.front().base == robot.executing.number) robot.executing = robot.pending.front();
+    robot.pending.erase(robot.pending.begin());
+  }
+}
+
+void IdealRobots::report(Robot& robot) {
+  const Time now = bus_.now();
+  const State state = robot.executing.trajectory.state_at(now);
+  msg::Feedback feedback;
+  feedback.robot(robot.id);
+  feedback.head().sender(robot.id);
+  feedback.obeyed_incarnation(robot.obeyed);
+  feedback.at_ns(to_ns(now));
+  feedback.executing(encode(robot.executing));
+  feedback.x_m(state.position_m.x());
+  feedback.y_m(state.position_m.y());
+  feedback.vx_mps(state.velocity_mps.x());
+  feedback.vy_mps(state.velocity_mps.y());
+  robot.writer.publish(feedback, now);
+}
+
+void IdealRobots::report_periodically(Robot& robot) {
+  bus_.at(bus_.now() + 2 * cycle_, [this, &robot] { report_periodically(robot); });
+  advance(robot, bus_.now());
+  report(robot);
+}
+
+Vec2 IdealRobots::position_m(RobotId id, Time t) {
+  Robot& robot = robots_.at(id);
+  advance(robot, t);
+  return robot.executing.trajectory.state_at(t).position_m;
+}
+
+double IdealRobots::clearance_m(Time t) {
+  std::vector<Vec2> positions;
+  for (const auto& [id, robot] : robots_) positions.push_back(position_m(id, t));
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, (positions[i] - positions[j]).norm());
+  }
+  return smallest - 2 * radius_m_;
+}
+
+}  // namespace sidestep

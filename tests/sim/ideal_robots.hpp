@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/motion/version.hpp"
+
+namespace sidestep {
+
+/// Robots that follow their reference exactly and keep the firmware's rules: what is left to test is the protocol.
+class IdealRobots {
+ public:
+  IdealRobots(Bus& bus, const Scenario& scenario);
+
+  Vec2 position_m(RobotId robot, Time t);
+  /// The smallest distance between two robots' edges at a time.
+  double clearance_m(Time t);
+  double radius_m() const { return radius_m_; }
+
+ private:
+  struct Robot {
+    RobotId id;
+    Incarnation obeyed = 0;
+    Version executing;
+    std::vector<Version> pending;   // by start
+    Writer<msg::Feedback> writer;
+  };
+  void on_command(Robot& robot, const msg::Command& command);
+  void advance(Robot& robot, Time now);
+  void report(Robot& robot);
+  void report_periodically(Robot& robot);
+
+  Bus& bus_;
+  double radius_m_;
+  Duration cycle_;
+  std::map<RobotId, Robot> robots_;
+};
+
+}  // namespace sidestep
