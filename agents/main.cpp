@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "agents/agent/agent_node.hpp"
+#include "common/process/process.hpp"
+
+int main(int argc, char** argv) {
+  using namespace sidestep;
+  RobotId robot = 0;
+  Program program;
+  program.name = "sidestep-agent";
+  program.description = "Drives one robot: plans its way and negotiates every move with the coordinator.";
+  program.add_options = [&](CLI::App& app) {
+    app.add_option("--robot", robot, "the robot's id in the scenario")->required();
+  };
+  program.participant = [&] { return "agent-" + std::to_string(robot); };
+  program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
+    if (!find_robot(scenario, robot)) {
+      throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " + std::to_string(robot));
+    }
+    return std::make_shared<AgentNode>(bus, scenario, robot, static_cast<Incarnation>(to_ns(bus.now())));
+  };
+  return run_process(argc, argv, program);
+}

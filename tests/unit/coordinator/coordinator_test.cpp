@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/coordinator.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/unit/coordinator/floor.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr Epoch kEpoch = 100;
+
+struct Floor {
+  Coordinator coordinator{floor_for_tests(), {1, 2}, kEpoch};
+  Version a = standing(1, {0, 0}), b = standing(2, {1, 0});
+
+  void register_both() {
+    coordinator.on_registration(registration_of(a, kEpoch));
+    coordinator.on_registration(registration_of(b, kEpoch));
+    REQUIRE(coordinator.is_granting());
+  }
+  msg::Verdict ask(const msg::Proposal& proposal) {
+    const auto verdict = coordinator.on_proposal(proposal);
+    REQUIRE(verdict);
+    return *verdict;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("nothing is granted until every robot of the roster has registered") {
+  Floor floor;
+  const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
+  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
+  floor.coordinator.on_registration(registration_of(floor.a, kEpoch));
+  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
+  CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
+  floor.coordinator.on_registration(registration_of(floor.b, kEpoch));
+  CHECK(floor.ask(proposal).granted() == 10);
+}
+
+TEST_CASE("the first clear candidate is granted and the reasons of the others are given") {
+  Floor floor;
+  floor.register_both();
+  const auto verdict = floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6), continued(floor.a, 11, 1, {0, 3}),
+                                              continued(floor.a, 12, 1, {0, -3})}, kEpoch));
+  CHECK(verdict.granted() == 11);
+  CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.blockers()[0] == 2);
+  CHECK(verdict.reasons()[1] == msg::REASON_GRANTED);
+  CHECK(verdict.reasons()[2] == msg::REASON_NOT_TRIED);
+}
+
+TEST_CASE("a repeated proposal is answered with the verdict that it got") {
+  Floor floor;
+  floor.register_both();
+  const auto first = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
+  const auto second = proposal_of({continued(floor.a, 11, 1, {0, -3})}, kEpoch);
+  CHECK(floor.ask(first).granted() == 10);
+  CHECK(floor.ask(second).granted() == 11);
+  CHECK(floor.ask(first).granted() == 10);
+  CHECK(floor.coordinator.ledger().versions(1).size() == 3);
+}
+
+TEST_CASE("versions have to be proposed in increasing order") {
+  Floor floor;
+  floor.register_both();
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted() == 10);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons()[0] == msg::REASON_OLD_VERSION);
+}
+
+TEST_CASE("another epoch's proposal and an older agent's are refused") {
+  Floor floor;
+  floor.register_both();
+  const Version p = continued(floor.a, 10, 1, {0, 3});
+  CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons()[0] == msg::REASON_WRONG_EPOCH);
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons()[0] == msg::REASON_OLD_INCARNATION);
+  // A new agent has to register before it is heard.
+  Version q = p;
+  q.incarnation = 2;
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
+  floor.coordinator.on_registration(registration_of(floor.a, kEpoch, 2));
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons()[0] == msg::REASON_OLD_INCARNATION);
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted() == 10);
+}
+
+TEST_CASE("a new agent's registration cannot bring in versions that were never granted") {
+  Floor floor;
+  floor.register_both();
+  floor.coordinator.on_registration(registration_of(standing(1, {0.9, 0}, 77), kEpoch, 2));
+  REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
+  CHECK(floor.coordinator.ledger().versions(1)[0].number == 0);
+  CHECK(floor.coordinator.state().invalid() == 1);
+}
+
+TEST_CASE("a coordinator that hears of a higher one falls silent") {
+  Floor floor;
+  floor.register_both();
+  msg::CoordinatorState other;
+  other.epoch(kEpoch + 1);
+  floor.coordinator.on_coordinator_state(other);
+  CHECK_FALSE(floor.coordinator.is_granting());
+  CHECK_FALSE(floor.coordinator.on_proposal(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)));
+  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
+}
+
+TEST_CASE("a coordinator whose clock is behind begins above the epoch that agents have obeyed") {
+  Floor floor;
+  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 50));
+  CHECK(floor.coordinator.epoch() == kEpoch + 51);
+  CHECK(floor.coordinator.state().missing().size() == 2);
+  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 51));
+  floor.coordinator.on_registration(registration_of(floor.b, kEpoch + 51));
+  CHECK(floor.coordinator.is_granting());
+  // Once it grants, nobody makes it begin again.
+  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 90, 5));
+  CHECK(floor.coordinator.epoch() == kEpoch + 51);
+}
+
+TEST_CASE("a fact from a robot frees the places that it has left") {
+  Floor floor;
+  floor.register_both();
+  const Version p = continued(floor.a, 10, 1, {0, 3});
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted() == 10);
+  floor.coordinator.on_feedback(fact(p, 1.5));
+  REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
+  CHECK(floor.coordinator.ledger().versions(1)[0].number == 10);
+}
+
+TEST_CASE("hostile proposals get a verdict with a reason, or none, and change nothing") {
+  Floor floor;
+  floor.register_both();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const auto good = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
+  const auto spoil = [&](auto change) {
+    auto proposal = good;
+    change(proposal);
+    return floor.ask(proposal).reasons()[0];
+  };
+  auto malformed = msg::REASON_MALFORMED;
+  CHECK(spoil([&](auto& p) { p.candidates()[0].x_m(nan); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].vy_mps(inf); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[0].ax_mps2(nan); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[1].duration_ns(-1); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[1].duration_ns(std::numeric_limits<std::int64_t>::max()); }) ==
+        malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].phase_count(200); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].start_ns(-5); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].start_ns(std::numeric_limits<std::int64_t>::max()); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].robot(2); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].incarnation(2); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidate_count(0); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidate_count(255); }) == malformed);
+  for (const auto change : {+[](msg::Proposal& p) { p.robot(3); }, +[](msg::Proposal& p) { p.robot(4'000'000'000); },
+                            +[](msg::Proposal& p) { p.head().sender(2); }}) {
+    auto proposal = good;
+    change(proposal);
+    CHECK_FALSE(floor.coordinator.on_proposal(proposal));
+  }
+  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
+  CHECK(floor.coordinator.ledger().versions(2).size() == 1);
+}
+
+TEST_CASE("random messages of every kind never break the coordinator") {
+  const std::uint64_t seed = 7;
+  CAPTURE(seed);
+  Rng rng(seed);
+  Floor floor;
+  floor.register_both();
+  const auto noise = [&](msg::Version& v) {
+    switch (rng.below(8)) {
+      case 0: v.x_m(rng.normal() * 1e6); break;
+      case 1: v.phase_count(static_cast<std::uint8_t>(rng.bits())); break;
+      case 2: v.start_ns(static_cast<std::int64_t>(rng.bits())); break;
+      case 3: v.phases()[0].duration_ns(static_cast<std::int64_t>(rng.bits())); break;
+      case 4: v.base(rng.bits()); break;
+      case 5: v.version_number(rng.bits() >> rng.below(64)); break;
+      case 6: v.robot(static_cast<std::uint32_t>(rng.bits() >> rng.below(32))); break;
+      default: v.vx_mps(rng.normal()); break;
+    }
+  };
+  for (int i = 0; i < 100'000; ++i) {
+    auto proposal = proposal_of({continued(floor.a, static_cast<VersionNumber>(i), 1, {0, 3})}, kEpoch);
+    noise(proposal.candidates()[0]);
+    (void)floor.coordinator.on_proposal(proposal);
+    auto registration = registration_of(floor.b, kEpoch, rng.below(3));
+    noise(registration.versions()[0]);
+    registration.version_count(static_cast<std::uint8_t>(rng.bits()));
+    floor.coordinator.on_registration(registration);
+    auto feedback = fact(floor.a, 1);
+    noise(feedback.executing());
+    feedback.at_ns(static_cast<std::int64_t>(rng.bits()));
+    floor.coordinator.on_feedback(feedback);
+    REQUIRE_FALSE(floor.coordinator.ledger().versions(1).empty());
+    REQUIRE_FALSE(floor.coordinator.ledger().versions(2).empty());
+  }
+}
+
+TEST_CASE("the ledger's pages hold every version of every robot once") {
+  std::vector<RobotId> roster;
+  for (RobotId robot = 0; robot < 70; ++robot) roster.push_back(robot);
+  Coordinator coordinator(floor_for_tests(), roster, kEpoch);
+  for (const RobotId robot : roster) {
+    coordinator.on_registration(registration_of(standing(robot, {0.2 * robot - 8, 0}), kEpoch));
+  }
+  REQUIRE(coordinator.page_count() == 3);
+  std::vector<RobotId> seen;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto page = coordinator.page(i);
+    CHECK(page.page_count() == 3);
+    for (const auto& version : page.versions()) seen.push_back(version.robot());
+  }
+  CHECK(seen == roster);
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/messaging/codec.hpp"
+#include "common/motion/validity.hpp"
+#include "common/random/rng.hpp"
+#include "idl/negotiation.h"
+#include "idl/robot.h"
+
+namespace sidestep {
+
+/// Versions and messages for tests of the ledger and the coordinator: times in seconds, on an empty floor.
+inline Time at_s(double seconds) { return from_seconds(seconds) + Time{}; }
+
+inline FloorRules floor_for_tests() {
+  FloorRules rules;
+  rules.field = {20, 20};
+  return rules;
+}
+
+inline Version standing(RobotId robot, Vec2 position, VersionNumber number = 0) {
+  return {robot, 0, number, 0, Trajectory::resting(at_s(0), position)};
+}
+
+/// Continues `base` at a time with an acceleration held for a while, then stops.
+inline Version continued(const Version& base, VersionNumber number, double start_s, Vec2 acceleration,
+                         double seconds = 1.0 / 60) {
+  Trajectory trajectory(at_s(start_s), base.trajectory.state_at(at_s(start_s)));
+  trajectory.append(from_seconds(seconds), acceleration);
+  append_stop(trajectory, 5);
+  return {base.robot, 1, number, base.number, trajectory};
+}
+
+inline msg::Registration registration_of(const Version& version, Epoch epoch, Incarnation incarnation = 1) {
+  msg::Registration registration;
+  registration.robot(version.robot);
+  registration.head().sender(version.robot);
+  registration.head().incarnation(incarnation);
+  registration.epoch(epoch);
+  registration.version_count(1);
+  registration.versions()[0] = encode(version);
+  return registration;
+}
+
+inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch epoch, Incarnation incarnation = 1) {
+  msg::Proposal proposal;
+  proposal.robot(candidates.front().robot);
+  proposal.head().sender(candidates.front().robot);
+  proposal.head().incarnation(incarnation);
+  proposal.epoch(epoch);
+  proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
+  for (std::size_t i = 0; i < candidates.size(); ++i) proposal.candidates()[i] = encode(candidates[i]);
+  return proposal;
+}
+
+inline msg::Feedback fact(const Version& executing, double at) {
+  msg::Feedback feedback;
+  feedback.robot(executing.robot);
+  feedback.head().sender(executing.robot);
+  feedback.at_ns(to_ns(at_s(at)));
+  feedback.obeyed_incarnation(1);
+  feedback.executing(encode(executing));
+  return feedback;
+}
+
+}  // namespace sidestep
