@@ -12,6 +12,8 @@ constexpr int kCornersPerDisc = 12;
 constexpr double kPi = 3.14159265358979323846;
 // Corners stand off from the disc by this much, so that they see along it.
 constexpr double kStandOff_m = 0.005;
+// A corner this near is behind the robot.
+constexpr double kReached_m = 1e-3;
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
 double distance2_to_segment(const Vec2& point, const Vec2& a, const Vec2& b) {
@@ -82,7 +84,9 @@ bool VisibilityGraph::sees(const Vec2& from, const Vec2& to) const {
 std::optional<Route> VisibilityGraph::route_from(const Vec2& start_m) const {
   std::optional<Route> best;
   for (const Corner& corner : corners_) {
-    const double length = (corner.position_m - start_m).norm() + corner.to_goal_m;
+    const double there = (corner.position_m - start_m).norm();
+    if (there < kReached_m && corner.to_goal_m > 0) continue;
+    const double length = there + corner.to_goal_m;
     if (length == kNoWay || (best && length >= best->length_m) || !sees(start_m, corner.position_m)) continue;
     best = Route{corner.position_m, length};
   }

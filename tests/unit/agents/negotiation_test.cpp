@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/negotiation.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "common/messaging/codec.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr RobotId kRobot = 3;
+constexpr Incarnation kSelf = 1000;
+constexpr Epoch kEpoch = 50;
+
+Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
+
+msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf) {
+  msg::Feedback feedback;
+  feedback.robot(kRobot);
+  feedback.at_ns(to_ns(at_s(at)));
+  feedback.obeyed_incarnation(obeyed);
+  feedback.executing(encode(executing));
+  return feedback;
+}
+
+msg::CoordinatorState life_sign(Epoch epoch, std::vector<std::uint32_t> missing = {}) {
+  msg::CoordinatorState state;
+  state.epoch(epoch);
+  state.coordinator_phase(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
+  state.missing(missing);
+  return state;
+}
+
+struct Driver {
+  Negotiation n{kRobot, kSelf};
+  Version stand{kRobot, 0, 0, 0, Trajectory::resting(at_s(0), {0, 0})};
+
+  void become_ready() {
+    n.on_feedback(fact(stand, 0.5));
+    n.on_coordinator_state(life_sign(kEpoch));
+    REQUIRE(n.may_propose());
+  }
+  msg::Proposal propose(double start, double now) {
+    const Version& base = n.base_at(at_s(start));
+    Trajectory trajectory(at_s(start), base.trajectory.state_at(at_s(start)));
+    trajectory.append(from_seconds(0.1), {1, 0});
+    append_stop(trajectory, 5);
+    return n.propose({&trajectory, 1}, base.number, at_s(now));
+  }
+  std::optional<Version> grant(const msg::Proposal& proposal, double now, Epoch epoch = kEpoch) {
+    msg::Verdict verdict;
+    verdict.robot(kRobot);
+    verdict.epoch(epoch);
+    verdict.proposal_number(proposal.candidates()[0].version_number());
+    verdict.granted(proposal.candidates()[0].version_number());
+    return n.on_verdict(verdict, at_s(now));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an agent is silent until its robot has acknowledged it and the coordinator knows it") {
+  Driver d;
+  CHECK_FALSE(d.n.is_fenced());
+  d.n.on_feedback(fact(d.stand, 0.1, kSelf - 1));
+  CHECK_FALSE(d.n.is_fenced());
+  d.n.on_coordinator_state(life_sign(kEpoch, {kRobot}));
+  CHECK_FALSE(d.n.needs_registration());
+  d.n.on_feedback(fact(d.stand, 0.2));
+  CHECK(d.n.is_fenced());
+  CHECK(d.n.needs_registration());
+  d.n.on_coordinator_state(life_sign(kEpoch, {7}));
+  CHECK_FALSE(d.n.needs_registration());
+  CHECK_FALSE(d.n.may_propose());
+  d.n.on_coordinator_state(life_sign(kEpoch));
+  CHECK(d.n.may_propose());
+}
+
+TEST_CASE("what was granted in time is forwarded and becomes the base of what follows") {
+  Driver d;
+  d.become_ready();
+  const auto first = d.propose(1.0, 0.9);
+  const auto version = d.grant(first, 0.95);
+  REQUIRE(version);
+  CHECK(version->number == first.candidates()[0].version_number());
+  CHECK(d.n.base_at(at_s(1.05)).number == version->number);
+  CHECK(d.n.base_at(at_s(0.99)).number == 0);
+  CHECK(d.propose(1.05, 1.0).candidates()[0].base() == version->number);
+}
+
+TEST_CASE("a late verdict leaves the robot braking") {
+  Driver d;
+  d.become_ready();
+  const auto proposal = d.propose(1.0, 0.9);
+  CHECK_FALSE(d.grant(proposal, 1.0));
+  CHECK(d.n.base_at(at_s(1.2)).number == 0);
+  CHECK(d.n.counts().missed == 1);
+}
+
+TEST_CASE("a verdict is obeyed once, and only if it answers what was asked last") {
+  Driver d;
+  d.become_ready();
+  const auto old = d.propose(1.0, 0.9), current = d.propose(1.1, 0.95);
+  CHECK_FALSE(d.grant(old, 0.96));
+  CHECK_FALSE(d.grant(current, 0.96, kEpoch - 1));
+  CHECK(d.grant(current, 0.96));
+  CHECK_FALSE(d.grant(current, 0.97));
+}
+
+TEST_CASE("a verdict that grants what nobody proposed is not forwarded") {
+  Driver d;
+  d.become_ready();
+  msg::Verdict verdict;
+  verdict.robot(kRobot);
+  verdict.epoch(kEpoch);
+  verdict.proposal_number(d.propose(1.0, 0.9).candidates()[0].version_number());
+  verdict.granted(424242);
+  CHECK_FALSE(d.n.on_verdict(verdict, at_s(0.95)));
+  CHECK(d.n.counts().invalid == 1);
+}
+
+TEST_CASE("a higher epoch ends what is outstanding, lower ones are ignored, and all that may be executed is registered") {
+  Driver d;
+  d.become_ready();
+  const auto forwarded = d.grant(d.propose(1.0, 0.9), 0.95);
+  const auto outstanding = d.propose(1.05, 1.0);
+  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}));
+  CHECK_FALSE(d.grant(outstanding, 1.01));
+  CHECK_FALSE(d.grant(outstanding, 1.01, kEpoch + 1));
+  CHECK(d.n.needs_registration());
+  d.n.on_coordinator_state(life_sign(kEpoch));
+  CHECK(d.n.needs_registration());
+  const auto registration = d.n.registration();
+  CHECK(registration.epoch() == kEpoch + 1);
+  REQUIRE(registration.version_count() == 2);
+  CHECK(registration.versions()[0].version_number() == 0);
+  CHECK(registration.versions()[1].version_number() == forwarded->number);
+}
+
+TEST_CASE("what facts have excluded is not registered any more") {
+  Driver d;
+  d.become_ready();
+  const auto forwarded = d.grant(d.propose(1.0, 0.9), 0.95);
+  d.n.on_feedback(fact(*forwarded, 1.01));
+  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}));
+  const auto registration = d.n.registration();
+  REQUIRE(registration.version_count() == 1);
+  CHECK(registration.versions()[0].version_number() == forwarded->number);
+}
+
+TEST_CASE("a command that was lost is noticed, and the next proposal rests on what the robot executes") {
+  Driver d;
+  d.become_ready();
+  const auto lost = d.grant(d.propose(1.0, 0.9), 0.95);
+  REQUIRE(lost);
+  (void)d.propose(1.05, 1.0);
+  CHECK_FALSE(d.n.is_contradicted());
+  d.n.on_feedback(fact(d.stand, 1.001));
+  CHECK(d.n.is_contradicted());
+  CHECK(d.n.counts().lost == 1);
+  CHECK(d.propose(1.05, 1.01).candidates()[0].base() == 0);
+  CHECK_FALSE(d.n.is_contradicted());
+}
+
+TEST_CASE("facts that arrive late change nothing") {
+  Driver d;
+  d.become_ready();
+  const auto first = d.grant(d.propose(1.0, 0.9), 0.95);
+  d.n.on_feedback(fact(*first, 1.01));
+  d.n.on_feedback(fact(d.stand, 0.99));
+  CHECK(d.n.executing().number == first->number);
+  CHECK(d.n.counts().lost == 0);
+}
+
+TEST_CASE("an agent that a later one has fenced off falls silent") {
+  Driver d;
+  d.become_ready();
+  const auto proposal = d.propose(1.0, 0.9);
+  d.n.on_feedback(fact(d.stand, 0.92, kSelf + 1));
+  CHECK(d.n.is_superseded());
+  CHECK_FALSE(d.n.may_propose());
+  CHECK_FALSE(d.n.needs_registration());
+  CHECK_FALSE(d.grant(proposal, 0.95));
+}
+
+TEST_CASE("version numbers grow over lives and candidates") {
+  Driver d;
+  d.become_ready();
+  VersionNumber last = 0;
+  for (int i = 0; i < 5; ++i) {
+    const auto number = d.propose(1.0 + 0.1 * i, 0.9).candidates()[0].version_number();
+    CHECK(number > last);
+    last = number;
+  }
+  CHECK(last < kSelf + 100);
+  // The robot executes a version of a later number: a clock went back.
+  Negotiation other(kRobot, kSelf);
+  Version ahead = d.stand;
+  ahead.number = 5000;
+  other.on_feedback(fact(ahead, 0.5));
+  Trajectory rest = Trajectory::resting(at_s(1), {0, 0});
+  CHECK(other.propose({&rest, 1}, 5000, at_s(0.9)).candidates()[0].version_number() > 5000);
+}
+
+TEST_CASE("malformed feedback is counted and changes nothing") {
+  Driver d;
+  d.become_ready();
+  auto feedback = fact(d.stand, 1);
+  feedback.executing().x_m(std::numeric_limits<double>::quiet_NaN());
+  d.n.on_feedback(feedback);
+  feedback = fact(d.stand, 1);
+  feedback.executing().phase_count(99);
+  d.n.on_feedback(feedback);
+  CHECK(d.n.counts().invalid == 2);
+  CHECK(d.n.executing().number == 0);
+}

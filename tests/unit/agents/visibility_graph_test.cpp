@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/visibility_graph.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <queue>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr double kRadius_m = 0.09, kKeep_m = 0.02;
+const Field kField{4, 4};
+
+/// Independent and slow: Dijkstra on an 8-connected grid of 2 cm; its ways are at most 8.3 % longer than the shortest.
+double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal, double grown) {
+  const int n = 200;
+  const double step = 4.0 / n;
+  const auto cell = [&](const Vec2& p) {
+    return std::pair{static_cast<int>((p.x() + 2) / step), static_cast<int>((p.y() + 2) / step)};
+  };
+  std::vector<double> length(n * n, std::numeric_limits<double>::infinity());
+  const auto at = [&](int x, int y) -> double& { return length[static_cast<std::size_t>(x * n + y)]; };
+  using Item = std::tuple<double, int, int>;
+  std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
+  const auto [sx, sy] = cell(start);
+  at(sx, sy) = 0;
+  open.push({0, sx, sy});
+  while (!open.empty()) {
+    const auto [d, x, y] = open.top();
+    open.pop();
+    if (d > at(x, y)) continue;
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const int i = x + dx, j = y + dy;
+        if (i < 0 || j < 0 || i >= n || j >= n) continue;
+        const Vec2 p(-2 + (i + 0.5) * step, -2 + (j + 0.5) * step);
+        bool free = kField.contains(p, kRadius_m);
+        for (const Circle& o : obstacles) free = free && (p - o.centre_m).norm() > o.radius_m + grown;
+        const double next = d + step * std::hypot(dx, dy);
+        if (!free || next >= at(i, j)) continue;
+        at(i, j) = next;
+        open.push({next, i, j});
+      }
+    }
+  }
+  const auto [gx, gy] = cell(goal);
+  return at(gx, gy);
+}
+
+}  // namespace
+
+TEST_CASE("without obstacles the way is straight") {
+  const VisibilityGraph graph({}, kField, kRadius_m, kKeep_m, {1, 1});
+  const auto route = graph.route_from({-1, -1});
+  REQUIRE(route);
+  CHECK(route->waypoint_m == Vec2(1, 1));
+  CHECK(route->length_m == Approx(2 * std::sqrt(2.0)));
+}
+
+TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer than the shortest") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u, 6u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  std::vector<Circle> obstacles;
+  for (int i = 0; i < 12; ++i) {
+    const Vec2 centre(rng.uniform(-1.2, 1.2), rng.uniform(-1.2, 1.2));
+    obstacles.push_back({centre, rng.uniform(0.05, 0.25)});
+  }
+  const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
+  const VisibilityGraph graph(obstacles, kField, kRadius_m, kKeep_m, goal);
+  const double reference = grid_length(obstacles, start, goal, kRadius_m + kKeep_m + 0.02);
+  REQUIRE(reference < 20);
+  Vec2 here = start;
+  double walked = 0;
+  auto route = graph.route_from(here);
+  REQUIRE(route);
+  CHECK(route->length_m <= reference);
+  const double promised = route->length_m;
+  for (int leg = 0; leg < 50 && (here - goal).norm() > 1e-9; ++leg) {
+    route = graph.route_from(here);
+    REQUIRE(route);
+    for (int k = 0; k <= 100; ++k) {
+      const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
+      for (const Circle& o : obstacles) REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kKeep_m - 1e-9);
+    }
+    walked += (route->waypoint_m - here).norm();
+    here = route->waypoint_m;
+  }
+  CHECK(walked == Approx(promised));
+}
+
+TEST_CASE("a goal that is walled in has no way to it") {
+  std::vector<Circle> ring;
+  for (int i = 0; i < 12; ++i) ring.push_back({0.5 * Vec2(std::cos(i * 0.5236), std::sin(i * 0.5236)), 0.15});
+  const VisibilityGraph graph(ring, kField, kRadius_m, kKeep_m, {0, 0});
+  CHECK_FALSE(graph.route_from({1.5, 0}));
+}
+
+TEST_CASE("a robot that stands too near an obstacle may leave it but not go through it") {
+  const VisibilityGraph graph({{{0, 0}, 0.2}}, kField, kRadius_m, kKeep_m, {1, 0});
+  const Vec2 near(-0.25, 0);
+  const auto route = graph.route_from(near);
+  REQUIRE(route);
+  CHECK(route->waypoint_m != Vec2(1, 0));
+  CHECK((route->waypoint_m - near).dot(near) >= 0);
+}
