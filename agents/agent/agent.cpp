@@ -78,8 +78,9 @@ std::optional<SearchQuery> Agent::plan(Time start) {
   const auto route = ways_->route_from(there.position_m);
   const Vec2 waypoint = route ? route->waypoint_m : goal().position_m;
   const double length = route ? route->length_m : (goal().position_m - there.position_m).norm();
-  return SearchQuery{start, there,
-                     wished_acceleration(there, waypoint, length, rules_.limits, {}, to_seconds(cycle_)), cycle_};
+  const MotionWish wish =
+      wished_motion(there, waypoint, length, rules_.limits, {}, cycle_, cycle_ * negotiation_.lead());
+  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold};
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {

@@ -71,11 +71,12 @@ void AgentNode::begin_cycle() {
     auto registration = agent_.negotiation().registration();
     publish(registration_writer_, registration);
   }
-  negotiate();
+  if (agent_.negotiation().is_fenced() && !agent_.negotiation().is_settled_after(now)) negotiate();
 }
 
 void AgentNode::negotiate() {
-  const auto query = timed(plan_, [&] { return agent_.plan(next_cycle_); });
+  const Time start = next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1);
+  const auto query = timed(plan_, [&] { return agent_.plan(start); });
   if (!query) return;
   auto proposal = timed(search_, [&] { return agent_.search(*query, bus_.now()); });
   if (proposal) publish(proposal_writer_, *proposal);

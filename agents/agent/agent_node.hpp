@@ -17,7 +17,7 @@ class AgentNode {
 
  private:
   void begin_cycle();
-  /// Proposes what to do from the next cycle's begin on.
+  /// Proposes what to do from the begin of the next cycle on, or of a later one where the network is slow.
   void negotiate();
   void on_verdict(const msg::Verdict& verdict);
   void publish_status();

@@ -6,6 +6,15 @@
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
+namespace {
+
+// Half a second ahead is as far as it goes.
+constexpr int kLongestLead = 30;
+// One version that comes too late is bad luck, two in a row are a slow network.
+constexpr int kLateToSlowDown = 2;
+constexpr int kTakenToSpeedUp = 10;
+
+}  // namespace
 
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation)
     : robot_(robot), incarnation_(incarnation), next_number_(incarnation) {}
@@ -30,8 +39,12 @@ void Negotiation::on_feedback(const msg::Feedback& feedback) {
   const bool moved_on = executing->number != executing_;
   if (!held_.forget(executing->number, time_from_ns(feedback.at_ns()))) return;   // late
   executing_ = executing->number;
+  if (moved_on) on_taken();
   // What went away is what was executed before, if the robot has moved on, and what the robot can never take.
-  counts_.lost += before - held_.versions().size() - (moved_on ? 1 : 0);
+  for (std::size_t gone = before - held_.versions().size() - (moved_on ? 1 : 0); gone > 0; --gone) {
+    ++counts_.lost;
+    on_late();
+  }
   check_assumptions();
 }
 
@@ -41,6 +54,24 @@ void Negotiation::adopt(const Version& executing) {
   held_.add(executing);
   executing_ = executing.number;
   next_number_ = std::max(next_number_, executing.number + 1);
+}
+
+void Negotiation::on_taken() {
+  late_in_a_row_ = 0;
+  if (++taken_in_a_row_ < kTakenToSpeedUp) return;
+  taken_in_a_row_ = 0;
+  lead_ = std::max(1, lead_ - 1);
+}
+
+void Negotiation::on_late() {
+  taken_in_a_row_ = 0;
+  if (++late_in_a_row_ < kLateToSlowDown) return;
+  late_in_a_row_ = 0;
+  lead_ = std::min(kLongestLead, lead_ + std::max(1, lead_ / 2));
+}
+
+bool Negotiation::is_settled_after(Time now) const {
+  return (outstanding_ && outstanding_->start() > now) || base_at(Time::max()).trajectory.start() > now;
 }
 
 void Negotiation::check_assumptions() {
@@ -126,7 +157,8 @@ std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time
   }
   ++counts_.grants;
   if (granted->trajectory.start() <= now) {
-    ++counts_.missed;
+    counts_.missed += static_cast<std::uint64_t>(lead_);
+    on_late();
     return std::nullopt;
   }
   held_.add(*granted);
@@ -135,7 +167,8 @@ std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time
 
 void Negotiation::close_cycle(Time now) {
   if (!outstanding_ || outstanding_->start() > now) return;
-  ++counts_.missed;
+  counts_.missed += static_cast<std::uint64_t>(lead_);
+  on_late();
   // The verdict may still come; it is too late to be forwarded.
   outstanding_.reset();
 }

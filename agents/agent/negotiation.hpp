@@ -29,6 +29,10 @@ class Negotiation {
   bool needs_registration() const { return fenced_ && !superseded_ && epoch_ != 0 && !registered_; }
   /// Whether a proposal may be granted at all now.
   bool may_propose() const { return fenced_ && !superseded_ && registered_ && granting_ && !held_.is_full(); }
+  /// Whether the next version after `now` is decided already, or being decided.
+  bool is_settled_after(Time now) const;
+  /// How many cycles ahead to propose, and to hold an acceleration: one, and more where versions keep coming too late.
+  int lead() const { return lead_; }
   /// What was proposed last, or forwarded, rests on a base that the robot turned out not to be executing.
   bool is_contradicted() const { return contradicted_; }
 
@@ -46,7 +50,7 @@ class Negotiation {
 
   struct Counts {
     std::uint64_t proposals = 0, grants = 0, denials = 0;
-    std::uint64_t missed = 0;   ///< no verdict before the version's start
+    std::uint64_t missed = 0;   ///< cycles for which there was no verdict in time
     std::uint64_t lost = 0;     ///< forwarded, not taken by the robot
     std::uint64_t invalid = 0;
   };
@@ -64,6 +68,8 @@ class Negotiation {
     Time start() const { return candidates.front().trajectory.start(); }
   };
   void adopt(const Version& executing);
+  void on_taken();
+  void on_late();
   void check_assumptions();
 
   RobotId robot_;
@@ -75,6 +81,8 @@ class Negotiation {
   VersionNumber executing_ = 0;
   VersionNumber next_number_;
   std::optional<Outstanding> outstanding_;
+  int lead_ = 1;
+  int taken_in_a_row_ = 0, late_in_a_row_ = 0;
   Counts counts_;
   Duration last_round_trip_{0};
 };

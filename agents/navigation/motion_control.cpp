@@ -7,14 +7,16 @@
 
 namespace sidestep {
 
-Vec2 wished_acceleration(const State& state, const Vec2& point_m, double length_m, const MotionLimits& limits,
-                         const PassingPreference& preference, double horizon_s) {
+MotionWish wished_motion(const State& state, const Vec2& point_m, double length_m, const MotionLimits& limits,
+                         const PassingPreference& preference, Duration shortest, Duration longest) {
   Vec2 to_go = point_m - state.position_m;
   const double distance = to_go.norm();
   if (distance > 1e-9) to_go *= length_m / distance;
   const double angle = preference.angle_rad * std::min(1.0, length_m / preference.fade_from_m);
-  const Vec2 velocity = trapezoidal_velocity(rotated(to_go, -angle), state.velocity_mps, limits, horizon_s);
-  return (velocity - state.velocity_mps) / horizon_s;
+  const Trapezoid2d profile(rotated(to_go, -angle), state.velocity_mps, limits);
+  const Duration hold = std::clamp(from_seconds(profile.along().first_stretch_s()), shortest, longest);
+  const double seconds = to_seconds(hold);
+  return {(profile.velocity_after(seconds) - state.velocity_mps) / seconds, hold};
 }
 
 }  // namespace sidestep

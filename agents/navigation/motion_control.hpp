@@ -13,9 +13,16 @@ struct PassingPreference {
   double fade_from_m = 1.0;     ///< nearer to the goal than this the angle shrinks in proportion to the distance
 };
 
-/// The acceleration to hold for `horizon_s` on the way to a point: trapezoidal motion control towards it, as if the
-/// way to go were `length_m` long in that direction (so that a robot does not stop at a way point).
-Vec2 wished_acceleration(const State& state, const Vec2& point_m, double length_m, const MotionLimits& limits,
-                         const PassingPreference& preference, double horizon_s);
+/// An acceleration, and for how long to hold it.
+struct MotionWish {
+  Vec2 acceleration_mps2{0, 0};
+  Duration hold{};
+};
+
+/// Trapezoidal motion control towards a point, as if the way to go were `length_m` long in that direction (so that a
+/// robot does not stop at a way point). The acceleration is held for as long as the profile holds it, but at least
+/// for `shortest` and at most for `longest`.
+MotionWish wished_motion(const State& state, const Vec2& point_m, double length_m, const MotionLimits& limits,
+                         const PassingPreference& preference, Duration shortest, Duration longest);
 
 }  // namespace sidestep

@@ -52,28 +52,43 @@ double Trapezoid::velocity_after(double seconds) const {
   return 0;
 }
 
-Vec2 trapezoidal_velocity(const Vec2& to_go, const Vec2& velocity, const MotionLimits& limits, double horizon_s) {
-  const double distance = to_go.norm();
-  const double speed = velocity.norm();
-  if (distance < 1e-9 && speed < 1e-9) return Vec2::Zero();
-  const Vec2 along = distance >= 1e-9 ? Vec2(to_go / distance) : Vec2(velocity / speed);
-  const Vec2 across = left_of(along);
-  const double v_along = velocity.dot(along), v_across = velocity.dot(across);
-  const auto share = [&](double part) {
-    return MotionLimits{limits.acceleration_mps2 * part, limits.deceleration_mps2 * part, limits.speed_mps * part};
-  };
-  // Angle 0 gives all effort to the way along.
-  double low = 0, high = 1.5707963267948966;
-  if (std::abs(v_across) < 1e-6) high = 1e-3;
+namespace {
+
+/// What an axis gets of the limits.
+MotionLimits share(const MotionLimits& limits, double part) {
+  return {limits.acceleration_mps2 * part, limits.deceleration_mps2 * part, limits.speed_mps * part};
+}
+
+/// The angle whose cosine is the share of the axis along the way and whose sine is that of the one across.
+double balance(double distance, double v_along, double v_across, const MotionLimits& limits) {
+  double low = 0, high = std::abs(v_across) < 1e-6 ? 1e-3 : 1.5707963267948966;
   for (int i = 0; i < 20 && high - low > 1e-4; ++i) {
     const double angle = 0.5 * (low + high);
-    const double along_s = Trapezoid(distance, v_along, share(std::cos(angle))).duration_s();
-    const double across_s = Trapezoid(0, v_across, share(std::sin(angle))).duration_s();
+    const double along_s = Trapezoid(distance, v_along, share(limits, std::cos(angle))).duration_s();
+    const double across_s = Trapezoid(0, v_across, share(limits, std::sin(angle))).duration_s();
     (along_s < across_s ? low : high) = angle;
   }
-  const double angle = 0.5 * (low + high);
-  return Trapezoid(distance, v_along, share(std::cos(angle))).velocity_after(horizon_s) * along +
-         Trapezoid(0, v_across, share(std::sin(angle))).velocity_after(horizon_s) * across;
+  return 0.5 * (low + high);
+}
+
+Vec2 direction_of(const Vec2& to_go, const Vec2& velocity) {
+  if (to_go.norm() > 1e-9) return to_go.normalized();
+  return velocity.norm() > 1e-9 ? Vec2(velocity.normalized()) : Vec2(1, 0);
+}
+
+}  // namespace
+
+Trapezoid2d::Trapezoid2d(const Vec2& to_go, const Vec2& velocity, const MotionLimits& limits)
+    : direction_(direction_of(to_go, velocity)), along_(0, 0, limits), across_(0, 0, limits) {
+  const double distance = to_go.norm();
+  const double v_along = velocity.dot(direction_), v_across = velocity.dot(left_of(direction_));
+  const double angle = balance(distance, v_along, v_across, limits);
+  along_ = Trapezoid(distance, v_along, share(limits, std::cos(angle)));
+  across_ = Trapezoid(0, v_across, share(limits, std::sin(angle)));
+}
+
+Vec2 Trapezoid2d::velocity_after(double seconds) const {
+  return along_.velocity_after(seconds) * direction_ + across_.velocity_after(seconds) * left_of(direction_);
 }
 
 }  // namespace sidestep

@@ -17,6 +17,8 @@ class Trapezoid {
   Trapezoid(double distance_m, double velocity_mps, const MotionLimits& limits);
 
   double duration_s() const;
+  /// For how long the first acceleration is held; 0 when there is nothing to do.
+  double first_stretch_s() const { return count_ > 0 ? stretches_[0].seconds : 0; }
   double velocity_after(double seconds) const;
 
  private:
@@ -32,7 +34,18 @@ class Trapezoid {
 
 /// Two-dimensional trapezoidal motion control (Bruce, app. B): the axis along the way and the one across it share the
 /// robot's acceleration, and the share is balanced by binary search so that both finish at the same time.
-/// Returns the velocity to have after `horizon_s` on the way from `velocity_mps` to rest at the offset `to_go_m`.
-Vec2 trapezoidal_velocity(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits, double horizon_s);
+class Trapezoid2d {
+ public:
+  /// The way from `velocity_mps` to rest at the offset `to_go_m`.
+  Trapezoid2d(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits);
+
+  Vec2 velocity_after(double seconds) const;
+  /// The motion along the way.
+  const Trapezoid& along() const { return along_; }
+
+ private:
+  Vec2 direction_;
+  Trapezoid along_, across_;
+};
 
 }  // namespace sidestep

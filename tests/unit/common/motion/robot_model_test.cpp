@@ -74,7 +74,7 @@ TEST_CASE("two-dimensional motion control arrives from any velocity") {
     const Vec2 goal = random_vector(rng, 2);
     double seconds = 0;
     while ((state.position_m - goal).norm() > 0.002 || state.velocity_mps.norm() > 0.02) {
-      const Vec2 v = trapezoidal_velocity(goal - state.position_m, state.velocity_mps, kLimits, dt);
+      const Vec2 v = Trapezoid2d(goal - state.position_m, state.velocity_mps, kLimits).velocity_after(dt);
       const Vec2 a = limited((v - state.velocity_mps) / dt, state.velocity_mps, kLimits, cycle);
       state = state_after(state, a, dt);
       REQUIRE((seconds += dt) < 6);
