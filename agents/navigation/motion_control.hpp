@@ -10,7 +10,7 @@ namespace sidestep {
 /// A common small preference to pass on the right: whoever meets evades to the same side, so that swaps do not lock.
 struct PassingPreference {
   double angle_rad = 0.5;       ///< how far right of the straight way a robot heads that is far from its goal
-  double fade_from_m = 1.0;     ///< nearer to the goal than this the angle shrinks in proportion to the distance
+  double fade_from_m = 3.0;     ///< nearer to the goal than this the angle shrinks in proportion to the distance
 };
 
 /// An acceleration, and for how long to hold it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -9,13 +10,14 @@
 namespace sidestep {
 
 struct DdsSettings {
-  int domain = 0;                          ///< 0 .. 99
-  std::string interface = "127.0.0.1";     ///< address of the one interface to use; "all": every interface
-  std::string participant = "sidestep";    ///< name that listeners see
+  int domain = 0;                        ///< 0 .. 99
+  std::string interface = "127.0.0.1";   ///< address of the one interface to use; "all": every interface
+  std::string participant = "sidestep";  ///< name that listeners see
 };
 
-/// The bus over Fast DDS (dds.md): one participant, UDPv4 only. Samples are taken and timers fire in the thread that
-/// calls run(). Throws std::runtime_error when the participant or an endpoint cannot be created, saying why.
+/// The bus over Fast DDS (dds.md): one participant, UDPv4 only. Samples are taken and timers fire in the
+/// thread that calls run(). Throws std::runtime_error when the participant or an endpoint cannot be created,
+/// saying why.
 class DdsBus : public Bus {
  public:
   explicit DdsBus(const DdsSettings& settings);
@@ -30,11 +32,13 @@ class DdsBus : public Bus {
   void run();
   /// Calls back until then, or stop(); for tests and tools that look between callbacks.
   void run_until(Time when);
-  /// Makes run() return soon. From any thread, and from a signal handler.
+  /// Makes run() and run_until() return soon, now and ever after. From any thread, and from a signal handler.
   void stop();
 
-  /// The addresses this participant really listens on, for the log.
+  /// The addresses this participant really listens on for messages, for the log; empty before it subscribes.
   std::string locators() const;
+  /// Messages so far whose payload was not one of the topic's type and was dropped.
+  std::uint64_t refused() const;
 
  protected:
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;

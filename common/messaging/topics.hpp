@@ -70,7 +70,7 @@ inline constexpr Topic<msg::Proposal> kProposal{
 inline constexpr Topic<msg::Verdict> kVerdict{
     {"verdict", "coordinator", Qos::kState, true, message_type<msg::Verdict>("sidestep::msg::Verdict")}};
 inline constexpr Topic<msg::LedgerPage> kLedger{
-    {"ledger", "coordinator", Qos::kState, false, message_type<msg::LedgerPage>("sidestep::msg::LedgerPage", 64)}};
+    {"ledger", "coordinator", Qos::kState, false, message_type<msg::LedgerPage>("sidestep::msg::LedgerPage", 256)}};
 inline constexpr Topic<msg::CoordinatorState> kCoordinator{
     {"coordinator", "coordinator", Qos::kState, false,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};

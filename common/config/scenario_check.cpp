@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/scenario_check.hpp"
+
+#include <fmt/format.h>
+
+#include "common/config/scenario_loader.hpp"
+
+namespace sidestep {
+namespace {
+
+/// Files give millimetres or generated points: rounding must not refuse a distance that is meant to be exact.
+constexpr double kRounding_m = 1e-9;
+
+struct Checker {
+  const Scenario& scenario;
+  const std::string& file;
+
+  void place(const Vec2& point, int line, const std::string& what) const {
+    if (!scenario.field.contains(point, scenario.radius_m - kRounding_m)) {
+      throw ScenarioError(
+          file, line,
+          fmt::format("{} ({}, {}) is outside the field: expected |x| <= {:g} and |y| <= {:g}", what,
+                      point.x(), point.y(), scenario.field.length_m / 2 - scenario.radius_m,
+                      scenario.field.width_m / 2 - scenario.radius_m));
+    }
+    for (const Circle& obstacle : scenario.obstacles) {
+      const double distance = (point - obstacle.centre_m).norm();
+      const double least = obstacle.radius_m + scenario.radius_m + scenario.margin_m;
+      if (distance >= least - kRounding_m) continue;
+      throw ScenarioError(
+          file, line,
+          fmt::format(
+              "{} ({}, {}) is inside the obstacle at ({}, {}): distance {:.4f} m, expected at least {:.4f} "
+              "(obstacle + robot radius + margin)",
+              what, point.x(), point.y(), obstacle.centre_m.x(), obstacle.centre_m.y(), distance, least));
+    }
+  }
+
+  void apart(const Vec2& a, const Vec2& b, int line, const std::string& what) const {
+    const double least = 2 * scenario.radius_m + scenario.margin_m;
+    const double distance = (a - b).norm();
+    if (distance >= least - kRounding_m) return;
+    throw ScenarioError(file, line,
+                        fmt::format("{}: distance {:.4f} m, expected at least {:.4f} (2 radii + margin)",
+                                    what, distance, least));
+  }
+};
+
+}  // namespace
+
+void check_placement(const Scenario& scenario, const std::vector<RobotLines>& lines,
+                     const std::string& file) {
+  const Checker check{scenario, file};
+  const auto& robots = scenario.robots;
+  for (std::size_t i = 1; i < robots.size(); ++i) {
+    if (robots[i].id == robots[i - 1].id) {
+      throw ScenarioError(file, lines[i].start,
+                          fmt::format("robot id {} is used twice, expected once", robots[i].id));
+    }
+  }
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    check.place(robots[i].start_m, lines[i].start, fmt::format("start of robot {}", robots[i].id));
+    for (std::size_t g = 0; g < robots[i].goals.size(); ++g) {
+      check.place(robots[i].goals[g].position_m, lines[i].goals[g],
+                  fmt::format("goal of robot {}", robots[i].id));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      check.apart(robots[i].start_m, robots[j].start_m, lines[i].start,
+                  fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id));
+      check.apart(robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
+                  fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id));
+    }
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/scenario_loader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <yaml-cpp/eventhandler.h>
+
+#include "common/config/scenario_robots.hpp"
+#include "common/config/yaml_map.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Range kPlace_m{-1000, 1000};
+constexpr Range kProbability{0, 1};
+constexpr std::size_t kMaxObstacles = 1000;
+constexpr std::size_t kMaxNameLength = 64;
+
+/// Calls `read` on the mapping under a key when it is there.
+template <typename Read>
+void section(YamlMap& map, const std::string& key, Read read) {
+  const YAML::Node node = map.find(key);
+  if (!node.IsDefined()) return;
+  YamlMap inner(node, map.place_of(key));
+  read(inner);
+  inner.finish();
+}
+
+bool is_name(const std::string& name) {
+  const auto plain = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) || c == '-' || c == '_' || c == '.');
+  };
+  return !name.empty() && name.size() <= kMaxNameLength && name[0] != '.' &&
+         std::all_of(name.begin(), name.end(), plain);
+}
+
+void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
+  const YAML::Node node = map.find("name");
+  scenario.name =
+      node.IsDefined() ? text_from(node, map.place_of("name")) : std::filesystem::path(file).stem().string();
+  if (is_name(scenario.name)) return;
+  if (node.IsDefined()) map.place_of("name").refuse("expected 1 to 64 letters, digits, '-', '_' or '.'");
+  scenario.name = "scenario";
+}
+
+void read_shape(YamlMap& map, Scenario& scenario) {
+  section(map, "field", [&](YamlMap& field) {
+    field.read("length_m", {0.5, 1000}, scenario.field.length_m);
+    field.read("width_m", {0.5, 1000}, scenario.field.width_m);
+  });
+  section(map, "limits", [&](YamlMap& limits) {
+    limits.read("acceleration_mps2", {0.1, 50}, scenario.limits.acceleration_mps2);
+    limits.read("deceleration_mps2", {0.1, 50}, scenario.limits.deceleration_mps2);
+    limits.read("speed_mps", {0.05, 20}, scenario.limits.speed_mps);
+  });
+  map.read("radius_m", {0.01, 5}, scenario.radius_m);
+  map.read("margin_m", {0, 1}, scenario.margin_m);
+  double control_rate_hz = 0;
+  map.read("control_rate_hz", {5, 500}, control_rate_hz);
+  if (control_rate_hz > 0) scenario.cycle = from_seconds(1 / control_rate_hz);
+  map.read("goal_tolerance_m", {0.001, 1}, scenario.goal_tolerance_m);
+  map.read("time_limit_s", {0.1, 86400}, scenario.time_limit_s);
+}
+
+void read_obstacles(YamlMap& map, Scenario& scenario) {
+  const YAML::Node node = map.find("obstacles");
+  if (!node.IsDefined()) return;
+  for (const YAML::Node& element : list_from(node, map.place_of("obstacles"), kMaxObstacles)) {
+    YamlMap inner(
+        element,
+        map.place_of("obstacles").of(element, fmt::format("obstacles[{}]", scenario.obstacles.size())));
+    Circle circle;
+    inner.require("centre_m");
+    inner.require("radius_m");
+    inner.read("centre_m", kPlace_m, circle.centre_m);
+    inner.read("radius_m", {0.001, 1000}, circle.radius_m);
+    inner.finish();
+    scenario.obstacles.push_back(circle);
+  }
+}
+
+void read_ball(YamlMap& map, Scenario& scenario) {
+  section(map, "ball", [&](YamlMap& inner) {
+    BallSpec ball;
+    inner.read("position_m", kPlace_m, ball.position_m);
+    inner.read("velocity_mps", {-20, 20}, ball.velocity_mps);
+    if (!scenario.field.contains(ball.position_m, 0)) {
+      inner.place_of("position_m").refuse("the ball is outside the field, expected inside");
+    }
+    scenario.ball = ball;
+  });
+}
+
+void read_disturbances(YamlMap& map, Scenario& scenario) {
+  section(map, "vision", [&](YamlMap& inner) {
+    VisionSpec& vision = scenario.vision;
+    inner.read("rate_hz", {1, 1000}, vision.rate_hz);
+    inner.read("columns", {1, 16}, vision.columns);
+    inner.read("rows", {1, 16}, vision.rows);
+    inner.read("overlap_m", {0, 10}, vision.overlap_m);
+    inner.read("position_noise_m", {0, 0.1}, vision.position_noise_m);
+    inner.read("heading_noise_rad", {0, 1}, vision.heading_noise_rad);
+    inner.read_ms("delay_ms", {0, 1000}, vision.delay);
+    inner.read("missed", kProbability, vision.missed);
+    inner.read("ghosts", kProbability, vision.ghosts);
+  });
+  section(map, "odometry", [&](YamlMap& inner) {
+    inner.read("scale_error", {0, 0.2}, scenario.odometry.scale_error);
+    inner.read("velocity_noise_mps", {0, 1}, scenario.odometry.velocity_noise_mps);
+  });
+  map.read("command_loss", kProbability, scenario.command_loss);
+  section(map, "network", [&](YamlMap& inner) {
+    NetworkSpec& network = scenario.network;
+    inner.read("loss", kProbability, network.loss);
+    inner.read("duplicate", kProbability, network.duplicate);
+    inner.read_ms("delay_min_ms", {0, 10000}, network.delay_min);
+    inner.read_ms("delay_max_ms", {0, 10000}, network.delay_max);
+    if (network.delay_max < network.delay_min) {
+      inner.place_of("delay_max_ms")
+          .refuse(fmt::format("expected at least delay_min_ms, {} ms", to_seconds(network.delay_min) * 1e3));
+    }
+  });
+}
+
+void read_restart(YamlMap& map, RestartSpec& restart) {
+  const YAML::Node node = map.find("restart");
+  if (!node.IsDefined()) return;
+  const YamlPlace place = map.place_of("restart");
+  for (const YAML::Node& element : list_from(node, place, 16)) {
+    const YamlPlace here = place.of(element, "restart");
+    const std::string process = text_from(element, here);
+    if (process == "agents")
+      restart.agents = true;
+    else if (process == "coordinator")
+      restart.coordinator = true;
+    else if (process == "vision")
+      restart.vision = true;
+    else if (process == "simulator")
+      restart.simulator = true;
+    else
+      here.refuse("expected agents, coordinator, vision or simulator, got \"" + process.substr(0, 40) + "\"");
+  }
+}
+
+/// Remembers where the last document began.
+class DocumentMarks : public YAML::EventHandler {
+ public:
+  int line = 1;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+};
+
+/// Load takes the first document and silently leaves the rest, and LoadAll never returns from some broken
+/// files (yaml-cpp 0.7): so the documents are counted to two at most.
+YAML::Node parse_document(const std::string& text, const std::string& file) {
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentMarks marks;
+    if (!parser.HandleNextDocument(marks))
+      throw ScenarioError(file, 1, "the file is empty, expected a scenario");
+    if (parser.HandleNextDocument(marks)) {
+      throw ScenarioError(file, marks.line, "a second YAML document begins here, expected one");
+    }
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw ScenarioError(file, std::max(1, error.mark.line + 1), "not YAML: " + error.msg);
+  }
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const std::string& file_name) {
+  const YAML::Node root = parse_document(text, file_name);
+  const YamlPlace whole{file_name, 1, ""};
+  YamlMap map(root, whole.of(root, ""));
+  Scenario scenario;
+  read_name(map, file_name, scenario);
+  read_shape(map, scenario);
+  read_obstacles(map, scenario);
+  read_ball(map, scenario);
+  read_disturbances(map, scenario);
+  read_restart(map, scenario.restart);
+  // Placement is judged last, when a misspelt key can no longer be what is wrong with it.
+  map.find("robots");
+  map.find("circle");
+  map.finish();
+  read_robots(map, scenario);
+  return scenario;
+}
+
+Scenario load_scenario(const std::string& path) {
+  const auto refuse = [&](const std::string& why) {
+    throw ScenarioError(path, 1, fmt::format("cannot read the file ({}), expected a scenario in YAML", why));
+  };
+  if (std::filesystem::is_directory(path)) refuse("a directory");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(std::strerror(errno));
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parse_scenario(text, path);
+}
+
+}  // namespace sidestep

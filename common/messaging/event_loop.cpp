@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/event_loop.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <system_error>
+#include <time.h>
+#include <unistd.h>
+#include <utility>
+
+namespace sidestep {
+
+static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from signal handlers");
+
+EventLoop::EventLoop() : event_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (event_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+EventLoop::~EventLoop() { close(event_fd_); }
+
+Time EventLoop::now() {
+  timespec t{};
+  clock_gettime(CLOCK_REALTIME, &t);
+  return time_from_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
+}
+
+void EventLoop::at(Time when, std::function<void()> callback) {
+  timers_.push_back({when, order_++, std::move(callback)});
+  std::push_heap(timers_.begin(), timers_.end(), Later{});
+}
+
+void EventLoop::notify(Source& source) {
+  if (source.ready_.exchange(true)) return;
+  const std::lock_guard lock(mutex_);
+  ready_.push_back(&source);
+  if (std::exchange(sleeping_, false)) wake();
+}
+
+void EventLoop::run_until(Time when) {
+  while (!stopped()) {
+    const bool more = drain_ready();
+    fire_due();
+    if (now() >= when) return;
+    if (!more && !stopped()) sleep_until(timers_.empty() ? when : std::min(when, timers_.front().when));
+  }
+}
+
+void EventLoop::stop() {
+  const int saved_errno = errno;
+  stopped_.store(true);
+  wake();
+  errno = saved_errno;
+}
+
+bool EventLoop::drain_ready() {
+  draining_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    draining_.swap(ready_);
+  }
+  bool more = false;
+  for (Source* source : draining_) {
+    source->ready_.store(false);
+    if (stopped()) return false;
+    if (source->drain()) {
+      notify(*source);
+      more = true;
+    }
+  }
+  return more;
+}
+
+void EventLoop::fire_due() {
+  const Time due = now();
+  const std::uint64_t newest = order_;
+  while (!stopped() && !timers_.empty() && timers_.front().when <= due && timers_.front().order < newest) {
+    std::pop_heap(timers_.begin(), timers_.end(), Later{});
+    const std::function<void()> callback = std::move(timers_.back().callback);
+    timers_.pop_back();
+    callback();
+  }
+}
+
+void EventLoop::sleep_until(Time when) {
+  // Never longer than this, so that a step of the host's clock delays a timer by no more.
+  constexpr Duration kLongestSleep{1'000'000'000};
+  {
+    const std::lock_guard lock(mutex_);
+    if (!ready_.empty()) return;
+    sleeping_ = true;
+  }
+  const Time from = now();
+  const Duration sleep = when > from + kLongestSleep ? kLongestSleep : std::max(when - from, Duration{0});
+  const timespec timeout{sleep.count() / 1'000'000'000, sleep.count() % 1'000'000'000};
+  pollfd poll_fd{event_fd_, POLLIN, 0};
+  if (ppoll(&poll_fd, 1, &timeout, nullptr) > 0) {
+    std::uint64_t count = 0;
+    [[maybe_unused]] const ssize_t size = read(event_fd_, &count, sizeof count);
+  }
+  const std::lock_guard lock(mutex_);
+  sleeping_ = false;
+}
+
+void EventLoop::wake() {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t size = write(event_fd_, &one, sizeof one);
+}
+
+}  // namespace sidestep

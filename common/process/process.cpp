@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/process.hpp"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <fmt/core.h>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/process/stop_signals.hpp"
+
+namespace sidestep {
+
+void add_dds_options(CLI::App& app, DdsSettings& settings) {
+  app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99")
+      ->check(CLI::Range(0, 99))
+      ->capture_default_str();
+  app.add_option("--interface", settings.interface, "address of the network interface to use, or 'all'")
+      ->capture_default_str();
+}
+
+int parse_options(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  return -1;
+}
+
+int run_process(int argc, char** argv, const Program& program) {
+  CLI::App app(program.description, program.name);
+  std::string scenario_file;
+  DdsSettings dds;
+  app.add_option("--scenario", scenario_file, "scenario file")->required();
+  add_dds_options(app, dds);
+  if (program.add_options) program.add_options(app);
+  const int exit_code = parse_options(app, argc, argv);
+  if (exit_code >= 0) return exit_code;
+
+  try {
+    const Scenario scenario = load_scenario(scenario_file);
+    dds.participant = program.participant ? program.participant() : program.name;
+    DdsBus bus(dds);
+    const StopSignals stop_signals([&bus] { bus.stop(); });
+    const std::shared_ptr<void> nodes = program.start(bus, scenario);
+    fmt::print(stderr, "{}: domain {}, listens on {}\n", dds.participant, dds.domain, bus.locators());
+    bus.run();
+    return 0;
+  } catch (const ScenarioError& error) {
+    fmt::print(stderr, "{}: {}\n", program.name, error.what());
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", program.name, error.what());
+    return kExitFailure;
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/time/histogram.hpp"
+
+namespace sidestep {
+
+/// A process that ended although nobody asked it to.
+struct Death {
+  std::string process;
+  std::string reason;
+  double at_s = 0;  ///< after the first grant; before it, negative or zero
+  bool restarted = false;
+};
+
+/// How a run went.
+struct Report {
+  std::string program;  ///< "run" or "simulate"
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::string failure;  ///< why the run ended early; empty: it did not
+  int robots = 0;
+  int arrived = 0;
+  std::uint64_t contacts = 0;
+  double penetration_m_s = 0;
+  std::optional<double> min_clearance_m;
+  std::optional<double> makespan_s;      ///< until the last arrived; none: not all have
+  std::optional<double> mean_arrival_s;  ///< of those that arrived
+  std::optional<double> arrival_over_straight;
+  std::map<RobotId, std::optional<double>> arrival_s;
+  std::uint64_t proposals = 0;
+  std::uint64_t grants = 0;
+  std::uint64_t denials = 0;
+  std::uint64_t cycles = 0;
+  std::uint64_t missed_cycles = 0;
+  std::uint64_t invalid_messages = 0;
+  std::uint64_t firmware_violations = 0;
+  double max_reference_error_m = 0;
+  double robot_time_s = 0;  ///< from the first grant to the latest ground truth
+  DurationHistogram negotiation;
+  DurationHistogram plan;
+  DurationHistogram search;
+  std::vector<Death> deaths;
+  double duration_s = 0;  ///< wall clock
+
+  /// Why the run failed in one line; empty when everybody arrived, nobody touched and no firmware rule was
+  /// broken.
+  std::string verdict() const;
+};
+
+/// The report as JSON with a stable order of keys; what depends on the machine's speed is under "wall_clock".
+std::string to_json(const Report& report);
+/// A few lines for people.
+std::string summary(const Report& report);
+/// Writes to_json to a file, making its folder; throws std::runtime_error saying why it cannot.
+void write_report(const Report& report, const std::string& path);
+/// reports/<scenario>-<seed, or the local time>.json
+std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed);
+
+}  // namespace sidestep

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/sim_bus.hpp"
+#include "deploy/judge.hpp"
+
+namespace sidestep {
+
+/// The whole system on SimBus, in one thread and virtual time: one simulated process for the simulator,
+/// vision, the coordinator and each agent, and a judge that listens. The same scenario and seed give the same
+/// run, bit for bit.
+class SimSystem {
+ public:
+  /// Starts every process at virtual time 1000 s.
+  SimSystem(const Scenario& scenario, std::uint64_t seed);
+  ~SimSystem();
+  SimSystem(const SimSystem&) = delete;
+  SimSystem& operator=(const SimSystem&) = delete;
+
+  void run_until(Time limit) { network_.run_until(limit); }
+  void run_for(Duration duration) { network_.run_until(network_.now() + duration); }
+  /// Runs until all have arrived and stayed for half a second, but at most until the limit; whether they
+  /// have.
+  bool run_until_arrived(Time limit);
+
+  /// kill -9 of a process: "simulator", "vision", "coordinator" or "agent 3". Its robots, messages under way
+  /// and the others go on. Does nothing when it is dead.
+  void kill(const std::string& process);
+  /// Starts a process that is dead, as a new incarnation that knows nothing of the old one.
+  void restart(const std::string& process);
+  bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
+
+  Time now() const { return network_.now(); }
+  Time begin() const { return begin_; }
+  SimNetwork& network() { return network_; }
+  Judge& judge() { return judge_; }
+  const Judge& judge() const { return judge_; }
+
+ private:
+  struct Process;
+  void start(const std::string& process);
+
+  const Scenario scenario_;
+  std::uint64_t seed_;
+  Time begin_;
+  SimNetwork network_;
+  Judge judge_;
+  SimBus judge_bus_;
+  std::map<std::string, std::unique_ptr<Process>> processes_;
+  std::optional<Time> arrived_since_;
+};
+
+}  // namespace sidestep

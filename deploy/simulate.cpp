@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/process/process.hpp"
+#include "deploy/progress.hpp"
+#include "deploy/sim_system.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr Duration kStartDeadline = std::chrono::seconds(20);
+constexpr Duration kLook = std::chrono::milliseconds(100);
+constexpr auto kRedraw = std::chrono::milliseconds(250);
+
+/// On stderr and in terminals only: what goes to stdout is the summary.
+class Ticker {
+ public:
+  void update(const SimSystem& system) {
+    if (!is_terminal_ || steady_clock::now() < next_) return;
+    next_ = steady_clock::now() + kRedraw;
+    fmt::print(stderr, "\r\x1b[K{}", progress_line(system.judge(), system.now()));
+  }
+  ~Ticker() {
+    if (is_terminal_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  steady_clock::time_point next_{};
+};
+
+/// Why the run ended early; empty: it did not.
+std::string drive(SimSystem& system, double limit_s) {
+  Ticker ticker;
+  while (!system.judge().granting_since()) {
+    if (system.now() >= system.begin() + kStartDeadline) {
+      return fmt::format("the coordinator does not grant after {} s", to_seconds(kStartDeadline));
+    }
+    system.run_for(kLook);
+    ticker.update(system);
+  }
+  const Time limit = *system.judge().granting_since() + from_seconds(limit_s);
+  while (system.now() < limit) {
+    if (system.run_until_arrived(std::min(limit, system.now() + kLook))) return "";
+    ticker.update(system);
+  }
+  return system.judge().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario_file);
+  const auto begin = steady_clock::now();
+  SimSystem system(scenario, options.seed);
+  const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
+  Report report = system.judge().report();
+  report.program = "simulate";
+  report.seed = options.seed;
+  report.failure = failure;
+  report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
+  const std::string path =
+      options.report_file.empty() ? default_report_path(scenario.name, options.seed) : options.report_file;
+  write_report(report, path);
+  fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", scenario.name, options.seed,
+             summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
+  return report.verdict().empty() ? 0 : kExitFailure;
+}
+
+}  // namespace sidestep

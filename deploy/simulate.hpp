@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace sidestep {
+
+struct SimulateOptions {
+  std::string scenario_file;
+  std::string report_file;  ///< empty: reports/<scenario>-<seed>.json
+  std::uint64_t seed = 1;
+  std::optional<double> seconds;  ///< instead of the scenario's time limit
+};
+
+/// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the
+/// exit code, as run() does. Throws ScenarioError, and std::runtime_error when the report cannot be written.
+int simulate(const SimulateOptions& options);
+
+}  // namespace sidestep

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/geometry/circle.hpp"
+#include "simulator/body.hpp"
+
+namespace sidestep {
+
+struct ContactTotals {
+  std::uint64_t contacts = 0;  ///< pairs that began to touch
+  double penetration_m_s = 0;  ///< interpenetration depth x time
+  double min_clearance_m = 1;  ///< smallest distance between edges; what is farther than 1 m is not looked at
+};
+
+/// Finds, counts and separates robots that touch each other or an obstacle. Counts a pair again only after it
+/// was apart by kApart_m. Pairs that cannot meet before the next look at all of them are left out.
+class Contacts {
+ public:
+  Contacts(std::span<const Circle> obstacles, double robot_radius_m, double speed_limit_mps);
+
+  /// Looks at where the bodies are after a physics step, and pushes apart those that touch, without any
+  /// bounce.
+  void step(std::span<Body> bodies);
+
+  const ContactTotals& totals() const { return totals_; }
+
+  static constexpr double kApart_m = 0.001;
+
+ private:
+  struct Pair {
+    std::uint32_t first;
+    std::uint32_t second;  ///< a body's index, or the number of bodies + an obstacle's
+    bool is_touching;
+  };
+  struct Overlap {
+    std::uint32_t first, second;
+    Vec2 away;  ///< from the second to the first, of length 1
+    double depth_m;
+  };
+  void find_near(std::span<const Body> bodies);
+  void remember_touching();
+  void look_at(Pair& pair, std::span<const Body> bodies);
+  static void separate(const Overlap& overlap, std::span<Body> bodies);
+
+  std::vector<Circle> obstacles_;
+  double radius_m_;
+  double speed_limit_mps_;
+  std::vector<Pair> near_;
+  std::vector<Pair> touching_;
+  std::vector<Overlap> overlaps_;
+  std::vector<std::uint32_t> by_x_;
+  int steps_to_next_search_ = 0;
+  ContactTotals totals_;
+};
+
+}  // namespace sidestep

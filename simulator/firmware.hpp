@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/motion/version.hpp"
+#include "idl/robot.h"
+#include "simulator/body.hpp"
+#include "simulator/pose_estimator.hpp"
+
+namespace sidestep {
+
+struct FirmwareSettings {
+  BodySettings body;  ///< what the firmware knows of its motors
+  EstimatorSettings estimator;
+  double position_gain_ps2 = 8000;  ///< of the tracking control, per square second
+  double velocity_gain_ps = 180;    ///< per second
+  double heading_gain_ps = 8;
+  double turning_speed_radps = 4;
+  double turning_gain_ps = 25;
+};
+
+/// What became of the versions and commands that came.
+struct FirmwareCounts {
+  std::uint64_t taken = 0;
+  std::uint64_t refused_late = 0;
+  std::uint64_t refused_base = 0;  ///< also those there was no room for
+  std::uint64_t refused_fenced = 0;
+  std::uint64_t refused_malformed = 0;
+};
+
+/// A robot's firmware (safety-protocol.md, "Who does what"). It executes one whole version and holds a few
+/// that are still to begin; it switches to one only at its start time, and only from its base. Without any
+/// command it follows what it executes to its end and stays at rest there. At creation it executes version 0:
+/// at rest for ever on its mark.
+class Firmware {
+ public:
+  static constexpr int kMaxPending = 8;
+
+  Firmware(RobotId robot, const Vec2& mark_m, double heading_rad, Time now, const FirmwareSettings& settings);
+
+  /// Obeys, or refuses and counts. A command that is malformed in any part changes nothing. A heading that is
+  /// not a number makes a command malformed; a fix that is too old, repeated or from the future is only
+  /// ignored.
+  void on_command(const msg::Command& command, Time now);
+
+  /// Makes the next switch of version that is due; false when none is. Every other call with a time makes all
+  /// switches due by then first, so that "executing f at t" stays true for ever.
+  bool switch_next(Time now);
+
+  /// One period of the control loop, called every kPhysicsStep: what the motors shall do until the next.
+  Actuation tick(Time now, const Odometry& odometry);
+
+  /// The facts at a time not before the last call's. The head is the caller's to fill.
+  msg::Feedback feedback(Time now);
+
+  const Version& executing() const { return executing_; }
+  Incarnation obeyed_incarnation() const { return obeyed_; }
+  const FirmwareCounts& counts() const { return counts_; }
+  const PoseEstimator& estimate() const { return estimator_; }
+  /// When the next held version starts; Time::max() when none is held.
+  Time next_start() const { return pending_count_ > 0 ? pending_[0].trajectory.start() : Time::max(); }
+
+ private:
+  void obey(Incarnation incarnation);
+  void take(const Version& version, Time now);
+  void insert(const Version& version);
+  void remove_pending(int index);
+  bool knows(VersionNumber number) const;
+  const Trajectory& planned(Time t) const;
+
+  RobotId robot_;
+  Incarnation obeyed_ = 0;
+  Version executing_;
+  std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
+  int pending_count_ = 0;
+  FirmwareCounts counts_;
+
+  FirmwareSettings settings_;
+  double decay_;
+  Duration look_ahead_;
+  PoseEstimator estimator_;
+  Actuation last_wish_;
+  Actuation believed_;  ///< accelerations by the motor model
+  double heading_goal_rad_;
+};
+
+}  // namespace sidestep

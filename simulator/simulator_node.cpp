@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/simulator_node.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kWakePeriod = milliseconds(4);
+constexpr Duration kTruthPeriod{16'666'667};
+// A process that was held up longer than this has robots that all came to rest: the time beyond is passed
+// over.
+constexpr Duration kMostCatchUp = milliseconds(5000);
+constexpr Duration kStaleFrame = milliseconds(200);
+// Starts farther ahead than this get no timer of their own; the regular wake finds them.
+constexpr Duration kFarAhead = milliseconds(200);
+
+}  // namespace
+
+SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed)
+    : bus_(bus),
+      cycle_(scenario.cycle),
+      delay_(scenario.vision.delay),
+      command_loss_(scenario.command_loss),
+      incarnation_(incarnation),
+      clock_(bus.now()),
+      world_(scenario, bus.now(), seed),
+      cameras_(scenario, bus.now(), Rng(seed + 1).bits()),
+      radio_(Rng(seed + 2).bits()),
+      detections_(bus.advertise(topics::kDetections)),
+      truth_(bus.advertise(topics::kTruth)),
+      truth_due_(bus.now()) {
+  const Time begin = bus.now();
+  const std::size_t count = world_.robot_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    watched_start_.push_back(begin);
+    feedback_.push_back(bus.advertise(topics::kFeedback, world_.id(i)));
+    feedback_due_.push_back(begin +
+                            cycle_ * static_cast<Duration::rep>(i) / static_cast<Duration::rep>(count));
+    bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
+                                [this, i](const msg::Command& command) { on_command(i, command); });
+  }
+  bus.at(begin, [this] { wake(); });
+}
+
+// Facts must stay true although a host's clock is set back.
+Time SimulatorNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
+
+void SimulatorNode::wake() {
+  const Time now = clock();
+  advance(now);
+  for (std::size_t i = 0; i < feedback_.size(); ++i) {
+    if (feedback_due_[i] <= now) publish_feedback(i, now);
+  }
+  if (truth_due_ <= now) publish_truth(now);
+  publish_frames();
+  bus_.at(bus_.now() + kWakePeriod, [this] { wake(); });
+}
+
+void SimulatorNode::advance(Time now) {
+  if (now - world_.time() > kMostCatchUp) {
+    world_.advance(world_.time() + kMostCatchUp);
+    world_.skip_to(now);
+  }
+  while (cameras_.next_capture() <= now) {
+    world_.advance(cameras_.next_capture());
+    take_frame(now);
+  }
+  world_.advance(now);
+  publish_news(now);
+}
+
+void SimulatorNode::on_command(std::size_t robot, const msg::Command& command) {
+  if (radio_.chance(command_loss_)) {
+    ++commands_lost_;
+    return;
+  }
+  const Time now = clock();
+  advance(now);
+  world_.on_command(robot, command, now);
+  publish_news(now);
+  watch_start(robot, now);
+}
+
+void SimulatorNode::watch_start(std::size_t robot, Time now) {
+  const Time start = world_.firmware(robot).next_start();
+  if (start == watched_start_[robot] || start - now > kFarAhead) return;
+  watched_start_[robot] = start;
+  bus_.at(start, [this, robot] { on_start(robot); });
+}
+
+void SimulatorNode::on_start(std::size_t robot) {
+  const Time now = clock();
+  advance(now);
+  if (world_.firmware(robot).next_start() > now) return;
+  publish_feedback(robot, now);
+}
+
+void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
+  msg::Feedback facts = world_.feedback(robot, now);
+  facts.head().sender(world_.id(robot));
+  facts.head().incarnation(incarnation_);
+  feedback_[robot].publish(facts, now);
+  feedback_due_[robot] = now + cycle_;
+  world_.clear_news(robot);
+  watch_start(robot, now);
+}
+
+void SimulatorNode::publish_news(Time now) {
+  while (!world_.news().empty()) publish_feedback(world_.news().back(), now);
+}
+
+void SimulatorNode::publish_truth(Time now) {
+  world_.fill(truth_message_);
+  truth_message_.simulator(static_cast<std::uint32_t>(Sender::kSimulator));
+  truth_message_.head().sender(static_cast<std::uint32_t>(Sender::kSimulator));
+  truth_message_.head().incarnation(incarnation_);
+  truth_.publish(truth_message_, now);
+  truth_due_ = std::max(truth_due_ + kTruthPeriod, now);
+}
+
+void SimulatorNode::take_frame(Time now) {
+  auto slot = std::find_if(frames_.begin(), frames_.end(), [](const Frame& f) { return !f.is_waiting; });
+  if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
+  const Time captured_at = world_.time();
+  const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
+  cameras_.capture(captured_at, world_.bodies(), ball, slot->message);
+  slot->publish_at = captured_at + delay_;
+  if (slot->publish_at + kStaleFrame < now) return;
+  slot->is_waiting = true;
+  bus_.at(slot->publish_at, [this] { publish_frames(); });
+}
+
+void SimulatorNode::publish_frames() {
+  const Time now = clock();
+  for (Frame& frame : frames_) {
+    if (!frame.is_waiting || frame.publish_at > now) continue;
+    frame.message.head().sender(static_cast<std::uint32_t>(Sender::kSimulator));
+    frame.message.head().incarnation(incarnation_);
+    detections_.publish(frame.message, now);
+    frame.is_waiting = false;
+  }
+}
+
+}  // namespace sidestep

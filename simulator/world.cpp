@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world.hpp"
+
+namespace sidestep {
+namespace {
+
+FirmwareSettings firmware_settings(const Scenario& scenario) {
+  FirmwareSettings settings;
+  settings.estimator.velocity_noise_mps = scenario.odometry.velocity_noise_mps;
+  settings.estimator.scale_error = scenario.odometry.scale_error;
+  settings.estimator.fix_noise_m = scenario.vision.position_noise_m;
+  return settings;
+}
+
+// Standard deviation 1, from one draw: the sum of four uniform numbers (Irwin, Hall). The noise of every
+// millisecond is summed up by whoever reads it, so its own shape is lost, and this costs a tenth of a
+// normal's time.
+double nearly_normal(Rng& rng) {
+  const std::uint64_t bits = rng.bits();
+  const std::uint64_t sum = (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
+  return (static_cast<double>(sum) - 2 * 65535.0) * (1.7320508075688772 / 65536);
+}
+
+}  // namespace
+
+World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
+    : field_(scenario.field),
+      obstacles_(scenario.obstacles),
+      radius_m_(scenario.radius_m),
+      velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
+      time_(begin),
+      contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps) {
+  Rng rng(seed);
+  const FirmwareSettings settings = firmware_settings(scenario);
+  bodies_.reserve(scenario.robots.size());
+  robots_.reserve(scenario.robots.size());
+  news_.reserve(scenario.robots.size());
+  for (const RobotSpec& spec : scenario.robots) {
+    bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
+    Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, begin, settings);
+    const FirmwareJudge judge(firmware.executing());
+    Rng noise = rng.fork();
+    const double scale = 1 + scenario.odometry.scale_error * noise.normal();
+    robots_.push_back(
+        {spec.id, std::move(firmware), judge, noise, scale, {}, spec.start_m, spec.start_heading_rad});
+  }
+  if (scenario.ball)
+    ball_.emplace(State{scenario.ball->position_m, scenario.ball->velocity_mps}, BallSettings{});
+}
+
+void World::advance(Time to) {
+  while (to - time_ >= kPhysicsStep) step();
+}
+
+void World::step() {
+  time_ += kPhysicsStep;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].wish);
+  contacts_.step(bodies_);
+  if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    switch_versions(i, time_);
+    robots_[i].wish = robots_[i].firmware.tick(time_, measure(i));
+  }
+}
+
+Odometry World::measure(std::size_t index) {
+  Robot& robot = robots_[index];
+  const Body& body = bodies_[index];
+  const Vec2 velocity = (body.position_m() - robot.last_position_m) / kPhysicsStepSeconds;
+  const double turning = (body.heading_rad() - robot.last_heading_rad) / kPhysicsStepSeconds;
+  robot.last_position_m = body.position_m();
+  robot.last_heading_rad = body.heading_rad();
+  const double x_noise = velocity_noise_mps_ * nearly_normal(robot.noise);
+  const double y_noise = velocity_noise_mps_ * nearly_normal(robot.noise);
+  // The wheels sit at the rim, so the same noise at the rim is this much of a turn.
+  const double turn_noise = velocity_noise_mps_ / radius_m_ * nearly_normal(robot.noise);
+  return {robot.odometry_scale * velocity + Vec2(x_noise, y_noise),
+          robot.odometry_scale * turning + turn_noise};
+}
+
+void World::switch_versions(std::size_t index, Time now) {
+  Robot& robot = robots_[index];
+  if (robot.firmware.next_start() > now) return;
+  while (robot.firmware.switch_next(now)) {
+    robot.judge.switched(robot.firmware.executing());
+    note_news(index);
+  }
+}
+
+void World::note_news(std::size_t index) {
+  if (robots_[index].has_news) return;
+  robots_[index].has_news = true;
+  news_.push_back(static_cast<std::uint32_t>(index));
+}
+
+void World::clear_news(std::size_t index) {
+  if (!robots_[index].has_news) return;
+  robots_[index].has_news = false;
+  std::erase(news_, static_cast<std::uint32_t>(index));
+}
+
+void World::on_command(std::size_t index, const msg::Command& command, Time now) {
+  Robot& robot = robots_[index];
+  switch_versions(index, now);
+  robot.judge.command_arrived(command, now);
+  const Incarnation obeyed = robot.firmware.obeyed_incarnation();
+  robot.firmware.on_command(command, now);
+  if (robot.firmware.obeyed_incarnation() != obeyed) note_news(index);
+}
+
+msg::Feedback World::feedback(std::size_t index, Time now) {
+  switch_versions(index, now);
+  msg::Feedback facts = robots_[index].firmware.feedback(now);
+  robots_[index].judge.reported(facts);
+  return facts;
+}
+
+std::uint64_t World::firmware_violations() const {
+  std::uint64_t sum = 0;
+  for (const Robot& robot : robots_) sum += robot.judge.violations();
+  return sum;
+}
+
+double World::reference_error_m(std::size_t index) const {
+  const State reference = robots_[index].firmware.executing().trajectory.state_at(time_);
+  return (bodies_[index].position_m() - reference.position_m).norm();
+}
+
+void World::fill(msg::GroundTruth& truth) const {
+  truth.at_ns(to_ns(time_));
+  truth.contacts(contacts().contacts);
+  truth.penetration_m_s(contacts().penetration_m_s);
+  truth.min_clearance_m(contacts().min_clearance_m);
+  truth.firmware_violations(firmware_violations());
+  const Vec2 ball = ball_ ? ball_->state().position_m : Vec2(0, 0);
+  truth.ball_x_m(ball.x());
+  truth.ball_y_m(ball.y());
+  truth.robots().resize(robots_.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    msg::TruthRobot& robot = truth.robots()[i];
+    robot.robot(robots_[i].id);
+    robot.x_m(bodies_[i].position_m().x());
+    robot.y_m(bodies_[i].position_m().y());
+    robot.heading_rad(wrapped_rad(bodies_[i].heading_rad()));
+    robot.vx_mps(bodies_[i].velocity_mps().x());
+    robot.vy_mps(bodies_[i].velocity_mps().y());
+    robot.reference_error_m(reference_error_m(i));
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// What goes wrong between processes: endpoints that do not fit, payloads that cannot be read, processes that
+// die.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <filesystem>
+#include <set>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/messaging/dds_participant.hpp"
+#include "common/messaging/dds_types.hpp"
+#include "tests/unit/common/messaging/dds_test_support.hpp"
+
+namespace sidestep {
+namespace {
+
+template <typename Message>
+Topic<Message> test_topic(Qos qos, const char* type) {
+  return {{"test/trouble", "test", qos, false, message_type<Message>(type)}};
+}
+
+std::set<std::string> files_of_dds() {
+  std::set<std::string> result;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+    const std::string name = entry.path().filename();
+    if (name.find("fast") != std::string::npos) result.insert(name);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a reader that asks for more than the writer offers is reported on both sides") {
+  DdsBus reader(test_settings());
+  DdsBus writer(test_settings());
+  const CaptureStderr captured;
+  const auto state = test_topic<msg::Verdict>(Qos::kState, "sidestep::msg::Verdict");
+  const auto event = test_topic<msg::Verdict>(Qos::kEvent, "sidestep::msg::Verdict");
+  const auto offered = writer.advertise(state);
+  reader.subscribe<msg::Verdict>(event, [](const msg::Verdict&) {});
+  const auto both_say_so = [&] {
+    return captured.has(
+               "'test/trouble': a writer offers less than this reader asks for, policy reliability") &&
+           captured.has("'test/trouble': a reader asks for more than this writer offers, policy reliability");
+  };
+  const bool reported = run_until(both_say_so, reader, writer);
+  CAPTURE(captured.text());
+  CHECK(reported);
+}
+
+TEST_CASE("a stranger who uses our topic with another type is reported") {
+  DdsBus reader(test_settings());
+  DdsBus writer(test_settings());
+  const CaptureStderr captured;
+  reader.subscribe<msg::Verdict>(test_topic<msg::Verdict>(Qos::kState, "sidestep::msg::Verdict"),
+                                 [](const msg::Verdict&) {});
+  const auto other = writer.advertise(test_topic<msg::Proposal>(Qos::kState, "sidestep::msg::Proposal"));
+  const auto is_said = [&] {
+    return captured.has(
+        "a writer has type sidestep::msg::Proposal and is ignored, ours is sidestep::msg::Verdict");
+  };
+  const bool reported = run_until(is_said, reader, writer);
+  CAPTURE(captured.text());
+  CHECK(reported);
+}
+
+TEST_CASE("unreadable payloads are counted, reported once and dropped, and good ones still arrive") {
+  DdsBus bus(test_settings());
+  int heard = 0;
+  bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState&) { ++heard; });
+
+  DdsParticipant hostile(test_settings("hostile"), nullptr);
+  eprosima::fastdds::dds::DataWriter* writer = hostile.create_writer(
+      "world", eprosima::fastdds::dds::TypeSupport(new RawType(topics::kWorld.type.name, true)),
+      dds_writer_qos(Qos::kState), nullptr);
+  const std::size_t fixed = msg::WorldState::getCdrSerializedSize(msg::WorldState());
+  std::vector<std::uint8_t> huge(4 + fixed, 0);
+  huge[1] = 1;
+  std::fill(huge.end() - 4, huge.end(), 0xff);  // four thousand million robots
+  const std::uint64_t seed = 11;
+  CAPTURE(seed);
+  Rng rng(seed);
+
+  const CaptureStderr captured;
+  const auto many_are_refused = [&] {
+    std::vector<std::uint8_t> noise(rng.below(2000));
+    for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(rng.bits());
+    writer->write(&noise);
+    writer->write(&huge);
+    return bus.refused() >= 300;
+  };
+  const bool refused = run_until(many_are_refused, bus);
+  const std::string log = captured.text();
+  CAPTURE(log);
+  CHECK(refused);
+  CHECK(heard == 0);
+  CHECK_THAT(log, Catch::Matchers::Contains("topic 'world': 1 unreadable message(s)"));
+  CHECK(std::count(log.begin(), log.end(), '\n') <= 3);
+
+  DdsBus vision(test_settings("vision"));
+  auto good = vision.advertise(topics::kWorld);
+  msg::WorldState world;
+  const auto is_heard = [&] {
+    good.publish(world, vision.now());
+    return heard > 0;
+  };
+  CHECK(run_until(is_heard, bus));
+  hostile.delete_writer(writer);
+}
+
+TEST_CASE("publishes until it is killed", "[.victim]") {
+  DdsSettings settings = test_settings("victim");
+  settings.domain = std::atoi(std::getenv("SIDESTEP_TEST_DOMAIN"));
+  DdsBus bus(settings);
+  auto writer = bus.advertise(topics::kVerdict, 1);
+  bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
+  msg::Verdict verdict;
+  const pid_t parent = getppid();
+  while (getppid() == parent) {
+    writer.publish(verdict, bus.now());
+    bus.run_until(bus.now() + kStep);
+  }
+}
+
+TEST_CASE("a process that is killed with kill -9 leaves nothing behind") {
+  const std::set<std::string> before = files_of_dds();
+  DdsBus bus(test_settings());
+  int heard = 0;
+  bus.subscribe<msg::Verdict>(topics::kVerdict, 1, [&](const msg::Verdict&) { ++heard; });
+  setenv("SIDESTEP_TEST_DOMAIN", std::to_string(test_settings().domain).c_str(), 1);
+  const pid_t victim = fork();
+  if (victim == 0) {
+    execl("/proc/self/exe", "victim", "[.victim]", nullptr);
+    _exit(127);
+  }
+  REQUIRE(victim > 0);
+  const bool alive = run_until([&] { return heard > 5; }, bus);
+  kill(victim, SIGKILL);
+  int status = 0;
+  waitpid(victim, &status, 0);
+  CHECK(alive);
+  CHECK(WIFSIGNALED(status));
+  CHECK(files_of_dds() == before);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/process.hpp"
+
+#include <CLI/CLI.hpp>
+#include <catch2/catch.hpp>
+#include <signal.h>
+#include <stdexcept>
+
+#include "tests/unit/common/messaging/dds_test_support.hpp"
+
+namespace sidestep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+struct Outcome {
+  int exit_code;
+  std::string err;
+};
+
+Outcome run(const Program& program, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "sidestep-test");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  const CaptureStderr captured;
+  const int exit_code = run_process(static_cast<int>(argv.size()), argv.data(), program);
+  return {exit_code, captured.text()};
+}
+
+std::vector<std::string> good_arguments() {
+  return {"--scenario", SIDESTEP_SCENARIO, "--domain", std::to_string(test_settings().domain)};
+}
+
+Program test_program() {
+  Program program;
+  program.name = "sidestep-test";
+  program.description = "Is tested.";
+  program.start = [](Bus&, const Scenario&) { return nullptr; };
+  return program;
+}
+
+}  // namespace
+
+TEST_CASE("wrong usage and a wrong scenario exit with 2, help with 0, and nothing starts") {
+  Program program = test_program();
+  bool started = false;
+  program.start = [&](Bus&, const Scenario&) {
+    started = true;
+    return nullptr;
+  };
+  CHECK(run(program, {}).exit_code == kExitUsage);
+  CHECK(run(program, {"--scenario"}).exit_code == kExitUsage);
+  CHECK(run(program, {"--scenario", SIDESTEP_SCENARIO, "--domain", "100"}).exit_code == kExitUsage);
+  CHECK(run(program, {"--scenario", SIDESTEP_SCENARIO, "--nonsense"}).exit_code == kExitUsage);
+  CHECK(run(program, {"--help"}).exit_code == 0);
+  const Outcome missing = run(program, {"--scenario", "/nowhere.yaml"});
+  CHECK(missing.exit_code == kExitUsage);
+  CHECK_THAT(missing.err, Contains("sidestep-test: /nowhere.yaml:"));
+  CHECK_FALSE(started);
+}
+
+TEST_CASE("what is thrown at the start is said on stderr and exits with 1") {
+  Program program = test_program();
+  program.start = [](Bus&, const Scenario&) -> std::shared_ptr<void> {
+    throw std::runtime_error("no such robot");
+  };
+  const Outcome outcome = run(program, good_arguments());
+  CHECK(outcome.exit_code == kExitFailure);
+  CHECK_THAT(outcome.err, Contains("sidestep-test: no such robot"));
+  std::vector<std::string> arguments = good_arguments();
+  arguments.insert(arguments.end(), {"--interface", "192.0.2.1"});
+  const Outcome no_interface = run(test_program(), arguments);
+  CHECK(no_interface.exit_code == kExitFailure);
+  CHECK_THAT(no_interface.err, Contains("192.0.2.1"));
+}
+
+TEST_CASE("a signal ends the process in order: the nodes die before the bus, and the exit code is 0") {
+  const int signal_number = GENERATE(SIGINT, SIGTERM);
+  Program program = test_program();
+  int robot = 0;
+  program.add_options = [&](CLI::App& app) { app.add_option("--robot", robot); };
+  program.participant = [&] { return "agent-" + std::to_string(robot); };
+  std::size_t robots_in_scenario = 0;
+  bool node_died = false;
+  program.start = [&](Bus& bus, const Scenario& scenario) {
+    robots_in_scenario = scenario.robots.size();
+    bus.at(bus.now(), [=] { kill(getpid(), signal_number); });
+    return std::shared_ptr<void>(&bus, [&](void* address) {
+      static_cast<Bus*>(address)->now();
+      node_died = true;
+    });
+  };
+  std::vector<std::string> arguments = good_arguments();
+  arguments.insert(arguments.end(), {"--robot", "3"});
+  const Outcome outcome = run(program, arguments);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(robot == 3);
+  CHECK(robots_in_scenario > 0);
+  CHECK(node_died);
+  CHECK_THAT(outcome.err, Contains("agent-3: domain "));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/report.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace sidestep {
+namespace {
+
+Report example() {
+  Report report;
+  report.program = "simulate";
+  report.scenario = "crossing";
+  report.seed = 7;
+  report.robots = 2;
+  report.arrived = 1;
+  report.arrival_s = {{3, 1.25}, {7, std::nullopt}};
+  report.mean_arrival_s = 1.25;
+  report.min_clearance_m = 0.0123456789;
+  report.cycles = 200;
+  report.missed_cycles = 1;
+  report.robot_time_s = 6;
+  report.duration_s = 2;
+  for (int i = 1; i <= 100; ++i) report.negotiation.add(std::chrono::microseconds(100 * i));
+  report.deaths.push_back({"agent 7", "exit code 1", 0.5, false});
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order") {
+  const std::string text = to_json(example());
+  const auto json = nlohmann::ordered_json::parse(text);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  CHECK(keys == std::vector<std::string>{"program",
+                                         "scenario",
+                                         "seed",
+                                         "passed",
+                                         "failure",
+                                         "robots",
+                                         "arrived",
+                                         "contacts",
+                                         "penetration_m_s",
+                                         "min_clearance_m",
+                                         "makespan_s",
+                                         "mean_arrival_s",
+                                         "arrival_over_straight",
+                                         "arrival_s",
+                                         "proposals",
+                                         "grants",
+                                         "denials",
+                                         "cycles",
+                                         "missed_cycles",
+                                         "invalid_messages",
+                                         "firmware_violations",
+                                         "max_reference_error_m",
+                                         "negotiation_us",
+                                         "robot_time_s",
+                                         "deaths",
+                                         "wall_clock"});
+  CHECK(json["seed"] == 7);
+  CHECK(json["passed"] == false);
+  CHECK(json["failure"] == "1 of 2 arrived");
+  CHECK(json["min_clearance_m"] == 0.012346);
+  CHECK(json["makespan_s"].is_null());
+  CHECK(json["arrival_s"]["3"] == 1.25);
+  CHECK(json["arrival_s"]["7"].is_null());
+  CHECK(json["negotiation_us"]["max"] == 10000.0);
+  CHECK(json["negotiation_us"]["p50"] >= 5000.0);
+  CHECK(json["negotiation_us"]["p50"] < 5700.0);
+  CHECK(json["deaths"][0]["process"] == "agent 7");
+  CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
+}
+
+TEST_CASE("reports that differ in wall-clock figures only differ under wall_clock only") {
+  Report slow = example();
+  slow.duration_s = 9;
+  slow.plan.add(std::chrono::milliseconds(5));
+  slow.search.add(std::chrono::milliseconds(5));
+  auto a = nlohmann::ordered_json::parse(to_json(example())),
+       b = nlohmann::ordered_json::parse(to_json(slow));
+  CHECK(a != b);
+  a.erase("wall_clock");
+  b.erase("wall_clock");
+  CHECK(a == b);
+}
+
+TEST_CASE("the verdict names everything that is wrong in one line, and is empty when nothing is") {
+  Report report = example();
+  CHECK_THAT(summary(report), Catch::EndsWith("failed: 1 of 2 arrived\n"));
+  report.failure = "time limit of 60 s";
+  report.contacts = 1;
+  report.firmware_violations = 2;
+  CHECK(report.verdict() == "time limit of 60 s, 1 contacts, 2 firmware violations, 1 of 2 arrived");
+  Report good = example();
+  good.arrived = 2;
+  CHECK(good.verdict().empty());
+  CHECK_THAT(summary(good), Catch::EndsWith("passed\n"));
+}
+
+TEST_CASE("a report is written into a folder that is made for it, or it says why not") {
+  const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
+  const std::string path = (folder / "deep" / "r.json").string();
+  write_report(example(), path);
+  std::ifstream file(path);
+  CHECK(nlohmann::json::parse(file)["scenario"] == "crossing");
+  std::filesystem::remove_all(folder);
+  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"),
+                    Catch::Contains("cannot write the report /dev/null"));
+}
+
+TEST_CASE("a report is named after scenario and seed, or scenario and time") {
+  CHECK(default_report_path("crossing", 7) == "reports/crossing-7.json");
+  CHECK_THAT(default_report_path("crossing", std::nullopt),
+             Catch::Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
+}
+
+}  // namespace sidestep

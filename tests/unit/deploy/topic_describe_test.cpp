@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "deploy/topic/describe.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string idl_text() {
+  std::ostringstream text;
+  for (const char* name : {"header", "trajectory", "robot", "negotiation", "vision", "monitor"}) {
+    std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
+    REQUIRE(file);
+    text << file.rdbuf();
+  }
+  return text.str();
+}
+
+std::string without_comments(const std::string& idl) {
+  return std::regex_replace(idl, std::regex("//[^\n]*"), "");
+}
+
+/// The members of a struct in the IDL, in order.
+std::vector<std::string> idl_members(const std::string& idl, const std::string& struct_name) {
+  std::smatch body;
+  REQUIRE(std::regex_search(idl, body, std::regex("struct " + struct_name + " \\{([^}]*)\\}")));
+  const std::string members = body[1];
+  const std::regex member("(\\w+)\\s*(\\[[^\\]]*\\])?;");
+  std::vector<std::string> result;
+  for (std::sregex_iterator i(members.begin(), members.end(), member), end; i != end; ++i)
+    result.push_back((*i)[1]);
+  return result;
+}
+
+std::vector<std::string> idl_enumerators(const std::string& idl, const std::string& enum_name) {
+  std::smatch body;
+  REQUIRE(std::regex_search(idl, body, std::regex("enum " + enum_name + " \\{([^}]*)\\}")));
+  const std::string names = body[1];
+  const std::regex name("\\w+");
+  std::vector<std::string> result;
+  for (std::sregex_iterator i(names.begin(), names.end(), name), end; i != end; ++i)
+    result.push_back(i->str());
+  return result;
+}
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> result;
+  for (const auto& item : object.items()) result.push_back(item.key());
+  return result;
+}
+
+/// "REASON_NOT_TRIED" with prefix "REASON_" as "not tried".
+std::string in_words(std::string enumerator, const std::string& prefix) {
+  enumerator.erase(0, prefix.size());
+  for (char& c : enumerator) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
+  return enumerator;
+}
+
+}  // namespace
+
+TEST_CASE("a description holds the members of each message that the IDL names, in its order") {
+  const std::string idl = without_comments(idl_text());
+  msg::DetectionFrame frame;
+  frame.ball_count(1);
+  frame.robots().resize(1);
+  msg::WorldState world;
+  world.robots().resize(1);
+  msg::GroundTruth truth;
+  truth.robots().resize(1);
+  msg::Feedback feedback;
+  feedback.executing().phase_count(1);
+
+  CHECK(keys(describe(frame)) == idl_members(idl, "DetectionFrame"));
+  CHECK(keys(describe(frame)["head"]) == idl_members(idl, "Header"));
+  CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
+  CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
+  CHECK(keys(describe(world)) == idl_members(idl, "WorldState"));
+  CHECK(keys(describe(world)["ball"]) == idl_members(idl, "TrackedBall"));
+  CHECK(keys(describe(world)["robots"].at(0)) == idl_members(idl, "TrackedRobot"));
+  CHECK(keys(describe(msg::Command())) == idl_members(idl, "Command"));
+  CHECK(keys(describe(msg::Command())["fix"]) == idl_members(idl, "PoseFix"));
+  CHECK(keys(describe(feedback)) == idl_members(idl, "Feedback"));
+  CHECK(keys(describe(feedback)["executing"]) == idl_members(idl, "Version"));
+  CHECK(keys(describe(feedback)["executing"]["phases"].at(0)) == idl_members(idl, "Phase"));
+  CHECK(keys(describe(msg::Registration())) == idl_members(idl, "Registration"));
+  CHECK(keys(describe(msg::Proposal())) == idl_members(idl, "Proposal"));
+  CHECK(keys(describe(msg::Verdict())) == idl_members(idl, "Verdict"));
+  CHECK(keys(describe(msg::LedgerPage())) == idl_members(idl, "LedgerPage"));
+  CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
+  CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
+  CHECK(keys(describe(truth)) == idl_members(idl, "GroundTruth"));
+  CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TruthRobot"));
+}
+
+TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by its number") {
+  const std::string idl = without_comments(idl_text());
+  const auto check = [&](const char* name, const std::string& prefix, auto describe_value) {
+    const std::vector<std::string> enumerators = idl_enumerators(idl, name);
+    REQUIRE_FALSE(enumerators.empty());
+    for (std::uint32_t i = 0; i < enumerators.size(); ++i) {
+      CHECK(describe_value(i) == in_words(enumerators[i], prefix));
+    }
+    const auto beyond = static_cast<std::uint32_t>(enumerators.size());
+    CHECK(describe_value(beyond) == "unknown " + std::to_string(beyond));
+    CHECK(describe_value(0xffffffffu) == "unknown 4294967295");
+  };
+  check("Reason", "REASON_", [](std::uint32_t value) -> std::string {
+    msg::Verdict verdict;
+    verdict.reasons()[0] = static_cast<msg::Reason>(value);
+    return describe(verdict)["reasons"][0];
+  });
+  check("AgentPhase", "AGENT_", [](std::uint32_t value) -> std::string {
+    msg::AgentStatus status;
+    status.agent_phase(static_cast<msg::AgentPhase>(value));
+    return describe(status)["agent_phase"];
+  });
+  check("CoordinatorPhase", "COORDINATOR_", [](std::uint32_t value) -> std::string {
+    msg::CoordinatorState state;
+    state.coordinator_phase(static_cast<msg::CoordinatorPhase>(value));
+    return describe(state)["coordinator_phase"];
+  });
+}
+
+TEST_CASE("a count beyond its array shows the whole array and the count as it came") {
+  msg::Proposal proposal;
+  proposal.candidate_count(255);
+  proposal.candidates()[0].phase_count(200);
+  const Json description = describe(proposal);
+  CHECK(description["candidate_count"] == 255);
+  CHECK(description["candidates"].size() == proposal.candidates().size());
+  CHECK(description["candidates"][0]["phases"].size() == proposal.candidates()[0].phases().size());
+  CHECK(description["candidates"][1]["phases"].empty());
+}
+
+}  // namespace sidestep

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/simulator_node.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "common/messaging/senders.hpp"
+#include "common/messaging/sim_bus.hpp"
+#include "tests/unit/simulator/commands.hpp"
+#include "tests/unit/simulator/random_drive.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+using test::lonely_robots;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+// The simulator as a process, and another process that hears all it says.
+struct Scene {
+  explicit Scene(const Scenario& s, std::uint64_t seed = 1)
+      : scenario(s),
+        network(seed, kBegin, s.network),
+        bus(network),
+        node(bus, scenario, 77, seed),
+        outside(network) {
+    for (const RobotSpec& robot : scenario.robots) {
+      commands.push_back(outside.advertise(topics::kCommand, robot.id));
+      outside.subscribe<msg::Feedback>(topics::kFeedback, robot.id, [this](const msg::Feedback& fact) {
+        facts[fact.robot()].push_back(fact);
+        heard_at[fact.robot()].push_back(network.now());
+      });
+    }
+    outside.subscribe<msg::DetectionFrame>(
+        topics::kDetections, [this](const msg::DetectionFrame& frame) { frames.push_back(frame); });
+    outside.subscribe<msg::GroundTruth>(topics::kTruth,
+                                        [this](const msg::GroundTruth& t) { truths.push_back(t); });
+  }
+
+  void send(std::size_t robot, msg::Command command) { commands[robot].publish(command, network.now()); }
+  void run(Duration time) { network.run_until(network.now() + time); }
+
+  Scenario scenario;
+  SimNetwork network;
+  SimBus bus;
+  SimulatorNode node;
+  SimBus outside;
+  std::vector<Writer<msg::Command>> commands;
+  std::map<RobotId, std::vector<msg::Feedback>> facts;
+  std::map<RobotId, std::vector<Time>> heard_at;
+  std::vector<msg::DetectionFrame> frames;
+  std::vector<msg::GroundTruth> truths;
+};
+
+TEST_CASE("every robot reports about once a cycle when nothing happens, and not all at once") {
+  Scene scene(lonely_robots(10));
+  scene.run(std::chrono::seconds(2));
+  std::map<std::int64_t, int> burst;
+  for (const auto& [robot, facts] : scene.facts) {
+    CAPTURE(robot);
+    CHECK(facts.size() >= 90);
+    CHECK(facts.size() <= 125);
+    for (std::size_t i = 1; i < facts.size(); ++i) {
+      CHECK(facts[i].at_ns() - facts[i - 1].at_ns() <= 21'000'000);
+      CHECK(facts[i].head().message_number() == facts[i - 1].head().message_number() + 1);
+    }
+    CHECK(facts.back().head().sender() == robot);
+    CHECK(facts.back().head().incarnation() == 77);
+    for (const auto& fact : facts) ++burst[fact.at_ns()];
+  }
+  CHECK(scene.facts.size() == 10);
+  for (const auto& [time, count] : burst) CHECK(count <= 5);
+}
+
+TEST_CASE("a switch of version is reported as soon as it happens") {
+  Scenario scenario = lonely_robots(2);
+  scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
+  Scene scene(scenario);
+  scene.run(milliseconds(50));
+  const Time start = scene.network.now() + std::chrono::microseconds(10'300);
+  const Vec2 mark = scenario.robots[1].start_m;
+  scene.send(1, test::command_with({1, 9, 1, 0, Trajectory::resting(start, mark)}));
+  scene.run(milliseconds(100));
+  const auto& facts = scene.facts[1];
+  const auto first = std::find_if(facts.begin(), facts.end(),
+                                  [](const msg::Feedback& f) { return f.executing().version_number() == 1; });
+  REQUIRE(first != facts.end());
+  CHECK(first->at_ns() == to_ns(start));
+  CHECK(first->taken() == 1);
+  CHECK(scene.node.world().firmware_violations() == 0);
+}
+
+TEST_CASE("every switch in a chain of held versions is reported as it happens") {
+  Scenario scenario = lonely_robots(1);
+  scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
+  Scene scene(scenario);
+  scene.run(milliseconds(50));
+  const Vec2 mark = scenario.robots[0].start_m;
+  std::vector<Time> starts;
+  for (VersionNumber n = 1; n <= 4; ++n) {
+    starts.push_back(scene.network.now() + std::chrono::microseconds(10'300 + 7'700 * n));
+    scene.send(0, test::command_with({0, 9, n, n - 1, Trajectory::resting(starts.back(), mark)}));
+  }
+  scene.run(milliseconds(100));
+  for (VersionNumber n = 1; n <= 4; ++n) {
+    const auto& facts = scene.facts[0];
+    const auto first = std::find_if(facts.begin(), facts.end(), [n](const msg::Feedback& f) {
+      return f.executing().version_number() == n;
+    });
+    REQUIRE(first != facts.end());
+    CHECK(first->at_ns() == to_ns(starts[n - 1]));
+  }
+}
+
+TEST_CASE("a fence is acknowledged at once") {
+  Scenario scenario = lonely_robots(1);
+  scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
+  Scene scene(scenario);
+  scene.run(milliseconds(50));
+  const Time sent = scene.network.now();
+  scene.send(0, test::bare_command(0, 1234));
+  scene.run(std::chrono::microseconds(250));
+  CHECK(scene.facts[0].back().obeyed_incarnation() == 1234);
+  CHECK(scene.facts[0].back().at_ns() == to_ns(sent + std::chrono::microseconds(100)));
+}
+
+TEST_CASE("a command is judged by the robot's clock when it arrives") {
+  Scenario scenario = lonely_robots(1);
+  scenario.network.delay_min = scenario.network.delay_max = milliseconds(10);
+  Scene scene(scenario);
+  scene.run(milliseconds(50));
+  const Vec2 mark = scenario.robots[0].start_m;
+  const Time now = scene.network.now();
+  scene.send(0, test::command_with({0, 9, 1, 0, Trajectory::resting(now + milliseconds(10), mark)}));
+  scene.run(milliseconds(50));
+  CHECK(scene.facts[0].back().refused_late() == 1);
+  CHECK(scene.facts[0].back().executing().version_number() == 0);
+}
+
+TEST_CASE("frames are published just the scenario's delay after they were captured") {
+  Scenario scenario = lonely_robots(3);
+  scenario.vision.delay = milliseconds(35);
+  Scene scene(scenario);
+  scene.run(std::chrono::seconds(1));
+  CHECK(scene.frames.size() >= 2 * 56);
+  CHECK(scene.frames.size() <= 2 * 60);
+  for (const auto& frame : scene.frames) {
+    CHECK(frame.head().stamp_ns() - frame.captured_at_ns() == 35'000'000);
+    CHECK(frame.head().sender() == static_cast<std::uint32_t>(Sender::kSimulator));
+  }
+}
+
+TEST_CASE("truth comes 60 times a second") {
+  Scene scene(lonely_robots(3));
+  scene.run(std::chrono::seconds(2));
+  CHECK(scene.truths.size() >= 100);
+  CHECK(scene.truths.size() <= 121);
+  CHECK(scene.truths.back().robots().size() == 3);
+  CHECK(to_ns(scene.network.now()) - scene.truths.back().at_ns() < 25'000'000);
+}
+
+TEST_CASE("the radio loses as many commands as the scenario says") {
+  Scenario scenario = lonely_robots(1);
+  scenario.command_loss = 0.3;
+  Scene scene(scenario);
+  for (int i = 0; i < 5000; ++i) {
+    scene.send(0, test::bare_command(0, 5));
+    scene.run(milliseconds(1));
+  }
+  CHECK(static_cast<double>(scene.node.commands_lost()) / 5000 == Approx(0.3).epsilon(0.1));
+}
+
+TEST_CASE("the same seed gives the same messages") {
+  const auto sum = [](std::uint64_t seed) {
+    Scenario scenario = lonely_robots(3);
+    scenario.vision.missed = 0.1;
+    scenario.network.loss = 0.1;
+    Scene scene(scenario, seed);
+    scene.run(std::chrono::seconds(1));
+    double total = 0;
+    for (const auto& frame : scene.frames) {
+      for (const auto& robot : frame.robots()) total += robot.x_m() + robot.heading_rad();
+    }
+    for (const auto& [robot, facts] : scene.facts) {
+      for (const auto& fact : facts)
+        total += fact.x_m() + 1e-12 * static_cast<double>(fact.at_ns() - to_ns(kBegin));
+    }
+    return total;
+  };
+  CHECK(sum(1) == sum(1));
+  CHECK(sum(1) != sum(2));
+}
+
+// An agent that drives at random through a bad network, each version on what the robot last said that it
+// executes.
+struct Wanderer {
+  void act(Scene& scene, std::size_t robot, Rng& rng) {
+    const auto& facts = scene.facts[scene.scenario.robots[robot].id];
+    if (facts.empty()) return;
+    const auto base = decode(facts.back().executing());
+    REQUIRE(base.has_value());
+    const Time start = scene.network.now() + from_seconds(rng.uniform(0.02, 0.12));
+    if (start <= base->trajectory.start()) return;
+    const State state = base->trajectory.state_at(start);
+    Trajectory trajectory(start, state);
+    const Duration cycle = scene.scenario.cycle;
+    const Vec2 wish = rotated(Vec2(20, 0), rng.uniform(-3.14, 3.14));
+    trajectory.append(cycle, limited(wish, state.velocity_mps, scene.scenario.limits, cycle));
+    append_stop(trajectory, scene.scenario.limits.deceleration_mps2);
+    newest = std::max(newest, base->number) + 1;
+    scene.send(robot, test::command_with({base->robot, 1, newest, base->number, trajectory}));
+  }
+  VersionNumber newest = 0;
+};
+
+TEST_CASE("no rule is broken and bodies follow their versions, however bad the network") {
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+  CAPTURE(seed);
+  Scenario scenario = lonely_robots(5);
+  scenario.network = {0.3, 0.2, milliseconds(0), milliseconds(60)};
+  Scene scene(scenario, seed);
+  Rng rng(seed);
+  std::vector<Wanderer> agents(5);
+  for (int cycle = 0; cycle < 600; ++cycle) {
+    scene.run(scenario.cycle);
+    for (std::size_t i = 0; i < agents.size(); ++i) agents[i].act(scene, i, rng);
+  }
+  std::uint64_t taken = 0;
+  for (std::size_t i = 0; i < 5; ++i) taken += scene.node.world().firmware(i).counts().taken;
+  CHECK(taken > 300);
+  CHECK(scene.node.world().firmware_violations() == 0);
+  for (const auto& truth : scene.truths) {
+    for (const auto& robot : truth.robots()) CHECK(robot.reference_error_m() < 0.005);
+  }
+}
+
+TEST_CASE("hostile commands over the bus do not stop the simulator") {
+  Scene scene(lonely_robots(1));
+  Rng rng(1);
+  for (int i = 0; i < 2000; ++i) {
+    msg::Command command =
+        test::bare_command(static_cast<RobotId>(rng.below(3)), rng.bits() >> rng.below(64));
+    command.has_version(rng.chance(0.8));
+    command.granted().phase_count(static_cast<std::uint8_t>(rng.bits()));
+    command.granted().start_ns(static_cast<std::int64_t>(rng.bits()));
+    command.granted().version_number(rng.bits());
+    command.granted().x_m(rng.chance(0.5) ? std::numeric_limits<double>::infinity() : 1e300);
+    command.has_fix(rng.chance(0.5));
+    command.fix().captured_at_ns(static_cast<std::int64_t>(rng.bits()));
+    command.fix().x_m(-1e300);
+    command.heading_rad(rng.chance(0.1) ? std::numeric_limits<double>::quiet_NaN() : 1e308);
+    scene.send(0, command);
+    scene.run(std::chrono::microseconds(300));
+  }
+  scene.run(milliseconds(100));
+  const auto& last = scene.facts[0].back();
+  CHECK(last.refused_malformed() > 1000);
+  CHECK(last.executing().version_number() == 0);
+  CHECK(last.tracking_error_m() < 0.002);
+  CHECK(scene.node.world().firmware_violations() == 0);
+}
+
+// A bus whose clock does what the test says.
+class ManualBus : public Bus {
+ public:
+  Time now() const override { return now_; }
+  void at(Time when, std::function<void()> callback) override { timers_.emplace(when, std::move(callback)); }
+  void set(Time now) { now_ = now; }
+  void run_due() {
+    while (!timers_.empty() && timers_.begin()->first <= now_) {
+      const auto callback = std::move(timers_.begin()->second);
+      timers_.erase(timers_.begin());
+      callback();
+    }
+  }
+  void deliver_command(const msg::Command& command) { on_command_(&command); }
+  std::vector<msg::Feedback> facts;
+
+ protected:
+  struct Recorder : RawWriter {
+    ManualBus* bus = nullptr;
+    bool is_feedback = false;
+    void write(const void* message) override {
+      if (is_feedback) bus->facts.push_back(*static_cast<const msg::Feedback*>(message));
+    }
+  };
+  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string&) override {
+    auto writer = std::make_unique<Recorder>();
+    writer->bus = this;
+    writer->is_feedback = std::string(topic.name) == topics::kFeedback.name;
+    return writer;
+  }
+  void make_reader(const TopicInfo&, const std::string&, std::function<void(const void*)> callback) override {
+    on_command_ = std::move(callback);
+  }
+
+ private:
+  Time now_ = kBegin;
+  std::multimap<Time, std::function<void()>> timers_;
+  std::function<void(const void*)> on_command_;
+};
+
+TEST_CASE("a simulator that was held up for long catches up, and goes on") {
+  const Scenario scenario = lonely_robots(1);
+  ManualBus bus;
+  SimulatorNode node(bus, scenario, 1, 1);
+  bus.run_due();
+  Trajectory trajectory(kBegin + milliseconds(10), {scenario.robots[0].start_m, {0, 0}});
+  trajectory.append(milliseconds(300), Vec2(3, 0));
+  append_stop(trajectory, 5);
+  bus.deliver_command(test::command_with({0, 1, 1, 0, trajectory}));
+  for (const Duration pause : {Duration(milliseconds(900)), Duration(std::chrono::hours(24))}) {
+    bus.set(bus.now() + pause);
+    bus.run_due();
+    CHECK(bus.now() - node.world().time() < milliseconds(2));
+    CHECK(bus.facts.back().executing().version_number() == 1);
+    CHECK(node.world().reference_error_m(0) < 0.005);
+  }
+  const Time start = bus.now() + milliseconds(20);
+  bus.deliver_command(
+      test::command_with({0, 1, 2, 1, Trajectory::resting(start, trajectory.rest_position_m())}));
+  bus.set(start + milliseconds(5));
+  bus.run_due();
+  CHECK(bus.facts.back().executing().version_number() == 2);
+  CHECK(node.world().firmware_violations() == 0);
+}
+
+TEST_CASE("facts stay true although the host's clock is set back") {
+  const Scenario scenario = lonely_robots(1);
+  ManualBus bus;
+  SimulatorNode node(bus, scenario, 1, 1);
+  bus.set(kBegin + milliseconds(500));
+  bus.run_due();
+  const Time fact = time_from_ns(bus.facts.back().at_ns());
+  bus.set(kBegin + milliseconds(400));
+  const Vec2 mark = scenario.robots[0].start_m;
+  bus.deliver_command(test::command_with({0, 1, 1, 0, Trajectory::resting(fact - milliseconds(50), mark)}));
+  bus.set(kBegin + milliseconds(600));
+  bus.run_due();
+  CHECK(bus.facts.back().executing().version_number() == 0);
+  CHECK(bus.facts.back().refused_late() == 1);
+  CHECK(node.world().firmware_violations() == 0);
+}
+
+}  // namespace
+}  // namespace sidestep

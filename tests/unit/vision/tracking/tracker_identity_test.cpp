@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+
+#include "tests/unit/vision/floor.hpp"
+
+using namespace sidestep;
+using namespace sidestep::test;
+
+namespace {
+
+/// Feeds a robot at rest from one time to another, noise included.
+void show(Watcher& watcher, const Vec2& position_m, double from_s, double to_s, Rng& rng) {
+  for (Time t = after_s(from_s); t < after_s(to_s); t += kFrame) {
+    msg::DetectionFrame frame = frame_message(0, t);
+    see(frame, 0, {position_m, {0, 0}, 0}, {}, rng);
+    watcher.feed(frame);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a robot is published after three consistent sights, not before") {
+  Watcher watcher(1);
+  for (int i = 0; i < 3; ++i) {
+    const Time t = kBegin + i * kFrame;
+    CHECK(watcher.robot_at(0, t) == nullptr);
+    msg::DetectionFrame frame = frame_message(0, t);
+    add_robot(frame, 0, {1 + 0.03 * i, 2});
+    watcher.feed(frame);
+  }
+  const auto* robot = watcher.robot_at(0, kBegin + 2 * kFrame);
+  REQUIRE(robot);
+  CHECK(robot->x_m() == Approx(1.06).margin(0.002));
+  CHECK(robot->vx_mps() == Approx(1.8).margin(0.2));
+}
+
+TEST_CASE("a robot that vanishes is kept with growing variance, then dropped, and comes back") {
+  Rng rng(71);
+  Watcher watcher(1);
+  show(watcher, {1, 1}, 0, 1, rng);
+  double last = 0;
+  for (double t = 1; t < 1.95; t += 0.05) {
+    const auto* robot = watcher.robot_at(0, after_s(t));
+    REQUIRE(robot);
+    CHECK(robot->position_variance_m2() > last);
+    CHECK(robot->seen_at_ns() < to_ns(after_s(1)));
+    last = robot->position_variance_m2();
+  }
+  CHECK(watcher.robot_at(0, after_s(2.05)) == nullptr);
+  show(watcher, {-2, 0.5}, 2.5, 2.6, rng);
+  const auto* robot = watcher.robot_at(0, after_s(2.6));
+  REQUIRE(robot);
+  CHECK((position_of(*robot) - Vec2(-2, 0.5)).norm() < 0.01);
+}
+
+TEST_CASE("a robot that brakes to a halt while nobody sees it stays within the published uncertainty") {
+  const double gap_s = GENERATE(0.05, 0.1, 0.2, 0.4, 0.9);
+  CAPTURE(gap_s);
+  Rng rng(72);
+  Watcher watcher(1);
+  const Motion driving = Motion::accelerating({{0, 0}, {2, 0}, 0}, {0, 0}, 0, 1);
+  Time t = kBegin;
+  for (; t < after_s(0.5); t += kFrame) {
+    msg::DetectionFrame frame = frame_message(0, t);
+    see(frame, 0, driving.at(t), {}, rng);
+    watcher.feed(frame);
+  }
+  const Time last = t - kFrame;
+  const double braking_s = std::min(gap_s, 0.4);
+  const Vec2 truth = driving.at(last).position_m + Vec2(2 * braking_s - 2.5 * braking_s * braking_s, 0);
+  const auto* robot = watcher.robot_at(0, last + from_seconds(gap_s));
+  REQUIRE(robot);
+  CHECK((position_of(*robot) - truth).norm() < 3 * std::sqrt(robot->position_variance_m2()));
+}
+
+TEST_CASE("ghosts never move a robot that is seen, never make one, and are counted") {
+  const std::uint64_t seed = GENERATE(81u, 82u, 83u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const Motion motion = Motion::driving(rng, 30);
+  Watcher watcher(2);
+  std::uint64_t ghosts = 0;
+  for (Time t = kBegin; t < after_s(30); t += kFrame) {
+    msg::DetectionFrame frame = frame_message(0, t);
+    for (RobotId id = 0; id < 2; ++id) {
+      if (!rng.chance(0.3)) continue;
+      const Vec2 offset = rotated({rng.uniform(0.2, 5), 0}, rng.uniform(0, 6.28));
+      add_robot(frame, id, motion.at(t).position_m + offset, rng.uniform(-3, 3));
+      ++ghosts;
+    }
+    see(frame, 0, motion.at(t), {}, rng);
+    watcher.feed(frame);
+    const auto& world = watcher.world_at(t);
+    REQUIRE(world.robots().size() <= 1);
+    if (t < after_s(1)) continue;
+    REQUIRE(world.robots().size() == 1);
+    REQUIRE(world.robots()[0].robot() == 0);
+    REQUIRE((position_of(world.robots()[0]) - motion.at(t).position_m).norm() < 0.01);
+  }
+  // Of the last ghosts of either robot nothing can be said yet.
+  CHECK(watcher.world_at(after_s(30)).rejected() + 4 >= ghosts);
+  CHECK(watcher.world_at(after_s(30)).rejected() <= ghosts + 4);
+}
+
+TEST_CASE("a ghost does not take over a robot that has not been seen for so long that it could be there") {
+  Rng rng(93);
+  Watcher watcher(1);
+  show(watcher, {1, 1}, 0, 1, rng);
+  msg::DetectionFrame ghost = frame_message(0, after_s(1.6));
+  add_robot(ghost, 0, {1.4, 1});
+  watcher.feed(ghost);
+  const auto* robot = watcher.robot_at(0, after_s(1.6));
+  REQUIRE(robot);
+  REQUIRE(3 * std::sqrt(robot->position_variance_m2()) > 0.4);
+  CHECK((position_of(*robot) - Vec2(1, 1)).norm() < 0.1);
+  CHECK(robot->seen_at_ns() < to_ns(after_s(1)));
+}
+
+TEST_CASE("a heading that the camera got wrong turns nobody round, and is counted") {
+  Rng rng(94);
+  Watcher watcher(1);
+  show(watcher, {1, 1}, 0, 1, rng);
+  msg::DetectionFrame wrong = frame_message(0, after_s(1));
+  add_robot(wrong, 0, {1, 1}, 2);
+  watcher.feed(wrong);
+  show(watcher, {1, 1}, 1.01, 1.02, rng);
+  const auto* robot = watcher.robot_at(0, after_s(1.02));
+  REQUIRE(robot);
+  CHECK(std::abs(robot->heading_rad()) < 0.03);
+  CHECK(std::abs(robot->angular_radps()) < 2);
+  CHECK(watcher.world_at(after_s(1.02)).rejected() == 1);
+}
+
+TEST_CASE("a robot that was carried elsewhere is found there soon") {
+  Rng rng(91);
+  Watcher watcher(1);
+  show(watcher, {1, 1}, 0, 1, rng);
+  show(watcher, {3, 2}, 1, 1.1, rng);
+  CHECK((position_of(*watcher.robot_at(0, after_s(1.1))) - Vec2(1, 1)).norm() < 0.05);
+  show(watcher, {3, 2}, 1.1, 1.3, rng);
+  CHECK((position_of(*watcher.robot_at(0, after_s(1.3))) - Vec2(3, 2)).norm() < 0.01);
+}
+
+TEST_CASE("a robot that is turned round on its spot is found again") {
+  Rng rng(92);
+  Watcher watcher(1);
+  show(watcher, {1, 1}, 0, 1, rng);
+  for (Time t = after_s(1); t < after_s(1.3); t += kFrame) {
+    msg::DetectionFrame frame = frame_message(0, t);
+    see(frame, 0, {{1, 1}, {0, 0}, 3}, {}, rng);
+    watcher.feed(frame);
+  }
+  CHECK(watcher.robot_at(0, after_s(1.3))->heading_rad() == Approx(3).margin(0.05));
+}
+
+TEST_CASE("robots that are not in the roster do not exist") {
+  Watcher watcher(2);
+  for (int i = 0; i < 10; ++i) {
+    msg::DetectionFrame frame = frame_message(0, kBegin + i * kFrame);
+    add_robot(frame, 1, {0, 0});
+    add_robot(frame, 2, {1, 0});
+    add_robot(frame, 1023, {2, 0});
+    watcher.feed(frame);
+  }
+  const auto& world = watcher.world_at(kBegin + 9 * kFrame);
+  REQUIRE(world.robots().size() == 1);
+  CHECK(world.robots()[0].robot() == 1);
+  CHECK(world.rejected() == 20);
+}
+
+TEST_CASE(
+    "two robots that pass each other within 0.19 m never swap, even if a camera mixes them up at times") {
+  const std::uint64_t seed = GENERATE(range(100u, 130u));
+  const double speed_mps = GENERATE(0.3, 2.0);
+  CAPTURE(seed, speed_mps);
+  Rng rng(seed);
+  const double half_s = 1 / speed_mps;
+  const Motion right = Motion::accelerating({{-1, 0.095}, {speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
+  const Motion left = Motion::accelerating({{1, -0.095}, {-speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
+  Watcher watcher(2);
+  int mixed_up = 0;
+  for (Time t = kBegin; t < after_s(2 * half_s); t += kFrame) {
+    if (mixed_up > -10) --mixed_up;
+    if (mixed_up == -10 && t > after_s(0.2) && rng.chance(0.3)) mixed_up = 3;
+    msg::DetectionFrame frame = frame_message(0, t);
+    const CameraNoise noise;
+    if (!rng.chance(0.02)) see(frame, mixed_up > 0 ? 1 : 0, right.at(t), noise, rng);
+    if (!rng.chance(0.02)) see(frame, mixed_up > 0 ? 0 : 1, left.at(t), noise, rng);
+    const Time now = t + 35 * kMs;
+    watcher.feed(frame, now);
+    if (t < after_s(0.15)) continue;
+    for (RobotId id = 0; id < 2; ++id) {
+      const auto* robot = watcher.robot_at(id, now);
+      REQUIRE(robot);
+      const Vec2 truth = (id == 0 ? right : left).at(t).position_m +
+                         (now - t).count() * 1e-9 * (id == 0 ? right : left).at(t).velocity_mps;
+      REQUIRE((position_of(*robot) - truth).norm() < 0.05);
+    }
+  }
+}
+
+TEST_CASE("a ball is found, followed, kicked and lost, and a second one does not disturb") {
+  Rng rng(141);
+  Watcher watcher(0);
+  Vec2 position{-2, 0}, velocity{2, 0};
+  for (Time t = kBegin; t < after_s(2); t += kFrame) {
+    if (t >= after_s(1) && t - kFrame < after_s(1)) velocity = {0, 6};
+    msg::DetectionFrame frame = frame_message(0, t);
+    if (t > after_s(0.3)) add_ball(frame, {-3, -2});
+    add_ball(frame, position + Vec2(0.0015 * rng.normal(), 0.0015 * rng.normal()));
+    watcher.feed(frame);
+    const auto ball = watcher.world_at(t).ball();
+    const bool is_settled = (t > after_s(0.2) && t < after_s(1)) || t > after_s(1.2);
+    if (is_settled) {
+      REQUIRE(ball.is_visible());
+      CHECK((Vec2(ball.x_m(), ball.y_m()) - position).norm() < 0.01);
+      CHECK((Vec2(ball.vx_mps(), ball.vy_mps()) - velocity).norm() < 0.8);
+    }
+    velocity -= velocity.normalized() * 0.3 * to_seconds(kFrame);
+    position += velocity * to_seconds(kFrame);
+  }
+  CHECK(watcher.world_at(after_s(2)).ball().is_visible());
+  CHECK_FALSE(watcher.world_at(after_s(2.6)).ball().is_visible());
+}

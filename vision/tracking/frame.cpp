@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+constexpr double kMaxPosition_m = 100;
+constexpr double kMaxHeading_rad = 7;  // one turn either way, whatever range the sender prefers
+constexpr Duration kMaxAge{500'000'000};
+constexpr Duration kMaxAhead{100'000'000};
+
+// Comparisons with NaN are false, so these refuse it.
+bool is_within(double value, double bound) { return std::abs(value) <= bound; }
+bool is_probability(double value) { return value >= 0 && value <= 1; }
+
+bool is_sane(const msg::RobotDetection& d) {
+  return d.robot() < kMaxRobots && is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
+         is_within(d.heading_rad(), kMaxHeading_rad) && is_probability(d.confidence());
+}
+
+bool is_sane(const msg::BallDetection& d) {
+  return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
+         is_probability(d.confidence());
+}
+
+bool is_timely(std::int64_t captured_at_ns, Time now) {
+  return captured_at_ns >= to_ns(now - kMaxAge) && captured_at_ns <= to_ns(now + kMaxAhead);
+}
+
+}  // namespace
+
+void Frame::clear(const msg::DetectionFrame& message) {
+  camera_ = message.camera();
+  captured_at_ = time_from_ns(message.captured_at_ns());
+  is_usable_ = false;
+  robot_count_ = ball_count_ = 0;
+  rejected_ = 0;
+}
+
+void Frame::assign(const msg::DetectionFrame& message, Time now) {
+  clear(message);
+  if (!is_timely(message.captured_at_ns(), now) || message.ball_count() > msg::MAX_DETECTED_BALLS ||
+      message.robots().size() > kMaxRobots) {
+    rejected_ = std::max<std::uint64_t>(1, message.robots().size());
+    return;
+  }
+  is_usable_ = true;
+  for (const auto& d : message.robots()) {
+    if (is_sane(d)) {
+      robots_[robot_count_++] = {d.robot(), {d.x_m(), d.y_m()}, wrapped_rad(d.heading_rad())};
+    } else {
+      ++rejected_;
+    }
+  }
+  for (std::size_t i = 0; i < message.ball_count(); ++i) {
+    const auto& d = message.balls()[i];
+    if (is_sane(d)) {
+      balls_[ball_count_++] = {d.x_m(), d.y_m()};
+    } else {
+      ++rejected_;
+    }
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/tracker.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+void fill(msg::TrackedRobot& robot, const Estimate& now, const Sight& seen) {
+  robot.x_m(now.position_m.x());
+  robot.y_m(now.position_m.y());
+  robot.heading_rad(now.heading_rad);
+  robot.vx_mps(now.velocity_mps.x());
+  robot.vy_mps(now.velocity_mps.y());
+  robot.angular_radps(now.angular_radps);
+  robot.position_variance_m2(now.position_variance_m2);
+  robot.velocity_variance_m2ps2(now.velocity_variance_m2ps2);
+  robot.seen_at_ns(to_ns(seen.captured_at));
+  robot.seen_x_m(seen.position_m.x());
+  robot.seen_y_m(seen.position_m.y());
+  robot.seen_heading_rad(seen.heading_rad);
+}
+
+msg::TrackedBall tracked_ball(const std::optional<Estimate>& estimate) {
+  msg::TrackedBall ball;
+  ball.is_visible(estimate.has_value());
+  if (estimate) {
+    ball.x_m(estimate->position_m.x());
+    ball.y_m(estimate->position_m.y());
+    ball.vx_mps(estimate->velocity_mps.x());
+    ball.vy_mps(estimate->velocity_mps.y());
+  }
+  return ball;
+}
+
+}  // namespace
+
+TrackModel TrackerSettings::ball_model() {
+  TrackModel ball;
+  ball.motion = {1, 1};
+  ball.rolling_mps2 = 0.3;
+  ball.start_speed_mps = 4;
+  ball.gate_m = 0.5;
+  ball.relocate_after = Duration{30'000'000};
+  ball.drop_after = Duration{500'000'000};
+  return ball;
+}
+
+TrackerSettings tracker_settings(const Scenario& scenario) {
+  // A camera is never trusted beyond this, so that a scenario without noise does not make the gates
+  // infinitely narrow.
+  constexpr double kBestPosition_m = 0.0002, kBestHeading_rad = 0.002;
+  TrackerSettings settings;
+  settings.robot.position_noise_m = std::max(kBestPosition_m, scenario.vision.position_noise_m);
+  settings.robot.heading_noise_rad = std::max(kBestHeading_rad, scenario.vision.heading_noise_rad);
+  settings.robot.gate_m = scenario.radius_m;
+  settings.ball.position_noise_m = settings.robot.position_noise_m;
+  return settings;
+}
+
+Tracker::Tracker(const TrackerSettings& settings, std::span<const RobotId> roster)
+    : settings_(settings), roster_(roster.begin(), roster.end()), robots_(roster.size()) {
+  std::sort(roster_.begin(), roster_.end());
+  index_of_.fill(kStranger);
+  for (std::size_t i = 0; i < roster_.size(); ++i) index_of_.at(roster_[i]) = static_cast<std::uint16_t>(i);
+}
+
+void Tracker::update(const Frame& frame) {
+  rejected_ += frame.rejected();
+  if (!frame.is_usable()) return;
+  bool is_new = frame.robots().empty() && frame.balls().empty();
+  for (const RobotSight& sight : frame.robots()) {
+    const std::uint16_t index = index_of_[sight.robot];
+    if (index == kStranger) {
+      ++rejected_;
+      continue;
+    }
+    const Sight taken{frame.captured_at(), frame.camera(), sight.position_m, sight.heading_rad};
+    is_new |= robots_[index].add(taken, settings_.robot);
+  }
+  for (const Vec2& position_m : frame.balls()) {
+    is_new |= ball_.add({frame.captured_at(), frame.camera(), position_m, 0}, settings_.ball);
+  }
+  frames_ += is_new ? 1 : 0;
+}
+
+void Tracker::world_at(Time t, msg::WorldState& world) const {
+  std::uint64_t rejected = rejected_ + ball_.rejected();
+  std::size_t count = 0;
+  world.robots().resize(roster_.size());
+  for (std::size_t i = 0; i < roster_.size(); ++i) {
+    const TrackState& state = robots_[i].state();
+    rejected += robots_[i].rejected();
+    if (const auto estimate = estimate_at(state, t, settings_.robot)) {
+      msg::TrackedRobot& robot = world.robots()[count++];
+      robot.robot(roster_[i]);
+      fill(robot, *estimate, state.seen);
+    }
+  }
+  world.robots().resize(count);
+  world.valid_at_ns(to_ns(t));
+  world.frames(frames_);
+  world.rejected(rejected);
+  world.ball(tracked_ball(estimate_at(ball_.state(), t, settings_.ball)));
+}
+
+}  // namespace sidestep

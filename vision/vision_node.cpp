@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/vision_node.hpp"
+
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+std::vector<RobotId> roster_of(const Scenario& scenario) {
+  std::vector<RobotId> roster;
+  for (const RobotSpec& robot : scenario.robots) roster.push_back(robot.id);
+  return roster;
+}
+
+}  // namespace
+
+VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation)
+    : bus_(bus),
+      period_(from_seconds(1 / scenario.vision.rate_hz)),
+      next_(bus.now() + period_),
+      tracker_(tracker_settings(scenario), roster_of(scenario)),
+      writer_(bus.advertise(topics::kWorld)) {
+  world_.vision(0);
+  world_.head().sender(static_cast<std::uint32_t>(Sender::kVision));
+  world_.head().incarnation(incarnation);
+  world_.robots().reserve(scenario.robots.size());
+  bus_.subscribe<msg::DetectionFrame>(topics::kDetections, [this](const msg::DetectionFrame& message) {
+    frame_.assign(message, bus_.now());
+    tracker_.update(frame_);
+  });
+  bus_.at(next_, [this] { publish(); });
+}
+
+void VisionNode::publish() {
+  const Time now = bus_.now();
+  tracker_.world_at(now, world_);
+  writer_.publish(world_, now);
+  next_ += period_;
+  if (next_ < now) next_ = now + period_;
+  bus_.at(next_, [this] { publish(); });
+}
+
+}  // namespace sidestep
