@@ -10,6 +10,11 @@ namespace {
 constexpr double kHorizon_m = 2.5;
 // Robots keep this much more from obstacles where they plan than where they must.
 constexpr double kPlanningRoom_m = 0.03;
+// A robot that has been at rest for so long is an obstacle that others plan round; at most so many of them.
+constexpr Duration kStandsAfter{300'000'000};
+constexpr std::size_t kMostStanding = 8;
+// A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way and more.
+constexpr Duration kLostAfter{300'000'000};
 // Nearer to the goal than this a robot does not try to do better.
 constexpr double kCloseEnough_m = 0.001;
 
@@ -26,13 +31,18 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       neighbours_(robot),
       safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
-      estimate_{robot_.start_m, Vec2::Zero()} {
-  choose_goal();
-}
+      estimate_{robot_.start_m, Vec2::Zero()} {}
 
-void Agent::choose_goal() {
-  ways_.emplace(rules_.obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m,
-                goal().position_m);
+void Agent::update_ways(Time now) {
+  const Vec2& here = estimate_.position_m;
+  std::vector<Vec2> standing = neighbours_.standing(now - kStandsAfter, here, kMostStanding);
+  // Whoever stands on the goal is no obstacle on the way to it.
+  std::erase_if(standing, [&](const Vec2& p) { return (p - goal().position_m).norm() < rules_.keep_m() + kPlanningRoom_m; });
+  if (ways_ && standing == standing_) return;
+  standing_ = std::move(standing);
+  std::vector<Circle> obstacles = rules_.obstacles;
+  for (const Vec2& place : standing_) obstacles.push_back({place, rules_.radius_m});
+  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m, goal().position_m);
 }
 
 void Agent::on_feedback(const msg::Feedback& feedback) {
@@ -47,7 +57,7 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   if (arrived_ && goal_index_ + 1 < robot_.goals.size()) {
     ++goal_index_;
     arrived_ = false;
-    choose_goal();
+    ways_.reset();
   }
 }
 
@@ -67,14 +77,16 @@ void Agent::on_ledger(const msg::LedgerPage& page) { neighbours_.on_page(page, e
 
 void Agent::on_coordinator_state(const msg::CoordinatorState& state) { negotiation_.on_coordinator_state(state); }
 
-std::optional<SearchQuery> Agent::plan(Time start) {
+std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   ++cycles_;
-  if (!negotiation_.may_propose()) return std::nullopt;
+  const bool is_lost = now - time_from_ns(last_fix_ns_) > kLostAfter;
+  if (!negotiation_.may_propose() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
   if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start()) return std::nullopt;
   base_ = base.number;
   const State there = base.trajectory.state_at(start);
+  update_ways(now);
   const auto route = ways_->route_from(there.position_m);
   const Vec2 waypoint = route ? route->waypoint_m : goal().position_m;
   const double length = route ? route->length_m : (goal().position_m - there.position_m).norm();

@@ -27,8 +27,9 @@ class Agent {
   /// The command that forwards a granted version.
   std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
 
-  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal.
-  std::optional<SearchQuery> plan(Time start);
+  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal, or when
+  /// vision has lost the robot: then it must not rely on where it believes to be.
+  std::optional<SearchQuery> plan(Time now, Time start);
   /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot brakes).
   std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
 
@@ -41,7 +42,8 @@ class Agent {
 
  private:
   const Goal& goal() const { return robot_.goals[goal_index_]; }
-  void choose_goal();
+  /// Finds the ways to the goal anew when the obstacles on the way, robots that stand included, have changed.
+  void update_ways(Time now);
 
   const RobotSpec robot_;
   const FloorRules rules_;
@@ -53,6 +55,7 @@ class Agent {
   Rng rng_;
   std::size_t goal_index_ = 0;
   std::optional<VisibilityGraph> ways_;   // to the current goal
+  std::vector<Vec2> standing_;            // robots that ways_ leads round
   bool arrived_ = false;
   State estimate_;                        // the robot's own
   std::optional<msg::PoseFix> fix_;       // seen, not yet forwarded

@@ -76,7 +76,7 @@ void AgentNode::begin_cycle() {
 
 void AgentNode::negotiate() {
   const Time start = next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1);
-  const auto query = timed(plan_, [&] { return agent_.plan(start); });
+  const auto query = timed(plan_, [&] { return agent_.plan(bus_.now(), start); });
   if (!query) return;
   auto proposal = timed(search_, [&] { return agent_.search(*query, bus_.now()); });
   if (proposal) publish(proposal_writer_, *proposal);

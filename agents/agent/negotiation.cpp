@@ -88,15 +88,15 @@ void Negotiation::on_coordinator_state(const msg::CoordinatorState& state) {
   if (state.epoch() < epoch_ || state.epoch() == 0) return;
   if (state.epoch() > epoch_) {
     epoch_ = state.epoch();
-    registered_ = false;
+    unannounced_ = true;
     outstanding_.reset();
   }
-  const auto& missing = state.missing();
-  registered_ = fenced_ && std::ranges::find(missing, robot_) == missing.end();
+  missing_ = std::ranges::find(state.missing(), robot_) != state.missing().end();
   granting_ = state.coordinator_phase() == msg::COORDINATOR_GRANTING;
 }
 
-msg::Registration Negotiation::registration() const {
+msg::Registration Negotiation::registration() {
+  unannounced_ = false;
   msg::Registration registration;
   registration.robot(robot_);
   registration.epoch(epoch_);
@@ -146,6 +146,8 @@ std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time
   last_round_trip_ = now - asked.proposed_at;
   if (verdict.granted() == 0) {
     ++counts_.denials;
+    // The coordinator knows the robot from an earlier agent, but not this one: the registration was lost.
+    if (verdict.reasons().front() == msg::REASON_NOT_ALL_REGISTERED) unannounced_ = true;
     return std::nullopt;
   }
   const auto end = asked.candidates.begin() + static_cast<std::ptrdiff_t>(asked.count);

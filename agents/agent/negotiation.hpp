@@ -26,9 +26,13 @@ class Negotiation {
   bool is_fenced() const { return fenced_; }
   /// A later agent drives the robot: this one has nothing to say any more.
   bool is_superseded() const { return superseded_; }
-  bool needs_registration() const { return fenced_ && !superseded_ && epoch_ != 0 && !registered_; }
+  bool needs_registration() const {
+    return fenced_ && !superseded_ && epoch_ != 0 && (unannounced_ || missing_);
+  }
   /// Whether a proposal may be granted at all now.
-  bool may_propose() const { return fenced_ && !superseded_ && registered_ && granting_ && !held_.is_full(); }
+  bool may_propose() const {
+    return fenced_ && !superseded_ && epoch_ != 0 && !unannounced_ && granting_ && !held_.is_full();
+  }
   /// Whether the next version after `now` is decided already, or being decided.
   bool is_settled_after(Time now) const;
   /// How many cycles ahead to propose, and to hold an acceleration: one, and more where versions keep coming too late.
@@ -36,7 +40,7 @@ class Negotiation {
   /// What was proposed last, or forwarded, rests on a base that the robot turned out not to be executing.
   bool is_contradicted() const { return contradicted_; }
 
-  msg::Registration registration() const;
+  msg::Registration registration();
   /// The version that the robot will be executing at a time, as far as is known. Precondition: is_fenced().
   const Version& base_at(Time start) const;
   /// The version that the robot was executing by its latest fact. Precondition: is_fenced().
@@ -76,7 +80,8 @@ class Negotiation {
   Incarnation incarnation_;
   bool fenced_ = false, superseded_ = false, contradicted_ = false;
   Epoch epoch_ = 0;
-  bool registered_ = false, granting_ = false;
+  bool unannounced_ = true;   // this agent has not registered in this epoch, or was not heard
+  bool missing_ = false, granting_ = false;   // what the coordinator says
   VersionSet held_;   // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   VersionNumber next_number_;

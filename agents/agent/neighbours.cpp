@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/neighbours.hpp"
 
+#include <algorithm>
+
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
@@ -29,6 +31,23 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
   }
   versions_.clear();
   for (const Page& p : pages_) versions_.insert(versions_.end(), p.versions.begin(), p.versions.end());
+}
+
+std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) const {
+  std::vector<const Version*> found;
+  for (const Version& version : versions_) {
+    const auto moves = [&](const Version& other) {
+      return other.robot == version.robot && other.trajectory.end() > since;
+    };
+    if (std::ranges::none_of(versions_, moves)) found.push_back(&version);
+  }
+  const auto distance = [&](const Version* v) { return (v->trajectory.rest_position_m() - here).squaredNorm(); };
+  std::ranges::sort(found, {}, distance);
+  if (found.size() > most) found.resize(most);
+  std::ranges::sort(found, {}, &Version::robot);
+  std::vector<Vec2> places;
+  for (const Version* version : found) places.push_back(version->trajectory.rest_position_m());
+  return places;
 }
 
 }  // namespace sidestep

@@ -20,6 +20,9 @@ class Neighbours {
   void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
 
   std::span<const Version> versions() const { return versions_; }
+  /// Where the nearest others stand, and will until somebody grants them something: those who have been at rest since
+  /// `since`, at most `most` of them, in the order of their ids.
+  std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most) const;
   std::uint64_t invalid() const { return invalid_; }
 
  private:

@@ -19,6 +19,24 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
                   std::function([this, &robot](const msg::Command& command) { on_command(robot, command); }));
     report_periodically(robot);
   }
+  world_writer_ = bus.advertise(topics::kWorld);
+  publish_world();
+}
+
+void IdealRobots::publish_world() {
+  const Time now = bus_.now();
+  bus_.at(now + cycle_, [this] { publish_world(); });
+  msg::WorldState world;
+  world.valid_at_ns(to_ns(now));
+  for (const auto& [id, robot] : robots_) {
+    const Vec2 position = position_m(id, now);
+    msg::TrackedRobot& seen = world.robots().emplace_back();
+    seen.robot(id);
+    seen.seen_at_ns(to_ns(now));
+    seen.seen_x_m(position.x());
+    seen.seen_y_m(position.y());
+  }
+  world_writer_.publish(world, now);
 }
 
 void IdealRobots::on_command(Robot& robot, const msg::Command& command) {

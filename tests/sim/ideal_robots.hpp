@@ -10,7 +10,8 @@
 
 namespace sidestep {
 
-/// Robots that follow their reference exactly and keep the firmware's rules: what is left to test is the protocol.
+/// Robots that follow their reference exactly and keep the firmware's rules, and a vision that sees them exactly: what
+/// is left to test is the protocol.
 class IdealRobots {
  public:
   IdealRobots(Bus& bus, const Scenario& scenario);
@@ -32,11 +33,13 @@ class IdealRobots {
   void advance(Robot& robot, Time now);
   void report(Robot& robot);
   void report_periodically(Robot& robot);
+  void publish_world();
 
   Bus& bus_;
   double radius_m_;
   Duration cycle_;
   std::map<RobotId, Robot> robots_;
+  Writer<msg::WorldState> world_writer_;
 };
 
 }  // namespace sidestep

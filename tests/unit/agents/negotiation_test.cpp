@@ -25,7 +25,7 @@ msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSe
   return feedback;
 }
 
-msg::CoordinatorState life_sign(Epoch epoch, std::vector<std::uint32_t> missing = {}) {
+msg::CoordinatorState life_sign(Epoch epoch, const std::vector<std::uint32_t>& missing = {}) {
   msg::CoordinatorState state;
   state.epoch(epoch);
   state.coordinator_phase(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
@@ -40,6 +40,7 @@ struct Driver {
   void become_ready() {
     n.on_feedback(fact(stand, 0.5));
     n.on_coordinator_state(life_sign(kEpoch));
+    (void)n.registration();
     REQUIRE(n.may_propose());
   }
   msg::Proposal propose(double start, double now) {
@@ -71,11 +72,30 @@ TEST_CASE("an agent is silent until its robot has acknowledged it and the coordi
   d.n.on_feedback(fact(d.stand, 0.2));
   CHECK(d.n.is_fenced());
   CHECK(d.n.needs_registration());
+  CHECK(d.n.registration().version_count() == 1);
+  CHECK(d.n.needs_registration());
   d.n.on_coordinator_state(life_sign(kEpoch, {7}));
   CHECK_FALSE(d.n.needs_registration());
   CHECK_FALSE(d.n.may_propose());
   d.n.on_coordinator_state(life_sign(kEpoch));
   CHECK(d.n.may_propose());
+}
+
+TEST_CASE("an agent registers although the coordinator knows its robot from an earlier agent, until it is heard") {
+  Driver d;
+  d.n.on_feedback(fact(d.stand, 0.5));
+  d.n.on_coordinator_state(life_sign(kEpoch));
+  CHECK(d.n.needs_registration());
+  CHECK_FALSE(d.n.may_propose());
+  (void)d.n.registration();
+  CHECK(d.n.may_propose());
+  msg::Verdict refusal;
+  refusal.robot(kRobot);
+  refusal.epoch(kEpoch);
+  refusal.proposal_number(d.propose(1.0, 0.9).candidates()[0].version_number());
+  refusal.reasons().fill(msg::REASON_NOT_ALL_REGISTERED);
+  (void)d.n.on_verdict(refusal, at_s(0.95));
+  CHECK(d.n.needs_registration());
 }
 
 TEST_CASE("what was granted in time is forwarded and becomes the base of what follows") {
