@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/agent.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
@@ -10,8 +13,10 @@ namespace {
 constexpr double kHorizon_m = 2.5;
 // Robots keep this much more from obstacles where they plan than where they must.
 constexpr double kPlanningRoom_m = 0.03;
+// A robot passes on the right only where nothing stands for so far.
+constexpr double kLookAhead_m = 0.5;
 // A robot that has been at rest for so long is an obstacle that others plan round; at most so many of them.
-constexpr Duration kStandsAfter{300'000'000};
+constexpr Duration kStandsAfter{1'000'000'000};
 constexpr std::size_t kMostStanding = 8;
 // A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way and more.
 constexpr Duration kLostAfter{300'000'000};
@@ -87,16 +92,27 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   base_ = base.number;
   const State there = base.trajectory.state_at(start);
   update_ways(now);
-  const auto route = ways_->route_from(there.position_m);
-  const Vec2 waypoint = route ? route->waypoint_m : goal().position_m;
-  const double length = route ? route->length_m : (goal().position_m - there.position_m).norm();
-  const MotionWish wish =
-      wished_motion(there, waypoint, length, rules_.limits, {}, cycle_, cycle_ * negotiation_.lead());
+  const Vec2 to_goal = goal().position_m - there.position_m;
+  const Route route = ways_->route_from(there.position_m).value_or(Route{goal().position_m, to_goal.norm()});
+  const Vec2 direction = direction_beside(there.position_m, route);
+  const MotionWish wish = wished_motion(route.length_m * direction, there.velocity_mps, rules_.limits, cycle_,
+                                        cycle_ * negotiation_.lead());
   return SearchQuery{start, there, wish.acceleration_mps2, wish.hold};
+}
+
+Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
+  const Vec2 straight = (route.waypoint_m - here).stableNormalized();
+  const double look_ahead = std::min(route.length_m, kLookAhead_m);
+  for (const double share : {1.0, 0.75, 0.5, 0.25}) {
+    const Vec2 direction = rotated(straight, -share * passing_.angle_rad(route.length_m));
+    if (ways_->sees(here, here + look_ahead * direction)) return direction;
+  }
+  return straight;
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
   const SearchResult result = safety_search_.search(query, neighbours_.versions(), rng_);
+  passing_.update(result.wish_is_clear, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
   return negotiation_.propose({result.candidates.data(), result.count}, base_, now);
 }

@@ -6,6 +6,7 @@
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
 #include "agents/navigation/motion_control.hpp"
+#include "agents/navigation/passing.hpp"
 #include "agents/planning/visibility_graph.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/config/scenario.hpp"
@@ -44,6 +45,8 @@ class Agent {
   const Goal& goal() const { return robot_.goals[goal_index_]; }
   /// Finds the ways to the goal anew when the obstacles on the way, robots that stand included, have changed.
   void update_ways(Time now);
+  /// The way's direction, turned right by the preference for that side as far as obstacles allow.
+  Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
   const RobotSpec robot_;
   const FloorRules rules_;
@@ -56,6 +59,7 @@ class Agent {
   std::size_t goal_index_ = 0;
   std::optional<VisibilityGraph> ways_;   // to the current goal
   std::vector<Vec2> standing_;            // robots that ways_ leads round
+  PassingOnTheRight passing_;
   bool arrived_ = false;
   State estimate_;                        // the robot's own
   std::optional<msg::PoseFix> fix_;       // seen, not yet forwarded

@@ -25,13 +25,14 @@ class VisibilityGraph {
 
   /// nullopt when no way to the goal can be seen from here. A start that is too near a disc may move away from it.
   std::optional<Route> route_from(const Vec2& start_m) const;
+  /// Whether the straight way from one point to another is free; leaving a disc is.
+  bool sees(const Vec2& from, const Vec2& to) const;
 
  private:
   struct Corner {
     Vec2 position_m;
     double to_goal_m;   // infinity: no way
   };
-  bool sees(const Vec2& from, const Vec2& to) const;
   void place_corners(const Field& field, double radius_m, double room_m);
   void measure(const Vec2& goal_m);
 

@@ -35,6 +35,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, std::span<const Vers
     const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, sample.acceleration_mps2, query.phase,
                                                        rules_.limits.deceleration_mps2);
     if (!is_allowed(trajectory, result.checks)) continue;
+    result.wish_is_clear = result.wish_is_clear || sample.distance2 == 0;
     chosen[result.count] = sample.acceleration_mps2;
     result.candidates[result.count++] = trajectory;
     if (result.count == SearchResult::kMaxCandidates) break;

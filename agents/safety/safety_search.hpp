@@ -29,6 +29,7 @@ struct SearchResult {
   static constexpr std::size_t kMaxCandidates = 5;
   std::array<Trajectory, kMaxCandidates> candidates;
   std::size_t count = 0;
+  bool wish_is_clear = false;   ///< the first candidate is the wish itself
   int checks = 0;   ///< pairs of trajectories compared
 };
 

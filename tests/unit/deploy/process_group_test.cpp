@@ -25,9 +25,17 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr auto kDeadline = 20s;
 
+/// A folder of this process's own that goes with it.
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("process-group-" + std::to_string(getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
 std::string log_path() {
-  const auto folder = std::filesystem::temp_directory_path() / ("process-group-" + std::to_string(getpid()));
-  return (folder / "children.log").string();
+  static const Folder folder;
+  return (folder.path / "children.log").string();
 }
 
 ChildSpec shell(const std::string& name, const std::string& script, bool restart = false) {
@@ -164,11 +172,12 @@ TEST_CASE("children inherit no descriptor, and a group only waits for its own") 
 }
 
 TEST_CASE("no child outlives its launcher, even if that is killed by SIGKILL") {
+  const std::string path = log_path();
   int pids[2];
   REQUIRE(pipe(pids) == 0);
   const pid_t launcher = fork();
   if (launcher == 0) {
-    ProcessGroup group(log_path());
+    ProcessGroup group(path);
     for (int i = 0; i < 3; ++i) {
       const pid_t child =
           group.start(shell("child", "trap '' TERM HUP INT; echo ready; while :; do sleep 0.05; done", true));
