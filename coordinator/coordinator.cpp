@@ -73,7 +73,7 @@ void Coordinator::on_registration(const msg::Registration& registration) {
 void Coordinator::on_feedback(const msg::Feedback& feedback) {
   const RobotId robot = feedback.robot();
   if (superseded_) return;
-  if (!ledger_.knows(robot) || feedback.executing().robot() != robot) {
+  if (!ledger_.knows(robot) || feedback.head().sender() != robot || feedback.executing().robot() != robot) {
     ++invalid_;
     return;
   }

@@ -116,14 +116,16 @@ std::string summary(const Report& r) {
   return text + (why.empty() ? "passed\n" : "failed: " + why + "\n");
 }
 
-void write_report(const Report& report, const std::string& path) {
+void write_report(const Report& report, const std::string& path) { write_file(path, to_json(report)); }
+
+void write_file(const std::string& path, const std::string& text) {
   const auto folder = std::filesystem::path(path).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
   std::ofstream file(path);
-  file << to_json(report) << std::flush;
+  file << text << std::flush;
   if (!file)
-    throw std::runtime_error(fmt::format("cannot write the report {}: {}", path, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed) {

@@ -61,6 +61,8 @@ std::string to_json(const Report& report);
 std::string summary(const Report& report);
 /// Writes to_json to a file, making its folder; throws std::runtime_error saying why it cannot.
 void write_report(const Report& report, const std::string& path);
+/// Writes a file, making its folder; throws std::runtime_error saying why it cannot.
+void write_file(const std::string& path, const std::string& text);
 /// reports/<scenario>-<seed, or the local time>.json
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed);
 

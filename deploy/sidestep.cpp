@@ -33,6 +33,7 @@ void add_simulate_command(CLI::App& root, std::function<int()>& action, Simulate
   command->add_option("SCENARIO", options.scenario_file, "scenario file, see deploy/scenarios/README.md")
       ->required();
   command->add_option("--report", options.report_file, "report file [reports/<scenario>-<seed>.json]");
+  command->add_option("--svg", options.picture_file, "draw the robots' ways into this file");
   command->add_option("--seed", options.seed, "of everything that is random")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -29,12 +29,15 @@ struct SimSystem::Process {
 SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed)
     : scenario_(scenario),
       seed_(seed),
+      rng_(seed),
       begin_(kBegin),
       network_(seed, kBegin, scenario.network),
       judge_(scenario_),
       judge_bus_(network_) {
-  judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth,
-                                         [this](const auto& truth) { judge_.on_truth(truth); });
+  judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
+    judge_.on_truth(truth);
+    if (truth_watcher_) truth_watcher_(truth);
+  });
   judge_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
                                          [this](const auto& status) { judge_.on_status(status); });
   judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
@@ -47,7 +50,9 @@ SimSystem::~SimSystem() = default;
 
 void SimSystem::start(const std::string& name) {
   auto process = std::make_unique<Process>(network_);
-  const auto incarnation = static_cast<Incarnation>(to_ns(network_.now()));
+  // Its randomness comes from its incarnation, so that has to come from the seed.
+  last_incarnation_ = std::max(last_incarnation_ + 1, static_cast<Incarnation>(to_ns(network_.now())) + rng_.below(1'000'000));
+  const Incarnation incarnation = last_incarnation_;
   SimBus& bus = process->bus;
   if (name == "simulator")
     process->node = std::make_shared<SimulatorNode>(bus, scenario_, incarnation, seed_);

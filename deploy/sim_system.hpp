@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,6 +42,8 @@ class SimSystem {
   Time begin() const { return begin_; }
   SimNetwork& network() { return network_; }
   Judge& judge() { return judge_; }
+  /// Shows every ground truth that the judge sees.
+  void on_truth(std::function<void(const msg::GroundTruth&)> watcher) { truth_watcher_ = std::move(watcher); }
   const Judge& judge() const { return judge_; }
 
  private:
@@ -49,12 +52,15 @@ class SimSystem {
 
   const Scenario scenario_;
   std::uint64_t seed_;
+  Rng rng_;
+  Incarnation last_incarnation_ = 0;
   Time begin_;
   SimNetwork network_;
   Judge judge_;
   SimBus judge_bus_;
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
+  std::function<void(const msg::GroundTruth&)> truth_watcher_;
 };
 
 }  // namespace sidestep

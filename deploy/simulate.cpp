@@ -8,6 +8,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
+#include "deploy/picture.hpp"
 #include "deploy/progress.hpp"
 #include "deploy/sim_system.hpp"
 
@@ -61,6 +62,8 @@ int simulate(const SimulateOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
+  Picture picture(scenario);
+  if (!options.picture_file.empty()) system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
   const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
   Report report = system.judge().report();
   report.program = "simulate";
@@ -70,6 +73,7 @@ int simulate(const SimulateOptions& options) {
   const std::string path =
       options.report_file.empty() ? default_report_path(scenario.name, options.seed) : options.report_file;
   write_report(report, path);
+  if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
   fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", scenario.name, options.seed,
              summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
   return report.verdict().empty() ? 0 : kExitFailure;

@@ -126,7 +126,7 @@ TEST_CASE("an agent that comes back drives its robot on to its goal") {
   run.require_safe();
 }
 
-TEST_CASE("without a coordinator all robots stop within v/D and a cycle; with a new one they go on to their goals") {
+TEST_CASE("without a coordinator all robots stop within v/D and a cycle, with a new one they go on to their goals") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Watched run(shipped("crossing"), seed);
