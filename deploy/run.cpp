@@ -80,7 +80,7 @@ class Launcher {
 
   void start_core() {
     const RestartSpec& restart = scenario_.restart;
-    start("simulator", "sidestep-simulator", restart.simulator, {"--seed", std::to_string(options_.seed)});
+    start("simulator", "sidestep-simulator", false, {"--seed", std::to_string(options_.seed)});
     start("vision", "sidestep-vision", restart.vision);
     start("coordinator", "sidestep-coordinator", restart.coordinator);
   }

@@ -59,12 +59,11 @@ struct NetworkSpec {
   Duration delay_max{600'000};     ///< drawn uniformly and independently for each message, so it reorders too
 };
 
-/// Which processes `sidestep run` starts again when they die.
+/// Which processes `sidestep run` starts again when they die. Not the simulator: it is the floor itself.
 struct RestartSpec {
   bool agents = false;
   bool coordinator = false;
   bool vision = false;
-  bool simulator = false;
 };
 
 /// One run of the system, as a scenario file describes it (deploy/scenarios/README.md). Always valid: the loader

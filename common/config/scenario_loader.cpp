@@ -141,10 +141,8 @@ void read_restart(YamlMap& map, RestartSpec& restart) {
       restart.coordinator = true;
     else if (process == "vision")
       restart.vision = true;
-    else if (process == "simulator")
-      restart.simulator = true;
     else
-      here.refuse("expected agents, coordinator, vision or simulator, got \"" + process.substr(0, 40) + "\"");
+      here.refuse("expected agents, coordinator or vision, got \"" + process.substr(0, 40) + "\"");
   }
 }
 

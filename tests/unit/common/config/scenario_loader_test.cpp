@@ -126,7 +126,7 @@ robots:
   CHECK(s.network.duplicate == 0.1);
   CHECK(s.network.delay_min == Duration{0});
   CHECK(s.network.delay_max == std::chrono::milliseconds(150));
-  CHECK((s.restart.agents && s.restart.vision && !s.restart.coordinator && !s.restart.simulator));
+  CHECK((s.restart.agents && s.restart.vision && !s.restart.coordinator));
   REQUIRE(s.ball);
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
   REQUIRE(s.obstacles.size() == 1);
@@ -178,7 +178,7 @@ TEST_CASE("values of a wrong type are refused with their line") {
   check_refused(kRobot + "obstacles: {centre_m: [0, 0]}\n", 2, "expected a list");
   check_refused(kRobot + "obstacles:\n- 3\n", 3, "expected a mapping");
   check_refused(kRobot + "restart:\n- agents\n- everything\n", 4,
-                "expected agents, coordinator, vision or simulator");
+                "expected agents, coordinator or vision");
   check_refused(kRobot + "ball: {position_m: [1]}\n", 2, "expected a list of 2 numbers, got 1");
   check_refused("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
                 "expected blue or yellow");
