@@ -14,7 +14,10 @@ constexpr Epoch kHighestEpoch = Epoch{1} << 62;
 }  // namespace
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
-    : ledger_(rules, std::move(roster)), epoch_(epoch), missing_(ledger_.roster().size()), records_(kMaxRobots) {}
+    : ledger_(rules, std::move(roster)),
+      epoch_(epoch),
+      missing_(ledger_.roster().size()),
+      records_(kMaxRobots) {}
 
 void Coordinator::begin_epoch(Epoch epoch) {
   epoch_ = epoch;
@@ -35,8 +38,8 @@ void Coordinator::on_registration(const msg::Registration& registration) {
     ++invalid_;
     return;
   }
-  // Agents have obeyed a coordinator that this one has never seen. As long as it has granted nothing it may begin
-  // again above that one.
+  // Agents have obeyed a coordinator that this one has never seen. As long as it has granted nothing it may
+  // begin again above that one.
   if (registration.epoch() > epoch_ && !is_granting()) begin_epoch(registration.epoch() + 1);
   if (registration.epoch() != epoch_) return;
 
@@ -57,9 +60,11 @@ void Coordinator::on_registration(const msg::Registration& registration) {
     record.registered = true;
     --missing_;
   } else {
-    // A new agent for the robot: what its robot executes is in the ledger already, and nothing may be added unchecked.
+    // A new agent for the robot: what its robot executes is in the ledger already, and nothing may be added
+    // unchecked.
     const auto known = [&](const Version& v) {
-      return std::ranges::any_of(ledger_.versions(robot), [&](const Version& w) { return w.number == v.number; });
+      return std::ranges::any_of(ledger_.versions(robot),
+                                 [&](const Version& w) { return w.number == v.number; });
     };
     if (!std::ranges::all_of(versions, known)) {
       ++invalid_;
@@ -111,7 +116,8 @@ std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& propos
 
 msg::Reason Coordinator::refusal_of(const msg::Proposal& proposal, const Record& record) const {
   if (proposal.epoch() != epoch_) return msg::REASON_WRONG_EPOCH;
-  if (!is_granting() || proposal.head().incarnation() > record.incarnation) return msg::REASON_NOT_ALL_REGISTERED;
+  if (!is_granting() || proposal.head().incarnation() > record.incarnation)
+    return msg::REASON_NOT_ALL_REGISTERED;
   if (proposal.head().incarnation() < record.incarnation) return msg::REASON_OLD_INCARNATION;
   if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES) {
     return msg::REASON_MALFORMED;
@@ -135,7 +141,8 @@ void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Ve
     Ruling ruling{msg::REASON_MALFORMED};
     if (candidate && candidate->robot == proposal.robot() && candidate->incarnation == record.incarnation &&
         message.base() == first.base() && message.start_ns() == first.start_ns()) {
-      ruling = candidate->number > record.newest ? ledger_.grant(*candidate) : Ruling{msg::REASON_OLD_VERSION};
+      ruling =
+          candidate->number > record.newest ? ledger_.grant(*candidate) : Ruling{msg::REASON_OLD_VERSION};
       record.newest = std::max(record.newest, candidate->number);
     }
     verdict.reasons()[i] = ruling.reason;
@@ -172,7 +179,8 @@ msg::LedgerPage Coordinator::page(std::size_t index) const {
   page.epoch(epoch_);
   const std::size_t end = std::min(ledger_.roster().size(), (index + 1) * kRobotsPerPage);
   for (std::size_t i = index * kRobotsPerPage; i < end; ++i) {
-    for (const Version& version : ledger_.versions(ledger_.roster()[i])) page.versions().push_back(encode(version));
+    for (const Version& version : ledger_.versions(ledger_.roster()[i]))
+      page.versions().push_back(encode(version));
   }
   return page;
 }

@@ -11,8 +11,9 @@
 
 namespace sidestep {
 
-/// The one place where versions are compared: registration, verdicts and the ledger of one epoch. It needs no clock.
-/// Every message that reaches it may be late, repeated, wrong or hostile; what it cannot use changes nothing.
+/// The one place where versions are compared: registration, verdicts and the ledger of one epoch. It needs no
+/// clock. Every message that reaches it may be late, repeated, wrong or hostile; what it cannot use changes
+/// nothing.
 class Coordinator {
  public:
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
@@ -22,7 +23,8 @@ class Coordinator {
   void on_registration(const msg::Registration& registration);
   /// A fact from a robot.
   void on_feedback(const msg::Feedback& feedback);
-  /// A sign of life of a coordinator, this one's own included. One of a higher epoch supersedes this one for good.
+  /// A sign of life of a coordinator, this one's own included. One of a higher epoch supersedes this one for
+  /// good.
   void on_coordinator_state(const msg::CoordinatorState& state);
 
   /// False until every robot of the roster has registered, and again once superseded.
@@ -44,9 +46,9 @@ class Coordinator {
   struct Record {
     bool registered = false;
     Incarnation incarnation = 0;
-    VersionNumber newest = 0;   // highest version number proposed so far
+    VersionNumber newest = 0;  // highest version number proposed so far
     std::array<msg::Verdict, kRememberedVerdicts> verdicts;
-    std::uint64_t answered = 0;   // how many proposals, in this incarnation
+    std::uint64_t answered = 0;  // how many proposals, in this incarnation
   };
 
   Record& record_of(RobotId robot) { return records_[robot]; }
@@ -59,7 +61,7 @@ class Coordinator {
   Epoch epoch_;
   bool superseded_ = false;
   std::size_t missing_;
-  std::vector<Record> records_;   // by robot
+  std::vector<Record> records_;  // by robot
   std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;
 };
 

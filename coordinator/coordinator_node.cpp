@@ -26,8 +26,9 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, Incarnation
   ledger_writer_ = bus_.advertise(topics::kLedger);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
-    bus_.subscribe(topics::kFeedback, robot.id,
-                   std::function([this](const msg::Feedback& feedback) { coordinator_.on_feedback(feedback); }));
+    bus_.subscribe(topics::kFeedback, robot.id, std::function([this](const msg::Feedback& feedback) {
+                     coordinator_.on_feedback(feedback);
+                   }));
   }
   bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
                    coordinator_.on_coordinator_state(state);

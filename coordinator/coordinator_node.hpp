@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Connects a coordinator to the bus: answers proposals at once, publishes the ledger every cycle and its sign of
-/// life.
+/// Connects a coordinator to the bus: answers proposals at once, publishes the ledger every cycle and its
+/// sign of life.
 class CoordinatorNode {
  public:
   CoordinatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation);

@@ -8,12 +8,17 @@
 namespace sidestep {
 
 Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster)
-    : rules_(rules), roster_(std::move(roster)), index_(kMaxRobots, roster_.size()), entries_(roster_.size()) {
+    : rules_(rules),
+      roster_(std::move(roster)),
+      index_(kMaxRobots, roster_.size()),
+      entries_(roster_.size()) {
   std::sort(roster_.begin(), roster_.end());
   for (std::size_t i = 0; i < roster_.size(); ++i) index_.at(roster_[i]) = i;
 }
 
-std::size_t Ledger::index_of(RobotId robot) const { return robot < kMaxRobots ? index_[robot] : roster_.size(); }
+std::size_t Ledger::index_of(RobotId robot) const {
+  return robot < kMaxRobots ? index_[robot] : roster_.size();
+}
 
 std::span<const Version> Ledger::versions(RobotId robot) const {
   return knows(robot) ? entries_[index_of(robot)].set.versions() : std::span<const Version>{};
@@ -38,7 +43,8 @@ Ruling Ledger::grant(const Version& candidate) {
   if (entry.set.is_full()) return {msg::REASON_LEDGER_FULL};
   const Trajectory& trajectory = candidate.trajectory;
   if (!continues(trajectory, base->trajectory)) return {msg::REASON_NOT_CONTINUOUS};
-  if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED) return {reason};
+  if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED)
+    return {reason};
   if (const auto reason = check_place(trajectory, rules_); reason != msg::REASON_GRANTED) return {reason};
   if (const auto blocker = blocker_of(trajectory, candidate.robot)) return {msg::REASON_CONFLICT, *blocker};
   entry.set.add(candidate);
@@ -74,7 +80,8 @@ std::optional<RobotId> Ledger::blocker_of(const Trajectory& trajectory, RobotId 
   for (std::size_t i = 0; i < roster_.size(); ++i) {
     const Entry& other = entries_[i];
     const double far = reach + other.reach_m;
-    if (roster_[i] == robot || (other.centre_m - trajectory.at_start().position_m).squaredNorm() > far * far) continue;
+    if (roster_[i] == robot || (other.centre_m - trajectory.at_start().position_m).squaredNorm() > far * far)
+      continue;
     for (const Version& version : other.set.versions()) {
       if (!is_clear(trajectory, version.trajectory, keep)) return roster_[i];
     }

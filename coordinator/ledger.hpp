@@ -18,8 +18,8 @@ struct Ruling {
   bool granted() const { return reason == msg::REASON_GRANTED; }
 };
 
-/// For every robot, the versions that it may be executing, now or later (safety-protocol, "The ledger's rules").
-/// Invariant: every version of one robot is clear of every version of every other robot.
+/// For every robot, the versions that it may be executing, now or later (safety-protocol, "The ledger's
+/// rules"). Invariant: every version of one robot is clear of every version of every other robot.
 class Ledger {
  public:
   /// Robots that are not on the roster do not exist.
@@ -29,9 +29,9 @@ class Ledger {
   std::span<const RobotId> roster() const { return roster_; }
   std::span<const Version> versions(RobotId robot) const;
 
-  /// Enters what a robot may be executing when a coordinator's life begins. The robot has to be known and to have no
-  /// versions yet. Returns a robot that one of the versions is not clear of, if the floor begins with such a pair:
-  /// then neither of the two is granted anything.
+  /// Enters what a robot may be executing when a coordinator's life begins. The robot has to be known and to
+  /// have no versions yet. Returns a robot that one of the versions is not clear of, if the floor begins with
+  /// such a pair: then neither of the two is granted anything.
   std::optional<RobotId> enter(RobotId robot, std::span<const Version> versions);
 
   /// Rule 1: adds the candidate if it may be granted, removes nothing. A refused one changes nothing.
@@ -45,7 +45,7 @@ class Ledger {
  private:
   struct Entry {
     VersionSet set;
-    Vec2 centre_m{0, 0};   // a disc that holds all the robot's versions
+    Vec2 centre_m{0, 0};  // a disc that holds all the robot's versions
     double reach_m = 0;
   };
   std::size_t index_of(RobotId robot) const;
@@ -53,9 +53,9 @@ class Ledger {
   std::optional<RobotId> blocker_of(const Trajectory& trajectory, RobotId robot) const;
 
   FloorRules rules_;
-  std::vector<RobotId> roster_;       // ascending
-  std::vector<std::size_t> index_;    // by robot
-  std::vector<Entry> entries_;        // as roster_
+  std::vector<RobotId> roster_;     // ascending
+  std::vector<std::size_t> index_;  // by robot
+  std::vector<Entry> entries_;      // as roster_
 };
 
 }  // namespace sidestep

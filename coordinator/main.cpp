@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
   using namespace sidestep;
   Program program;
   program.name = "sidestep-coordinator";
-  program.description = "Keeps the ledger of what every robot may be executing, and grants what is clear of it.";
+  program.description =
+      "Keeps the ledger of what every robot may be executing, and grants what is clear of it.";
   program.start = [](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     return std::make_shared<CoordinatorNode>(bus, scenario, static_cast<Incarnation>(to_ns(bus.now())));
   };

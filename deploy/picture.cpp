@@ -35,17 +35,20 @@ std::string Picture::track(const RobotSpec& robot, const std::vector<Sight>& sig
   Vec2 last = sights.front().position_m;
   for (const Sight& sight : sights) {
     if (line.empty() || (sight.position_m - last).norm() > 0.005) {
-      line += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * sight.position_m.x(), -kPixelsPerMetre * sight.position_m.y());
+      line += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * sight.position_m.x(),
+                          -kPixelsPerMetre * sight.position_m.y());
     }
     if (sight.at_s >= next_ghost_s && (sight.position_m - last).norm() > 0.005) {
       const double age = (sight.at_s - begin_s) / std::max(0.1, end_s - begin_s);
-      ghosts += circle(sight.position_m, scenario_.radius_m,
-                       fmt::format("fill='none' stroke='{}' stroke-opacity='{:.2f}'", colour, 0.15 + 0.35 * age));
+      ghosts +=
+          circle(sight.position_m, scenario_.radius_m,
+                 fmt::format("fill='none' stroke='{}' stroke-opacity='{:.2f}'", colour, 0.15 + 0.35 * age));
       next_ghost_s = sight.at_s + kGhostEvery_s;
     }
     last = sight.position_m;
   }
-  return ghosts + fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
+  return ghosts +
+         fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
 }
 
 std::string Picture::end(const RobotSpec& robot, const Vec2& place) const {
@@ -55,13 +58,15 @@ std::string Picture::end(const RobotSpec& robot, const Vec2& place) const {
 }
 
 std::string Picture::svg() const {
-  const double width = kPixelsPerMetre * scenario_.field.length_m, height = kPixelsPerMetre * scenario_.field.width_m;
+  const double width = kPixelsPerMetre * scenario_.field.length_m,
+               height = kPixelsPerMetre * scenario_.field.width_m;
   std::string svg = fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' font-family='sans-serif' "
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' "
+      "font-family='sans-serif' "
       "font-size='{:.0f}'>\n<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#f6f8fa' "
       "stroke='#8b949e' stroke-width='4'/>\n",
-      -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2, width,
-      height);
+      -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2,
+      width, height);
   for (const Circle& obstacle : scenario_.obstacles) {
     svg += circle(obstacle.centre_m, obstacle.radius_m, "fill='#57606a'");
   }

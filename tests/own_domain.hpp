@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// A DDS domain that no other test on this machine uses while this one lives: a lock on a file that stands for it.
+/// A DDS domain that no other test on this machine uses while this one lives: a lock on a file that stands
+/// for it.
 class OwnDomain {
  public:
   OwnDomain() {

@@ -18,8 +18,11 @@ constexpr double kLookAhead_m = 0.5;
 // A robot that has been at rest for so long is an obstacle that others plan round; at most so many of them.
 constexpr Duration kStandsAfter{1'000'000'000};
 constexpr std::size_t kMostStanding = 8;
-// A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way and more.
+// A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way
+// and more.
 constexpr Duration kLostAfter{300'000'000};
+// Nothing is seen farther in the future than clocks may differ.
+constexpr Duration kClocksDiffer{100'000'000};
 // Nearer to the goal than this a robot does not try to do better.
 constexpr double kCloseEnough_m = 0.001;
 
@@ -42,12 +45,15 @@ void Agent::update_ways(Time now) {
   const Vec2& here = estimate_.position_m;
   std::vector<Vec2> standing = neighbours_.standing(now - kStandsAfter, here, kMostStanding);
   // Whoever stands on the goal is no obstacle on the way to it.
-  std::erase_if(standing, [&](const Vec2& p) { return (p - goal().position_m).norm() < rules_.keep_m() + kPlanningRoom_m; });
+  std::erase_if(standing, [&](const Vec2& p) {
+    return (p - goal().position_m).norm() < rules_.keep_m() + kPlanningRoom_m;
+  });
   if (ways_ && standing == standing_) return;
   standing_ = std::move(standing);
   std::vector<Circle> obstacles = rules_.obstacles;
   for (const Vec2& place : standing_) obstacles.push_back({place, rules_.radius_m});
-  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m, goal().position_m);
+  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m,
+                goal().position_m);
 }
 
 void Agent::on_feedback(const msg::Feedback& feedback) {
@@ -66,9 +72,16 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   }
 }
 
-void Agent::on_world(const msg::WorldState& world) {
+void Agent::on_world(const msg::WorldState& world, Time now) {
   for (const msg::TrackedRobot& seen : world.robots()) {
     if (seen.robot() != robot_.id || seen.seen_at_ns() <= last_fix_ns_) continue;
+    const bool is_sound = std::isfinite(seen.seen_x_m()) && std::isfinite(seen.seen_y_m()) &&
+                          std::isfinite(seen.seen_heading_rad()) &&
+                          seen.seen_at_ns() <= to_ns(now + kClocksDiffer);
+    if (!is_sound) {
+      ++invalid_;
+      continue;
+    }
     last_fix_ns_ = seen.seen_at_ns();
     fix_.emplace();
     fix_->captured_at_ns(seen.seen_at_ns());
@@ -78,17 +91,21 @@ void Agent::on_world(const msg::WorldState& world) {
   }
 }
 
-void Agent::on_ledger(const msg::LedgerPage& page) { neighbours_.on_page(page, estimate_.position_m, kHorizon_m); }
+void Agent::on_ledger(const msg::LedgerPage& page) {
+  neighbours_.on_page(page, estimate_.position_m, kHorizon_m);
+}
 
-void Agent::on_coordinator_state(const msg::CoordinatorState& state) { negotiation_.on_coordinator_state(state); }
+void Agent::on_coordinator_state(const msg::CoordinatorState& state) {
+  negotiation_.on_coordinator_state(state);
+}
 
 std::optional<SearchQuery> Agent::plan(Time now, Time start) {
-  ++cycles_;
   const bool is_lost = now - time_from_ns(last_fix_ns_) > kLostAfter;
   if (!negotiation_.may_propose() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
-  if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start()) return std::nullopt;
+  if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start())
+    return std::nullopt;
   base_ = base.number;
   const State there = base.trajectory.state_at(start);
   update_ways(now);
@@ -149,13 +166,13 @@ msg::AgentStatus Agent::status() const {
   status.goal_index(static_cast<std::uint32_t>(goal_index_));
   status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());
   status.speed_mps(estimate_.velocity_mps.norm());
-  status.cycles(cycles_);
+  status.cycles(n.counts().cycles);
   status.missed_cycles(n.counts().missed);
   status.lost_versions(n.counts().lost);
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);
   status.denials(n.counts().denials);
-  status.invalid(n.counts().invalid + neighbours_.invalid());
+  status.invalid(n.counts().invalid + neighbours_.invalid() + invalid_);
   return status;
 }
 

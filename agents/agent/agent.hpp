@@ -22,16 +22,17 @@ class Agent {
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation);
 
   void on_feedback(const msg::Feedback& feedback);
-  void on_world(const msg::WorldState& world);
+  void on_world(const msg::WorldState& world, Time now);
   void on_ledger(const msg::LedgerPage& page);
   void on_coordinator_state(const msg::CoordinatorState& state);
   /// The command that forwards a granted version.
   std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
 
-  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal, or when
-  /// vision has lost the robot: then it must not rely on where it believes to be.
+  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal, or
+  /// when vision has lost the robot: then it must not rely on where it believes to be.
   std::optional<SearchQuery> plan(Time now, Time start);
-  /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot brakes).
+  /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot
+  /// brakes).
   std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
 
   /// A command without a version: fences the robot, and forwards what vision saw of it.
@@ -57,15 +58,15 @@ class Agent {
   SafetySearch safety_search_;
   Rng rng_;
   std::size_t goal_index_ = 0;
-  std::optional<VisibilityGraph> ways_;   // to the current goal
-  std::vector<Vec2> standing_;            // robots that ways_ leads round
+  std::optional<VisibilityGraph> ways_;  // to the current goal
+  std::vector<Vec2> standing_;           // robots that ways_ leads round
   PassingOnTheRight passing_;
   bool arrived_ = false;
-  State estimate_;                        // the robot's own
-  std::optional<msg::PoseFix> fix_;       // seen, not yet forwarded
+  State estimate_;                   // the robot's own
+  std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
-  VersionNumber base_ = 0;                // of the query that plan() made
-  std::uint64_t cycles_ = 0;
+  std::uint64_t invalid_ = 0;             // sights that made no sense
+  VersionNumber base_ = 0;  // of the query that plan() made
 };
 
 }  // namespace sidestep

@@ -12,7 +12,8 @@ constexpr int kCyclesBetweenRegistrations = 6;
 
 /// Where in the cycle a robot's own cycle begins.
 Duration phase_of(const Scenario& scenario, RobotId robot) {
-  const auto before = std::ranges::count_if(scenario.robots, [&](const RobotSpec& r) { return r.id < robot; });
+  const auto before =
+      std::ranges::count_if(scenario.robots, [&](const RobotSpec& r) { return r.id < robot; });
   return scenario.cycle * before / static_cast<std::int64_t>(scenario.robots.size());
 }
 
@@ -39,11 +40,13 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       status_writer_(bus.advertise(topics::kStatus)) {
   bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
                    agent_.on_feedback(feedback);
-                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4) negotiate();
+                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4)
+                     negotiate();
                  }));
   bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
-  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) { agent_.on_world(w); }));
-  bus_.subscribe(topics::kLedger, std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
+  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) { agent_.on_world(w, bus_.now()); }));
+  bus_.subscribe(topics::kLedger,
+                 std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
   bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
                    agent_.on_coordinator_state(state);
                  }));

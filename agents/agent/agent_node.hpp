@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Connects an agent to the bus and runs its control cycle. Robots' cycles are spread evenly over the cycle time, so
-/// that proposals do not all come at once.
+/// Connects an agent to the bus and runs its control cycle. Robots' cycles are spread evenly over the cycle
+/// time, so that proposals do not all come at once.
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
@@ -30,7 +30,7 @@ class AgentNode {
   Duration cycle_;
   Agent agent_;
   Time next_cycle_;
-  bool commanded_ = false;   // in this cycle
+  bool commanded_ = false;  // in this cycle
   int registration_wait_ = 0;
   DurationHistogram negotiation_, plan_, search_;
   Writer<msg::Command> command_writer_;

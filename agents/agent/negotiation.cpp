@@ -25,7 +25,7 @@ void Negotiation::on_feedback(const msg::Feedback& feedback) {
     superseded_ = true;
     return;
   }
-  if (feedback.obeyed_incarnation() < incarnation_) return;   // says nothing about what this agent has sent
+  if (feedback.obeyed_incarnation() < incarnation_) return;  // says nothing about what this agent has sent
   const auto executing = decode(feedback.executing());
   if (!executing || executing->robot != robot_) {
     ++counts_.invalid;
@@ -37,7 +37,7 @@ void Negotiation::on_feedback(const msg::Feedback& feedback) {
   }
   const std::size_t before = held_.versions().size();
   const bool moved_on = executing->number != executing_;
-  if (!held_.forget(executing->number, time_from_ns(feedback.at_ns()))) return;   // late
+  if (!held_.forget(executing->number, time_from_ns(feedback.at_ns()))) return;  // late
   executing_ = executing->number;
   if (moved_on) on_taken();
   // What went away is what was executed before, if the robot has moved on, and what the robot can never take.
@@ -110,7 +110,8 @@ const Version& Negotiation::base_at(Time start) const {
   for (bool found = true; found;) {
     found = false;
     for (const Version& next : held_.versions()) {
-      if (next.base != current->number || next.number == current->number || next.trajectory.start() >= start) continue;
+      if (next.base != current->number || next.number == current->number || next.trajectory.start() >= start)
+        continue;
       current = &next;
       found = true;
       break;
@@ -133,6 +134,7 @@ msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, Versi
     proposal.candidates()[outstanding_->count++] = encode(version);
   }
   ++counts_.proposals;
+  counts_.cycles += static_cast<std::uint64_t>(lead_);
   return proposal;
 }
 
@@ -151,8 +153,8 @@ std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time
     return std::nullopt;
   }
   const auto end = asked.candidates.begin() + static_cast<std::ptrdiff_t>(asked.count);
-  const auto granted =
-      std::find_if(asked.candidates.begin(), end, [&](const Version& v) { return v.number == verdict.granted(); });
+  const auto granted = std::find_if(asked.candidates.begin(), end,
+                                    [&](const Version& v) { return v.number == verdict.granted(); });
   if (granted == end) {
     ++counts_.invalid;
     return std::nullopt;

@@ -10,8 +10,9 @@
 
 namespace sidestep {
 
-/// The agent's side of the safety protocol: fences its robot, registers with the coordinator, proposes, and forwards
-/// what was granted and nothing else. When nothing comes in time it does nothing, and the robot brakes.
+/// The agent's side of the safety protocol: fences its robot, registers with the coordinator, proposes, and
+/// forwards what was granted and nothing else. When nothing comes in time it does nothing, and the robot
+/// brakes.
 class Negotiation {
  public:
   Negotiation(RobotId robot, Incarnation incarnation);
@@ -19,8 +20,8 @@ class Negotiation {
   /// A fact from the robot. The first one that acknowledges this incarnation ends the fencing.
   void on_feedback(const msg::Feedback& feedback);
   void on_coordinator_state(const msg::CoordinatorState& state);
-  /// The granted version, if this is the answer to the outstanding proposal and there is time left to obey it. The
-  /// caller forwards it to the robot.
+  /// The granted version, if this is the answer to the outstanding proposal and there is time left to obey
+  /// it. The caller forwards it to the robot.
   std::optional<Version> on_verdict(const msg::Verdict& verdict, Time now);
 
   bool is_fenced() const { return fenced_; }
@@ -35,7 +36,8 @@ class Negotiation {
   }
   /// Whether the next version after `now` is decided already, or being decided.
   bool is_settled_after(Time now) const;
-  /// How many cycles ahead to propose, and to hold an acceleration: one, and more where versions keep coming too late.
+  /// How many cycles ahead to propose, and to hold an acceleration: one, and more where versions keep coming
+  /// too late.
   int lead() const { return lead_; }
   /// What was proposed last, or forwarded, rests on a base that the robot turned out not to be executing.
   bool is_contradicted() const { return contradicted_; }
@@ -45,8 +47,8 @@ class Negotiation {
   const Version& base_at(Time start) const;
   /// The version that the robot was executing by its latest fact. Precondition: is_fenced().
   const Version& executing() const { return *held_.find(executing_); }
-  /// Drops the outstanding proposal, if any, and makes a new one. Precondition: 1 to MAX_CANDIDATES candidates that
-  /// continue `base` at one start time.
+  /// Drops the outstanding proposal, if any, and makes a new one. Precondition: 1 to MAX_CANDIDATES
+  /// candidates that continue `base` at one start time.
   msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now);
 
   /// Closes the cycle that ends now: a proposal for it that has no verdict is given up, and counted.
@@ -54,8 +56,9 @@ class Negotiation {
 
   struct Counts {
     std::uint64_t proposals = 0, grants = 0, denials = 0;
-    std::uint64_t missed = 0;   ///< cycles for which there was no verdict in time
-    std::uint64_t lost = 0;     ///< forwarded, not taken by the robot
+    std::uint64_t cycles = 0;   ///< cycles for which something was proposed
+    std::uint64_t missed = 0;  ///< cycles for which there was no verdict in time
+    std::uint64_t lost = 0;    ///< forwarded, not taken by the robot
     std::uint64_t invalid = 0;
   };
   const Counts& counts() const { return counts_; }
@@ -80,9 +83,9 @@ class Negotiation {
   Incarnation incarnation_;
   bool fenced_ = false, superseded_ = false, contradicted_ = false;
   Epoch epoch_ = 0;
-  bool unannounced_ = true;   // this agent has not registered in this epoch, or was not heard
-  bool missing_ = false, granting_ = false;   // what the coordinator says
-  VersionSet held_;   // what the robot may be executing, now or later
+  bool unannounced_ = true;                  // this agent has not registered in this epoch, or was not heard
+  bool missing_ = false, granting_ = false;  // what the coordinator says
+  VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   VersionNumber next_number_;
   std::optional<Outstanding> outstanding_;

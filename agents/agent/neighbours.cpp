@@ -41,7 +41,9 @@ std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t
     };
     if (std::ranges::none_of(versions_, moves)) found.push_back(&version);
   }
-  const auto distance = [&](const Version* v) { return (v->trajectory.rest_position_m() - here).squaredNorm(); };
+  const auto distance = [&](const Version* v) {
+    return (v->trajectory.rest_position_m() - here).squaredNorm();
+  };
   std::ranges::sort(found, {}, distance);
   if (found.size() > most) found.resize(most);
   std::ranges::sort(found, {}, &Version::robot);

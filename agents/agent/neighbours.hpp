@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// What the other robots nearby may be executing, as the coordinator last published it. The coordinator has the last
-/// word; this is for proposing what it will grant.
+/// What the other robots nearby may be executing, as the coordinator last published it. The coordinator has
+/// the last word; this is for proposing what it will grant.
 class Neighbours {
  public:
   explicit Neighbours(RobotId self) : self_(self) {}
@@ -20,8 +20,8 @@ class Neighbours {
   void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
 
   std::span<const Version> versions() const { return versions_; }
-  /// Where the nearest others stand, and will until somebody grants them something: those who have been at rest since
-  /// `since`, at most `most` of them, in the order of their ids.
+  /// Where the nearest others stand, and will until somebody grants them something: those who have been at
+  /// rest since `since`, at most `most` of them, in the order of their ids.
   std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most) const;
   std::uint64_t invalid() const { return invalid_; }
 
@@ -33,7 +33,7 @@ class Neighbours {
   };
   RobotId self_;
   std::vector<Page> pages_;
-  std::vector<Version> versions_;   // of all pages
+  std::vector<Version> versions_;  // of all pages
   std::uint64_t invalid_ = 0;
 };
 

@@ -27,7 +27,8 @@ double distance2_to_segment(const Vec2& point, const Vec2& a, const Vec2& b) {
 
 VisibilityGraph::VisibilityGraph(const std::vector<Circle>& obstacles, const Field& field, double radius_m,
                                  double keep_m, const Vec2& goal_m) {
-  for (const Circle& obstacle : obstacles) discs_.push_back({obstacle.centre_m, obstacle.radius_m + radius_m + keep_m});
+  for (const Circle& obstacle : obstacles)
+    discs_.push_back({obstacle.centre_m, obstacle.radius_m + radius_m + keep_m});
   corners_.push_back({goal_m, 0});
   place_corners(field, radius_m, kStandOff_m);
   measure(goal_m);
@@ -56,7 +57,8 @@ void VisibilityGraph::measure(const Vec2& goal_m) {
   for (std::size_t round = 0; round < corners_.size(); ++round) {
     std::size_t nearest = corners_.size();
     for (std::size_t i = 0; i < corners_.size(); ++i) {
-      if (!done[i] && (nearest == corners_.size() || corners_[i].to_goal_m < corners_[nearest].to_goal_m)) nearest = i;
+      if (!done[i] && (nearest == corners_.size() || corners_[i].to_goal_m < corners_[nearest].to_goal_m))
+        nearest = i;
     }
     if (corners_[nearest].to_goal_m == kNoWay) return;
     done[nearest] = true;

@@ -32,8 +32,8 @@ SearchResult SafetySearch::search(const SearchQuery& query, std::span<const Vers
       return (a - sample.acceleration_mps2).squaredNorm() < settings_.spread_mps2 * settings_.spread_mps2;
     };
     if (std::any_of(chosen.begin(), chosen.begin() + result.count, close_to_sample)) continue;
-    const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, sample.acceleration_mps2, query.phase,
-                                                       rules_.limits.deceleration_mps2);
+    const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, sample.acceleration_mps2,
+                                                       query.phase, rules_.limits.deceleration_mps2);
     if (!is_allowed(trajectory, result.checks)) continue;
     result.wish_is_clear = result.wish_is_clear || sample.distance2 == 0;
     chosen[result.count] = sample.acceleration_mps2;

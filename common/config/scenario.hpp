@@ -17,7 +17,7 @@ enum class Team { kBlue, kYellow };
 
 struct Goal {
   Vec2 position_m{0, 0};
-  std::optional<double> heading_rad;   ///< none: as it comes
+  std::optional<double> heading_rad;  ///< none: as it comes
 };
 
 struct RobotSpec {
@@ -25,7 +25,7 @@ struct RobotSpec {
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;   ///< visited in order; at least one
+  std::vector<Goal> goals;  ///< visited in order; at least one
 };
 
 struct BallSpec {
@@ -36,19 +36,19 @@ struct BallSpec {
 /// The cameras hang over the field in a grid and see overlapping rectangles of it.
 struct VisionSpec {
   double rate_hz = 60;
-  int columns = 2;                 ///< cameras along the length
-  int rows = 1;                    ///< cameras along the width
-  double overlap_m = 0.5;          ///< by which a camera sees beyond its share of the field
-  double position_noise_m = 0.0005;     ///< standard deviation per axis
-  double heading_noise_rad = 0.005;     ///< standard deviation
-  Duration delay{10'000'000};      ///< from capture to publication
-  double missed = 0;               ///< probability that a visible robot is not in a frame
-  double ghosts = 0;               ///< probability that a frame holds a detection of a robot that is not there
+  int columns = 2;                   ///< cameras along the length
+  int rows = 1;                      ///< cameras along the width
+  double overlap_m = 0.5;            ///< by which a camera sees beyond its share of the field
+  double position_noise_m = 0.0005;  ///< standard deviation per axis
+  double heading_noise_rad = 0.005;  ///< standard deviation
+  Duration delay{10'000'000};        ///< from capture to publication
+  double missed = 0;                 ///< probability that a visible robot is not in a frame
+  double ghosts = 0;  ///< probability that a frame holds a detection of a robot that is not there
 };
 
 struct OdometrySpec {
-  double scale_error = 0.005;          ///< standard deviation of each robot's constant relative error
-  double velocity_noise_mps = 0.01;    ///< standard deviation per axis and millisecond of measurement
+  double scale_error = 0.005;        ///< standard deviation of each robot's constant relative error
+  double velocity_noise_mps = 0.01;  ///< standard deviation per axis and millisecond of measurement
 };
 
 /// What SimBus does to messages between processes; over DDS the network is what it is.
@@ -56,7 +56,7 @@ struct NetworkSpec {
   double loss = 0;
   double duplicate = 0;
   Duration delay_min{200'000};
-  Duration delay_max{600'000};     ///< drawn uniformly and independently for each message, so it reorders too
+  Duration delay_max{600'000};  ///< drawn uniformly and independently for each message, so it reorders too
 };
 
 /// Which processes `sidestep run` starts again when they die. Not the simulator: it is the floor itself.
@@ -66,12 +66,12 @@ struct RestartSpec {
   bool vision = false;
 };
 
-/// One run of the system, as a scenario file describes it (deploy/scenarios/README.md). Always valid: the loader
-/// refuses everything else.
+/// One run of the system, as a scenario file describes it (deploy/scenarios/README.md). Always valid: the
+/// loader refuses everything else.
 struct Scenario {
   std::string name;
   Field field;
-  std::vector<RobotSpec> robots;       ///< ascending by id
+  std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Circle> obstacles;
   std::optional<BallSpec> ball;
   MotionLimits limits;
@@ -79,10 +79,11 @@ struct Scenario {
   double margin_m = 0.01;
   Duration cycle{16'666'667};
   double goal_tolerance_m = 0.02;
-  double time_limit_s = 60;            ///< for all robots to arrive, from the first moment on which the coordinator grants
+  double time_limit_s =
+      60;  ///< for all robots to arrive, from the first moment on which the coordinator grants
   VisionSpec vision;
   OdometrySpec odometry;
-  double command_loss = 0;             ///< probability that a command is lost on the radio between agent and robot
+  double command_loss = 0;  ///< probability that a command is lost on the radio between agent and robot
   NetworkSpec network;
   RestartSpec restart;
 };

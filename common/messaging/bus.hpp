@@ -23,7 +23,8 @@ class Writer {
   Writer() = default;
   explicit Writer(std::unique_ptr<RawWriter> raw) : raw_(std::move(raw)) {}
 
-  /// Stamps the message and sends it: head.sender and head.incarnation are the caller's, number and stamp are set.
+  /// Stamps the message and sends it: head.sender and head.incarnation are the caller's, number and stamp are
+  /// set.
   void publish(Message& message, Time now) {
     message.head().message_number(++count_);
     message.head().stamp_ns(to_ns(now));
@@ -36,9 +37,9 @@ class Writer {
   std::uint64_t count_ = 0;
 };
 
-/// What one process sees of the world outside: time, timers and messages. Everything a bus calls back, it calls from
-/// one thread, one after the other; so the code above it needs no locks. Calls are made from callbacks or before the
-/// bus runs.
+/// What one process sees of the world outside: time, timers and messages. Everything a bus calls back, it
+/// calls from one thread, one after the other; so the code above it needs no locks. Calls are made from
+/// callbacks or before the bus runs.
 class Bus {
  public:
   virtual ~Bus() = default;
@@ -53,7 +54,8 @@ class Bus {
     return Writer<Message>(make_writer(topic, channel_name(topic, robot)));
   }
   template <typename Message>
-  void subscribe(const Topic<Message>& topic, std::uint32_t robot, std::function<void(const Message&)> callback) {
+  void subscribe(const Topic<Message>& topic, std::uint32_t robot,
+                 std::function<void(const Message&)> callback) {
     make_reader(topic, channel_name(topic, robot), [callback = std::move(callback)](const void* message) {
       callback(*static_cast<const Message*>(message));
     });

@@ -18,7 +18,8 @@ bool within(double value, double bound) { return std::abs(value) <= bound; }
 
 bool is_sound(const msg::Phase& phase) {
   return phase.duration_ns() >= 0 && phase.duration_ns() <= kLongestPhase.count() &&
-         within(phase.ax_mps2(), kLargestAcceleration_mps2) && within(phase.ay_mps2(), kLargestAcceleration_mps2);
+         within(phase.ax_mps2(), kLargestAcceleration_mps2) &&
+         within(phase.ay_mps2(), kLargestAcceleration_mps2);
 }
 
 }  // namespace
@@ -27,7 +28,8 @@ std::optional<Version> decode(const msg::Version& message) {
   const bool sound = message.robot() < kMaxRobots && message.phase_count() <= Trajectory::kMaxPhases &&
                      message.start_ns() >= 0 && message.start_ns() <= kLatestStart_ns &&
                      within(message.x_m(), kLargestPosition_m) && within(message.y_m(), kLargestPosition_m) &&
-                     within(message.vx_mps(), kLargestSpeed_mps) && within(message.vy_mps(), kLargestSpeed_mps);
+                     within(message.vx_mps(), kLargestSpeed_mps) &&
+                     within(message.vy_mps(), kLargestSpeed_mps);
   if (!sound) return std::nullopt;
   Trajectory trajectory(time_from_ns(message.start_ns()),
                         {{message.x_m(), message.y_m()}, {message.vx_mps(), message.vy_mps()}});
@@ -36,7 +38,8 @@ std::optional<Version> decode(const msg::Version& message) {
     if (!is_sound(phase)) return std::nullopt;
     trajectory.append(Duration{phase.duration_ns()}, {phase.ax_mps2(), phase.ay_mps2()});
   }
-  return Version{message.robot(), message.incarnation(), message.version_number(), message.base(), trajectory};
+  return Version{message.robot(), message.incarnation(), message.version_number(), message.base(),
+                 trajectory};
 }
 
 msg::Version encode(const Version& version) {

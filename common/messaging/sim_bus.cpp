@@ -39,11 +39,12 @@ std::unique_ptr<RawWriter> SimBus::make_writer(const TopicInfo& topic, const std
   return std::make_unique<SimNetwork::Writer>(network_, topic, *slot);
 }
 
-void SimBus::make_reader(const TopicInfo&, const std::string& channel, std::function<void(const void*)> callback) {
+void SimBus::make_reader(const TopicInfo&, const std::string& channel,
+                         std::function<void(const void*)> callback) {
   auto& slot = network_.channels_[channel];
   if (!slot) slot = std::make_unique<SimNetwork::Channel>();
-  slot->readers.push_back(std::make_shared<SimNetwork::Reader>(
-      SimNetwork::Reader{alive_, std::move(callback), Time{}}));
+  slot->readers.push_back(
+      std::make_shared<SimNetwork::Reader>(SimNetwork::Reader{alive_, std::move(callback), Time{}}));
 }
 
 SimNetwork::SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network)
@@ -86,7 +87,8 @@ void SimNetwork::send(const TopicInfo& topic, Channel& channel, const void* mess
   }
 }
 
-void SimNetwork::deliver(const std::shared_ptr<Reader>& reader, Time when, const std::shared_ptr<const void>& message) {
+void SimNetwork::deliver(const std::shared_ptr<Reader>& reader, Time when,
+                         const std::shared_ptr<const void>& message) {
   schedule(when, reader->alive, [this, reader, message] {
     ++delivered_;
     reader->callback(message.get());

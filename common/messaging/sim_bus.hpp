@@ -16,8 +16,8 @@ namespace sidestep {
 
 class SimNetwork;
 
-/// One simulated process's view of a SimNetwork. Destroying it is kill -9: its timers never fire, nothing that is
-/// under way to it arrives; what it has sent does.
+/// One simulated process's view of a SimNetwork. Destroying it is kill -9: its timers never fire, nothing
+/// that is under way to it arrives; what it has sent does.
 class SimBus : public Bus {
  public:
   explicit SimBus(SimNetwork& network);
@@ -38,9 +38,10 @@ class SimBus : public Bus {
   std::shared_ptr<bool> alive_;
 };
 
-/// Many processes in one thread under virtual time: an event queue ordered by (time, order of scheduling), and a
-/// network between the processes that delays, loses, duplicates and reorders from a seed. The same seed gives the
-/// same run, bit for bit. Channels of kEvent are reliable and in order, as DDS makes them; they are only delayed.
+/// Many processes in one thread under virtual time: an event queue ordered by (time, order of scheduling),
+/// and a network between the processes that delays, loses, duplicates and reorders from a seed. The same seed
+/// gives the same run, bit for bit. Channels of kEvent are reliable and in order, as DDS makes them; they are
+/// only delayed.
 class SimNetwork {
  public:
   SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network);
@@ -63,7 +64,7 @@ class SimNetwork {
   struct Reader {
     std::shared_ptr<bool> alive;
     std::function<void(const void*)> callback;
-    Time last_event{};   ///< arrival of the last event, to keep events in order
+    Time last_event{};  ///< arrival of the last event, to keep events in order
   };
   struct Event {
     Time when;

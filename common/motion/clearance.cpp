@@ -74,13 +74,16 @@ struct Slope {
   double c0, c1, c2, c3;
 
   explicit Slope(const Piece& p)
-      : c0(p.d.dot(p.v)), c1(p.v.squaredNorm() + p.d.dot(p.a)), c2(1.5 * p.v.dot(p.a)), c3(0.5 * p.a.squaredNorm()) {}
+      : c0(p.d.dot(p.v)),
+        c1(p.v.squaredNorm() + p.d.dot(p.a)),
+        c2(1.5 * p.v.dot(p.a)),
+        c3(0.5 * p.a.squaredNorm()) {}
   double at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
   double derivative(double t) const { return c1 + t * (2 * c2 + t * (3 * c3)); }
 
   /// Where the slope itself turns, ascending; the number of them.
   int turning_points(std::array<double, 2>& roots) const {
-    const double a = 3 * c3, b = c2;   // a t^2 + 2 b t + c1 = 0
+    const double a = 3 * c3, b = c2;  // a t^2 + 2 b t + c1 = 0
     const double discriminant = b * b - a * c1;
     if (discriminant < 0) return 0;
     const double q = -(b + std::copysign(std::sqrt(discriminant), b));
@@ -134,8 +137,9 @@ double smallest_inside(const Piece& piece) {
   return smallest;
 }
 
-/// Goes through the pieces of the relative motion until `stop(squared distance)` says so for one that it has to look
-/// at; returns the smallest squared distance seen. Pieces that stay beyond `far_m` for sure are not looked at closely.
+/// Goes through the pieces of the relative motion until `stop(squared distance)` says so for one that it has
+/// to look at; returns the smallest squared distance seen. Pieces that stay beyond `far_m` for sure are not
+/// looked at closely.
 template <typename Stop>
 double smallest_squared_distance(const Trajectory& a, const Trajectory& b, double far_m, Stop stop) {
   const Time from = std::max(a.start(), b.start());
@@ -160,15 +164,16 @@ double smallest_squared_distance(const Trajectory& a, const Trajectory& b, doubl
 }  // namespace
 
 double clearance_m(const Trajectory& a, const Trajectory& b, double keep_m) {
-  const double squared = smallest_squared_distance(a, b, std::numeric_limits<double>::infinity(),
-                                                   [](double) { return false; });
+  const double squared =
+      smallest_squared_distance(a, b, std::numeric_limits<double>::infinity(), [](double) { return false; });
   return std::sqrt(squared) - keep_m - kClearanceTolerance_m;
 }
 
 bool is_clear(const Trajectory& a, const Trajectory& b, double keep_m) {
   const double keep = keep_m + kClearanceTolerance_m;
   const double too_near = keep * keep;
-  return smallest_squared_distance(a, b, keep, [=](double squared) { return squared < too_near; }) >= too_near;
+  return smallest_squared_distance(a, b, keep, [=](double squared) { return squared < too_near; }) >=
+         too_near;
 }
 
 double clearance_m(const Trajectory& a, const Vec2& centre_m, double keep_m) {

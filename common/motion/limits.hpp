@@ -5,8 +5,8 @@ namespace sidestep {
 
 /// What a robot may ask of itself (safety-protocol: numbers to start from).
 struct MotionLimits {
-  double acceleration_mps2 = 3;   ///< F, ahead and sideways
-  double deceleration_mps2 = 5;   ///< D, guaranteed against the velocity
+  double acceleration_mps2 = 3;  ///< F, ahead and sideways
+  double deceleration_mps2 = 5;  ///< D, guaranteed against the velocity
   double speed_mps = 2;
 };
 

@@ -36,7 +36,8 @@ Vec2 limited(const Vec2& acceleration, const Vec2& velocity, const MotionLimits&
   const Vec2 after = velocity + seconds * acceleration;
   const double speed = after.norm();
   if (speed <= limits.speed_mps) return scaled_into_model(acceleration, velocity, limits);
-  // Scaling towards zero afterwards stays within the speed limit, because both ends of the scale are within it.
+  // Scaling towards zero afterwards stays within the speed limit, because both ends of the scale are within
+  // it.
   const Vec2 slowed = (after * (limits.speed_mps / speed) - velocity) / seconds;
   return scaled_into_model(slowed, velocity, limits);
 }

@@ -8,16 +8,18 @@
 
 namespace sidestep {
 
-/// The set A(v) of accelerations that a robot may ask for at a velocity (Bruce, ch. 5): ahead of the velocity a half
-/// disc of radius F, behind it a half ellipse that reaches F sideways and D backwards. At rest a disc of radius F.
+/// The set A(v) of accelerations that a robot may ask for at a velocity (Bruce, ch. 5): ahead of the velocity
+/// a half disc of radius F, behind it a half ellipse that reaches F sideways and D backwards. At rest a disc
+/// of radius F.
 bool is_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits);
 
 /// The acceleration in A(v) that points the same way and is nearest to what was asked for.
 Vec2 scaled_into_model(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits);
 
-/// As scaled_into_model, for an acceleration that is held for `duration`: after it the speed is within its limit too,
-/// provided that the speed is within it now.
-Vec2 limited(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits, Duration duration);
+/// As scaled_into_model, for an acceleration that is held for `duration`: after it the speed is within its
+/// limit too, provided that the speed is within it now.
+Vec2 limited(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits,
+             Duration duration);
 
 /// Uniform over A(v).
 Vec2 sample(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);

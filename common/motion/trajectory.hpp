@@ -23,8 +23,8 @@ struct Phase {
 /// The state after a time in a phase that began in `from`.
 State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s);
 
-/// A robot's reference motion over absolute time: from its start on a few phases of constant acceleration, then at
-/// rest for ever. It says nothing about the time before its start.
+/// A robot's reference motion over absolute time: from its start on a few phases of constant acceleration,
+/// then at rest for ever. It says nothing about the time before its start.
 class Trajectory {
  public:
   static constexpr int kMaxPhases = 4;
@@ -33,7 +33,9 @@ class Trajectory {
   Trajectory(Time start, const State& at_start) : start_(start), at_start_(at_start) {}
 
   /// At rest for ever.
-  static Trajectory resting(Time start, const Vec2& position_m) { return {start, {position_m, Vec2::Zero()}}; }
+  static Trajectory resting(Time start, const Vec2& position_m) {
+    return {start, {position_m, Vec2::Zero()}};
+  }
 
   /// Appends a phase; the caller keeps to kMaxPhases.
   void append(Duration duration, const Vec2& acceleration_mps2);
@@ -58,8 +60,8 @@ class Trajectory {
   int count_ = 0;
 };
 
-/// Deceleration against the velocity until rest (Bruce, ch. 5): the tail of every trajectory. Appends nothing when
-/// the trajectory already ends at rest.
+/// Deceleration against the velocity until rest (Bruce, ch. 5): the tail of every trajectory. Appends nothing
+/// when the trajectory already ends at rest.
 void append_stop(Trajectory& trajectory, double deceleration_mps2);
 
 /// Bounds how far a trajectory gets from its start position, over all time.

@@ -6,7 +6,8 @@
 namespace sidestep {
 
 Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limits) : velocity_(velocity) {
-  const double accelerate = limits.acceleration_mps2, brake = limits.deceleration_mps2, top = limits.speed_mps;
+  const double accelerate = limits.acceleration_mps2, brake = limits.deceleration_mps2,
+               top = limits.speed_mps;
   // Seen from the side of the point where an immediate stop would end, the rest is always forward.
   const double stop = velocity * std::abs(velocity) / (2 * brake);
   const double sign = distance >= stop ? 1 : -1;
@@ -20,7 +21,8 @@ Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limit
     d -= (v * v - top * top) / (2 * brake);
     v = top;
   }
-  double peak = std::sqrt(std::max(0.0, 2 * accelerate * brake * (d + v * v / (2 * accelerate)) / (accelerate + brake)));
+  double peak = std::sqrt(
+      std::max(0.0, 2 * accelerate * brake * (d + v * v / (2 * accelerate)) / (accelerate + brake)));
   double cruise_s = 0;
   if (peak > top) {
     cruise_s = (d - (top * top - v * v) / (2 * accelerate) - top * top / (2 * brake)) / top;

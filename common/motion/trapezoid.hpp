@@ -12,8 +12,8 @@ namespace sidestep {
 /// acceleration (brake what points the wrong way, accelerate, cruise, brake).
 class Trapezoid {
  public:
-  /// Reaches `distance_m` (either sign) from velocity `velocity_mps`; all limits > 0. A velocity beyond the speed
-  /// limit is braked down to it first.
+  /// Reaches `distance_m` (either sign) from velocity `velocity_mps`; all limits > 0. A velocity beyond the
+  /// speed limit is braked down to it first.
   Trapezoid(double distance_m, double velocity_mps, const MotionLimits& limits);
 
   double duration_s() const;
@@ -32,8 +32,9 @@ class Trapezoid {
   double velocity_;
 };
 
-/// Two-dimensional trapezoidal motion control (Bruce, app. B): the axis along the way and the one across it share the
-/// robot's acceleration, and the share is balanced by binary search so that both finish at the same time.
+/// Two-dimensional trapezoidal motion control (Bruce, app. B): the axis along the way and the one across it
+/// share the robot's acceleration, and the share is balanced by binary search so that both finish at the same
+/// time.
 class Trapezoid2d {
  public:
   /// The way from `velocity_mps` to rest at the offset `to_go_m`.

@@ -25,12 +25,12 @@ struct FloorRules {
 
 FloorRules floor_rules(const Scenario& scenario);
 
-/// Whether the trajectory obeys the limits all the way: |v|, A(v) at the start of each phase, D at most within it, at
-/// rest at the end. REASON_GRANTED, REASON_BEYOND_LIMITS or REASON_NOT_AT_REST.
+/// Whether the trajectory obeys the limits all the way: |v|, A(v) at the start of each phase, D at most
+/// within it, at rest at the end. REASON_GRANTED, REASON_BEYOND_LIMITS or REASON_NOT_AT_REST.
 msg::Reason check_limits(const Trajectory& trajectory, const MotionLimits& limits);
 
-/// Whether the trajectory stays on the field and clear of the obstacles. REASON_GRANTED, REASON_OUTSIDE_FIELD or
-/// REASON_OBSTACLE.
+/// Whether the trajectory stays on the field and clear of the obstacles. REASON_GRANTED, REASON_OUTSIDE_FIELD
+/// or REASON_OBSTACLE.
 msg::Reason check_place(const Trajectory& trajectory, const FloorRules& rules);
 
 /// Whether the trajectory starts after the base has, where and as fast as the base is then.

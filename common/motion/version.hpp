@@ -16,8 +16,9 @@ using Epoch = std::uint64_t;
 /// Robots are numbered 0 .. kMaxRobots - 1.
 inline constexpr RobotId kMaxRobots = 1024;
 
-/// One trajectory of one robot. An agent counts its versions upwards from its incarnation, so that they grow over
-/// the robot's life although agents come and go. Version 0 is the stand that a robot begins with; no agent makes it.
+/// One trajectory of one robot. An agent counts its versions upwards from its incarnation, so that they grow
+/// over the robot's life although agents come and go. Version 0 is the stand that a robot begins with; no
+/// agent makes it.
 struct Version {
   RobotId robot = 0;
   Incarnation incarnation = 0;

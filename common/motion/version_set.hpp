@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The versions that one robot may be executing, now or later: R(i) in the coordinator's ledger, and what an agent
-/// registers. A version leaves it by a fact and by nothing else (safety-protocol, rule 2).
+/// The versions that one robot may be executing, now or later: R(i) in the coordinator's ledger, and what an
+/// agent registers. A version leaves it by a fact and by nothing else (safety-protocol, rule 2).
 class VersionSet {
  public:
   static constexpr std::size_t kCapacity = 8;
@@ -19,9 +19,9 @@ class VersionSet {
   void add(const Version& version);
   /// The version with this number, or nullptr.
   const Version* find(VersionNumber number) const;
-  /// "executing f at time t": drops every version older than f, and every newer one whose start is not after t,
-  /// because the firmware can never take it any more. A fact about a version that is not in the set is left alone
-  /// (late, or false): returns false.
+  /// "executing f at time t": drops every version older than f, and every newer one whose start is not after
+  /// t, because the firmware can never take it any more. A fact about a version that is not in the set is
+  /// left alone (late, or false): returns false.
   bool forget(VersionNumber executing, Time at);
   void clear() { count_ = 0; }
 

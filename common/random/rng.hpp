@@ -31,7 +31,9 @@ class Rng {
   /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// In 0 .. count - 1; count > 0.
-  std::uint64_t below(std::uint64_t count) { return static_cast<std::uint64_t>(uniform() * static_cast<double>(count)); }
+  std::uint64_t below(std::uint64_t count) {
+    return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
+  }
   bool chance(double probability) { return uniform() < probability; }
   /// Standard normal (Box, Muller 1958).
   double normal() {

@@ -14,8 +14,9 @@ const Time kStart = time_from_ns(1'000'000'000);
 constexpr Duration kCycle{16'666'667};
 
 Trajectory version_like(Rng& rng, double spread_m) {
-  Trajectory trajectory(kStart + Duration{static_cast<std::int64_t>(rng.below(16'000'000))},
-                        {random_vector(rng, spread_m), rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3.2, 3.2))});
+  Trajectory trajectory(
+      kStart + Duration{static_cast<std::int64_t>(rng.below(16'000'000))},
+      {random_vector(rng, spread_m), rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3.2, 3.2))});
   trajectory.append(kCycle, random_vector(rng, 2));
   append_stop(trajectory, 5);
   return trajectory;
@@ -56,8 +57,10 @@ void search_of_one_robot(benchmark::State& state) {
     candidates += result.count;
     checks += static_cast<std::size_t>(result.checks);
   }
-  state.counters["candidates"] = benchmark::Counter(static_cast<double>(candidates), benchmark::Counter::kAvgIterations);
-  state.counters["checks"] = benchmark::Counter(static_cast<double>(checks), benchmark::Counter::kAvgIterations);
+  state.counters["candidates"] =
+      benchmark::Counter(static_cast<double>(candidates), benchmark::Counter::kAvgIterations);
+  state.counters["checks"] =
+      benchmark::Counter(static_cast<double>(checks), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(search_of_one_robot)->ArgName("others")->Arg(2)->Arg(20)->Arg(100)->Arg(1000);
 
@@ -83,13 +86,15 @@ void grant_of_one_version(benchmark::State& state) {
     start += kCycle;
     const State there = last.trajectory.state_at(start);
     Version next{last.robot, 1, last.number + 1, last.number,
-                 accelerate_then_stop(start, there, rng.uniform(0, 1) * rotated({1, 0}, rng.uniform(-3, 3)), kCycle, 5)};
+                 accelerate_then_stop(start, there, rng.uniform(0, 1) * rotated({1, 0}, rng.uniform(-3, 3)),
+                                      kCycle, 5)};
     if (!ledger.grant(next).granted()) continue;
     ++granted;
     (void)ledger.forget(next.robot, next.number, start);
     last = next;
   }
-  state.counters["granted"] = benchmark::Counter(static_cast<double>(granted), benchmark::Counter::kAvgIterations);
+  state.counters["granted"] =
+      benchmark::Counter(static_cast<double>(granted), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(grant_of_one_version)->ArgName("robots")->Arg(22)->Arg(100)->Arg(1000);
 

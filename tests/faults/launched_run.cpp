@@ -29,8 +29,9 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
     : folder_(new_folder()), group_((folder_ / "launcher.log").string()), bus_(domain_.settings("judge")) {
   bus_.subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
   std::ofstream(folder_ / "scenario.yaml") << scenario;
-  std::vector<std::string> argv{program_beside_own("sidestep"), "run", (folder_ / "scenario.yaml").string(), "--domain",
-                                std::to_string(domain_.number()), "--report", (folder_ / "report.json").string()};
+  std::vector<std::string> argv{
+      program_beside_own("sidestep"),   "run",      (folder_ / "scenario.yaml").string(), "--domain",
+      std::to_string(domain_.number()), "--report", (folder_ / "report.json").string()};
   argv.insert(argv.end(), more_arguments.begin(), more_arguments.end());
   pid_ = group_.start({"run", argv, false});
 }
@@ -53,7 +54,9 @@ std::string LaunchedRun::wait_for_end() {
 
 std::string LaunchedRun::output() const { return text_of(folder_ / "launcher.log"); }
 
-bool LaunchedRun::printed(const std::string& words) const { return output().find(words) != std::string::npos; }
+bool LaunchedRun::printed(const std::string& words) const {
+  return output().find(words) != std::string::npos;
+}
 
 std::map<std::string, pid_t> LaunchedRun::children() const {
   std::map<std::string, pid_t> result;

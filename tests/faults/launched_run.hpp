@@ -14,8 +14,9 @@
 
 namespace sidestep {
 
-/// `sidestep run` as a user starts it, in a domain of its own, watched from outside: through what it prints, the
-/// ground truth on the bus, and the report that it leaves. Whatever happens, nothing of it outlives this object.
+/// `sidestep run` as a user starts it, in a domain of its own, watched from outside: through what it prints,
+/// the ground truth on the bus, and the report that it leaves. Whatever happens, nothing of it outlives this
+/// object.
 class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.

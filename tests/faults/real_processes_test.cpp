@@ -50,8 +50,9 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and go on to their goals
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
   REQUIRE(run.until([&] { return run.fastest_mps() < 0.03; }));
   const double stopped_s = static_cast<double>(run.truth().at_ns() - killed_at_ns) * 1e-9;
-  WARN("all robots at rest " << stopped_s << " s after the kill; v/D + one cycle is " << fastest / 5 + 1.0 / 60
-                             << " s, and versions under way and the lag of bodies and ground truth come on top");
+  WARN("all robots at rest "
+       << stopped_s << " s after the kill; v/D + one cycle is " << fastest / 5 + 1.0 / 60
+       << " s, and versions under way and the lag of bodies and ground truth come on top");
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
@@ -101,7 +102,8 @@ TEST_CASE("no process is left behind when the launcher itself is killed") {
   CHECK_FALSE(any_left());
 }
 
-TEST_CASE("a start that fails says which process and why, and a wrong scenario is refused before anything starts") {
+TEST_CASE(
+    "a start that fails says which process and why, and a wrong scenario is refused before anything starts") {
   LaunchedRun nowhere(shipped_scenario("crossing"), {"--interface", "192.0.2.77"});
   CHECK(nowhere.wait_for_end() == "exit code 1");
   INFO(nowhere.output());

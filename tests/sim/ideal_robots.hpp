@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// Robots that follow their reference exactly and keep the firmware's rules, and a vision that sees them exactly: what
-/// is left to test is the protocol.
+/// Robots that follow their reference exactly and keep the firmware's rules, and a vision that sees them
+/// exactly: what is left to test is the protocol.
 class IdealRobots {
  public:
   IdealRobots(Bus& bus, const Scenario& scenario);
@@ -26,7 +26,7 @@ class IdealRobots {
     RobotId id;
     Incarnation obeyed = 0;
     Version executing;
-    std::vector<Version> pending;   // by start
+    std::vector<Version> pending;  // by start
     Writer<msg::Feedback> writer;
   };
   void on_command(Robot& robot, const msg::Command& command);

@@ -14,7 +14,8 @@ constexpr double kFar_m = 3;
 
 }  // namespace
 
-LedgerWatch::LedgerWatch(Bus& bus, const Scenario& scenario) : keep_m_(2 * scenario.radius_m + scenario.margin_m) {
+LedgerWatch::LedgerWatch(Bus& bus, const Scenario& scenario)
+    : keep_m_(2 * scenario.radius_m + scenario.margin_m) {
   bus.subscribe(topics::kLedger, std::function([this](const msg::LedgerPage& page) {
                   if (pages_++ % 4 == 0) check(page);
                 }));
@@ -38,7 +39,8 @@ void LedgerWatch::check(const msg::LedgerPage& page) {
       const Time to = std::max({a.trajectory.end(), b.trajectory.end(), from});
       bool near = false;
       for (Time t = from; t <= to + kStep; t += kStep) {
-        const double distance = (a.trajectory.state_at(t).position_m - b.trajectory.state_at(t).position_m).norm();
+        const double distance =
+            (a.trajectory.state_at(t).position_m - b.trajectory.state_at(t).position_m).norm();
         near = near || distance < keep_m_;
       }
       violations_ += near;

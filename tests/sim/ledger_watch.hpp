@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Checks the ledger's invariant on what the coordinator publishes, with simpler code than the coordinator's: it
-/// samples every pair of versions of different robots in time.
+/// Checks the ledger's invariant on what the coordinator publishes, with simpler code than the coordinator's:
+/// it samples every pair of versions of different robots in time.
 class LedgerWatch {
  public:
   LedgerWatch(Bus& bus, const Scenario& scenario);

@@ -12,7 +12,8 @@ using namespace sidestep;
 
 namespace {
 
-/// Agents and a coordinator around ideal robots: what is promised here is promised exactly, to the last micrometre.
+/// Agents and a coordinator around ideal robots: what is promised here is promised exactly, to the last
+/// micrometre.
 struct Ideal {
   Scenario scenario;
   SimNetwork network;
@@ -47,7 +48,8 @@ struct Ideal {
   int arrived() {
     int count = 0;
     for (const RobotSpec& robot : scenario.robots) {
-      const double to_go = (robots.position_m(robot.id, network.now()) - robot.goals.back().position_m).norm();
+      const double to_go =
+          (robots.position_m(robot.id, network.now()) - robot.goals.back().position_m).norm();
       count += to_go < scenario.goal_tolerance_m;
     }
     return count;
@@ -55,8 +57,9 @@ struct Ideal {
 };
 
 Scenario crowd(int robots) {
-  return parse_scenario("field: {length_m: 8, width_m: 8}\ncircle: {count: " + std::to_string(robots) +
-                            ", spacing_m: 0.4}\n", "crowd.yaml");
+  return parse_scenario(
+      "field: {length_m: 8, width_m: 8}\ncircle: {count: " + std::to_string(robots) + ", spacing_m: 0.4}\n",
+      "crowd.yaml");
 }
 
 }  // namespace
@@ -66,8 +69,8 @@ TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and re
   struct Network {
     double loss, duplicate, delay_max_s;
   };
-  const auto [loss, duplicate, delay_max_s] =
-      GENERATE(Network{0, 0, 0.001}, Network{0.1, 0.05, 0.02}, Network{0.3, 0.2, 0.15}, Network{0.6, 0.5, 0.05});
+  const auto [loss, duplicate, delay_max_s] = GENERATE(Network{0, 0, 0.001}, Network{0.1, 0.05, 0.02},
+                                                       Network{0.3, 0.2, 0.15}, Network{0.6, 0.5, 0.05});
   scenario.network.loss = loss;
   scenario.network.duplicate = duplicate;
   scenario.network.delay_min = Duration{0};
@@ -84,7 +87,8 @@ TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and re
 
 TEST_CASE("an undisturbed robot never brakes for want of a verdict") {
   Scenario scenario = parse_scenario(
-      "field: {length_m: 8, width_m: 4}\nrobots:\n  - {id: 7, team: blue, start_m: [-3, 0], goals_m: [[3, 0]]}\n",
+      "field: {length_m: 8, width_m: 4}\nrobots:\n  - {id: 7, team: blue, start_m: [-3, 0], goals_m: [[3, "
+      "0]]}\n",
       "alone.yaml");
   Ideal run(scenario, 1);
   const Time begin = run.network.now();
@@ -114,7 +118,8 @@ TEST_CASE("with equal wishes the same robot does not always lose") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const std::uint64_t first_id = 1 + seed % 2;
     const auto text = [&](std::uint64_t id, const std::string& start, const std::string& goal) {
-      return "  - {id: " + std::to_string(id) + ", team: blue, start_m: " + start + ", goals_m: [" + goal + "]}\n";
+      return "  - {id: " + std::to_string(id) + ", team: blue, start_m: " + start + ", goals_m: [" + goal +
+             "]}\n";
     };
     const std::string offset = std::to_string(-1.2 + rng.uniform(-0.05, 0.05));
     Ideal run(parse_scenario("field: {length_m: 4, width_m: 4}\nrobots:\n" +

@@ -78,7 +78,8 @@ TEST_CASE("the same seed gives the same report, and another seed another one") {
   CHECK(first != report_of(6));
 }
 
-TEST_CASE("loss, delay, duplicates and reordering may slow robots down but nobody touches, over fifty seeds") {
+TEST_CASE(
+    "loss, delay, duplicates and reordering may slow robots down but nobody touches, over fifty seeds") {
   Scenario scenario = shipped("crossing");
   scenario.network.loss = 0.3;
   scenario.network.duplicate = 0.1;
@@ -96,7 +97,9 @@ TEST_CASE("loss, delay, duplicates and reordering may slow robots down but nobod
   CHECK(arrived > 200);
 }
 
-TEST_CASE("when an agent dies its robot stops by itself, nobody touches it, the others arrive, the report names it") {
+TEST_CASE(
+    "when an agent dies its robot stops by itself, nobody touches it, the others arrive, the report names "
+    "it") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Watched run(shipped("crossing"), seed);
@@ -126,7 +129,9 @@ TEST_CASE("an agent that comes back drives its robot on to its goal") {
   run.require_safe();
 }
 
-TEST_CASE("without a coordinator all robots stop within v/D and a cycle, with a new one they go on to their goals") {
+TEST_CASE(
+    "without a coordinator all robots stop within v/D and a cycle, with a new one they go on to their "
+    "goals") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Watched run(shipped("crossing"), seed);

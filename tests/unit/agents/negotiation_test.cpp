@@ -81,7 +81,8 @@ TEST_CASE("an agent is silent until its robot has acknowledged it and the coordi
   CHECK(d.n.may_propose());
 }
 
-TEST_CASE("an agent registers although the coordinator knows its robot from an earlier agent, until it is heard") {
+TEST_CASE(
+    "an agent registers although the coordinator knows its robot from an earlier agent, until it is heard") {
   Driver d;
   d.n.on_feedback(fact(d.stand, 0.5));
   d.n.on_coordinator_state(life_sign(kEpoch));
@@ -141,7 +142,9 @@ TEST_CASE("a verdict that grants what nobody proposed is not forwarded") {
   CHECK(d.n.counts().invalid == 1);
 }
 
-TEST_CASE("a higher epoch ends what is outstanding, lower ones are ignored, and all that may be executed is registered") {
+TEST_CASE(
+    "a higher epoch ends what is outstanding, lower ones are ignored, and all that may be executed is "
+    "registered") {
   Driver d;
   d.become_ready();
   const auto forwarded = d.grant(d.propose(1.0, 0.9), 0.95);

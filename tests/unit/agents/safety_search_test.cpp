@@ -29,7 +29,8 @@ TEST_CASE("with nobody near, the wish itself is the first candidate") {
   CHECK((result.candidates[0].phases()[0].acceleration_mps2 - Vec2(2, 1)).norm() < 1e-12);
 }
 
-TEST_CASE("every candidate is clear of everybody, within the limits, and the nearest to the wish comes first") {
+TEST_CASE(
+    "every candidate is clear of everybody, within the limits, and the nearest to the wish comes first") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -54,7 +55,8 @@ TEST_CASE("every candidate is clear of everybody, within the limits, and the nea
       const Trajectory& candidate = result.candidates[i];
       REQUIRE(check_limits(candidate, rules.limits) == msg::REASON_GRANTED);
       REQUIRE(check_place(candidate, rules) == msg::REASON_GRANTED);
-      for (const Version& other : others) REQUIRE(clearance_m(candidate, other.trajectory, rules.keep_m()) >= 0);
+      for (const Version& other : others)
+        REQUIRE(clearance_m(candidate, other.trajectory, rules.keep_m()) >= 0);
       const double distance = (candidate.phases()[0].acceleration_mps2 - reachable).norm();
       REQUIRE(distance >= last);
       last = distance;

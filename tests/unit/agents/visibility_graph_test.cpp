@@ -14,7 +14,8 @@ namespace {
 constexpr double kRadius_m = 0.09, kKeep_m = 0.02;
 const Field kField{4, 4};
 
-/// Independent and slow: Dijkstra on an 8-connected grid of 2 cm; its ways are at most 8.3 % longer than the shortest.
+/// Independent and slow: Dijkstra on an 8-connected grid of 2 cm; its ways are at most 8.3 % longer than the
+/// shortest.
 double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal, double grown) {
   const int n = 200;
   const double step = 4.0 / n;
@@ -84,7 +85,8 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
     REQUIRE(route);
     for (int k = 0; k <= 100; ++k) {
       const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
-      for (const Circle& o : obstacles) REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kKeep_m - 1e-9);
+      for (const Circle& o : obstacles)
+        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kKeep_m - 1e-9);
     }
     walked += (route->waypoint_m - here).norm();
     here = route->waypoint_m;

@@ -44,8 +44,10 @@ TEST_CASE("nothing is granted until every robot of the roster has registered") {
 TEST_CASE("the first clear candidate is granted and the reasons of the others are given") {
   Floor floor;
   floor.register_both();
-  const auto verdict = floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6), continued(floor.a, 11, 1, {0, 3}),
-                                              continued(floor.a, 12, 1, {0, -3})}, kEpoch));
+  const auto verdict =
+      floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6), continued(floor.a, 11, 1, {0, 3}),
+                             continued(floor.a, 12, 1, {0, -3})},
+                            kEpoch));
   CHECK(verdict.granted() == 11);
   CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
   CHECK(verdict.blockers()[0] == 2);
@@ -68,7 +70,8 @@ TEST_CASE("versions have to be proposed in increasing order") {
   Floor floor;
   floor.register_both();
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted() == 10);
-  CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons()[0] == msg::REASON_OLD_VERSION);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons()[0] ==
+        msg::REASON_OLD_VERSION);
 }
 
 TEST_CASE("another epoch's proposal and an older agent's are refused") {
@@ -144,17 +147,20 @@ TEST_CASE("hostile proposals get a verdict with a reason, or none, and change no
   CHECK(spoil([&](auto& p) { p.candidates()[0].vy_mps(inf); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[0].ax_mps2(nan); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[1].duration_ns(-1); }) == malformed);
-  CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[1].duration_ns(std::numeric_limits<std::int64_t>::max()); }) ==
-        malformed);
+  CHECK(spoil([&](auto& p) {
+          p.candidates()[0].phases()[1].duration_ns(std::numeric_limits<std::int64_t>::max());
+        }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].phase_count(200); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].start_ns(-5); }) == malformed);
-  CHECK(spoil([&](auto& p) { p.candidates()[0].start_ns(std::numeric_limits<std::int64_t>::max()); }) == malformed);
+  CHECK(spoil([&](auto& p) { p.candidates()[0].start_ns(std::numeric_limits<std::int64_t>::max()); }) ==
+        malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].robot(2); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].incarnation(2); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidate_count(0); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidate_count(255); }) == malformed);
-  for (const auto change : {+[](msg::Proposal& p) { p.robot(3); }, +[](msg::Proposal& p) { p.robot(4'000'000'000); },
-                            +[](msg::Proposal& p) { p.head().sender(2); }}) {
+  for (const auto change :
+       {+[](msg::Proposal& p) { p.robot(3); }, +[](msg::Proposal& p) { p.robot(4'000'000'000); },
+        +[](msg::Proposal& p) { p.head().sender(2); }}) {
     auto proposal = good;
     change(proposal);
     CHECK_FALSE(floor.coordinator.on_proposal(proposal));
@@ -171,14 +177,30 @@ TEST_CASE("random messages of every kind never break the coordinator") {
   floor.register_both();
   const auto noise = [&](msg::Version& v) {
     switch (rng.below(8)) {
-      case 0: v.x_m(rng.normal() * 1e6); break;
-      case 1: v.phase_count(static_cast<std::uint8_t>(rng.bits())); break;
-      case 2: v.start_ns(static_cast<std::int64_t>(rng.bits())); break;
-      case 3: v.phases()[0].duration_ns(static_cast<std::int64_t>(rng.bits())); break;
-      case 4: v.base(rng.bits()); break;
-      case 5: v.version_number(rng.bits() >> rng.below(64)); break;
-      case 6: v.robot(static_cast<std::uint32_t>(rng.bits() >> rng.below(32))); break;
-      default: v.vx_mps(rng.normal()); break;
+      case 0:
+        v.x_m(rng.normal() * 1e6);
+        break;
+      case 1:
+        v.phase_count(static_cast<std::uint8_t>(rng.bits()));
+        break;
+      case 2:
+        v.start_ns(static_cast<std::int64_t>(rng.bits()));
+        break;
+      case 3:
+        v.phases()[0].duration_ns(static_cast<std::int64_t>(rng.bits()));
+        break;
+      case 4:
+        v.base(rng.bits());
+        break;
+      case 5:
+        v.version_number(rng.bits() >> rng.below(64));
+        break;
+      case 6:
+        v.robot(static_cast<std::uint32_t>(rng.bits() >> rng.below(32)));
+        break;
+      default:
+        v.vx_mps(rng.normal());
+        break;
     }
   };
   for (int i = 0; i < 100'000; ++i) {

@@ -42,7 +42,8 @@ inline msg::Registration registration_of(const Version& version, Epoch epoch, In
   return registration;
 }
 
-inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch epoch, Incarnation incarnation = 1) {
+inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch epoch,
+                                 Incarnation incarnation = 1) {
   msg::Proposal proposal;
   proposal.robot(candidates.front().robot);
   proposal.head().sender(candidates.front().robot);

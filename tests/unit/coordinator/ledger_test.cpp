@@ -32,7 +32,9 @@ TEST_CASE("a clear candidate is granted, added, and removes nothing") {
   CHECK(two.ledger.versions(1)[1].number == 10);
 }
 
-TEST_CASE("a candidate that would come too near is refused and changes nothing, and the verdict names who is there") {
+TEST_CASE(
+    "a candidate that would come too near is refused and changes nothing, and the verdict names who is "
+    "there") {
   Two two(0.2);
   const Ruling ruling = two.ledger.grant(continued(two.a, 10, 1, {3, 0}, 0.2));
   CHECK(ruling.reason == msg::REASON_CONFLICT);
@@ -40,7 +42,8 @@ TEST_CASE("a candidate that would come too near is refused and changes nothing, 
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
-TEST_CASE("candidates are judged against everything that a robot may be executing, not against its newest wish") {
+TEST_CASE(
+    "candidates are judged against everything that a robot may be executing, not against its newest wish") {
   Two two(0.5);
   // Robot 2 has been granted a move away, but the verdict may be lost and it may stand for ever.
   const Version away = continued(two.b, 10, 1, {3, 0}, 0.5);
@@ -78,11 +81,12 @@ TEST_CASE("a candidate has to continue its base, obey the limits, come to rest a
 
 TEST_CASE("a fact removes older versions, and newer ones whose start is not after it") {
   Two two(5);
-  const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}), r = continued(p, 12, 3, {0, 3});
+  const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
+                r = continued(p, 12, 3, {0, 3});
   for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).granted());
   REQUIRE(two.ledger.forget(1, 0, at_s(0.9)));
   CHECK(two.ledger.versions(1).size() == 4);
-  REQUIRE(two.ledger.forget(1, 0, at_s(1.0)));   // 10 was not taken at its start
+  REQUIRE(two.ledger.forget(1, 0, at_s(1.0)));  // 10 was not taken at its start
   REQUIRE(two.ledger.versions(1).size() == 3);
   REQUIRE(two.ledger.forget(1, 11, at_s(2.5)));
   REQUIRE(two.ledger.versions(1).size() == 2);
@@ -153,7 +157,8 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
     const Version base = held[rng.below(held.size())];
     const double start = std::max(now, to_seconds(base.trajectory.start().time_since_epoch()) + 1e-3) + 0.01;
     const Vec2 velocity = base.trajectory.state_at(at_s(start)).velocity_mps;
-    const Vec2 wish = limited(sample(velocity, rules.limits, rng), velocity, rules.limits, from_seconds(0.15));
+    const Vec2 wish =
+        limited(sample(velocity, rules.limits, rng), velocity, rules.limits, from_seconds(0.15));
     const Ruling ruling = ledger.grant(continued(base, number, start, wish, 0.15));
     grants += ruling.granted();
     conflicts += ruling.reason == msg::REASON_CONFLICT;
@@ -180,7 +185,8 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
             const Time from = std::max(v.trajectory.start(), w.trajectory.start());
             for (int k = 0; k <= 40; ++k) {
               const Time t = from + from_seconds(0.02 * k);
-              const double distance = (v.trajectory.state_at(t).position_m - w.trajectory.state_at(t).position_m).norm();
+              const double distance =
+                  (v.trajectory.state_at(t).position_m - w.trajectory.state_at(t).position_m).norm();
               REQUIRE(distance >= rules.keep_m());
             }
           }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
-#include <set>
 #include <sstream>
 
 #include "deploy/topic/describe.hpp"
@@ -24,30 +23,42 @@ std::string idl_text() {
 }
 
 std::string without_comments(const std::string& idl) {
-  return std::regex_replace(idl, std::regex("//[^\n]*"), "");
+  std::istringstream lines(idl);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) result += line.substr(0, line.find("//")) + "\n";
+  return result;
+}
+
+/// What stands between the braces of "struct NAME {" or "enum NAME {".
+std::string idl_body(const std::string& idl, const std::string& declaration) {
+  const std::size_t begin = idl.find(declaration + " {");
+  REQUIRE(begin != std::string::npos);
+  const std::size_t open = idl.find('{', begin);
+  return idl.substr(open + 1, idl.find('}', open) - open - 1);
+}
+
+/// The last word of each piece that ends at the separator, without what stands in square brackets.
+std::vector<std::string> last_words(const std::string& text, char separator) {
+  const std::string blanks = " \n";
+  std::istringstream pieces(text);
+  std::vector<std::string> result;
+  for (std::string piece; std::getline(pieces, piece, separator);) {
+    piece.resize(std::min(piece.size(), piece.find('[')));
+    const std::size_t end = piece.find_last_not_of(blanks);
+    if (end == std::string::npos) continue;
+    const std::size_t before = piece.find_last_of(blanks, end);
+    result.push_back(piece.substr(before + 1, end - before));
+  }
+  return result;
 }
 
 /// The members of a struct in the IDL, in order.
-std::vector<std::string> idl_members(const std::string& idl, const std::string& struct_name) {
-  std::smatch body;
-  REQUIRE(std::regex_search(idl, body, std::regex("struct " + struct_name + " \\{([^}]*)\\}")));
-  const std::string members = body[1];
-  const std::regex member("(\\w+)\\s*(\\[[^\\]]*\\])?;");
-  std::vector<std::string> result;
-  for (std::sregex_iterator i(members.begin(), members.end(), member), end; i != end; ++i)
-    result.push_back((*i)[1]);
-  return result;
+std::vector<std::string> idl_members(const std::string& idl, const std::string& name) {
+  return last_words(idl_body(idl, "struct " + name), ';');
 }
 
-std::vector<std::string> idl_enumerators(const std::string& idl, const std::string& enum_name) {
-  std::smatch body;
-  REQUIRE(std::regex_search(idl, body, std::regex("enum " + enum_name + " \\{([^}]*)\\}")));
-  const std::string names = body[1];
-  const std::regex name("\\w+");
-  std::vector<std::string> result;
-  for (std::sregex_iterator i(names.begin(), names.end(), name), end; i != end; ++i)
-    result.push_back(i->str());
-  return result;
+std::vector<std::string> idl_enumerators(const std::string& idl, const std::string& name) {
+  return last_words(idl_body(idl, "enum " + name), ',');
 }
 
 std::vector<std::string> keys(const Json& object) {

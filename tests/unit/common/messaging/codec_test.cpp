@@ -34,11 +34,11 @@ TEST_CASE("a version with a number that is none, or beyond all bounds, is refuse
   REQUIRE(decode(good));
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf, 1e300}) {
-    for (const auto set : {+[](msg::Version& m, double v) { m.x_m(v); }, +[](msg::Version& m, double v) { m.y_m(v); },
-                           +[](msg::Version& m, double v) { m.vx_mps(v); },
-                           +[](msg::Version& m, double v) { m.vy_mps(v); },
-                           +[](msg::Version& m, double v) { m.phases()[0].ax_mps2(v); },
-                           +[](msg::Version& m, double v) { m.phases()[0].ay_mps2(v); }}) {
+    for (const auto set :
+         {+[](msg::Version&m, double v) { m.x_m(v); }, +[](msg::Version&m, double v) { m.y_m(v); },
+          +[](msg::Version&m, double v) { m.vx_mps(v); }, +[](msg::Version&m, double v) { m.vy_mps(v); },
+          +[](msg::Version&m, double v) { m.phases()[0].ax_mps2(v); },
+          +[](msg::Version&m, double v) { m.phases()[0].ay_mps2(v); }}) {
       auto spoilt = good;
       set(spoilt, bad);
       CHECK_FALSE(decode(spoilt));

@@ -11,7 +11,8 @@ namespace {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 constexpr Topic<msg::CoordinatorState> kReliable{
-    {"reliable", "test", Qos::kEvent, false, message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
+    {"reliable", "test", Qos::kEvent, false,
+     message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 
 NetworkSpec delays(double min_s, double max_s, double loss = 0, double duplicate = 0) {
   return {loss, duplicate, from_seconds(min_s), from_seconds(max_s)};
@@ -34,10 +35,11 @@ Received send_through(const NetworkSpec& network, std::uint64_t seed, std::uint6
   SimBus sender(net), receiver(net);
   auto writer = sender.advertise(topic);
   Received received;
-  receiver.subscribe(topic, std::function([&](const msg::CoordinatorState& state) {
-                       received.numbers.push_back(state.epoch());
-                       received.delays_s.push_back(to_seconds(net.now() - time_from_ns(state.head().stamp_ns())));
-                     }));
+  receiver.subscribe(
+      topic, std::function([&](const msg::CoordinatorState& state) {
+        received.numbers.push_back(state.epoch());
+        received.delays_s.push_back(to_seconds(net.now() - time_from_ns(state.head().stamp_ns())));
+      }));
   for (std::uint64_t n = 1; n <= count; ++n) {
     sender.at(kBegin + Duration{1'000'000} * n, [&, n] {
       auto state = numbered(n);
@@ -91,7 +93,8 @@ TEST_CASE("events arrive all, once and in order, whatever happens to states") {
 
 TEST_CASE("the same seed gives the same run and another seed another one") {
   const auto spec = delays(0, 0.15, 0.3, 0.1);
-  const auto first = send_through(spec, 5, 500), again = send_through(spec, 5, 500), other = send_through(spec, 6, 500);
+  const auto first = send_through(spec, 5, 500), again = send_through(spec, 5, 500),
+             other = send_through(spec, 6, 500);
   CHECK(first.numbers == again.numbers);
   CHECK(first.delays_s == again.delays_s);
   CHECK(first.numbers != other.numbers);
@@ -102,7 +105,8 @@ TEST_CASE("a receiver gets the message as it was when it was sent") {
   SimBus sender(net), receiver(net);
   auto writer = sender.advertise(topics::kCoordinator);
   std::uint64_t seen = 0;
-  receiver.subscribe(topics::kCoordinator, std::function([&](const msg::CoordinatorState& s) { seen = s.epoch(); }));
+  receiver.subscribe(topics::kCoordinator,
+                     std::function([&](const msg::CoordinatorState& s) { seen = s.epoch(); }));
   auto state = numbered(11);
   writer.publish(state, sender.now());
   state.epoch(12);

@@ -19,7 +19,8 @@ Trajectory moving(Time start, Vec2 position, Vec2 velocity, Vec2 acceleration, d
   return trajectory;
 }
 
-/// Independent and slow: dense samples from the later start to the later end, then ternary search about the best few.
+/// Independent and slow: dense samples from the later start to the later end, then ternary search about the
+/// best few.
 double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
   const Time from = std::max(a.start(), b.start()), to = std::max({a.end(), b.end(), from});
   const double seconds = to_seconds(to - from);
@@ -28,11 +29,12 @@ double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
   const double step = seconds / samples;
   for (int i = 0; i <= samples; ++i) {
     const double here = at(i * step);
-    if (here > smallest + 10 * step) continue;   // nothing moves faster than 10 m/s relative to another
+    if (here > smallest + 10 * step) continue;  // nothing moves faster than 10 m/s relative to another
     double low = std::max(0.0, (i - 1) * step), high = std::min(seconds, (i + 1) * step);
     while (high - low > 1e-8) {
       const double third = (high - low) / 3;
-      (at(low + third) < at(high - third) ? high : low) += at(low + third) < at(high - third) ? -third : third;
+      (at(low + third) < at(high - third) ? high : low) +=
+          at(low + third) < at(high - third) ? -third : third;
     }
     smallest = std::min({smallest, here, at(0.5 * (low + high))});
   }
@@ -82,7 +84,8 @@ TEST_CASE("clearance does not depend on the order of the two robots") {
 
 TEST_CASE("robots that meet between two samples are not clear") {
   // Relative speed 4 m/s: within 0.19 m of each other for less than 0.1 s.
-  const auto a = moving(kBegin, {-1, 0}, {2, 0}, {0, 0}, 0.6), b = moving(kBegin, {1, 0.1}, {-2, 0}, {0, 0}, 0.6);
+  const auto a = moving(kBegin, {-1, 0}, {2, 0}, {0, 0}, 0.6),
+             b = moving(kBegin, {1, 0.1}, {-2, 0}, {0, 0}, 0.6);
   CHECK(distance_at(a, b, a.start()) > 1.9);
   CHECK(distance_at(a, b, a.end()) > 0.5);
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-6));
@@ -100,7 +103,8 @@ TEST_CASE("robots are compared at the same time, so that one may pass where the 
 }
 
 TEST_CASE("the overlap begins at the later of the two starts") {
-  // At a's start b is elsewhere: what b's trajectory says of the time before its own start is not to be judged.
+  // At a's start b is elsewhere: what b's trajectory says of the time before its own start is not to be
+  // judged.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 1.0);
   const auto b = Trajectory::resting(kBegin + from_seconds(0.5), {0, 0});
   CHECK(clearance_m(a, b, 0) == Approx(1.0).margin(1e-6));
@@ -119,9 +123,11 @@ TEST_CASE("of two minima the deeper one counts, whichever it is") {
 }
 
 TEST_CASE("equal motions, standing robots and empty phases have a clearance") {
-  const auto a = moving(kBegin, {0, 0}, {1, 1}, {1, 0}, 0.2), b = moving(kBegin, {0.3, 0}, {1, 1}, {1, 0}, 0.2);
+  const auto a = moving(kBegin, {0, 0}, {1, 1}, {1, 0}, 0.2),
+             b = moving(kBegin, {0.3, 0}, {1, 1}, {1, 0}, 0.2);
   CHECK(clearance_m(a, b, 0) == Approx(0.3).margin(1e-8));
-  const auto c = Trajectory::resting(kBegin, {0, 0}), d = Trajectory::resting(kBegin + from_seconds(3), {0.2, 0});
+  const auto c = Trajectory::resting(kBegin, {0, 0}),
+             d = Trajectory::resting(kBegin + from_seconds(3), {0.2, 0});
   CHECK(clearance_m(c, d, 0.19) == Approx(0.01).margin(1e-8));
   CHECK(is_clear(c, d, 0.19));
   CHECK_FALSE(is_clear(c, d, 0.2));

@@ -32,7 +32,8 @@ TEST_CASE("every trajectory with a stop ends at rest and stays there") {
     REQUIRE(trajectory.residual_speed_mps() < 1e-9);
     REQUIRE(trajectory.state_at(trajectory.end()).velocity_mps.norm() == 0);
     REQUIRE((trajectory.state_at(trajectory.end() + std::chrono::hours(1)).position_m -
-             trajectory.rest_position_m()).norm() == 0);
+             trajectory.rest_position_m())
+                .norm() == 0);
   }
 }
 
