@@ -8,13 +8,14 @@
 namespace sidestep {
 namespace {
 
-// Leaves room above for coordinators to come.
-constexpr Epoch kHighestEpoch = Epoch{1} << 62;
+// So that two coordinators which begin above the same epoch do not get the same one.
+constexpr Epoch kSpread = 1'000'003;
 
 }  // namespace
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
     : ledger_(rules, std::move(roster)),
+      incarnation_(epoch),
       epoch_(epoch),
       missing_(ledger_.roster().size()),
       records_(kMaxRobots) {}
@@ -27,34 +28,41 @@ void Coordinator::begin_epoch(Epoch epoch) {
 }
 
 void Coordinator::on_coordinator_state(const msg::CoordinatorState& state) {
-  if (state.epoch() > epoch_) superseded_ = true;
+  if (state.epoch() > kHighestEpoch) return;
+  const bool is_later = state.epoch() == epoch_ && state.head().incarnation() > incarnation_;
+  superseded_ = superseded_ || state.epoch() > epoch_ || is_later;
 }
 
 void Coordinator::on_registration(const msg::Registration& registration) {
   const RobotId robot = registration.robot();
   if (superseded_) return;
   if (!ledger_.knows(robot) || registration.head().sender() != robot || registration.version_count() == 0 ||
-      registration.version_count() > VersionSet::kCapacity || registration.epoch() > kHighestEpoch) {
+      registration.version_count() > VersionSet::kCapacity || registration.epoch() > kHighestEpoch / 2) {
     ++invalid_;
     return;
   }
-  // Agents have obeyed a coordinator that this one has never seen. As long as it has granted nothing it may
-  // begin again above that one.
-  if (registration.epoch() > epoch_ && !is_granting()) begin_epoch(registration.epoch() + 1);
-  if (registration.epoch() != epoch_) return;
-
   std::vector<Version> versions;
   for (std::size_t i = 0; i < registration.version_count(); ++i) {
     const auto version = decode(registration.versions()[i]);
-    if (!version || version->robot != robot || version->trajectory.residual_speed_mps() > 1e-6) {
+    const auto is_same = [&](const Version& other) { return other.number == version->number; };
+    if (!version || version->robot != robot || version->trajectory.residual_speed_mps() > 1e-6 ||
+        std::ranges::any_of(versions, is_same)) {
       ++invalid_;
       return;
     }
     versions.push_back(*version);
   }
+  if (registration.epoch() > epoch_) {
+    // Agents have obeyed a coordinator that this one has not heard. While it has granted nothing it begins
+    // again above that one; later it has no business any more.
+    superseded_ = is_granting();
+    if (!superseded_) begin_epoch(registration.epoch() + 1 + incarnation_ % kSpread);
+  }
+  if (registration.epoch() != epoch_ || superseded_) return;
+
   Record& record = record_of(robot);
-  const Incarnation incarnation = registration.head().incarnation();
-  if (record.registered && incarnation <= record.incarnation) return;
+  const Incarnation agent = registration.head().incarnation();
+  if (record.registered && agent <= record.incarnation) return;
   if (!record.registered) {
     ledger_.enter(robot, versions);
     record.registered = true;
@@ -71,7 +79,7 @@ void Coordinator::on_registration(const msg::Registration& registration) {
       return;
     }
   }
-  record.incarnation = incarnation;
+  record.incarnation = agent;
   record.answered = 0;
 }
 

@@ -16,6 +16,7 @@ namespace sidestep {
 /// nothing.
 class Coordinator {
  public:
+  /// Its incarnation is the epoch that it begins with.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
 
   /// The answer to a proposal; none for one that names no robot of the roster.
@@ -58,6 +59,7 @@ class Coordinator {
   msg::Reason refusal_of(const msg::Proposal& proposal, const Record& record) const;
 
   Ledger ledger_;
+  Incarnation incarnation_;
   Epoch epoch_;
   bool superseded_ = false;
   std::size_t missing_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
+#include <utility>
+
 #include "common/messaging/senders.hpp"
 
 namespace sidestep {
@@ -55,8 +57,12 @@ void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
 
 void CoordinatorNode::publish_state() {
   bus_.at(bus_.now() + kSignOfLife, [this] { publish_state(); });
+  if (coordinator_.is_superseded()) {
+    if (auto callback = std::exchange(on_superseded_, nullptr)) callback();
+    return;
+  }
   auto state = coordinator_.state();
-  if (!coordinator_.is_superseded()) publish(state_writer_, state);
+  publish(state_writer_, state);
 }
 
 void CoordinatorNode::publish_state_if_changed() {

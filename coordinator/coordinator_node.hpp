@@ -17,6 +17,8 @@ class CoordinatorNode {
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
   const Coordinator& coordinator() const { return coordinator_; }
+  /// Calls back once another coordinator is found to have superseded this one.
+  void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
 
  private:
   template <typename Message>
@@ -33,6 +35,7 @@ class CoordinatorNode {
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
   bool was_granting_ = false;
+  std::function<void()> on_superseded_;
 };
 
 }  // namespace sidestep

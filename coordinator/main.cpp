@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <stdexcept>
 
 #include "common/process/process.hpp"
 #include "coordinator/coordinator_node.hpp"
@@ -11,7 +12,9 @@ int main(int argc, char** argv) {
   program.description =
       "Keeps the ledger of what every robot may be executing, and grants what is clear of it.";
   program.start = [](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
-    return std::make_shared<CoordinatorNode>(bus, scenario, static_cast<Incarnation>(to_ns(bus.now())));
+    auto node = std::make_shared<CoordinatorNode>(bus, scenario, static_cast<Incarnation>(to_ns(bus.now())));
+    node->on_superseded([] { throw std::runtime_error("superseded by another coordinator"); });
+    return node;
   };
   return run_process(argc, argv, program);
 }

@@ -124,8 +124,7 @@ void write_file(const std::string& path, const std::string& text) {
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
   std::ofstream file(path);
   file << text << std::flush;
-  if (!file)
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
+  if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed) {

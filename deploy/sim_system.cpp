@@ -51,7 +51,8 @@ SimSystem::~SimSystem() = default;
 void SimSystem::start(const std::string& name) {
   auto process = std::make_unique<Process>(network_);
   // Its randomness comes from its incarnation, so that has to come from the seed.
-  last_incarnation_ = std::max(last_incarnation_ + 1, static_cast<Incarnation>(to_ns(network_.now())) + rng_.below(1'000'000));
+  last_incarnation_ = std::max(last_incarnation_ + 1,
+                               static_cast<Incarnation>(to_ns(network_.now())) + rng_.below(1'000'000));
   const Incarnation incarnation = last_incarnation_;
   SimBus& bus = process->bus;
   if (name == "simulator")

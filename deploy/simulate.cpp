@@ -63,7 +63,8 @@ int simulate(const SimulateOptions& options) {
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
   Picture picture(scenario);
-  if (!options.picture_file.empty()) system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
+  if (!options.picture_file.empty())
+    system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
   const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
   Report report = system.judge().report();
   report.program = "simulate";

@@ -9,7 +9,7 @@ namespace sidestep {
 
 struct SimulateOptions {
   std::string scenario_file;
-  std::string report_file;  ///< empty: reports/<scenario>-<seed>.json
+  std::string report_file;   ///< empty: reports/<scenario>-<seed>.json
   std::string picture_file;  ///< SVG of the robots' ways; empty: none
   std::uint64_t seed = 1;
   std::optional<double> seconds;  ///< instead of the scenario's time limit

@@ -13,6 +13,7 @@ constexpr double kFarthest_m = 1e4;  // no floor is larger
 
 struct CheckedCommand {
   Incarnation incarnation;
+  Epoch epoch;
   std::optional<Version> version;
 };
 
@@ -23,9 +24,10 @@ bool is_sane(const msg::PoseFix& fix) {
 
 // nullopt when any part of the command makes no sense for this robot.
 std::optional<CheckedCommand> check(const msg::Command& command, RobotId robot) {
-  CheckedCommand checked{command.head().incarnation(), std::nullopt};
+  CheckedCommand checked{command.head().incarnation(), command.epoch(), std::nullopt};
   if (command.robot() != robot || command.head().sender() != robot) return std::nullopt;
-  if (checked.incarnation == 0 || !std::isfinite(command.heading_rad())) return std::nullopt;
+  if (checked.incarnation == 0 || checked.epoch > kHighestEpoch || !std::isfinite(command.heading_rad()))
+    return std::nullopt;
   if (command.has_fix() && !is_sane(command.fix())) return std::nullopt;
   if (command.has_version()) {
     checked.version = decode(command.granted());
@@ -62,12 +64,21 @@ void Firmware::on_command(const msg::Command& command, Time now) {
     return;
   }
   obey(checked->incarnation);
+  // A new agent may not have heard of the epoch that an earlier one has obeyed: it is told, but not obeyed so
+  // far.
+  const bool is_old_epoch = checked->epoch < obeyed_epoch_;
+  obeyed_epoch_ = std::max(obeyed_epoch_, checked->epoch);
   heading_goal_rad_ = wrapped_rad(command.heading_rad());
   if (command.has_fix()) {
     const auto& fix = command.fix();
     estimator_.correct(time_from_ns(fix.captured_at_ns()), {fix.x_m(), fix.y_m()}, fix.heading_rad());
   }
-  if (checked->version) take(*checked->version, now);
+  if (!checked->version) return;
+  if (is_old_epoch) {
+    ++counts_.refused_fenced;
+  } else {
+    take(*checked->version, now);
+  }
 }
 
 void Firmware::obey(Incarnation incarnation) {
@@ -189,6 +200,7 @@ msg::Feedback Firmware::feedback(Time now) {
   msg::Feedback facts;
   facts.robot(robot_);
   facts.obeyed_incarnation(obeyed_);
+  facts.obeyed_epoch(obeyed_epoch_);
   facts.at_ns(to_ns(now));
   facts.executing(encode(executing_));
   facts.x_m(position.x());

@@ -72,6 +72,7 @@ class Firmware {
 
   RobotId robot_;
   Incarnation obeyed_ = 0;
+  Epoch obeyed_epoch_ = 0;
   Version executing_;
   std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
   int pending_count_ = 0;

@@ -22,7 +22,7 @@ constexpr std::size_t kMostStanding = 8;
 // and more.
 constexpr Duration kLostAfter{300'000'000};
 // Nothing is seen farther in the future than clocks may differ.
-constexpr Duration kClocksDiffer{100'000'000};
+constexpr Duration kClocksDiffer{20'000'000};
 // Nearer to the goal than this a robot does not try to do better.
 constexpr double kCloseEnough_m = 0.001;
 
@@ -35,7 +35,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       rules_(floor_rules(scenario)),
       cycle_(scenario.cycle),
       goal_tolerance_m_(scenario.goal_tolerance_m),
-      negotiation_(robot, incarnation),
+      negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
       safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
@@ -95,13 +95,14 @@ void Agent::on_ledger(const msg::LedgerPage& page) {
   neighbours_.on_page(page, estimate_.position_m, kHorizon_m);
 }
 
-void Agent::on_coordinator_state(const msg::CoordinatorState& state) {
-  negotiation_.on_coordinator_state(state);
+void Agent::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
+  negotiation_.on_coordinator_state(state, now);
 }
 
 std::optional<SearchQuery> Agent::plan(Time now, Time start) {
-  const bool is_lost = now - time_from_ns(last_fix_ns_) > kLostAfter;
-  if (!negotiation_.may_propose() || is_lost) return std::nullopt;
+  const Duration unseen = now - time_from_ns(last_fix_ns_);
+  const bool is_lost = unseen > kLostAfter || unseen < -kClocksDiffer;
+  if (!negotiation_.may_propose(now) || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
   if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start())
@@ -137,16 +138,17 @@ std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
 std::optional<msg::Command> Agent::on_verdict(const msg::Verdict& verdict, Time now) {
   const auto granted = negotiation_.on_verdict(verdict, now);
   if (!granted) return std::nullopt;
-  msg::Command forwarded = command();
-  forwarded.has_version(true);
-  forwarded.granted(encode(*granted));
-  return forwarded;
+  forwarded_ = granted;
+  return command(now);
 }
 
-msg::Command Agent::command() {
+msg::Command Agent::command(Time now) {
+  if (forwarded_ && forwarded_->trajectory.start() <= now) forwarded_.reset();
   msg::Command command;
   command.robot(robot_.id);
-  command.has_version(false);
+  command.epoch(negotiation_.epoch());
+  command.has_version(forwarded_.has_value());
+  if (forwarded_) command.granted(encode(*forwarded_));
   command.has_fix(fix_.has_value());
   if (fix_) command.fix(*fix_);
   fix_.reset();
@@ -154,14 +156,14 @@ msg::Command Agent::command() {
   return command;
 }
 
-msg::AgentStatus Agent::status() const {
+msg::AgentStatus Agent::status(Time now) const {
   msg::AgentStatus status;
   status.robot(robot_.id);
   const Negotiation& n = negotiation_;
   status.agent_phase(!n.is_fenced()           ? msg::AGENT_FENCING
                      : n.needs_registration() ? msg::AGENT_REGISTERING
                      : arrived_               ? msg::AGENT_ARRIVED
-                     : n.may_propose()        ? msg::AGENT_DRIVING
+                     : n.may_propose(now)     ? msg::AGENT_DRIVING
                                               : msg::AGENT_WAITING);
   status.goal_index(static_cast<std::uint32_t>(goal_index_));
   status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());

@@ -24,7 +24,7 @@ class Agent {
   void on_feedback(const msg::Feedback& feedback);
   void on_world(const msg::WorldState& world, Time now);
   void on_ledger(const msg::LedgerPage& page);
-  void on_coordinator_state(const msg::CoordinatorState& state);
+  void on_coordinator_state(const msg::CoordinatorState& state, Time now);
   /// The command that forwards a granted version.
   std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
 
@@ -35,12 +35,13 @@ class Agent {
   /// brakes).
   std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
 
-  /// A command without a version: fences the robot, and forwards what vision saw of it.
-  msg::Command command();
+  /// Fences the robot, forwards what vision saw of it, and once more a granted version whose start is still
+  /// to come.
+  msg::Command command(Time now);
   Negotiation& negotiation() { return negotiation_; }
 
   /// Without the durations, which the caller measures.
-  msg::AgentStatus status() const;
+  msg::AgentStatus status(Time now) const;
 
  private:
   const Goal& goal() const { return robot_.goals[goal_index_]; }
@@ -65,8 +66,9 @@ class Agent {
   State estimate_;                   // the robot's own
   std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
-  std::uint64_t invalid_ = 0;             // sights that made no sense
-  VersionNumber base_ = 0;  // of the query that plan() made
+  std::optional<Version> forwarded_;
+  std::uint64_t invalid_ = 0;  // sights that made no sense
+  VersionNumber base_ = 0;     // of the query that plan() made
 };
 
 }  // namespace sidestep

@@ -31,7 +31,6 @@ auto timed(DurationHistogram& histogram, Work work) {
 AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation)
     : bus_(bus),
       robot_(robot),
-      incarnation_(incarnation),
       cycle_(scenario.cycle),
       agent_(scenario, robot, incarnation),
       command_writer_(bus.advertise(topics::kCommand, robot)),
@@ -40,15 +39,17 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       status_writer_(bus.advertise(topics::kStatus)) {
   bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
                    agent_.on_feedback(feedback);
-                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4)
-                     negotiate();
+                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4) {
+                     negotiate(next_start());
+                   }
                  }));
   bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
-  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) { agent_.on_world(w, bus_.now()); }));
+  bus_.subscribe(topics::kWorld,
+                 std::function([this](const msg::WorldState& w) { agent_.on_world(w, bus_.now()); }));
   bus_.subscribe(topics::kLedger,
                  std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
   bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
-                   agent_.on_coordinator_state(state);
+                   agent_.on_coordinator_state(state, bus_.now());
                  }));
   const Time now = bus_.now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + phase_of(scenario, robot) + cycle_;
@@ -58,12 +59,12 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
 
 void AgentNode::begin_cycle() {
   const Time now = bus_.now();
-  while (next_cycle_ <= now) next_cycle_ += cycle_;
+  if (next_cycle_ <= now) next_cycle_ += cycle_ * ((now - next_cycle_) / cycle_ + 1);
   bus_.at(next_cycle_, [this] { begin_cycle(); });
   agent_.negotiation().close_cycle(now);
   if (agent_.negotiation().is_superseded()) return;
   if (!commanded_) {
-    auto command = agent_.command();
+    auto command = agent_.command(now);
     publish(command_writer_, command);
   }
   commanded_ = false;
@@ -74,11 +75,17 @@ void AgentNode::begin_cycle() {
     auto registration = agent_.negotiation().registration();
     publish(registration_writer_, registration);
   }
-  if (agent_.negotiation().is_fenced() && !agent_.negotiation().is_settled_after(now)) negotiate();
+  if (!agent_.negotiation().is_fenced()) return;
+  if (!agent_.negotiation().is_settled_after(now)) {
+    negotiate(next_start());
+  } else if (const auto start = agent_.negotiation().unanswered_start(now)) {
+    negotiate(*start);
+  }
 }
 
-void AgentNode::negotiate() {
-  const Time start = next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1);
+Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1); }
+
+void AgentNode::negotiate(Time start) {
   const auto query = timed(plan_, [&] { return agent_.plan(bus_.now(), start); });
   if (!query) return;
   auto proposal = timed(search_, [&] { return agent_.search(*query, bus_.now()); });
@@ -98,7 +105,7 @@ void AgentNode::on_verdict(const msg::Verdict& verdict) {
 
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
-  auto status = agent_.status();
+  auto status = agent_.status(bus_.now());
   negotiation_.to_message(status.negotiation());
   plan_.to_message(status.plan());
   search_.to_message(status.search());
@@ -108,7 +115,7 @@ void AgentNode::publish_status() {
 template <typename Message>
 void AgentNode::publish(Writer<Message>& writer, Message& message) {
   message.head().sender(robot_);
-  message.head().incarnation(incarnation_);
+  message.head().incarnation(agent_.negotiation().incarnation());
   writer.publish(message, bus_.now());
 }
 

@@ -17,8 +17,10 @@ class AgentNode {
 
  private:
   void begin_cycle();
-  /// Proposes what to do from the begin of the next cycle on, or of a later one where the network is slow.
-  void negotiate();
+  /// Proposes what to do from a time on.
+  void negotiate(Time start);
+  /// The begin of the next cycle, or of a later one where the network is slow.
+  Time next_start();
   void on_verdict(const msg::Verdict& verdict);
   void publish_status();
   template <typename Message>
@@ -26,7 +28,6 @@ class AgentNode {
 
   Bus& bus_;
   RobotId robot_;
-  Incarnation incarnation_;
   Duration cycle_;
   Agent agent_;
   Time next_cycle_;

@@ -2,81 +2,82 @@
 #include "agents/agent/negotiation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
 namespace {
 
-// Half a second ahead is as far as it goes.
-constexpr int kLongestLead = 30;
-// One version that comes too late is bad luck, two in a row are a slow network.
-constexpr int kLateToSlowDown = 2;
-constexpr int kTakenToSpeedUp = 10;
+// A coordinator that has not been heard for so long grants nothing.
+constexpr Duration kSilence{500'000'000};
+constexpr int kMostAskedForStart = 4;
+// So that two agents which begin above the same one do not become one.
+constexpr Incarnation kSpread = 1'000'003;
 
 }  // namespace
 
-Negotiation::Negotiation(RobotId robot, Incarnation incarnation)
-    : robot_(robot), incarnation_(incarnation), next_number_(incarnation) {}
+Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
+    : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pace_(cycle) {}
 
 void Negotiation::on_feedback(const msg::Feedback& feedback) {
   if (feedback.robot() != robot_) return;
   if (feedback.obeyed_incarnation() > incarnation_) {
-    superseded_ = true;
+    // Once obeyed, an agent yields to a later one. Before, its clock is behind an earlier agent's.
+    if (fenced_) superseded_ = true;
+    if (!fenced_) incarnation_ = feedback.obeyed_incarnation() + 1 + incarnation_ % kSpread;
     return;
   }
   if (feedback.obeyed_incarnation() < incarnation_) return;  // says nothing about what this agent has sent
   const auto executing = decode(feedback.executing());
-  if (!executing || executing->robot != robot_) {
+  if (!executing || executing->robot != robot_ || feedback.obeyed_epoch() > kHighestEpoch) {
     ++counts_.invalid;
     return;
   }
+  robot_epoch_ = std::max<Epoch>(robot_epoch_, feedback.obeyed_epoch());
+  if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {
-    adopt(*executing);
+    adopt(feedback, *executing);
     return;
   }
   const std::size_t before = held_.versions().size();
   const bool moved_on = executing->number != executing_;
   if (!held_.forget(executing->number, time_from_ns(feedback.at_ns()))) return;  // late
   executing_ = executing->number;
-  if (moved_on) on_taken();
+  if (moved_on) pace_.on_taken();
   // What went away is what was executed before, if the robot has moved on, and what the robot can never take.
   for (std::size_t gone = before - held_.versions().size() - (moved_on ? 1 : 0); gone > 0; --gone) {
     ++counts_.lost;
-    on_late();
+    pace_.on_late();
   }
   check_assumptions();
 }
 
-void Negotiation::adopt(const Version& executing) {
+void Negotiation::adopt(const msg::Feedback& feedback, const Version& executing) {
   fenced_ = true;
   held_.clear();
   held_.add(executing);
   executing_ = executing.number;
-  next_number_ = std::max(next_number_, executing.number + 1);
+  next_number_ = std::max({next_number_, feedback.obeyed_incarnation(), executing.number + 1});
 }
 
-void Negotiation::on_taken() {
-  late_in_a_row_ = 0;
-  if (++taken_in_a_row_ < kTakenToSpeedUp) return;
-  taken_in_a_row_ = 0;
-  lead_ = std::max(1, lead_ - 1);
+void Negotiation::adopt_epoch(Epoch epoch) {
+  epoch_ = epoch;
+  unannounced_ = true;
+  granting_ = false;
+  close_all();
+  for (Asked& asked : asked_) asked.answered = true;
+  pace_.reset();
 }
 
-void Negotiation::on_late() {
-  taken_in_a_row_ = 0;
-  if (++late_in_a_row_ < kLateToSlowDown) return;
-  late_in_a_row_ = 0;
-  lead_ = std::min(kLongestLead, lead_ + std::max(1, lead_ / 2));
-}
-
-bool Negotiation::is_settled_after(Time now) const {
-  return (outstanding_ && outstanding_->start() > now) || base_at(Time::max()).trajectory.start() > now;
+void Negotiation::close_all() {
+  for (Asked& asked : asked_) asked.open = false;
 }
 
 void Negotiation::check_assumptions() {
-  if (outstanding_ && !held_.find(outstanding_->candidates.front().base)) {
-    outstanding_.reset();
+  for (Asked& asked : asked_) {
+    if (!asked.open || held_.find(asked.candidates.front().base)) continue;
+    asked.open = false;
     contradicted_ = true;
   }
   for (const Version& version : held_.versions()) {
@@ -84,15 +85,38 @@ void Negotiation::check_assumptions() {
   }
 }
 
-void Negotiation::on_coordinator_state(const msg::CoordinatorState& state) {
-  if (state.epoch() < epoch_ || state.epoch() == 0) return;
-  if (state.epoch() > epoch_) {
-    epoch_ = state.epoch();
-    unannounced_ = true;
-    outstanding_.reset();
+void Negotiation::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
+  if (state.epoch() == 0 || state.epoch() > kHighestEpoch) return;
+  if (state.epoch() < epoch_) {
+    // A coordinator that does not know how far epochs have come, and no other is alive: the registration
+    // tells it.
+    if (now - heard_ > kSilence) unannounced_ = true;
+    return;
   }
+  if (state.epoch() > epoch_) adopt_epoch(state.epoch());
+  heard_ = now;
   missing_ = std::ranges::find(state.missing(), robot_) != state.missing().end();
   granting_ = state.coordinator_phase() == msg::COORDINATOR_GRANTING;
+}
+
+bool Negotiation::may_propose(Time now) const {
+  return fenced_ && !superseded_ && robot_epoch_ == epoch_ && !unannounced_ && granting_ &&
+         now - heard_ < kSilence && !held_.is_full();
+}
+
+bool Negotiation::is_settled_after(Time now) const {
+  const auto decides = [&](const Asked& asked) { return asked.open && asked.start() > now; };
+  return std::ranges::any_of(asked_, decides) || base_at(Time::max()).trajectory.start() > now;
+}
+
+std::optional<Time> Negotiation::unanswered_start(Time now) const {
+  if (asked_count_ == 0 || asked_for_start_ >= kMostAskedForStart ||
+      base_at(Time::max()).trajectory.start() > now) {
+    return std::nullopt;
+  }
+  const Asked& last = newest();
+  const bool is_due = last.open && now - last.proposed_at >= pace_.patience() && last.start() - now > cycle_;
+  return is_due ? std::optional(last.start()) : std::nullopt;
 }
 
 msg::Registration Negotiation::registration() {
@@ -107,74 +131,85 @@ msg::Registration Negotiation::registration() {
 
 const Version& Negotiation::base_at(Time start) const {
   const Version* current = &executing();
-  for (bool found = true; found;) {
-    found = false;
-    for (const Version& next : held_.versions()) {
-      if (next.base != current->number || next.number == current->number || next.trajectory.start() >= start)
-        continue;
-      current = &next;
-      found = true;
-      break;
-    }
+  const auto follows = [&](const Version& next) {
+    return next.base == current->number && next.number != current->number && next.trajectory.start() < start;
+  };
+  for (;;) {
+    const auto next = std::ranges::find_if(held_.versions(), follows);
+    if (next == held_.versions().end()) return *current;
+    current = &*next;
   }
-  return *current;
 }
 
 msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now) {
   contradicted_ = false;
-  outstanding_.emplace();
-  outstanding_->proposed_at = now;
+  const bool is_again = asked_count_ > 0 && newest().start() == candidates.front().start();
+  asked_for_start_ = is_again ? asked_for_start_ + 1 : 1;
+  if (!is_again) counts_.cycles += static_cast<std::uint64_t>(lead());
+  ++counts_.proposals;
+
+  Asked& asked = asked_[asked_count_++ % asked_.size()];
+  asked.count = 0;
+  asked.proposed_at = now;
+  asked.lead = lead();
+  asked.answered = false;
+  asked.open = true;
   msg::Proposal proposal;
   proposal.robot(robot_);
   proposal.epoch(epoch_);
   proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
   for (const Trajectory& trajectory : candidates) {
-    Version& version = outstanding_->candidates[outstanding_->count];
+    Version& version = asked.candidates[asked.count];
     version = {robot_, incarnation_, next_number_++, base, trajectory};
-    proposal.candidates()[outstanding_->count++] = encode(version);
+    proposal.candidates()[asked.count++] = encode(version);
   }
-  ++counts_.proposals;
-  counts_.cycles += static_cast<std::uint64_t>(lead_);
   return proposal;
 }
 
 std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time now) {
-  if (superseded_ || verdict.robot() != robot_ || verdict.epoch() != epoch_ || !outstanding_ ||
-      verdict.proposal_number() != outstanding_->number()) {
-    return std::nullopt;
-  }
-  const Outstanding asked = *outstanding_;
-  outstanding_.reset();
-  last_round_trip_ = now - asked.proposed_at;
+  if (superseded_ || verdict.robot() != robot_ || verdict.epoch() != epoch_) return std::nullopt;
+  const auto asked = std::ranges::find_if(
+      asked_, [&](const Asked& a) { return !a.answered && a.number() == verdict.proposal_number(); });
+  if (asked == asked_.end()) return std::nullopt;
+  const bool was_open = std::exchange(asked->open, false);
+  asked->answered = true;
+  last_round_trip_ = now - asked->proposed_at;
+  pace_.on_round_trip(last_round_trip_);
   if (verdict.granted() == 0) {
     ++counts_.denials;
     // The coordinator knows the robot from an earlier agent, but not this one: the registration was lost.
     if (verdict.reasons().front() == msg::REASON_NOT_ALL_REGISTERED) unannounced_ = true;
     return std::nullopt;
   }
-  const auto end = asked.candidates.begin() + static_cast<std::ptrdiff_t>(asked.count);
-  const auto granted = std::find_if(asked.candidates.begin(), end,
+  const auto end = asked->candidates.begin() + static_cast<std::ptrdiff_t>(asked->count);
+  const auto granted = std::find_if(asked->candidates.begin(), end,
                                     [&](const Version& v) { return v.number == verdict.granted(); });
   if (granted == end) {
     ++counts_.invalid;
     return std::nullopt;
   }
   ++counts_.grants;
+  if (!was_open || held_.is_full()) return std::nullopt;
   if (granted->trajectory.start() <= now) {
-    counts_.missed += static_cast<std::uint64_t>(lead_);
-    on_late();
+    asked->open = true;  // to be counted with the cycle
     return std::nullopt;
   }
+  close_all();
   held_.add(*granted);
   return *granted;
 }
 
 void Negotiation::close_cycle(Time now) {
-  if (!outstanding_ || outstanding_->start() > now) return;
-  counts_.missed += static_cast<std::uint64_t>(lead_);
-  on_late();
-  // The verdict may still come; it is too late to be forwarded.
-  outstanding_.reset();
+  int missed = 0;
+  for (Asked& asked : asked_) {
+    if (!asked.open || asked.start() > now) continue;
+    // The verdict may still come; it is too late to be forwarded.
+    asked.open = false;
+    missed = asked.lead;
+  }
+  if (missed == 0) return;
+  counts_.missed += static_cast<std::uint64_t>(missed);
+  pace_.on_late();
 }
 
 }  // namespace sidestep

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
+#include "agents/agent/pace.hpp"
 #include "common/motion/version_set.hpp"
 #include "idl/negotiation.h"
 #include "idl/robot.h"
@@ -15,30 +17,35 @@ namespace sidestep {
 /// brakes.
 class Negotiation {
  public:
-  Negotiation(RobotId robot, Incarnation incarnation);
+  Negotiation(RobotId robot, Incarnation incarnation, Duration cycle);
 
   /// A fact from the robot. The first one that acknowledges this incarnation ends the fencing.
   void on_feedback(const msg::Feedback& feedback);
-  void on_coordinator_state(const msg::CoordinatorState& state);
-  /// The granted version, if this is the answer to the outstanding proposal and there is time left to obey
-  /// it. The caller forwards it to the robot.
+  void on_coordinator_state(const msg::CoordinatorState& state, Time now);
+  /// The granted version, if this is the answer to what was proposed and there is time left to obey it. The
+  /// caller forwards it to the robot.
   std::optional<Version> on_verdict(const msg::Verdict& verdict, Time now);
+
+  /// What commands have to carry. The incarnation grows only while the robot obeys nobody of this agent yet.
+  Incarnation incarnation() const { return incarnation_; }
+  Epoch epoch() const { return epoch_; }
 
   bool is_fenced() const { return fenced_; }
   /// A later agent drives the robot: this one has nothing to say any more.
   bool is_superseded() const { return superseded_; }
+  /// Registers only once the robot has acknowledged the epoch, so that no agent that it does not obey any
+  /// more speaks for it, and no later agent of it falls back to an older coordinator.
   bool needs_registration() const {
-    return fenced_ && !superseded_ && epoch_ != 0 && (unannounced_ || missing_);
+    return fenced_ && !superseded_ && epoch_ != 0 && robot_epoch_ == epoch_ && (unannounced_ || missing_);
   }
   /// Whether a proposal may be granted at all now.
-  bool may_propose() const {
-    return fenced_ && !superseded_ && epoch_ != 0 && !unannounced_ && granting_ && !held_.is_full();
-  }
+  bool may_propose(Time now) const;
   /// Whether the next version after `now` is decided already, or being decided.
   bool is_settled_after(Time now) const;
-  /// How many cycles ahead to propose, and to hold an acceleration: one, and more where versions keep coming
-  /// too late.
-  int lead() const { return lead_; }
+  /// The start of a version for which it is time to ask again, because no answer is to be expected any more.
+  std::optional<Time> unanswered_start(Time now) const;
+  /// How many cycles ahead to propose, and for how many to hold an acceleration at most.
+  int lead() const { return pace_.lead(); }
   /// What was proposed last, or forwarded, rests on a base that the robot turned out not to be executing.
   bool is_contradicted() const { return contradicted_; }
 
@@ -47,16 +54,15 @@ class Negotiation {
   const Version& base_at(Time start) const;
   /// The version that the robot was executing by its latest fact. Precondition: is_fenced().
   const Version& executing() const { return *held_.find(executing_); }
-  /// Drops the outstanding proposal, if any, and makes a new one. Precondition: 1 to MAX_CANDIDATES
-  /// candidates that continue `base` at one start time.
+  /// Precondition: 1 to MAX_CANDIDATES candidates that continue `base` at one start time.
   msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now);
 
-  /// Closes the cycle that ends now: a proposal for it that has no verdict is given up, and counted.
+  /// Closes the cycle that ends now: what was proposed for it and has no verdict is given up, and counted.
   void close_cycle(Time now);
 
   struct Counts {
     std::uint64_t proposals = 0, grants = 0, denials = 0;
-    std::uint64_t cycles = 0;   ///< cycles for which something was proposed
+    std::uint64_t cycles = 0;  ///< cycles for which something was proposed
     std::uint64_t missed = 0;  ///< cycles for which there was no verdict in time
     std::uint64_t lost = 0;    ///< forwarded, not taken by the robot
     std::uint64_t invalid = 0;
@@ -66,31 +72,39 @@ class Negotiation {
   Duration last_round_trip() const { return last_round_trip_; }
 
  private:
-  struct Outstanding {
+  /// A proposal that was made.
+  struct Asked {
     std::array<Version, msg::MAX_CANDIDATES> candidates;
     std::size_t count = 0;
     Time proposed_at{};
+    int lead = 1;
+    bool answered = true;
+    bool open = false;  // if granted, it is forwarded
 
     VersionNumber number() const { return candidates.front().number; }
     Time start() const { return candidates.front().trajectory.start(); }
   };
-  void adopt(const Version& executing);
-  void on_taken();
-  void on_late();
+  void adopt(const msg::Feedback& feedback, const Version& executing);
+  void adopt_epoch(Epoch epoch);
   void check_assumptions();
+  void close_all();
+  const Asked& newest() const { return asked_[(asked_count_ - 1) % asked_.size()]; }
 
   RobotId robot_;
   Incarnation incarnation_;
+  Duration cycle_;
   bool fenced_ = false, superseded_ = false, contradicted_ = false;
-  Epoch epoch_ = 0;
+  Epoch epoch_ = 0, robot_epoch_ = 0;        // the highest seen, and the one that the robot has acknowledged
   bool unannounced_ = true;                  // this agent has not registered in this epoch, or was not heard
-  bool missing_ = false, granting_ = false;  // what the coordinator says
+  bool missing_ = false, granting_ = false;  // what the coordinator says,
+  Time heard_{};                             // and when it did
   VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   VersionNumber next_number_;
-  std::optional<Outstanding> outstanding_;
-  int lead_ = 1;
-  int taken_in_a_row_ = 0, late_in_a_row_ = 0;
+  std::array<Asked, 8> asked_;
+  std::size_t asked_count_ = 0;
+  int asked_for_start_ = 0;
+  Pace pace_;
   Counts counts_;
   Duration last_round_trip_{0};
 };

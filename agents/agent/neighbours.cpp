@@ -8,7 +8,7 @@
 namespace sidestep {
 
 void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, double horizon) {
-  if (message.page_index() >= kMaxRobots) {
+  if (message.page_index() >= kMaxRobots || message.epoch() > kHighestEpoch) {
     ++invalid_;
     return;
   }

@@ -12,6 +12,8 @@ using VersionNumber = std::uint64_t;
 /// One life of a process: nanoseconds of its clock when it began, so a later life has a higher one.
 using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
+/// What claims to be higher is nobody's epoch.
+inline constexpr Epoch kHighestEpoch = Epoch{1} << 62;
 
 /// Robots are numbered 0 .. kMaxRobots - 1.
 inline constexpr RobotId kMaxRobots = 1024;

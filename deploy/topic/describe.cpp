@@ -134,6 +134,7 @@ Json describe(const msg::Command& m) {
                     {"heading_rad", f.heading_rad()}};
   return {{"robot", m.robot()},
           {"head", head(m.head())},
+          {"epoch", m.epoch()},
           {"has_version", m.has_version()},
           {"granted", version(m.granted())},
           {"has_fix", m.has_fix()},
@@ -145,6 +146,7 @@ Json describe(const msg::Feedback& m) {
   return {{"robot", m.robot()},
           {"head", head(m.head())},
           {"obeyed_incarnation", m.obeyed_incarnation()},
+          {"obeyed_epoch", m.obeyed_epoch()},
           {"at_ns", m.at_ns()},
           {"executing", version(m.executing())},
           {"x_m", m.x_m()},

@@ -48,9 +48,12 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
     std::erase_if(robot.pending, [&](const Version& v) { return v.incarnation < robot.obeyed; });
     report(robot);
   }
-  if (!command.has_version()) return;
+  const bool is_old_epoch = command.epoch() < robot.obeyed_epoch;
+  robot.obeyed_epoch = std::max(robot.obeyed_epoch, command.epoch());
+  if (!command.has_version() || is_old_epoch) return;
   const auto version = decode(command.granted());
-  if (!version || version->trajectory.start() <= now) return;
+  const auto knows = [&](const Version& held) { return held.number == version->number; };
+  if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, knows)) return;
   robot.pending.push_back(*version);
   std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
   bus_.at(version->trajectory.start(), [this, &robot] {
@@ -61,7 +64,9 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
 
 void IdealRobots::advance(Robot& robot, Time now) {
   while (!robot.pending.empty() && robot.pending.front().trajectory.start() <= now) {
-    if (robot.pending.front().base == robot.executing.number) robot.executing = robot.pending.front();
+    const Version& due = robot.pending.front();
+    if (due.base == robot.executing.number && due.number > robot.executing.number)
+      robot.executing = robot.pending.front();
     robot.pending.erase(robot.pending.begin());
   }
 }
@@ -73,6 +78,7 @@ void IdealRobots::report(Robot& robot) {
   feedback.robot(robot.id);
   feedback.head().sender(robot.id);
   feedback.obeyed_incarnation(robot.obeyed);
+  feedback.obeyed_epoch(robot.obeyed_epoch);
   feedback.at_ns(to_ns(now));
   feedback.executing(encode(robot.executing));
   feedback.x_m(state.position_m.x());

@@ -25,6 +25,7 @@ class IdealRobots {
   struct Robot {
     RobotId id;
     Incarnation obeyed = 0;
+    Epoch obeyed_epoch = 0;
     Version executing;
     std::vector<Version> pending;  // by start
     Writer<msg::Feedback> writer;

@@ -32,7 +32,7 @@ struct Driven {
     msg::CoordinatorState state;
     state.epoch(7);
     state.coordinator_phase(msg::COORDINATOR_GRANTING);
-    agent.on_coordinator_state(state);
+    agent.on_coordinator_state(state, at_s(0.6));
     (void)agent.negotiation().registration();
   }
   /// The robot stands there.
@@ -40,6 +40,7 @@ struct Driven {
     msg::Feedback feedback;
     feedback.robot(3);
     feedback.obeyed_incarnation(kSelf);
+    feedback.obeyed_epoch(7);
     feedback.at_ns(to_ns(at_s(at)));
     feedback.executing(encode(Version{3, 0, 0, 0, Trajectory::resting(at_s(0), place)}));
     feedback.x_m(place.x());
@@ -83,13 +84,13 @@ TEST_CASE("sights that cannot be are dropped, and later true ones still count") 
   CHECK_FALSE(d.plans(0.62));
   d.see(0, 0.61, 0.62);
   CHECK(d.plans(0.63));
-  CHECK(d.agent.status().invalid() == 2);
+  CHECK(d.agent.status(at_s(1)).invalid() == 2);
 }
 
 TEST_CASE("a sight is forwarded to the robot once") {
   Driven d;
   d.see(0.001, 0.6, 0.61);
-  const auto first = d.agent.command(), second = d.agent.command();
+  const auto first = d.agent.command(at_s(1)), second = d.agent.command(at_s(1));
   CHECK(first.has_fix());
   CHECK(first.fix().x_m() == 0.001);
   CHECK_FALSE(first.has_version());
@@ -98,9 +99,9 @@ TEST_CASE("a sight is forwarded to the robot once") {
 
 TEST_CASE("goals are visited in order, and the robot turns to a goal's heading") {
   Driven d;
-  CHECK(d.agent.status().goal_index() == 0);
-  CHECK(d.agent.status().distance_to_go_m() == Approx(1));
-  CHECK(d.agent.command().heading_rad() == 0);
+  CHECK(d.agent.status(at_s(1)).goal_index() == 0);
+  CHECK(d.agent.status(at_s(1)).distance_to_go_m() == Approx(1));
+  CHECK(d.agent.command(at_s(1)).heading_rad() == 0);
   Agent fresh(d.scenario, 3, kSelf);
   msg::Feedback at_goal;
   at_goal.robot(3);
@@ -109,9 +110,9 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
   at_goal.x_m(1);
   at_goal.executing(encode(Version{3, 0, 0, 0, Trajectory::resting(at_s(1), {1, 0})}));
   fresh.on_feedback(at_goal);
-  CHECK(fresh.status().goal_index() == 1);
-  CHECK(fresh.status().distance_to_go_m() == Approx(1));
-  CHECK(fresh.command().heading_rad() == 1.5);
+  CHECK(fresh.status(at_s(1)).goal_index() == 1);
+  CHECK(fresh.status(at_s(1)).distance_to_go_m() == Approx(1));
+  CHECK(fresh.command(at_s(1)).heading_rad() == 1.5);
 }
 
 TEST_CASE("a robot whose held version ends at its goal has nothing to propose") {
@@ -127,12 +128,12 @@ TEST_CASE("a robot whose held version ends at its goal has nothing to propose") 
   msg::CoordinatorState state;
   state.epoch(7);
   state.coordinator_phase(msg::COORDINATOR_GRANTING);
-  agent.on_coordinator_state(state);
+  agent.on_coordinator_state(state, at_s(0.6));
   (void)agent.negotiation().registration();
   msg::WorldState world;
   world.robots().emplace_back().robot(3);
   world.robots()[0].seen_at_ns(to_ns(at_s(0.6)));
   agent.on_world(world, at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
-  CHECK(agent.status().agent_phase() == msg::AGENT_ARRIVED);
+  CHECK(agent.status(at_s(1)).agent_phase() == msg::AGENT_ARRIVED);
 }

@@ -16,11 +16,12 @@ constexpr Epoch kEpoch = 50;
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf) {
+msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf, Epoch epoch = kEpoch) {
   msg::Feedback feedback;
   feedback.robot(kRobot);
   feedback.at_ns(to_ns(at_s(at)));
   feedback.obeyed_incarnation(obeyed);
+  feedback.obeyed_epoch(epoch);
   feedback.executing(encode(executing));
   return feedback;
 }
@@ -34,14 +35,14 @@ msg::CoordinatorState life_sign(Epoch epoch, const std::vector<std::uint32_t>& m
 }
 
 struct Driver {
-  Negotiation n{kRobot, kSelf};
+  Negotiation n{kRobot, kSelf, from_seconds(1.0 / 60)};
   Version stand{kRobot, 0, 0, 0, Trajectory::resting(at_s(0), {0, 0})};
 
   void become_ready() {
     n.on_feedback(fact(stand, 0.5));
-    n.on_coordinator_state(life_sign(kEpoch));
+    n.on_coordinator_state(life_sign(kEpoch), at_s(0.9));
     (void)n.registration();
-    REQUIRE(n.may_propose());
+    REQUIRE(n.may_propose(at_s(0.95)));
   }
   msg::Proposal propose(double start, double now) {
     const Version& base = n.base_at(at_s(start));
@@ -67,29 +68,29 @@ TEST_CASE("an agent is silent until its robot has acknowledged it and the coordi
   CHECK_FALSE(d.n.is_fenced());
   d.n.on_feedback(fact(d.stand, 0.1, kSelf - 1));
   CHECK_FALSE(d.n.is_fenced());
-  d.n.on_coordinator_state(life_sign(kEpoch, {kRobot}));
+  d.n.on_coordinator_state(life_sign(kEpoch, {kRobot}), at_s(0.9));
   CHECK_FALSE(d.n.needs_registration());
   d.n.on_feedback(fact(d.stand, 0.2));
   CHECK(d.n.is_fenced());
   CHECK(d.n.needs_registration());
   CHECK(d.n.registration().version_count() == 1);
   CHECK(d.n.needs_registration());
-  d.n.on_coordinator_state(life_sign(kEpoch, {7}));
+  d.n.on_coordinator_state(life_sign(kEpoch, {7}), at_s(0.9));
   CHECK_FALSE(d.n.needs_registration());
-  CHECK_FALSE(d.n.may_propose());
-  d.n.on_coordinator_state(life_sign(kEpoch));
-  CHECK(d.n.may_propose());
+  CHECK_FALSE(d.n.may_propose(at_s(0.95)));
+  d.n.on_coordinator_state(life_sign(kEpoch), at_s(0.9));
+  CHECK(d.n.may_propose(at_s(0.95)));
 }
 
 TEST_CASE(
     "an agent registers although the coordinator knows its robot from an earlier agent, until it is heard") {
   Driver d;
   d.n.on_feedback(fact(d.stand, 0.5));
-  d.n.on_coordinator_state(life_sign(kEpoch));
+  d.n.on_coordinator_state(life_sign(kEpoch), at_s(0.9));
   CHECK(d.n.needs_registration());
-  CHECK_FALSE(d.n.may_propose());
+  CHECK_FALSE(d.n.may_propose(at_s(0.95)));
   (void)d.n.registration();
-  CHECK(d.n.may_propose());
+  CHECK(d.n.may_propose(at_s(0.95)));
   msg::Verdict refusal;
   refusal.robot(kRobot);
   refusal.epoch(kEpoch);
@@ -117,17 +118,80 @@ TEST_CASE("a late verdict leaves the robot braking") {
   const auto proposal = d.propose(1.0, 0.9);
   CHECK_FALSE(d.grant(proposal, 1.0));
   CHECK(d.n.base_at(at_s(1.2)).number == 0);
+  d.n.close_cycle(at_s(1.0));
   CHECK(d.n.counts().missed == 1);
 }
 
-TEST_CASE("a verdict is obeyed once, and only if it answers what was asked last") {
+TEST_CASE("a verdict is obeyed once, and of several grants for one start only the first is") {
   Driver d;
   d.become_ready();
-  const auto old = d.propose(1.0, 0.9), current = d.propose(1.1, 0.95);
-  CHECK_FALSE(d.grant(old, 0.96));
-  CHECK_FALSE(d.grant(current, 0.96, kEpoch - 1));
-  CHECK(d.grant(current, 0.96));
-  CHECK_FALSE(d.grant(current, 0.97));
+  const auto first = d.propose(1.0, 0.9), again = d.propose(1.0, 0.93);
+  CHECK_FALSE(d.grant(again, 0.96, kEpoch - 1));
+  CHECK(d.grant(first, 0.96));
+  CHECK_FALSE(d.grant(first, 0.97));
+  CHECK_FALSE(d.grant(again, 0.97));
+  CHECK(d.n.registration().version_count() == 2);
+}
+
+TEST_CASE("what was not answered is asked again while there is time, and not for ever") {
+  Driver d;
+  d.become_ready();
+  (void)d.propose(2.0, 1.0);
+  CHECK_FALSE(d.n.unanswered_start(at_s(1.01)));
+  CHECK(d.n.unanswered_start(at_s(1.02)) == at_s(2.0));
+  CHECK_FALSE(d.n.unanswered_start(at_s(1.99)));
+  for (int i = 1; i < 4; ++i) (void)d.propose(2.0, 1.0 + 0.1 * i);
+  CHECK_FALSE(d.n.unanswered_start(at_s(1.8)));
+}
+
+TEST_CASE("a coordinator that has fallen silent is not asked") {
+  Driver d;
+  d.become_ready();
+  CHECK(d.n.may_propose(at_s(1.3)));
+  CHECK_FALSE(d.n.may_propose(at_s(1.5)));
+  d.n.on_coordinator_state(life_sign(kEpoch), at_s(1.6));
+  CHECK(d.n.may_propose(at_s(1.7)));
+}
+
+TEST_CASE("a new agent learns from its robot which epoch it has obeyed, and ignores lower ones") {
+  Driver d;
+  d.n.on_feedback(fact(d.stand, 0.5, kSelf, kEpoch));
+  d.n.on_coordinator_state(life_sign(kEpoch - 10), at_s(0.6));
+  CHECK(d.n.epoch() == kEpoch);
+  CHECK_FALSE(d.n.may_propose(at_s(0.7)));
+  CHECK(d.n.registration().epoch() == kEpoch);
+}
+
+TEST_CASE("an agent registers in an epoch only once its robot has acknowledged it") {
+  Driver d;
+  d.n.on_feedback(fact(d.stand, 0.5, kSelf, 0));
+  d.n.on_coordinator_state(life_sign(kEpoch, {kRobot}), at_s(0.6));
+  CHECK(d.n.epoch() == kEpoch);
+  CHECK_FALSE(d.n.needs_registration());
+  d.n.on_feedback(fact(d.stand, 0.7, kSelf, kEpoch));
+  CHECK(d.n.needs_registration());
+}
+
+TEST_CASE("a coordinator with a slow clock is told how far epochs have come, unless a later one is alive") {
+  Driver d;
+  d.become_ready();
+  d.n.on_coordinator_state(life_sign(kEpoch - 1), at_s(1.0));
+  CHECK_FALSE(d.n.needs_registration());
+  d.n.on_coordinator_state(life_sign(kEpoch - 1), at_s(2.0));
+  CHECK(d.n.needs_registration());
+  CHECK(d.n.registration().epoch() == kEpoch);
+}
+
+TEST_CASE("an agent whose clock is behind an earlier one's begins above it, and yields once it was obeyed") {
+  Driver d;
+  d.n.on_feedback(fact(d.stand, 0.5, 5000));
+  CHECK_FALSE(d.n.is_superseded());
+  const Incarnation risen = d.n.incarnation();
+  CHECK(risen > 5000);
+  d.n.on_feedback(fact(d.stand, 0.6, risen));
+  CHECK(d.n.is_fenced());
+  d.n.on_feedback(fact(d.stand, 0.7, risen + 1));
+  CHECK(d.n.is_superseded());
 }
 
 TEST_CASE("a verdict that grants what nobody proposed is not forwarded") {
@@ -149,11 +213,12 @@ TEST_CASE(
   d.become_ready();
   const auto forwarded = d.grant(d.propose(1.0, 0.9), 0.95);
   const auto outstanding = d.propose(1.05, 1.0);
-  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}));
+  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}), at_s(0.9));
   CHECK_FALSE(d.grant(outstanding, 1.01));
   CHECK_FALSE(d.grant(outstanding, 1.01, kEpoch + 1));
+  d.n.on_feedback(fact(d.stand, 0.99, kSelf, kEpoch + 1));
   CHECK(d.n.needs_registration());
-  d.n.on_coordinator_state(life_sign(kEpoch));
+  d.n.on_coordinator_state(life_sign(kEpoch), at_s(0.9));
   CHECK(d.n.needs_registration());
   const auto registration = d.n.registration();
   CHECK(registration.epoch() == kEpoch + 1);
@@ -167,7 +232,7 @@ TEST_CASE("what facts have excluded is not registered any more") {
   d.become_ready();
   const auto forwarded = d.grant(d.propose(1.0, 0.9), 0.95);
   d.n.on_feedback(fact(*forwarded, 1.01));
-  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}));
+  d.n.on_coordinator_state(life_sign(kEpoch + 1, {kRobot}), at_s(0.9));
   const auto registration = d.n.registration();
   REQUIRE(registration.version_count() == 1);
   CHECK(registration.versions()[0].version_number() == forwarded->number);
@@ -203,7 +268,7 @@ TEST_CASE("an agent that a later one has fenced off falls silent") {
   const auto proposal = d.propose(1.0, 0.9);
   d.n.on_feedback(fact(d.stand, 0.92, kSelf + 1));
   CHECK(d.n.is_superseded());
-  CHECK_FALSE(d.n.may_propose());
+  CHECK_FALSE(d.n.may_propose(at_s(0.95)));
   CHECK_FALSE(d.n.needs_registration());
   CHECK_FALSE(d.grant(proposal, 0.95));
 }
@@ -219,7 +284,7 @@ TEST_CASE("version numbers grow over lives and candidates") {
   }
   CHECK(last < kSelf + 100);
   // The robot executes a version of a later number: a clock went back.
-  Negotiation other(kRobot, kSelf);
+  Negotiation other(kRobot, kSelf, from_seconds(1.0 / 60));
   Version ahead = d.stand;
   ahead.number = 5000;
   other.on_feedback(fact(ahead, 0.5));

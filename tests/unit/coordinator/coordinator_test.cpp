@@ -112,14 +112,39 @@ TEST_CASE("a coordinator that hears of a higher one falls silent") {
 TEST_CASE("a coordinator whose clock is behind begins above the epoch that agents have obeyed") {
   Floor floor;
   floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 50));
-  CHECK(floor.coordinator.epoch() == kEpoch + 51);
+  const Epoch risen = floor.coordinator.epoch();
+  CHECK(risen > kEpoch + 50);
   CHECK(floor.coordinator.state().missing().size() == 2);
-  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 51));
-  floor.coordinator.on_registration(registration_of(floor.b, kEpoch + 51));
+  floor.coordinator.on_registration(registration_of(floor.a, risen));
+  floor.coordinator.on_registration(registration_of(floor.b, risen));
   CHECK(floor.coordinator.is_granting());
-  // Once it grants, nobody makes it begin again.
-  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 90, 5));
-  CHECK(floor.coordinator.epoch() == kEpoch + 51);
+  // Once it grants, an agent that obeys a later coordinator shows that it has been superseded.
+  floor.coordinator.on_registration(registration_of(floor.a, risen + 90, 5));
+  CHECK(floor.coordinator.is_superseded());
+  CHECK(floor.coordinator.epoch() == risen);
+}
+
+TEST_CASE("two coordinators never share an epoch") {
+  Coordinator one(floor_for_tests(), {1, 2}, 100), two(floor_for_tests(), {1, 2}, 101);
+  const auto registration = registration_of(standing(1, {0, 0}), 500);
+  one.on_registration(registration);
+  two.on_registration(registration);
+  CHECK(one.epoch() != two.epoch());
+  // Should it happen all the same, the later life wins.
+  msg::CoordinatorState twin = one.state();
+  twin.head().incarnation(101);
+  one.on_coordinator_state(twin);
+  CHECK(one.is_superseded());
+}
+
+TEST_CASE("a registration that names one version twice is refused") {
+  Floor floor;
+  auto registration = registration_of(floor.a, kEpoch);
+  registration.version_count(2);
+  registration.versions()[1] = encode(standing(1, {1, 1}));
+  floor.coordinator.on_registration(registration);
+  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(floor.coordinator.state().invalid() == 1);
 }
 
 TEST_CASE("a fact from a robot frees the places that it has left") {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/pace.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+// Half a second ahead is as far as it goes.
+constexpr int kLongestLead = 30;
+constexpr int kMostSpare = 6;
+// One version that comes too late is bad luck, two in a row are a bad network.
+constexpr int kLateToSpare = 2;
+constexpr int kTakenToTrust = 10;
+
+}  // namespace
+
+void Pace::on_round_trip(Duration duration) {
+  round_trips_[count_++ % kRoundTrips] = duration;
+  update();
+}
+
+void Pace::on_taken() {
+  late_in_a_row_ = 0;
+  if (++taken_in_a_row_ < kTakenToTrust) return;
+  taken_in_a_row_ = 0;
+  spare_ = std::max(0, spare_ - 1);
+  update();
+}
+
+void Pace::on_late() {
+  taken_in_a_row_ = 0;
+  if (++late_in_a_row_ < kLateToSpare) return;
+  late_in_a_row_ = 0;
+  spare_ = std::min(kMostSpare, spare_ + 1);
+  update();
+}
+
+void Pace::reset() { *this = Pace(cycle_); }
+
+Duration Pace::slow_round_trip() const {
+  const std::size_t count = std::min(count_, kRoundTrips);
+  if (count == 0) return Duration{0};
+  auto sorted = round_trips_;
+  const std::size_t place = count - 1 - count / 8;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
+                   sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  return sorted[place];
+}
+
+Duration Pace::patience() const { return std::max(cycle_, slow_round_trip()); }
+
+void Pace::update() {
+  // The command to the robot takes half a round trip more.
+  const Duration needed = slow_round_trip() + slow_round_trip() / 2;
+  const auto cycles =
+      static_cast<int>(std::min<std::int64_t>(kLongestLead, (needed + cycle_ - Duration{1}) / cycle_));
+  lead_ = std::min(std::max(1, cycles) + spare_, kLongestLead);
+}
+
+}  // namespace sidestep
