@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 namespace sidestep {
@@ -59,11 +58,16 @@ bool LaunchedRun::printed(const std::string& words) const {
 }
 
 std::map<std::string, pid_t> LaunchedRun::children() const {
+  // Lines such as "run: started agent 3 again as pid 1234".
+  const std::string started = "started ", as_pid = " as pid ", again = " again";
   std::map<std::string, pid_t> result;
-  const std::string text = output();
-  const std::regex started("started (.+?)( again)? as pid ([0-9]+)");
-  for (auto i = std::sregex_iterator(text.begin(), text.end(), started); i != std::sregex_iterator(); ++i) {
-    result[(*i)[1]] = std::stoi((*i)[3]);
+  std::istringstream lines(output());
+  for (std::string line; std::getline(lines, line);) {
+    const auto begin = line.find(started), end = line.find(as_pid);
+    if (begin == std::string::npos || end == std::string::npos) continue;
+    std::string name = line.substr(begin + started.size(), end - begin - started.size());
+    if (name.ends_with(again)) name.resize(name.size() - again.size());
+    result[name] = std::stoi(line.substr(end + as_pid.size()));
   }
   return result;
 }

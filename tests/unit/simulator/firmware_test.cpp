@@ -148,6 +148,37 @@ TEST_CASE("a new incarnation may not forward an older one's version") {
   CHECK(robot.counts().refused_fenced == 1);
 }
 
+TEST_CASE(
+    "a version under an older epoch is refused, whoever forwards it, and the robot says which epoch it "
+    "obeys") {
+  auto robot = firmware();
+  auto later = bare_command(kRobot, kFirst);
+  later.epoch(9);
+  robot.on_command(later, at(1));
+  CHECK(robot.feedback(at(2)).obeyed_epoch() == 9);
+  auto old = command_with(version(101, 0, 20, kFirst));
+  old.epoch(8);
+  robot.on_command(old, at(3));
+  auto heir = command_with(version(201, 0, 20, kSecond));
+  heir.epoch(8);
+  robot.on_command(heir, at(4));
+  const auto facts = robot.feedback(at(30));
+  CHECK(facts.executing().version_number() == 0);
+  CHECK(facts.obeyed_epoch() == 9);
+  // The heir is obeyed, as far as it is not behind the times.
+  CHECK(facts.obeyed_incarnation() == kSecond);
+  CHECK(facts.refused_fenced() == 2);
+}
+
+TEST_CASE("an agent that is fenced off cannot raise the epoch") {
+  auto robot = firmware();
+  robot.on_command(bare_command(kRobot, kSecond), at(1));
+  auto zombie = bare_command(kRobot, kFirst);
+  zombie.epoch(9);
+  robot.on_command(zombie, at(2));
+  CHECK(robot.feedback(at(3)).obeyed_epoch() == 0);
+}
+
 TEST_CASE("a new incarnation goes on from what the robot executes") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
