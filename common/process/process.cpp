@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <fmt/core.h>
+#include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/stop_signals.hpp"
@@ -47,6 +48,9 @@ int run_process(int argc, char** argv, const Program& program) {
     bus.run();
     return 0;
   } catch (const ScenarioError& error) {
+    fmt::print(stderr, "{}: {}\n", program.name, error.what());
+    return kExitUsage;
+  } catch (const std::invalid_argument& error) {
     fmt::print(stderr, "{}: {}\n", program.name, error.what());
     return kExitUsage;
   } catch (const std::exception& error) {

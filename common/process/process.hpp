@@ -27,7 +27,8 @@ struct Program {
   std::function<void(CLI::App&)> add_options;
   /// The name that listeners see, called once the options are parsed, e.g. agent-3. Empty: `name`.
   std::function<std::string()> participant;
-  /// Makes the nodes on the bus. What it returns lives until the bus has stopped. May throw.
+  /// Makes the nodes on the bus. What it returns lives until the bus has stopped. May throw;
+  /// std::invalid_argument for an option that does not fit the scenario.
   std::function<std::shared_ptr<void>(Bus&, const Scenario&)> start;
 };
 

@@ -13,6 +13,7 @@
 #include "common/messaging/dds_bus.hpp"
 #include "common/messaging/event_loop.hpp"
 #include "common/random/rng.hpp"
+#include "tests/own_domain.hpp"
 
 namespace sidestep {
 
@@ -22,7 +23,8 @@ inline constexpr Duration kStep{2'000'000};
 
 /// A domain of this test process's own, on the loopback interface.
 inline DdsSettings test_settings(const std::string& participant = "test") {
-  return {10 + static_cast<int>(getpid() % 80), "127.0.0.1", participant};
+  static const OwnDomain domain;
+  return domain.settings(participant);
 }
 
 /// Runs the buses in turn until the condition holds; false when it does not before the deadline.
