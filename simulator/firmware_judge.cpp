@@ -7,7 +7,8 @@ namespace sidestep {
 
 void FirmwareJudge::command_arrived(const msg::Command& command, Time now) {
   const auto& granted = command.granted();
-  if (!command.has_version() || granted.start_ns() <= to_ns(now)) return;
+  const bool is_old_epoch = command.epoch() < acknowledged_epoch_;
+  if (!command.has_version() || is_old_epoch || granted.start_ns() <= to_ns(now)) return;
   const Arrival arrival{granted.version_number(), granted.base(), granted.incarnation(),
                         time_from_ns(granted.start_ns())};
   if (arrival.number <= newest_ && came_in_time(arrival)) return;
@@ -39,9 +40,10 @@ void FirmwareJudge::switched(const Version& to) {
 
 void FirmwareJudge::reported(const msg::Feedback& fact) {
   require(fact.executing().version_number() == executing_.number);
-  require(fact.obeyed_incarnation() >= acknowledged_);
+  require(fact.obeyed_incarnation() >= acknowledged_ && fact.obeyed_epoch() >= acknowledged_epoch_);
   require(executing_.trajectory.start() <= time_from_ns(fact.at_ns()));
   acknowledged_ = std::max(acknowledged_, static_cast<Incarnation>(fact.obeyed_incarnation()));
+  acknowledged_epoch_ = std::max(acknowledged_epoch_, static_cast<Epoch>(fact.obeyed_epoch()));
   last_fact_ = std::max(last_fact_, time_from_ns(fact.at_ns()));
 }
 

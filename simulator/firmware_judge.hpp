@@ -37,6 +37,7 @@ class FirmwareJudge {
 
   Version executing_;
   Incarnation acknowledged_ = 0;  ///< highest that a fact has named
+  Epoch acknowledged_epoch_ = 0;
   Time last_fact_ = Time::min();
   std::array<Arrival, 64> arrivals_{};  ///< ring, of versions that came before their start
   std::uint64_t arrival_count_ = 0;
