@@ -120,7 +120,8 @@ class Launcher {
   bool is_start_over() {
     const bool all_started = agents_started_ == scenario_.robots.size();
     const auto silent = judge_.silent_agents();
-    is_ready_ = all_started && silent.empty() && judge_.truth_seen() && judge_.granting_since();
+    // It grants only once every agent has registered, so nobody has to wait for their statuses too.
+    is_ready_ = all_started && judge_.truth_seen() && judge_.granting_since();
     if (is_ready_) say("all processes are up, the coordinator grants");
     if (is_ready_ || !all_started || bus_.now() < last_start_ + kStartDeadline) return false;
     failure_ = fmt::format("not ready after {} s:", to_seconds(kStartDeadline));
