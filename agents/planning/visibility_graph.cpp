@@ -30,14 +30,14 @@ VisibilityGraph::VisibilityGraph(const std::vector<Circle>& obstacles, const Fie
   for (const Circle& obstacle : obstacles)
     discs_.push_back({obstacle.centre_m, obstacle.radius_m + radius_m + keep_m});
   corners_.push_back({goal_m, 0});
-  place_corners(field, radius_m, kStandOff_m);
-  measure(goal_m);
+  place_corners(field, radius_m);
+  measure();
 }
 
-void VisibilityGraph::place_corners(const Field& field, double radius_m, double room_m) {
+void VisibilityGraph::place_corners(const Field& field, double radius_m) {
   for (const Circle& disc : discs_) {
     // The polygon's edges touch the disc that stands off, its corners lie further out.
-    const double out = (disc.radius_m + room_m) / std::cos(kPi / kCornersPerDisc);
+    const double out = (disc.radius_m + kStandOff_m) / std::cos(kPi / kCornersPerDisc);
     for (int i = 0; i < kCornersPerDisc; ++i) {
       const double angle = 2 * kPi * i / kCornersPerDisc;
       const Vec2 corner = disc.centre_m + out * Vec2(std::cos(angle), std::sin(angle));
@@ -51,8 +51,7 @@ void VisibilityGraph::place_corners(const Field& field, double radius_m, double 
   }
 }
 
-void VisibilityGraph::measure(const Vec2& goal_m) {
-  corners_.front() = {goal_m, 0};
+void VisibilityGraph::measure() {
   std::vector<bool> done(corners_.size(), false);
   for (std::size_t round = 0; round < corners_.size(); ++round) {
     std::size_t nearest = corners_.size();

@@ -35,8 +35,9 @@ class VisibilityGraph {
     Vec2 position_m;
     double to_goal_m;  // infinity: no way
   };
-  void place_corners(const Field& field, double radius_m, double room_m);
-  void measure(const Vec2& goal_m);
+  void place_corners(const Field& field, double radius_m);
+  /// Dijkstra from the goal.
+  void measure();
 
   std::vector<Circle> discs_;    // grown: the centre stays out of them
   std::vector<Corner> corners_;  // the goal is the first
