@@ -10,7 +10,7 @@ struct PassingSettings {
   double fade_from_m = 3.0;  ///< nearer to the goal than this the angle shrinks in proportion to the distance
   double slow_mps = 0.3;     ///< a robot that is kept from what it wishes and slower than this is blocked
   double evade_rate_radps = 3.0;  ///< how fast it turns farther right while blocked, and back when it is free
-  double evade_most_rad = 1.5;
+  double evade_most_rad = 2.4;
 };
 
 /// A common preference to pass on the right: whoever meets evades to the same side, so that swaps do not
