@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 namespace sidestep {
 
@@ -11,7 +10,6 @@ enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
   kSimulator = 30000,
-  kMonitor = 40000,
 };
 
 }  // namespace sidestep

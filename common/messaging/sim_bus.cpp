@@ -89,10 +89,7 @@ void SimNetwork::send(const TopicInfo& topic, Channel& channel, const void* mess
 
 void SimNetwork::deliver(const std::shared_ptr<Reader>& reader, Time when,
                          const std::shared_ptr<const void>& message) {
-  schedule(when, reader->alive, [this, reader, message] {
-    ++delivered_;
-    reader->callback(message.get());
-  });
+  schedule(when, reader->alive, [reader, message] { reader->callback(message.get()); });
 }
 
 }  // namespace sidestep

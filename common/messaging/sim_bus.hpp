@@ -54,9 +54,6 @@ class SimNetwork {
     while (step(limit)) {
     }
   }
-  /// Changes the faults from now on.
-  void set_network(const NetworkSpec& network) { spec_ = network; }
-  std::uint64_t delivered() const { return delivered_; }
 
  private:
   friend class SimBus;
@@ -90,7 +87,6 @@ class SimNetwork {
   Time now_;
   NetworkSpec spec_;
   std::uint64_t order_ = 0;
-  std::uint64_t delivered_ = 0;
   std::priority_queue<Event, std::vector<Event>, Later> events_;
   std::map<std::string, std::unique_ptr<Channel>> channels_;
 };
