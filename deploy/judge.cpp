@@ -126,7 +126,7 @@ void Judge::on_truth(const msg::GroundTruth& truth) {
 void Judge::on_status(const msg::AgentStatus& status) {
   Watched* robot = find(status.robot());
   const bool is_phase = status.agent_phase() >= msg::AgentPhase::AGENT_FENCING &&
-                        status.agent_phase() <= msg::AgentPhase::AGENT_ARRIVED;
+                        status.agent_phase() <= msg::AgentPhase::AGENT_ABSENT;
   msg::AgentStatus* life = robot && is_phase ? slot_for(robot->lives, status.head()) : nullptr;
   if (life)
     *life = status;

@@ -28,6 +28,10 @@ const char* name_of(const RobotProgress& row) {
       return "driving";
     case msg::AgentPhase::AGENT_ARRIVED:
       return "settling";
+    case msg::AgentPhase::AGENT_OFF_CLOCK:
+      return "off clock";
+    case msg::AgentPhase::AGENT_ABSENT:
+      return "absent";
   }
   return "?";
 }

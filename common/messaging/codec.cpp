@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLargestPosition_m = 1e4;
 constexpr double kLargestSpeed_mps = 100;
+constexpr double kLargestGrowth_m = 10;
 constexpr double kLargestAcceleration_mps2 = 1000;
 constexpr Duration kLongestPhase = std::chrono::minutes(1);
 constexpr std::int64_t kLatestStart_ns = std::int64_t{1} << 62;
@@ -29,7 +30,8 @@ std::optional<Version> decode(const msg::Version& message) {
                      message.start_ns() >= 0 && message.start_ns() <= kLatestStart_ns &&
                      within(message.x_m(), kLargestPosition_m) && within(message.y_m(), kLargestPosition_m) &&
                      within(message.vx_mps(), kLargestSpeed_mps) &&
-                     within(message.vy_mps(), kLargestSpeed_mps);
+                     within(message.vy_mps(), kLargestSpeed_mps) && message.grown_m() >= 0 &&
+                     message.grown_m() <= kLargestGrowth_m;
   if (!sound) return std::nullopt;
   Trajectory trajectory(time_from_ns(message.start_ns()),
                         {{message.x_m(), message.y_m()}, {message.vx_mps(), message.vy_mps()}});
@@ -39,7 +41,7 @@ std::optional<Version> decode(const msg::Version& message) {
     trajectory.append(Duration{phase.duration_ns()}, {phase.ax_mps2(), phase.ay_mps2()});
   }
   return Version{message.robot(), message.incarnation(), message.version_number(), message.base(),
-                 trajectory};
+                 trajectory,      message.grown_m()};
 }
 
 msg::Version encode(const Version& version) {
@@ -54,6 +56,7 @@ msg::Version encode(const Version& version) {
   message.y_m(trajectory.at_start().position_m.y());
   message.vx_mps(trajectory.at_start().velocity_mps.x());
   message.vy_mps(trajectory.at_start().velocity_mps.y());
+  message.grown_m(version.grown_m);
   message.phase_count(static_cast<std::uint8_t>(trajectory.phases().size()));
   auto slot = message.phases().begin();
   for (const Phase& phase : trajectory.phases()) {

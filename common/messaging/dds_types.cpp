@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "idl/disturbancePubSubTypes.h"
 #include "idl/monitorPubSubTypes.h"
 #include "idl/negotiationPubSubTypes.h"
 #include "idl/robotPubSubTypes.h"
@@ -52,6 +53,8 @@ constexpr GeneratedType kGeneratedTypes[] = {
     {"sidestep::msg::LedgerPage", make_generated<msg::LedgerPagePubSubType>},
     {"sidestep::msg::CoordinatorState", make_generated<msg::CoordinatorStatePubSubType>},
     {"sidestep::msg::AgentStatus", make_generated<msg::AgentStatusPubSubType>},
+    {"sidestep::msg::Disturbance", make_generated<msg::DisturbancePubSubType>},
+    {"sidestep::msg::NetworkFault", make_generated<msg::NetworkFaultPubSubType>},
     {"sidestep::msg::GroundTruth", make_generated<msg::GroundTruthPubSubType>},
 };
 

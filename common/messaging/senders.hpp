@@ -10,6 +10,7 @@ enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
   kSimulator = 30000,
+  kOperator = 40000,
 };
 
 }  // namespace sidestep

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/disturbance.h"
 #include "idl/monitor.h"
 #include "idl/negotiation.h"
 #include "idl/robot.h"
@@ -76,6 +77,10 @@ inline constexpr Topic<msg::CoordinatorState> kCoordinator{
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", "agent", Qos::kState, false, message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
+inline constexpr Topic<msg::Disturbance> kDisturbance{
+    {"disturbance", "fault", Qos::kEvent, false, message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
+inline constexpr Topic<msg::NetworkFault> kNetworkFault{
+    {"network_fault", "fault", Qos::kEvent, false, message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
 /// For judges only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", "simulator", Qos::kState, false, message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024)}};

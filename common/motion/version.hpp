@@ -27,6 +27,8 @@ struct Version {
   VersionNumber number = 0;
   VersionNumber base = 0;
   Trajectory trajectory;
+  /// How much larger than its radius the robot has to be taken: where it was measured off its reference.
+  double grown_m = 0;
 };
 
 }  // namespace sidestep

@@ -21,11 +21,13 @@ Json word(Enum value, const char* const (&words)[kCount]) {
 }
 
 constexpr const char* kReasons[] = {
-    "granted",         "not tried",     "malformed",    "wrong epoch",    "not all registered",
-    "old incarnation", "old version",   "base unknown", "not continuous", "beyond limits",
-    "not at rest",     "outside field", "obstacle",     "conflict",       "ledger full"};
-constexpr const char* kCoordinatorPhases[] = {"registering", "granting"};
-constexpr const char* kAgentPhases[] = {"fencing", "registering", "waiting", "driving", "arrived"};
+    "granted",     "not tried",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
+    "old version", "base unknown", "not continuous", "beyond limits", "not at rest",        "outside field",
+    "obstacle",    "conflict",     "ledger full",    "absent"};
+constexpr const char* kCoordinatorPhases[] = {"standby", "registering", "granting"};
+constexpr const char* kAgentPhases[] = {"fencing", "registering", "waiting", "driving",
+                                        "arrived", "off clock",   "absent"};
+constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
 
 template <typename Range, typename Describe>
 Json list(const Range& range, std::size_t count, Describe describe_one) {
@@ -61,6 +63,7 @@ Json version(const msg::Version& m) {
           {"y_m", m.y_m()},
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
+          {"grown_m", m.grown_m()},
           {"phase_count", m.phase_count()},
           {"phases", list(m.phases(), m.phase_count(), phase)}};
 }
@@ -87,11 +90,16 @@ Json describe(const msg::DetectionFrame& m) {
             {"heading_rad", r.heading_rad()},
             {"confidence", r.confidence()}};
   };
+  const auto obstacle = [](const msg::ObstacleDetection& o) -> Json {
+    return {{"x_m", o.x_m()}, {"y_m", o.y_m()}, {"radius_m", o.radius_m()}};
+  };
   return {{"camera", m.camera()},
           {"head", head(m.head())},
           {"captured_at_ns", m.captured_at_ns()},
           {"ball_count", m.ball_count()},
           {"balls", list(m.balls(), m.ball_count(), ball)},
+          {"obstacle_count", m.obstacle_count()},
+          {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
           {"robots", list(m.robots(), robot)}};
 }
 
@@ -111,6 +119,12 @@ Json describe(const msg::WorldState& m) {
             {"seen_y_m", r.seen_y_m()},
             {"seen_heading_rad", r.seen_heading_rad()}};
   };
+  const auto obstacle = [](const msg::TrackedObstacle& o) -> Json {
+    return {{"obstacle", o.obstacle()}, {"seen_at_ns", o.seen_at_ns()},
+            {"x_m", o.x_m()},           {"y_m", o.y_m()},
+            {"vx_mps", o.vx_mps()},     {"vy_mps", o.vy_mps()},
+            {"radius_m", o.radius_m()}, {"position_variance_m2", o.position_variance_m2()}};
+  };
   const msg::TrackedBall& b = m.ball();
   const Json ball = {{"is_visible", b.is_visible()},
                      {"x_m", b.x_m()},
@@ -123,6 +137,8 @@ Json describe(const msg::WorldState& m) {
           {"frames", m.frames()},
           {"rejected", m.rejected()},
           {"ball", ball},
+          {"obstacle_count", m.obstacle_count()},
+          {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
           {"robots", list(m.robots(), robot)}};
 }
 
@@ -149,6 +165,10 @@ Json describe(const msg::Feedback& m) {
           {"obeyed_epoch", m.obeyed_epoch()},
           {"at_ns", m.at_ns()},
           {"executing", version(m.executing())},
+          {"is_off_reference", m.is_off_reference()},
+          {"is_lifted", m.is_lifted()},
+          {"heard_stamp_ns", m.heard_stamp_ns()},
+          {"heard_at_ns", m.heard_at_ns()},
           {"x_m", m.x_m()},
           {"y_m", m.y_m()},
           {"vx_mps", m.vx_mps()},
@@ -166,6 +186,7 @@ Json describe(const msg::Registration& m) {
   return {{"robot", m.robot()},
           {"head", head(m.head())},
           {"epoch", m.epoch()},
+          {"is_absent", m.is_absent()},
           {"version_count", m.version_count()},
           {"versions", list(m.versions(), m.version_count(), version)}};
 }
@@ -185,6 +206,7 @@ Json describe(const msg::Verdict& m) {
           {"head", head(m.head())},
           {"epoch", m.epoch()},
           {"proposal_number", m.proposal_number()},
+          {"asked_stamp_ns", m.asked_stamp_ns()},
           {"granted", m.granted()},
           {"reasons", list(m.reasons(), reason)},
           {"blockers", list(m.blockers(), robot)}};
@@ -207,6 +229,10 @@ Json describe(const msg::CoordinatorState& m) {
           {"grants", m.grants()},
           {"denials", m.denials()},
           {"invalid", m.invalid()},
+          {"conflicts", m.conflicts()},
+          {"conflict_first", m.conflict_first()},
+          {"conflict_second", m.conflict_second()},
+          {"absent", m.absent()},
           {"missing", m.missing()}};
 }
 
@@ -224,6 +250,9 @@ Json describe(const msg::AgentStatus& m) {
           {"grants", m.grants()},
           {"denials", m.denials()},
           {"invalid", m.invalid()},
+          {"clock_offset_s", m.clock_offset_s()},
+          {"clock_uncertainty_s", m.clock_uncertainty_s()},
+          {"off_reference", m.off_reference()},
           {"negotiation", quantiles(m.negotiation())},
           {"plan", quantiles(m.plan())},
           {"search", quantiles(m.search())}};
@@ -246,9 +275,40 @@ Json describe(const msg::GroundTruth& m) {
           {"penetration_m_s", m.penetration_m_s()},
           {"min_clearance_m", m.min_clearance_m()},
           {"firmware_violations", m.firmware_violations()},
+          {"crashes", m.crashes()},
+          {"moving_crashes", m.moving_crashes()},
+          {"crash_speed_mps", m.crash_speed_mps()},
+          {"robot_crash_speed_mps", m.robot_crash_speed_mps()},
           {"ball_x_m", m.ball_x_m()},
           {"ball_y_m", m.ball_y_m()},
           {"robots", list(m.robots(), robot)}};
+}
+
+Json describe(const msg::Disturbance& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"disturbance_kind", word(m.disturbance_kind(), kDisturbances)},
+          {"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"grip", m.grip()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"heading_rad", m.heading_rad()},
+          {"clock_offset_ns", m.clock_offset_ns()},
+          {"duration_ns", m.duration_ns()}};
+}
+
+Json describe(const msg::NetworkFault& m) {
+  return {{"target", m.target()},
+          {"head", head(m.head())},
+          {"seed", m.seed()},
+          {"loss", m.loss()},
+          {"mean_burst", m.mean_burst()},
+          {"duplicate", m.duplicate()},
+          {"delay_min_ns", m.delay_min_ns()},
+          {"delay_mean_ns", m.delay_mean_ns()},
+          {"delay_max_ns", m.delay_max_ns()},
+          {"is_cut", m.is_cut()}};
 }
 
 }  // namespace sidestep

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "idl/disturbance.h"
 #include "idl/monitor.h"
 #include "idl/negotiation.h"
 #include "idl/robot.h"
@@ -23,5 +24,7 @@ nlohmann::ordered_json describe(const msg::LedgerPage& m);
 nlohmann::ordered_json describe(const msg::CoordinatorState& m);
 nlohmann::ordered_json describe(const msg::AgentStatus& m);
 nlohmann::ordered_json describe(const msg::GroundTruth& m);
+nlohmann::ordered_json describe(const msg::Disturbance& m);
+nlohmann::ordered_json describe(const msg::NetworkFault& m);
 
 }  // namespace sidestep

@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 std::string idl_text() {
   std::ostringstream text;
-  for (const char* name : {"header", "trajectory", "robot", "negotiation", "vision", "monitor"}) {
+  for (const char* name :
+       {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor"}) {
     std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
     REQUIRE(file);
     text << file.rdbuf();
@@ -80,9 +81,11 @@ TEST_CASE("a description holds the members of each message that the IDL names, i
   const std::string idl = without_comments(idl_text());
   msg::DetectionFrame frame;
   frame.ball_count(1);
+  frame.obstacle_count(1);
   frame.robots().resize(1);
   msg::WorldState world;
   world.robots().resize(1);
+  world.obstacle_count(1);
   msg::GroundTruth truth;
   truth.robots().resize(1);
   msg::Feedback feedback;
@@ -92,6 +95,10 @@ TEST_CASE("a description holds the members of each message that the IDL names, i
   CHECK(keys(describe(frame)["head"]) == idl_members(idl, "Header"));
   CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
   CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
+  CHECK(keys(describe(frame)["obstacles"].at(0)) == idl_members(idl, "ObstacleDetection"));
+  CHECK(keys(describe(world)["obstacles"].at(0)) == idl_members(idl, "TrackedObstacle"));
+  CHECK(keys(describe(msg::Disturbance())) == idl_members(idl, "Disturbance"));
+  CHECK(keys(describe(msg::NetworkFault())) == idl_members(idl, "NetworkFault"));
   CHECK(keys(describe(world)) == idl_members(idl, "WorldState"));
   CHECK(keys(describe(world)["ball"]) == idl_members(idl, "TrackedBall"));
   CHECK(keys(describe(world)["robots"].at(0)) == idl_members(idl, "TrackedRobot"));
@@ -126,6 +133,11 @@ TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by
     msg::Verdict verdict;
     verdict.reasons()[0] = static_cast<msg::Reason>(value);
     return describe(verdict)["reasons"][0];
+  });
+  check("DisturbanceKind", "DISTURBANCE_", [](std::uint32_t value) -> std::string {
+    msg::Disturbance disturbance;
+    disturbance.disturbance_kind(static_cast<msg::DisturbanceKind>(value));
+    return describe(disturbance)["disturbance_kind"];
   });
   check("AgentPhase", "AGENT_", [](std::uint32_t value) -> std::string {
     msg::AgentStatus status;
