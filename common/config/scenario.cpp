@@ -5,6 +5,10 @@
 
 namespace sidestep {
 
+SafetyBudget budget_of(const Scenario& scenario) {
+  return {scenario.tracking_bound_m, scenario.clock_bound_s, scenario.limits.speed_mps};
+}
+
 const RobotSpec* find_robot(const Scenario& scenario, RobotId id) {
   const auto& robots = scenario.robots;
   const auto at = std::lower_bound(robots.begin(), robots.end(), id,

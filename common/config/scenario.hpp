@@ -8,6 +8,7 @@
 #include "common/geometry/circle.hpp"
 #include "common/geometry/field.hpp"
 #include "common/motion/limits.hpp"
+#include "common/motion/safety_budget.hpp"
 #include "common/motion/version.hpp"
 #include "common/time/time.hpp"
 
@@ -25,7 +26,16 @@ struct RobotSpec {
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;  ///< visited in order; at least one
+  std::vector<Goal> goals;   ///< visited in order; at least one
+  Duration clock_offset{0};  ///< the robot's clock is ahead of the host's by so much
+  bool is_absent = false;    ///< not on the floor at the beginning; start_m says where it believes to be
+};
+
+/// Somebody who moves on the floor without asking: an opponent, a person.
+struct OpponentSpec {
+  double radius_m = 0.09;
+  double speed_mps = 1;
+  std::vector<Vec2> way_m;  ///< at least one point; to and fro, or round when it ends where it begins
 };
 
 struct BallSpec {
@@ -73,10 +83,14 @@ struct Scenario {
   Field field;
   std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Circle> obstacles;
+  std::vector<OpponentSpec> opponents;
+  double opponent_speed_mps = 1.5;  ///< that no opponent exceeds, as agents assume
   std::optional<BallSpec> ball;
   MotionLimits limits;
   double radius_m = 0.09;
-  double margin_m = 0.01;
+  double margin_m = 0.01;  ///< at least what budget_of() needs
+  double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
+  double clock_bound_s = SafetyBudget{}.clock_bound_s;
   Duration cycle{16'666'667};
   double goal_tolerance_m = 0.02;
   double time_limit_s =
@@ -87,6 +101,8 @@ struct Scenario {
   NetworkSpec network;
   RestartSpec restart;
 };
+
+SafetyBudget budget_of(const Scenario& scenario);
 
 /// The robot with this id, or nullptr.
 const RobotSpec* find_robot(const Scenario& scenario, RobotId id);

@@ -36,6 +36,19 @@ struct Checker {
     }
   }
 
+  void clear_of_opponents(const Vec2& point, int line, const std::string& what) const {
+    for (const OpponentSpec& opponent : scenario.opponents) {
+      const double least = opponent.radius_m + scenario.radius_m + scenario.margin_m;
+      const double distance = (point - opponent.way_m.front()).norm();
+      if (distance >= least - kRounding_m) continue;
+      throw ScenarioError(
+          file, line,
+          fmt::format("{} ({}, {}) is where an opponent begins: distance {:.4f} m, expected at least {:.4f} "
+                      "(both radii + margin)",
+                      what, point.x(), point.y(), distance, least));
+    }
+  }
+
   void apart(const Vec2& a, const Vec2& b, int line, const std::string& what) const {
     const double least = 2 * scenario.radius_m + scenario.margin_m;
     const double distance = (a - b).norm();
@@ -60,13 +73,19 @@ void check_placement(const Scenario& scenario, const std::vector<RobotLines>& li
   }
   for (std::size_t i = 0; i < robots.size(); ++i) {
     check.place(robots[i].start_m, lines[i].start, fmt::format("start of robot {}", robots[i].id));
+    if (!robots[i].is_absent) {
+      check.clear_of_opponents(robots[i].start_m, lines[i].start,
+                               fmt::format("start of robot {}", robots[i].id));
+    }
     for (std::size_t g = 0; g < robots[i].goals.size(); ++g) {
       check.place(robots[i].goals[g].position_m, lines[i].goals[g],
                   fmt::format("goal of robot {}", robots[i].id));
     }
     for (std::size_t j = 0; j < i; ++j) {
-      check.apart(robots[i].start_m, robots[j].start_m, lines[i].start,
-                  fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id));
+      if (!robots[i].is_absent && !robots[j].is_absent) {
+        check.apart(robots[i].start_m, robots[j].start_m, lines[i].start,
+                    fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id));
+      }
       check.apart(robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
                   fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id));
     }

@@ -15,8 +15,8 @@ struct RobotLines {
 };
 
 /// Throws ScenarioError when robots share an id, or when a start or goal lies outside the field, in an
-/// obstacle, or (starts among starts, last goals among last goals) where another robot's is. `robots` are
-/// sorted by id.
+/// obstacle, or (starts among starts, last goals among last goals) where another robot's is, or when a start
+/// lies where an opponent begins. Absent robots' starts are in nobody's way. `robots` are sorted by id.
 void check_placement(const Scenario& scenario, const std::vector<RobotLines>& lines, const std::string& file);
 
 }  // namespace sidestep

@@ -11,26 +11,15 @@
 #include <sstream>
 #include <yaml-cpp/eventhandler.h>
 
+#include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
 #include "common/config/yaml_map.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr Range kPlace_m{-1000, 1000};
 constexpr Range kProbability{0, 1};
-constexpr std::size_t kMaxObstacles = 1000;
 constexpr std::size_t kMaxNameLength = 64;
-
-/// Calls `read` on the mapping under a key when it is there.
-template <typename Read>
-void section(YamlMap& map, const std::string& key, Read read) {
-  const YAML::Node node = map.find(key);
-  if (!node.IsDefined()) return;
-  YamlMap inner(node, map.place_of(key));
-  read(inner);
-  inner.finish();
-}
 
 bool is_name(const std::string& name) {
   const auto plain = [](unsigned char c) {
@@ -50,17 +39,16 @@ void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
 }
 
 void read_shape(YamlMap& map, Scenario& scenario) {
-  section(map, "field", [&](YamlMap& field) {
+  read_section(map, "field", [&](YamlMap& field) {
     field.read("length_m", {0.5, 1000}, scenario.field.length_m);
     field.read("width_m", {0.5, 1000}, scenario.field.width_m);
   });
-  section(map, "limits", [&](YamlMap& limits) {
+  read_section(map, "limits", [&](YamlMap& limits) {
     limits.read("acceleration_mps2", {0.1, 50}, scenario.limits.acceleration_mps2);
     limits.read("deceleration_mps2", {0.1, 50}, scenario.limits.deceleration_mps2);
     limits.read("speed_mps", {0.05, 20}, scenario.limits.speed_mps);
   });
   map.read("radius_m", {0.01, 5}, scenario.radius_m);
-  map.read("margin_m", {0, 1}, scenario.margin_m);
   double control_rate_hz = 0;
   map.read("control_rate_hz", {5, 500}, control_rate_hz);
   if (control_rate_hz > 0) scenario.cycle = from_seconds(1 / control_rate_hz);
@@ -68,37 +56,23 @@ void read_shape(YamlMap& map, Scenario& scenario) {
   map.read("time_limit_s", {0.1, 86400}, scenario.time_limit_s);
 }
 
-void read_obstacles(YamlMap& map, Scenario& scenario) {
-  const YAML::Node node = map.find("obstacles");
-  if (!node.IsDefined()) return;
-  for (const YAML::Node& element : list_from(node, map.place_of("obstacles"), kMaxObstacles)) {
-    YamlMap inner(
-        element,
-        map.place_of("obstacles").of(element, fmt::format("obstacles[{}]", scenario.obstacles.size())));
-    Circle circle;
-    inner.require("centre_m");
-    inner.require("radius_m");
-    inner.read("centre_m", kPlace_m, circle.centre_m);
-    inner.read("radius_m", {0.001, 1000}, circle.radius_m);
-    inner.finish();
-    scenario.obstacles.push_back(circle);
-  }
-}
-
-void read_ball(YamlMap& map, Scenario& scenario) {
-  section(map, "ball", [&](YamlMap& inner) {
-    BallSpec ball;
-    inner.read("position_m", kPlace_m, ball.position_m);
-    inner.read("velocity_mps", {-20, 20}, ball.velocity_mps);
-    if (!scenario.field.contains(ball.position_m, 0)) {
-      inner.place_of("position_m").refuse("the ball is outside the field, expected inside");
-    }
-    scenario.ball = ball;
-  });
+void read_budget(YamlMap& map, Scenario& scenario) {
+  map.read("margin_m", {0, 1}, scenario.margin_m);
+  map.read("tracking_bound_m", {0.0005, 1}, scenario.tracking_bound_m);
+  map.read("clock_bound_s", {0, 1}, scenario.clock_bound_s);
+  const SafetyBudget budget = budget_of(scenario);
+  constexpr double kRounding_m = 1e-9;
+  if (scenario.margin_m >= budget.needed_margin_m() - kRounding_m) return;
+  map.place_of("margin_m")
+      .refuse(fmt::format("{:g} m is less than the safety budget needs: expected at least {:.6g} m (2 x "
+                          "tracking_bound_m {:g} "
+                          "+ 4 x clock_bound_s {:g} x limits.speed_mps {:g})",
+                          scenario.margin_m, budget.needed_margin_m(), budget.tracking_bound_m,
+                          budget.clock_bound_s, budget.speed_mps));
 }
 
 void read_disturbances(YamlMap& map, Scenario& scenario) {
-  section(map, "vision", [&](YamlMap& inner) {
+  read_section(map, "vision", [&](YamlMap& inner) {
     VisionSpec& vision = scenario.vision;
     inner.read("rate_hz", {1, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
@@ -110,12 +84,12 @@ void read_disturbances(YamlMap& map, Scenario& scenario) {
     inner.read("missed", kProbability, vision.missed);
     inner.read("ghosts", kProbability, vision.ghosts);
   });
-  section(map, "odometry", [&](YamlMap& inner) {
+  read_section(map, "odometry", [&](YamlMap& inner) {
     inner.read("scale_error", {0, 0.2}, scenario.odometry.scale_error);
     inner.read("velocity_noise_mps", {0, 1}, scenario.odometry.velocity_noise_mps);
   });
   map.read("command_loss", kProbability, scenario.command_loss);
-  section(map, "network", [&](YamlMap& inner) {
+  read_section(map, "network", [&](YamlMap& inner) {
     NetworkSpec& network = scenario.network;
     inner.read("loss", kProbability, network.loss);
     inner.read("duplicate", kProbability, network.duplicate);
@@ -191,8 +165,8 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   Scenario scenario;
   read_name(map, file_name, scenario);
   read_shape(map, scenario);
-  read_obstacles(map, scenario);
-  read_ball(map, scenario);
+  read_budget(map, scenario);
+  read_floor(map, scenario);
   read_disturbances(map, scenario);
   read_restart(map, scenario.restart);
   // Placement is judged last, when a misspelt key can no longer be what is wrong with it.

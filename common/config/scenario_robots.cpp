@@ -14,6 +14,7 @@ namespace {
 constexpr Range kPlace_m{-1000, 1000};
 constexpr Range kAngle_rad{-2 * std::numbers::pi, 2 * std::numbers::pi};
 constexpr Range kRobotId{0, kMaxRobots - 1};
+constexpr Range kClockOffset_ms{-60000, 60000};
 constexpr std::size_t kMaxGoals = 1000;
 
 struct PlacedRobot {
@@ -36,6 +37,8 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlPlace& place) {
   placed.lines.start = map.place_of("start_m").line;
   map.read("start_m", kPlace_m, robot.start_m);
   map.read("heading_rad", kAngle_rad, robot.start_heading_rad);
+  map.read_ms("clock_offset_ms", kClockOffset_ms, robot.clock_offset);
+  map.read("absent", robot.is_absent);
 
   const YamlPlace goals = map.place_of("goals_m");
   for (const YAML::Node& element : list_from(map.require("goals_m"), goals, kMaxGoals)) {

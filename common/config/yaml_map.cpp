@@ -154,6 +154,16 @@ void YamlMap::read(const std::string& key, Range range, Vec2& value) {
   value = {numbers[0], numbers[1]};
 }
 
+void YamlMap::read(const std::string& key, bool& value) {
+  const YAML::Node node = find(key);
+  if (!node.IsDefined()) return;
+  const bool is_plain = node.IsScalar() && node.Tag() == "?";
+  if (!is_plain || (node.Scalar() != "true" && node.Scalar() != "false")) {
+    place_of(key).refuse("expected true or false, got " + shown(node));
+  }
+  value = node.Scalar() == "true";
+}
+
 void YamlMap::read_ms(const std::string& key, Range range_ms, Duration& value) {
   double milliseconds = to_seconds(value) * 1e3;
   const YAML::Node node = find(key);

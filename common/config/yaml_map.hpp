@@ -48,6 +48,8 @@ class YamlMap {
   void read(const std::string& key, Range range, double& value);
   void read(const std::string& key, Range range, int& value);
   void read(const std::string& key, Range range, Vec2& value);
+  /// true or false.
+  void read(const std::string& key, bool& value);
   /// The key's name ends in _ms.
   void read_ms(const std::string& key, Range range_ms, Duration& value);
   /// The value's node, undefined when the key is missing.
@@ -64,5 +66,15 @@ class YamlMap {
   YamlPlace place_;
   std::vector<std::string> known_;
 };
+
+/// Calls `read` on the mapping under a key when it is there, and refuses the keys that it does not ask for.
+template <typename Read>
+void read_section(YamlMap& map, const std::string& key, Read read) {
+  const YAML::Node node = map.find(key);
+  if (!node.IsDefined()) return;
+  YamlMap inner(node, map.place_of(key));
+  read(inner);
+  inner.finish();
+}
 
 }  // namespace sidestep

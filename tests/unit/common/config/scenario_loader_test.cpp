@@ -83,6 +83,8 @@ field: {length_m: 12, width_m: 9}
 limits: {acceleration_mps2: 2.5, deceleration_mps2: 4, speed_mps: 1.5}
 radius_m: 0.08
 margin_m: 0.02
+tracking_bound_m: 0.004
+clock_bound_s: 0.001
 control_rate_hz: 50
 goal_tolerance_m: 0.03
 time_limit_s: 12.5
@@ -94,8 +96,12 @@ network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
 restart: [agents, vision]
 ball: {position_m: [1, 2], velocity_mps: [-1, 0.5]}
 obstacles: [{centre_m: [3, 3], radius_m: 0.5}]
+opponents:
+  - {radius_m: 0.3, speed_mps: 0.75, way_m: [[4, 1], [4, -1], [3, -1]]}
+  - {radius_m: 0.2, speed_mps: 2.5, way_m: [[-4, 0]]}
+opponent_speed_mps: 2.5
 robots:
-  - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, goals_m: [[2, 2], [-2, 2, -0.5]]}
+  - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, clock_offset_ms: -1.25, absent: true, goals_m: [[2, 2], [-2, 2, -0.5]]}
   - {id: 3, start_m: [0, 0], goals_m: [[1, 1]]}
 )",
                                     "x.yaml");
@@ -107,6 +113,8 @@ robots:
   CHECK(s.limits.speed_mps == 1.5);
   CHECK(s.radius_m == 0.08);
   CHECK(s.margin_m == 0.02);
+  CHECK(s.tracking_bound_m == 0.004);
+  CHECK(s.clock_bound_s == 0.001);
   CHECK(s.cycle == std::chrono::milliseconds(20));
   CHECK(s.goal_tolerance_m == 0.03);
   CHECK(s.time_limit_s == 12.5);
@@ -131,8 +139,16 @@ robots:
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
   REQUIRE(s.obstacles.size() == 1);
   CHECK(s.obstacles[0].radius_m == 0.5);
+  CHECK(s.opponent_speed_mps == 2.5);
+  REQUIRE(s.opponents.size() == 2);
+  CHECK(s.opponents[0].radius_m == 0.3);
+  CHECK(s.opponents[0].speed_mps == 0.75);
+  CHECK(s.opponents[0].way_m == std::vector<Vec2>{{4, 1}, {4, -1}, {3, -1}});
   REQUIRE(s.robots.size() == 2);
   CHECK(s.robots[0].id == 3);
+  CHECK_FALSE(s.robots[0].is_absent);
+  CHECK(s.robots[1].is_absent);
+  CHECK(s.robots[1].clock_offset == -std::chrono::microseconds(1250));
   const RobotSpec* seven = find_robot(s, 7);
   REQUIRE(seven != nullptr);
   CHECK(seven->team == Team::kYellow);
@@ -152,6 +168,59 @@ TEST_CASE("missing keys leave the struct's defaults") {
   CHECK(given.margin_m == usual.margin_m);
   CHECK(given.time_limit_s == usual.time_limit_s);
   CHECK_FALSE(given.ball);
+}
+
+TEST_CASE("a margin below the safety budget is refused with the margin that is needed") {
+  // 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s: the defaults fit each other exactly.
+  CHECK(budget_of(Scenario{}).needed_margin_m() == Approx(0.01).epsilon(1e-12));
+  CHECK(refusal(kRobot + "margin_m: 0.01\n") == "accepted");
+  check_refused(kRobot + "margin_m: 0.0099\n", 2, "expected at least 0.01 m");
+  check_refused(kRobot + "\nlimits: {speed_mps: 3}\n", 1, "margin_m: 0.01 m is less than the safety budget");
+  check_refused(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.011\n", 3, "expected at least 0.012 m");
+  CHECK(refusal(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.012\n") == "accepted");
+  check_refused(kRobot + "tracking_bound_m: 0.005\n", 1, "expected at least 0.014 m");
+  check_refused(kRobot + "clock_bound_s: 0.002\nmargin_m: 0.02\n", 3, "expected at least 0.022 m");
+  CHECK(refusal(kRobot + "clock_bound_s: 0\nmargin_m: 0.006\n") == "accepted");
+  check_refused(kRobot + "tracking_bound_m: 0\n", 2, "tracking_bound_m: expected 0.0005 to 1");
+  check_refused(kRobot + "clock_bound_s: .nan\n", 2, "clock_bound_s: expected");
+}
+
+TEST_CASE("opponents that make no sense are refused with their line") {
+  const auto opponent = [](const std::string& keys) { return kRobot + "opponents:\n- {" + keys + "}\n"; };
+  CHECK(refusal(opponent("radius_m: 0.1, speed_mps: 1.5, way_m: [[2, 2]]")) == "accepted");
+  check_refused(opponent("speed_mps: 1, way_m: [[2, 2]]"), 3, "key \"radius_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, way_m: [[2, 2]]"), 3, "key \"speed_mps\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1"), 3, "key \"way_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: []"), 3, "expected at least one point");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, 2, 2]]"), 3, "a list of 2 numbers, got 3");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, .nan]]"), 3, "expected");
+  check_refused(opponent("radius_m: 0, speed_mps: 1, way_m: [[2, 2]]"), 3, "radius_m: expected 0.01 to 5");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 0, way_m: [[2, 2]]"), 3,
+                "speed_mps: expected 0.01 to 20");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]"), 3,
+                "opponents[0].speed_mps: expected at most opponent_speed_mps, 1.5, got 1.6");
+  CHECK(refusal("opponent_speed_mps: 1.6\n" + opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]")) ==
+        "accepted");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[0.1, 0.16]]"), 1, "where an opponent begins");
+  std::string many = kRobot + "opponents:\n";
+  for (int i = 0; i < 17; ++i) many += "- {radius_m: 0.1, speed_mps: 1, way_m: [[2, 2]]}\n";
+  check_refused(many, 3, "expected at most 16 elements, got 17");
+}
+
+TEST_CASE("an absent robot is in nobody's way until it is placed") {
+  const auto pair = [](const std::string& how) {
+    return "robots:\n- {id: 0, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 1, start_m: [0, 0.1], goals_m: "
+           "[[2, "
+           "0]]" +
+           how + "}\n";
+  };
+  check_refused(pair(""), 3, "starts of robots 0 and 1 overlap");
+  check_refused(pair(", absent: false"), 3, "starts of robots 0 and 1 overlap");
+  CHECK(refusal(pair(", absent: true")) == "accepted");
+  check_refused(pair(", absent: 1"), 3, "absent: expected true or false, got \"1\"");
+  check_refused(pair(", absent: \"true\""), 3, "expected true or false");
+  check_refused(pair(", absent: true, clock_offset_ms: 60001"), 3,
+                "clock_offset_ms: expected -60000 to 60000");
 }
 
 TEST_CASE("unknown and repeated keys are refused with their line") {
@@ -177,8 +246,7 @@ TEST_CASE("values of a wrong type are refused with their line") {
   check_refused(kRobot + "vision:\n  columns: 2.5\n", 3, "expected a whole number");
   check_refused(kRobot + "obstacles: {centre_m: [0, 0]}\n", 2, "expected a list");
   check_refused(kRobot + "obstacles:\n- 3\n", 3, "expected a mapping");
-  check_refused(kRobot + "restart:\n- agents\n- everything\n", 4,
-                "expected agents, coordinator or vision");
+  check_refused(kRobot + "restart:\n- agents\n- everything\n", 4, "expected agents, coordinator or vision");
   check_refused(kRobot + "ball: {position_m: [1]}\n", 2, "expected a list of 2 numbers, got 1");
   check_refused("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
                 "expected blue or yellow");
