@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/time/clock_offset.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const Time kBegin = time_from_ns(1'000'000'000'000'000);
+constexpr Duration kPeriod{16'666'667};
+
+/// Two clocks, and messages between them whose delays one draws: the truth that estimates are judged by.
+struct TwoClocks {
+  Rng rng;
+  Duration offset;  // of the other clock, at kBegin
+  double drift_ppm = 0;
+  double least_s, mean_s;  // of a delay, exponential above the least
+  double loss = 0;
+
+  Duration true_offset(Time own) const {
+    return offset + from_seconds(to_seconds(own - kBegin) * drift_ppm * 1e-6);
+  }
+  Time other(Time own) const { return own + true_offset(own); }
+  Duration delay() { return from_seconds(least_s - mean_s * std::log(1 - rng.uniform())); }
+  /// None: a message was lost.
+  std::optional<ClockExchange> exchange(Time sent) {
+    const Time heard = sent + delay();
+    const Time answered = heard + from_seconds(rng.uniform(0, 0.03));
+    const Time received = answered + delay();
+    if (rng.chance(loss) || rng.chance(loss)) return std::nullopt;
+    return ClockExchange{sent, other(heard), other(answered), received};
+  }
+};
+
+ClockExchange exchange_ms(double sent, double heard, double answered, double received) {
+  const auto at = [](double ms) { return kBegin + from_seconds(ms * 1e-3); };
+  return {at(sent), at(heard), at(answered), at(received)};
+}
+
+}  // namespace
+
+TEST_CASE("whatever the delays, losses and drift, the true offset lies within what was measured") {
+  const std::uint64_t seed = GENERATE(range(1u, 41u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  TwoClocks clocks{Rng(seed + 100),
+                   from_seconds(rng.uniform(-1, 1) * std::pow(10, rng.uniform(-5, 4))),
+                   rng.uniform(-0.99, 0.99) * ClockOffset::kDrift_ppm,
+                   rng.uniform(0, 0.002),
+                   std::pow(10, rng.uniform(-5, -1)),
+                   seed % 2 ? 0.3 : 0};
+  ClockOffset measured;
+  int judged = 0;
+  Time arrived = kBegin;
+  for (int i = 0; i < 3000; ++i) {
+    const Time sent = kBegin + i * kPeriod;
+    if (const auto exchange = clocks.exchange(sent)) {
+      REQUIRE(measured.add(*exchange));
+      arrived = std::max(arrived, exchange->received);
+    }
+    const Time now = std::max(arrived, sent + kPeriod);
+    const auto known = measured.at(now);
+    if (!known) continue;
+    ++judged;
+    const Duration truth = clocks.true_offset(now);
+    CAPTURE(i, truth.count(), known->low.count(), known->high.count());
+    REQUIRE(known->low <= truth);
+    REQUIRE(known->high >= truth);
+    REQUIRE_FALSE(known->is_beyond(truth < Duration{0} ? -truth : truth));
+  }
+  CHECK(judged > 2900);
+  CHECK(measured.jumps() == 0);
+}
+
+TEST_CASE("the uncertainty comes down to the quickest exchange's, with 30 % of the messages lost") {
+  TwoClocks clocks{Rng(7), from_seconds(0.004), 20, 0.0002, 0.001, 0.3};
+  ClockOffset measured;
+  for (int i = 0; i < 600; ++i) {
+    if (const auto exchange = clocks.exchange(kBegin + i * kPeriod)) measured.add(*exchange);
+  }
+  const Time now = kBegin + 602 * kPeriod;
+  REQUIRE(measured.at(now));
+  CHECK(measured.at(now)->uncertainty() < from_seconds(0.0006));
+  CHECK(measured.at(now)->is_beyond(from_seconds(0.003)));
+  CHECK_FALSE(measured.at(now)->is_beyond(from_seconds(0.005)));
+}
+
+TEST_CASE("an exchange bounds the offset by its two ways, and later ones by what they have in common") {
+  ClockOffset measured;
+  CHECK_FALSE(measured.at(kBegin));
+  // The other clock is 10 ms ahead: 3 ms there, 1 ms to answer, 2 ms back.
+  REQUIRE(measured.add(exchange_ms(0, 13, 14, 6)));
+  const auto first = measured.at(kBegin + from_seconds(0.006));
+  REQUIRE(first);
+  CHECK(to_seconds(first->low) == Approx(0.008).margin(3e-6));
+  CHECK(to_seconds(first->high) == Approx(0.013).margin(3e-6));
+  REQUIRE(measured.add(exchange_ms(10, 21, 22, 19)));
+  const auto both = measured.at(kBegin + from_seconds(0.019));
+  CHECK(to_seconds(both->low) == Approx(0.008).margin(8e-6));
+  CHECK(to_seconds(both->high) == Approx(0.011).margin(8e-6));
+  CHECK(to_seconds(both->middle()) == Approx(0.0095).margin(8e-6));
+  CHECK(to_seconds(both->nearest_to_zero()) == Approx(0.008).margin(8e-6));
+  const auto later = measured.at(kBegin + from_seconds(1.019));
+  CHECK(later->low < both->low);
+  CHECK(to_seconds(later->high - both->high) == Approx(ClockOffset::kDrift_ppm * 1e-6).epsilon(1e-3));
+  CHECK(measured.at(kBegin + from_seconds(1.019), from_seconds(1.1)));
+  CHECK_FALSE(measured.at(kBegin + from_seconds(1.019), from_seconds(0.9)));
+}
+
+TEST_CASE("after a clock has jumped only what came after it counts") {
+  const double jump_s = GENERATE(0.05, -0.05, 7.0, -7.0);
+  CAPTURE(jump_s);
+  TwoClocks clocks{Rng(3), from_seconds(0.001), 0, 0.0005, 0.002};
+  ClockOffset measured;
+  for (int i = 0; i < 100; ++i) measured.add(*clocks.exchange(kBegin + i * kPeriod));
+  const ClockExchange late = *clocks.exchange(kBegin + 99 * kPeriod);
+  clocks.offset += from_seconds(jump_s);
+  measured.add(*clocks.exchange(kBegin + 102 * kPeriod));
+  CHECK(measured.jumps() == 1);
+  // A straggler from before the jump.
+  measured.add(late);
+  CHECK(measured.jumps() == 1);
+  for (int i = 103; i < 200; ++i) {
+    measured.add(*clocks.exchange(kBegin + i * kPeriod));
+    const Time now = kBegin + (i + 3) * kPeriod;
+    REQUIRE(measured.at(now)->low <= clocks.true_offset(now));
+    REQUIRE(measured.at(now)->high >= clocks.true_offset(now));
+  }
+  CHECK(measured.jumps() == 1);
+}
+
+TEST_CASE("a clock that jumps between hearing and answering leaves nothing known until it has heard again") {
+  ClockOffset measured;
+  REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
+  REQUIRE(measured.add(exchange_ms(10, 11, 62, 13)));
+  CHECK_FALSE(measured.at(kBegin + from_seconds(0.013)));
+  CHECK(measured.jumps() == 1);
+  REQUIRE(measured.add(exchange_ms(20, 71, 72, 23)));
+  REQUIRE(measured.at(kBegin + from_seconds(0.023)));
+  CHECK(measured.at(kBegin + from_seconds(0.023))->is_beyond(from_seconds(0.04)));
+  measured.reset();
+  CHECK_FALSE(measured.at(kBegin + from_seconds(0.023)));
+}
+
+TEST_CASE("stamps that make no sense change nothing") {
+  ClockOffset measured;
+  REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
+  const auto before = measured.at(kBegin + from_seconds(0.003));
+  CHECK_FALSE(measured.add(exchange_ms(10, 11, 12, 9)));     // received before it was sent
+  CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // answered before it was heard
+  CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than an exchange takes
+  constexpr std::int64_t kOwn = 1'000'000'000'000'000;
+  const std::vector<std::int64_t> hostile{0, -1, std::numeric_limits<std::int64_t>::min(),
+                                          std::numeric_limits<std::int64_t>::max(),
+                                          (std::int64_t{1} << 60) + 1};
+  for (const std::int64_t stamp : hostile) {
+    for (int place = 0; place < 4; ++place) {
+      std::int64_t stamps[4] = {kOwn, kOwn + 1, kOwn + 2, kOwn + 3};
+      stamps[place] = stamp;
+      CAPTURE(stamp, place);
+      CHECK_FALSE(measured.add({time_from_ns(stamps[0]), time_from_ns(stamps[1]), time_from_ns(stamps[2]),
+                                time_from_ns(stamps[3])}));
+    }
+  }
+  const auto after = measured.at(kBegin + from_seconds(0.003));
+  CHECK(after->low == before->low);
+  CHECK(after->high == before->high);
+  CHECK(measured.jumps() == 0);
+}
+
+TEST_CASE("the extreme stamps that are accepted overflow nothing") {
+  ClockOffset measured;
+  const Time last = time_from_ns(std::int64_t{1} << 60), first = time_from_ns(1);
+  REQUIRE(measured.add({first, last, last, first + Duration{5}}));
+  REQUIRE(measured.add({last - Duration{5}, first, first, last}));
+  CHECK(measured.jumps() == 1);
+  REQUIRE(measured.at(last));
+  CHECK(measured.at(last)->high < Duration{0});
+  CHECK(difference(*measured.at(last), *measured.at(last)).low <= Duration{0});
+}
+
+TEST_CASE("two clocks measured against a third differ by the difference") {
+  const OffsetInterval robot{Duration{100}, Duration{300}}, coordinator{Duration{50}, Duration{80}};
+  CHECK(difference(robot, coordinator).low == Duration{20});
+  CHECK(difference(robot, coordinator).high == Duration{250});
+  CHECK(difference(robot, coordinator).uncertainty() == Duration{115});
+  CHECK(difference(robot, coordinator).is_beyond(Duration{19}));
+  CHECK_FALSE(difference(robot, coordinator).is_beyond(Duration{20}));
+  CHECK(difference(coordinator, robot).is_beyond(Duration{19}));
+}
