@@ -35,7 +35,8 @@ class EventLoop {
   EventLoop(const EventLoop&) = delete;
   EventLoop& operator=(const EventLoop&) = delete;
 
-  /// The host's clock, nanoseconds since 1970.
+  /// The process's clock, the same for all its loops: what the host's clock showed when it was first asked,
+  /// and the time that has passed since. Whoever sets the host's clock does not reach it.
   static Time now();
 
   /// Calls back once at or after the time; callbacks of one time come in the order of scheduling. In the

@@ -6,7 +6,8 @@
 
 namespace sidestep {
 
-/// The one clock of the system: nanoseconds since 1970 on the host's clock over DDS, virtual on SimBus.
+/// The one clock of the system: nanoseconds since 1970, on the process's clock over DDS (EventLoop::now()),
+/// virtual on SimBus.
 struct Clock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;

@@ -2,8 +2,25 @@
 #include "common/messaging/event_loop.hpp"
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <signal.h>
+#include <sys/syscall.h>
 #include <thread>
+#include <time.h>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+/// By how much somebody has set this host's clock.
+std::atomic<long> host_clock_step_s{0};
+}  // namespace
+
+/// Stands before the C library's in this program, so that a test may set the host's clock.
+extern "C" int clock_gettime(clockid_t clock, timespec* t) noexcept {
+  const long result = syscall(SYS_clock_gettime, clock, t);
+  if (clock == CLOCK_REALTIME) t->tv_sec += host_clock_step_s.load();
+  return static_cast<int>(result);
+}
 
 namespace sidestep {
 namespace {
@@ -130,6 +147,56 @@ TEST_CASE("a signal handler may stop the loop while it sleeps") {
   sigaction(SIGUSR1, &old, nullptr);
   CHECK(loop.stopped());
   CHECK(loop.now() < begin + kLong);
+}
+
+TEST_CASE("setting the host's clock does not reach a process that runs") {
+  const long step_s = GENERATE(-3600, 3600);
+  CAPTURE(step_s);
+  EventLoop loop;
+  const Time begin = loop.now();
+  host_clock_step_s = step_s;
+  const Time after = loop.now();
+  bool fired = false;
+  loop.at(begin + 3 * kMillisecond, [&] {
+    fired = true;
+    loop.stop();
+  });
+  loop.run_until(begin + kLong);
+  const Time end = EventLoop().now();
+  host_clock_step_s = 0;
+  CHECK(after >= begin);
+  CHECK(fired);
+  CHECK(end >= begin + 3 * kMillisecond);
+  CHECK(end < begin + kLong);
+}
+
+TEST_CASE("the process's clock never runs backwards, in whichever thread and loop it is asked") {
+  std::atomic<std::int64_t> latest{0};
+  std::atomic<int> backwards{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      EventLoop loop;
+      for (int k = 0; k < 20'000; ++k) {
+        const std::int64_t seen_before = latest.load();
+        const std::int64_t now = to_ns(loop.now());
+        if (now < seen_before) ++backwards;
+        for (std::int64_t seen = latest; seen < now && !latest.compare_exchange_weak(seen, now);) {
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(backwards == 0);
+}
+
+TEST_CASE("the process's clock shows what the host's does as long as nobody sets that") {
+  const auto host = [] { return Time{std::chrono::system_clock::now().time_since_epoch()}; };
+  // Time daemons slew, and that is all that can be between the two.
+  const Duration slewed = std::chrono::seconds(1);
+  const Time before = host(), now = EventLoop::now(), after = host();
+  CHECK(now > before - slewed);
+  CHECK(now < after + slewed);
 }
 
 }  // namespace sidestep
