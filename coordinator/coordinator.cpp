@@ -8,14 +8,30 @@
 namespace sidestep {
 namespace {
 
-// So that two coordinators which begin above the same epoch do not get the same one.
-constexpr Epoch kSpread = 1'000'003;
+// A registered version has to end at rest, but for rounding.
+constexpr double kAtRest_mps = 1e-6;
+
+/// What a registration says, or nullopt where it makes no sense.
+std::optional<std::vector<Version>> versions_of(const msg::Registration& registration) {
+  if (registration.version_count() == 0 || registration.version_count() > VersionSet::kCapacity)
+    return std::nullopt;
+  std::vector<Version> versions;
+  for (std::size_t i = 0; i < registration.version_count(); ++i) {
+    const auto version = decode(registration.versions()[i]);
+    const auto is_same = [&](const Version& other) { return other.number == version->number; };
+    if (!version || version->robot != registration.robot() ||
+        version->trajectory.residual_speed_mps() > kAtRest_mps || std::ranges::any_of(versions, is_same)) {
+      return std::nullopt;
+    }
+    versions.push_back(*version);
+  }
+  return versions;
+}
 
 }  // namespace
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
     : ledger_(rules, std::move(roster)),
-      incarnation_(epoch),
       epoch_(epoch),
       missing_(ledger_.roster().size()),
       records_(kMaxRobots) {}
@@ -27,44 +43,33 @@ void Coordinator::begin_epoch(Epoch epoch) {
   missing_ = ledger_.roster().size();
 }
 
-void Coordinator::on_coordinator_state(const msg::CoordinatorState& state) {
-  if (state.epoch() > kHighestEpoch) return;
-  const bool is_later = state.epoch() == epoch_ && state.head().incarnation() > incarnation_;
-  superseded_ = superseded_ || state.epoch() > epoch_ || is_later;
+std::optional<msg::Verdict> Coordinator::on_registration(const msg::Registration& registration) {
+  if (!is_active()) return std::nullopt;
+  if (!ledger_.knows(registration.robot()) || registration.head().sender() != registration.robot()) {
+    ++invalid_;
+    return std::nullopt;
+  }
+  msg::Verdict answer;
+  answer.robot(registration.robot());
+  answer.epoch(epoch_);
+  answer.asked_stamp_ns(registration.head().stamp_ns());
+  answer.reasons().fill(enter(registration));
+  if (answer.reasons().front() == msg::REASON_MALFORMED) ++invalid_;
+  return answer;
 }
 
-void Coordinator::on_registration(const msg::Registration& registration) {
+msg::Reason Coordinator::enter(const msg::Registration& registration) {
   const RobotId robot = registration.robot();
-  if (superseded_) return;
-  if (!ledger_.knows(robot) || registration.head().sender() != robot || registration.version_count() == 0 ||
-      registration.version_count() > VersionSet::kCapacity || registration.epoch() > kHighestEpoch / 2) {
-    ++invalid_;
-    return;
-  }
-  std::vector<Version> versions;
-  for (std::size_t i = 0; i < registration.version_count(); ++i) {
-    const auto version = decode(registration.versions()[i]);
-    const auto is_same = [&](const Version& other) { return other.number == version->number; };
-    if (!version || version->robot != robot || version->trajectory.residual_speed_mps() > 1e-6 ||
-        std::ranges::any_of(versions, is_same)) {
-      ++invalid_;
-      return;
-    }
-    versions.push_back(*version);
-  }
-  if (registration.epoch() > epoch_) {
-    // Agents have obeyed a coordinator that this one has not heard. While it has granted nothing it begins
-    // again above that one; later it has no business any more.
-    superseded_ = is_granting();
-    if (!superseded_) begin_epoch(registration.epoch() + 1 + incarnation_ % kSpread);
-  }
-  if (registration.epoch() != epoch_ || superseded_) return;
+  const auto versions = versions_of(registration);
+  if (!versions) return msg::REASON_MALFORMED;
+  if (registration.epoch() != epoch_) return msg::REASON_WRONG_EPOCH;
 
   Record& record = record_of(robot);
   const Incarnation agent = registration.head().incarnation();
-  if (record.registered && agent <= record.incarnation) return;
+  if (record.registered && agent == record.incarnation) return msg::REASON_GRANTED;
+  if (record.registered && agent < record.incarnation) return msg::REASON_OLD_INCARNATION;
   if (!record.registered) {
-    ledger_.enter(robot, versions);
+    ledger_.enter(robot, *versions);
     record.registered = true;
     --missing_;
   } else {
@@ -74,18 +79,16 @@ void Coordinator::on_registration(const msg::Registration& registration) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });
     };
-    if (!std::ranges::all_of(versions, known)) {
-      ++invalid_;
-      return;
-    }
+    if (!std::ranges::all_of(*versions, known)) return msg::REASON_MALFORMED;
   }
   record.incarnation = agent;
   record.answered = 0;
+  return msg::REASON_GRANTED;
 }
 
 void Coordinator::on_feedback(const msg::Feedback& feedback) {
   const RobotId robot = feedback.robot();
-  if (superseded_) return;
+  if (!is_active()) return;
   if (!ledger_.knows(robot) || feedback.head().sender() != robot || feedback.executing().robot() != robot) {
     ++invalid_;
     return;
@@ -97,7 +100,7 @@ void Coordinator::on_feedback(const msg::Feedback& feedback) {
 
 std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& proposal) {
   const RobotId robot = proposal.robot();
-  if (superseded_) return std::nullopt;
+  if (!is_active()) return std::nullopt;
   if (!ledger_.knows(robot) || proposal.head().sender() != robot) {
     ++invalid_;
     return std::nullopt;
@@ -107,13 +110,18 @@ std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& propos
   verdict.robot(robot);
   verdict.epoch(epoch_);
   verdict.proposal_number(proposal.candidates().front().version_number());
+  verdict.asked_stamp_ns(proposal.head().stamp_ns());
   verdict.granted(0);
   if (const auto refusal = refusal_of(proposal, record); refusal != msg::REASON_GRANTED) {
     if (refusal == msg::REASON_MALFORMED) ++invalid_;
     verdict.reasons().fill(refusal);
     return verdict;
   }
-  if (const msg::Verdict* known = remembered(record, verdict.proposal_number())) return *known;
+  if (const msg::Verdict* known = remembered(record, verdict.proposal_number())) {
+    msg::Verdict again = *known;
+    again.asked_stamp_ns(verdict.asked_stamp_ns());
+    return again;
+  }
   ++proposals_;
   verdict.reasons().fill(msg::REASON_NOT_TRIED);
   rule_on(proposal, record, verdict);
@@ -165,13 +173,15 @@ void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Ve
 msg::CoordinatorState Coordinator::state() const {
   msg::CoordinatorState state;
   state.epoch(epoch_);
-  state.coordinator_phase(is_granting() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
+  state.coordinator_phase(!is_active()    ? msg::COORDINATOR_STANDBY
+                          : is_granting() ? msg::COORDINATOR_GRANTING
+                                          : msg::COORDINATOR_REGISTERING);
   state.proposals(proposals_);
   state.grants(grants_);
   state.denials(denials_);
   state.invalid(invalid_);
   for (const RobotId robot : ledger_.roster()) {
-    if (!records_[robot].registered) state.missing().push_back(robot);
+    if (is_active() && !records_[robot].registered) state.missing().push_back(robot);
   }
   return state;
 }

@@ -16,21 +16,23 @@ namespace sidestep {
 /// nothing.
 class Coordinator {
  public:
-  /// Its incarnation is the epoch that it begins with.
+  /// Epoch 0: it stands by, and answers nobody.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
+
+  /// Forgets everything and begins again: an epoch of its own, or 0 to stand by.
+  void begin_epoch(Epoch epoch);
 
   /// The answer to a proposal; none for one that names no robot of the roster.
   std::optional<msg::Verdict> on_proposal(const msg::Proposal& proposal);
-  void on_registration(const msg::Registration& registration);
+  /// The answer to a registration, with proposal_number 0, REASON_GRANTED where the coordinator knows the
+  /// agent now; none for one that names no robot of the roster.
+  std::optional<msg::Verdict> on_registration(const msg::Registration& registration);
   /// A fact from a robot.
   void on_feedback(const msg::Feedback& feedback);
-  /// A sign of life of a coordinator, this one's own included. One of a higher epoch supersedes this one for
-  /// good.
-  void on_coordinator_state(const msg::CoordinatorState& state);
 
-  /// False until every robot of the roster has registered, and again once superseded.
-  bool is_granting() const { return !superseded_ && missing_ == 0; }
-  bool is_superseded() const { return superseded_; }
+  bool is_active() const { return epoch_ != 0; }
+  /// False until every robot of the roster has registered.
+  bool is_granting() const { return is_active() && missing_ == 0; }
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
 
@@ -53,15 +55,13 @@ class Coordinator {
   };
 
   Record& record_of(RobotId robot) { return records_[robot]; }
-  void begin_epoch(Epoch epoch);
+  msg::Reason enter(const msg::Registration& registration);
   const msg::Verdict* remembered(const Record& record, std::uint64_t proposal_number) const;
   void rule_on(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict);
   msg::Reason refusal_of(const msg::Proposal& proposal, const Record& record) const;
 
   Ledger ledger_;
-  Incarnation incarnation_;
   Epoch epoch_;
-  bool superseded_ = false;
   std::size_t missing_;
   std::vector<Record> records_;  // by robot
   std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
-#include <utility>
-
 #include "common/messaging/senders.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr Duration kSignOfLife{50'000'000};
+// A standby says that it is there in one of so many periods.
+constexpr int kStandbySign = 10;
 
 std::vector<RobotId> roster_of(const Scenario& scenario) {
   std::vector<RobotId> roster;
@@ -18,58 +17,90 @@ std::vector<RobotId> roster_of(const Scenario& scenario) {
 
 }  // namespace
 
-CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation)
+CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self,
+                                 bool is_standby)
     : bus_(bus),
-      incarnation_(incarnation),
+      self_(self),
       cycle_(scenario.cycle),
-      // Its life is its epoch: a coordinator that starts later has a higher one.
-      coordinator_(floor_rules(scenario), roster_of(scenario), incarnation) {
+      succession_(self, is_standby, bus.now()),
+      coordinator_(floor_rules(scenario), roster_of(scenario), succession_.epoch()) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
-    bus_.subscribe(topics::kFeedback, robot.id, std::function([this](const msg::Feedback& feedback) {
-                     coordinator_.on_feedback(feedback);
-                   }));
+    bus_.subscribe(topics::kFeedback, robot.id,
+                   std::function([this](const msg::Feedback& feedback) { on_feedback(feedback); }));
   }
   bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
-                   coordinator_.on_coordinator_state(state);
+                   succession_.on_coordinator_state(state, bus_.now());
+                   follow_succession();
                  }));
   bus_.subscribe(topics::kRegistration, std::function([this](const msg::Registration& registration) {
-                   coordinator_.on_registration(registration);
-                   publish_state_if_changed();
+                   on_registration(registration);
                  }));
-  bus_.subscribe(topics::kProposal, std::function([this](const msg::Proposal& proposal) {
-                   if (auto verdict = coordinator_.on_proposal(proposal)) {
-                     publish(verdict_writers_.at(verdict->robot()), *verdict);
-                   }
-                 }));
-  publish_state();
+  bus_.subscribe(topics::kProposal,
+                 std::function([this](const msg::Proposal& proposal) { on_proposal(proposal); }));
+  look();
+  publish_state_periodically();
   publish_ledger();
 }
 
 template <typename Message>
 void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
-  message.head().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
-  message.head().incarnation(incarnation_);
+  message.head().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
+  message.head().incarnation(self_.incarnation);
   writer.publish(message, bus_.now());
 }
 
-void CoordinatorNode::publish_state() {
-  bus_.at(bus_.now() + kSignOfLife, [this] { publish_state(); });
-  if (coordinator_.is_superseded()) {
-    if (auto callback = std::exchange(on_superseded_, nullptr)) callback();
-    return;
+template <typename Message>
+void CoordinatorNode::note_epoch(const Message& message, Epoch epoch) {
+  if (message.head().sender() != message.robot() || !coordinator_.ledger().knows(message.robot())) return;
+  succession_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
+  follow_succession();
+}
+
+void CoordinatorNode::on_registration(const msg::Registration& registration) {
+  note_epoch(registration, registration.epoch());
+  const bool was_granting = coordinator_.is_granting();
+  if (auto answer = coordinator_.on_registration(registration)) {
+    publish(verdict_writers_.at(answer->robot()), *answer);
   }
+  if (coordinator_.is_granting() != was_granting) publish_state();
+}
+
+void CoordinatorNode::on_feedback(const msg::Feedback& feedback) {
+  note_epoch(feedback, feedback.obeyed_epoch());
+  coordinator_.on_feedback(feedback);
+}
+
+void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {
+  note_epoch(proposal, proposal.epoch());
+  if (auto verdict = coordinator_.on_proposal(proposal))
+    publish(verdict_writers_.at(verdict->robot()), *verdict);
+}
+
+void CoordinatorNode::follow_succession() {
+  if (succession_.epoch() == coordinator_.epoch()) return;
+  coordinator_.begin_epoch(succession_.epoch());
+  publish_state();
+}
+
+void CoordinatorNode::look() {
+  bus_.at(bus_.now() + Succession::kLook, [this] { look(); });
+  succession_.update(bus_.now());
+  follow_succession();
+}
+
+void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
+  state.coordinator(self_.number);
+  state.invalid(state.invalid() + succession_.invalid());
   publish(state_writer_, state);
 }
 
-void CoordinatorNode::publish_state_if_changed() {
-  if (coordinator_.is_granting() == was_granting_) return;
-  was_granting_ = coordinator_.is_granting();
-  auto state = coordinator_.state();
-  publish(state_writer_, state);
+void CoordinatorNode::publish_state_periodically() {
+  bus_.at(bus_.now() + Succession::kSignOfLife, [this] { publish_state_periodically(); });
+  if (coordinator_.is_active() || periods_++ % kStandbySign == 0) publish_state();
 }
 
 void CoordinatorNode::publish_ledger() {

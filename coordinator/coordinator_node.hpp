@@ -5,37 +5,45 @@
 
 #include "common/messaging/bus.hpp"
 #include "coordinator/coordinator.hpp"
+#include "coordinator/succession.hpp"
 
 namespace sidestep {
 
-/// Connects a coordinator to the bus: answers proposals at once, publishes the ledger every cycle and its
-/// sign of life.
+/// Connects a coordinator to the bus: answers proposals and registrations at once, publishes the ledger every
+/// cycle and its signs of life, and takes over from other coordinators.
 class CoordinatorNode {
  public:
-  CoordinatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation);
+  CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, bool is_standby);
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
   const Coordinator& coordinator() const { return coordinator_; }
-  /// Calls back once another coordinator is found to have superseded this one.
-  void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
 
  private:
   template <typename Message>
   void publish(Writer<Message>& writer, Message& message);
+  /// Hears of an epoch that the sender obeys.
+  template <typename Message>
+  void note_epoch(const Message& message, Epoch epoch);
+  void on_registration(const msg::Registration& registration);
+  void on_feedback(const msg::Feedback& feedback);
+  void on_proposal(const msg::Proposal& proposal);
+  /// Begins the epoch that the succession has begun, or stands by with it, and says so.
+  void follow_succession();
+  void look();
   void publish_state();
+  void publish_state_periodically();
   void publish_ledger();
-  void publish_state_if_changed();
 
   Bus& bus_;
-  Incarnation incarnation_;
+  const CoordinatorIdentity self_;
   Duration cycle_;
+  Succession succession_;
   Coordinator coordinator_;
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
-  bool was_granting_ = false;
-  std::function<void()> on_superseded_;
+  int periods_ = 0;  // of signs of life, while standing by
 };
 
 }  // namespace sidestep

@@ -50,6 +50,10 @@ std::uint64_t sum(const std::vector<msg::AgentStatus>& lives,
 
 std::string agent_process(RobotId robot) { return "agent " + std::to_string(robot); }
 
+std::string coordinator_process(int number) {
+  return number == 0 ? "coordinator" : "coordinator " + std::to_string(number);
+}
+
 double straight_time_s(const RobotSpec& robot, const MotionLimits& limits) {
   const double f = limits.acceleration_mps2, d = limits.deceleration_mps2, v = limits.speed_mps;
   const double to_full_speed_m = v * v * (1 / f + 1 / d) / 2;
@@ -139,15 +143,20 @@ void Judge::on_coordinator(const msg::CoordinatorState& state) {
     ++dropped_;
     return;
   }
-  if (coordinator_ && (state.head().incarnation() < coordinator_->head().incarnation() ||
-                       (state.head().incarnation() == coordinator_->head().incarnation() &&
-                        state.head().message_number() <= coordinator_->head().message_number()))) {
+  const std::pair life(state.coordinator(), static_cast<Incarnation>(state.head().incarnation()));
+  if (coordinators_.size() >= kMaxLives && !coordinators_.count(life)) {
     ++dropped_;
     return;
   }
-  coordinator_ = state;
-  if (coordinator_invalid_.size() < kMaxLives)
-    coordinator_invalid_[state.head().incarnation()] = state.invalid();
+  CoordinatorLife& last = coordinators_[life];
+  if (state.head().message_number() <= last.message_number) {
+    ++dropped_;
+    return;
+  }
+  last = {state.head().message_number(), state.invalid()};
+  if (state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_STANDBY) return;
+  if (active_ && state.epoch() < active_->epoch()) return;
+  active_ = state;
   if (!granting_since_ && state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_GRANTING) {
     granting_since_ = time_from_ns(state.head().stamp_ns());
   }
@@ -179,8 +188,8 @@ std::vector<RobotId> Judge::silent_agents() const {
 }
 
 std::vector<RobotId> Judge::unregistered() const {
-  if (!coordinator_) return {};
-  return {coordinator_->missing().begin(), coordinator_->missing().end()};
+  if (!active_) return {};
+  return {active_->missing().begin(), active_->missing().end()};
 }
 
 std::vector<RobotProgress> Judge::progress() const {
@@ -240,7 +249,7 @@ Report Judge::report() const {
     report.plan.merge(sum(robot.lives, &msg::AgentStatus::plan));
     report.search.merge(sum(robot.lives, &msg::AgentStatus::search));
   }
-  for (const auto& [life, invalid] : coordinator_invalid_) report.invalid_messages += invalid;
+  for (const auto& [life, last] : coordinators_) report.invalid_messages += last.invalid;
   if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
   if (report.arrived == report.robots && granting_since_) report.makespan_s = latest_s;
   if (with_ratio > 0) report.arrival_over_straight = ratio / with_ratio;

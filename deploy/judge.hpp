@@ -47,7 +47,7 @@ class Judge {
   /// Robots whose agents have not been heard.
   std::vector<RobotId> silent_agents() const;
   bool truth_seen() const { return truth_at_.has_value(); }
-  bool coordinator_seen() const { return coordinator_.has_value(); }
+  bool coordinator_seen() const { return active_.has_value(); }
   /// Robots that the coordinator misses, as it last said.
   std::vector<RobotId> unregistered() const;
   /// When a coordinator first granted.
@@ -77,8 +77,12 @@ class Judge {
   const Scenario& scenario_;
   std::vector<Watched> robots_;               ///< ascending by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each life, without robots
-  std::optional<msg::CoordinatorState> coordinator_;
-  std::map<Incarnation, std::uint64_t> coordinator_invalid_;
+  struct CoordinatorLife {
+    std::uint64_t message_number = 0;
+    std::uint64_t invalid = 0;
+  };
+  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife> coordinators_;  ///< by number and life
+  std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
   std::optional<Time> granting_since_;
   std::optional<Time> truth_at_;
   double max_reference_error_m_ = 0;
@@ -86,8 +90,10 @@ class Judge {
   std::vector<Death> deaths_;
 };
 
-/// The name under which everybody who starts and watches processes knows a robot's agent.
+/// The names under which everybody who starts and watches processes knows a robot's agent, and a coordinator:
+/// "agent 3", "coordinator", "coordinator 1".
 std::string agent_process(RobotId robot);
+std::string coordinator_process(int number);
 
 /// The shortest time from the start over all goals for a robot alone: straight lines, at rest at each goal,
 /// acceleration F, deceleration D, at most v_max.

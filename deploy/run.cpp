@@ -82,7 +82,12 @@ class Launcher {
     const RestartSpec& restart = scenario_.restart;
     start("simulator", "sidestep-simulator", false, {"--seed", std::to_string(options_.seed)});
     start("vision", "sidestep-vision", restart.vision);
-    start("coordinator", "sidestep-coordinator", restart.coordinator);
+    if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
+    // All begin as standbys, so one that is started again does not take the floor from the one that works.
+    for (int number = 0; number < scenario_.coordinators; ++number) {
+      start(coordinator_process(number), "sidestep-coordinator", restart.coordinator,
+            {"--standby", "--number", std::to_string(number)});
+    }
   }
 
   void start_due_agents() {
@@ -158,9 +163,16 @@ class Launcher {
     if (gone_.empty() || now - last_death_ < kStuck) return false;
     const bool is_blind = now - *judge_.truth_at() > kStuck;
     if (!is_blind && !judge_.all_at_rest()) return false;
-    if (gone_.count("simulator") || gone_.count("vision") || gone_.count("coordinator")) return true;
+    if (gone_.count("simulator") || gone_.count("vision") || are_coordinators_gone()) return true;
     for (const RobotProgress& row : judge_.progress()) {
       if (!row.arrived && !gone_.count(agent_process(row.robot))) return false;
+    }
+    return true;
+  }
+
+  bool are_coordinators_gone() const {
+    for (int number = 0; number < scenario_.coordinators; ++number) {
+      if (!gone_.count(coordinator_process(number))) return false;
     }
     return true;
   }

@@ -42,7 +42,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed)
                                          [this](const auto& status) { judge_.on_status(status); });
   judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
                                               [this](const auto& state) { judge_.on_coordinator(state); });
-  for (const char* process : {"simulator", "vision", "coordinator"}) start(process);
+  for (const char* process : {"simulator", "vision"}) start(process);
+  for (int number = 0; number < scenario_.coordinators; ++number) start(coordinator_process(number));
   for (const RobotSpec& robot : scenario_.robots) start(agent_process(robot.id));
 }
 
@@ -59,8 +60,11 @@ void SimSystem::start(const std::string& name) {
     process->node = std::make_shared<SimulatorNode>(bus, scenario_, incarnation, seed_);
   else if (name == "vision")
     process->node = std::make_shared<VisionNode>(bus, scenario_, incarnation);
-  else if (name == "coordinator")
-    process->node = std::make_shared<CoordinatorNode>(bus, scenario_, incarnation);
+  for (int number = 0; number < scenario_.coordinators; ++number) {
+    if (name != coordinator_process(number)) continue;
+    const CoordinatorIdentity self{static_cast<CoordinatorNumber>(number), incarnation};
+    process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
+  }
   for (const RobotSpec& robot : scenario_.robots) {
     if (name == agent_process(robot.id)) {
       process->node = std::make_shared<AgentNode>(bus, scenario_, robot.id, incarnation);

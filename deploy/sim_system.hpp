@@ -15,8 +15,8 @@
 namespace sidestep {
 
 /// The whole system on SimBus, in one thread and virtual time: one simulated process for the simulator,
-/// vision, the coordinator and each agent, and a judge that listens. The same scenario and seed give the same
-/// run, bit for bit.
+/// vision, each coordinator and each agent, and a judge that listens. The same scenario and seed give the
+/// same run, bit for bit.
 class SimSystem {
  public:
   /// Starts every process at virtual time 1000 s.
@@ -31,8 +31,8 @@ class SimSystem {
   /// have.
   bool run_until_arrived(Time limit);
 
-  /// kill -9 of a process: "simulator", "vision", "coordinator" or "agent 3". Its robots, messages under way
-  /// and the others go on. Does nothing when it is dead.
+  /// kill -9 of a process: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3". Its robots,
+  /// messages under way and the others go on. Does nothing when it is dead.
   void kill(const std::string& process);
   /// Starts a process that is dead, as a new incarnation that knows nothing of the old one.
   void restart(const std::string& process);

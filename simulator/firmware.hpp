@@ -57,6 +57,7 @@ class Firmware {
 
   const Version& executing() const { return executing_; }
   Incarnation obeyed_incarnation() const { return obeyed_; }
+  Epoch obeyed_epoch() const { return obeyed_epoch_; }
   const FirmwareCounts& counts() const { return counts_; }
   const PoseEstimator& estimate() const { return estimator_; }
   /// When the next held version starts; Time::max() when none is held.

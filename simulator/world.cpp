@@ -104,8 +104,10 @@ void World::on_command(std::size_t index, const msg::Command& command, Time now)
   switch_versions(index, now);
   robot.judge.command_arrived(command, now);
   const Incarnation obeyed = robot.firmware.obeyed_incarnation();
+  const Epoch epoch = robot.firmware.obeyed_epoch();
   robot.firmware.on_command(command, now);
-  if (robot.firmware.obeyed_incarnation() != obeyed) note_news(index);
+  if (robot.firmware.obeyed_incarnation() != obeyed || robot.firmware.obeyed_epoch() != epoch)
+    note_news(index);
 }
 
 msg::Feedback World::feedback(std::size_t index, Time now) {

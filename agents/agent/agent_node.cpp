@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
-constexpr int kCyclesBetweenRegistrations = 6;
+constexpr int kCyclesBetweenRegistrations = 3;
 
 /// Where in the cycle a robot's own cycle begins.
 Duration phase_of(const Scenario& scenario, RobotId robot) {
@@ -39,18 +39,16 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       status_writer_(bus.advertise(topics::kStatus)) {
   bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
                    agent_.on_feedback(feedback);
-                   if (agent_.negotiation().is_contradicted() && next_cycle_ - bus_.now() > cycle_ / 4) {
-                     negotiate(next_start());
-                   }
+                   register_if_due();
+                   if (agent_.negotiation().is_contradicted()) negotiate_if_time();
                  }));
   bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
   bus_.subscribe(topics::kWorld,
                  std::function([this](const msg::WorldState& w) { agent_.on_world(w, bus_.now()); }));
   bus_.subscribe(topics::kLedger,
                  std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
-  bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
-                   agent_.on_coordinator_state(state, bus_.now());
-                 }));
+  bus_.subscribe(topics::kCoordinator,
+                 std::function([this](const msg::CoordinatorState& state) { on_coordinator_state(state); }));
   const Time now = bus_.now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + phase_of(scenario, robot) + cycle_;
   bus_.at(next_cycle_, [this] { begin_cycle(); });
@@ -68,19 +66,45 @@ void AgentNode::begin_cycle() {
     publish(command_writer_, command);
   }
   commanded_ = false;
-  if (!agent_.negotiation().needs_registration()) {
-    registration_wait_ = 0;
-  } else if (registration_wait_-- == 0) {
-    registration_wait_ = kCyclesBetweenRegistrations;
-    auto registration = agent_.negotiation().registration();
-    publish(registration_writer_, registration);
-  }
+  if (registration_wait_ > 0) --registration_wait_;
+  register_if_due();
   if (!agent_.negotiation().is_fenced()) return;
   if (!agent_.negotiation().is_settled_after(now)) {
     negotiate(next_start());
   } else if (const auto start = agent_.negotiation().unanswered_start(now)) {
     negotiate(*start);
   }
+}
+
+void AgentNode::on_coordinator_state(const msg::CoordinatorState& state) {
+  const Negotiation& negotiation = agent_.negotiation();
+  const Epoch before = negotiation.epoch();
+  const bool could_propose = negotiation.may_propose(bus_.now());
+  agent_.on_coordinator_state(state, bus_.now());
+  if (negotiation.is_superseded()) return;
+  // News of a coordinator goes on at once: robots stand still until all have heard of it.
+  if (negotiation.epoch() != before) {
+    auto command = agent_.command(bus_.now());
+    publish(command_writer_, command);
+  }
+  register_if_due();
+  if (!could_propose && negotiation.may_propose(bus_.now()) && !negotiation.is_settled_after(bus_.now())) {
+    negotiate_if_time();
+  }
+}
+
+void AgentNode::register_if_due() {
+  if (!agent_.negotiation().needs_registration()) {
+    registration_wait_ = 0;
+  } else if (registration_wait_ == 0) {
+    registration_wait_ = kCyclesBetweenRegistrations;
+    auto registration = agent_.negotiation().registration();
+    publish(registration_writer_, registration);
+  }
+}
+
+void AgentNode::negotiate_if_time() {
+  if (next_cycle_ - bus_.now() > cycle_ / 4) negotiate(next_start());
 }
 
 Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1); }

@@ -17,6 +17,10 @@ class AgentNode {
 
  private:
   void begin_cycle();
+  void on_coordinator_state(const msg::CoordinatorState& state);
+  void register_if_due();
+  /// Proposes for the next cycle, unless that begins too soon for an answer.
+  void negotiate_if_time();
   /// Proposes what to do from a time on.
   void negotiate(Time start);
   /// The begin of the next cycle, or of a later one where the network is slow.
@@ -31,8 +35,8 @@ class AgentNode {
   Duration cycle_;
   Agent agent_;
   Time next_cycle_;
-  bool commanded_ = false;  // in this cycle
-  int registration_wait_ = 0;
+  bool commanded_ = false;     // in this cycle
+  int registration_wait_ = 0;  // cycles until it registers again
   DurationHistogram negotiation_, plan_, search_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;

@@ -86,7 +86,11 @@ void Negotiation::check_assumptions() {
 }
 
 void Negotiation::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
-  if (state.epoch() == 0 || state.epoch() > kHighestEpoch) return;
+  if (state.epoch() == 0) return;  // a standby
+  if (!is_believable(state.epoch(), now)) {
+    ++counts_.invalid;
+    return;
+  }
   if (state.epoch() < epoch_) {
     // A coordinator that does not know how far epochs have come, and no other is alive: the registration
     // tells it.

@@ -76,6 +76,9 @@ struct RestartSpec {
   bool vision = false;
 };
 
+/// Coordinators are numbered 0 .. kMaxCoordinators - 1.
+inline constexpr std::uint32_t kMaxCoordinators = 8;
+
 /// One run of the system, as a scenario file describes it (deploy/scenarios/README.md). Always valid: the
 /// loader refuses everything else.
 struct Scenario {
@@ -100,6 +103,7 @@ struct Scenario {
   double command_loss = 0;  ///< probability that a command is lost on the radio between agent and robot
   NetworkSpec network;
   RestartSpec restart;
+  int coordinators = 1;  ///< with more than one, all but one stand by for it
 };
 
 SafetyBudget budget_of(const Scenario& scenario);

@@ -169,6 +169,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   read_floor(map, scenario);
   read_disturbances(map, scenario);
   read_restart(map, scenario.restart);
+  map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
   // Placement is judged last, when a misspelt key can no longer be what is wrong with it.
   map.find("robots");
   map.find("circle");

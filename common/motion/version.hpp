@@ -14,6 +14,13 @@ using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
 /// What claims to be higher is nobody's epoch.
 inline constexpr Epoch kHighestEpoch = Epoch{1} << 62;
+/// Epochs are readings of coordinators' clocks, raised a little where one has to be above another. So what is
+/// an hour ahead of one's own clock or more is nobody's epoch: one wrong message cannot use up all epochs
+/// that there are.
+constexpr bool is_believable(Epoch epoch, Time now) {
+  constexpr Duration kEpochsAhead{3'600'000'000'000};
+  return epoch <= kHighestEpoch && static_cast<std::int64_t>(epoch) - to_ns(now) < kEpochsAhead.count();
+}
 
 /// Robots are numbered 0 .. kMaxRobots - 1.
 inline constexpr RobotId kMaxRobots = 1024;

@@ -43,13 +43,14 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
   const Time now = bus_.now();
   advance(robot, now);
   if (command.head().incarnation() < robot.obeyed) return;
+  const bool is_news = command.head().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
   if (command.head().incarnation() > robot.obeyed) {
     robot.obeyed = command.head().incarnation();
     std::erase_if(robot.pending, [&](const Version& v) { return v.incarnation < robot.obeyed; });
-    report(robot);
   }
   const bool is_old_epoch = command.epoch() < robot.obeyed_epoch;
   robot.obeyed_epoch = std::max(robot.obeyed_epoch, command.epoch());
+  if (is_news) report(robot);
   if (!command.has_version() || is_old_epoch) return;
   const auto version = decode(command.granted());
   const auto knows = [&](const Version& held) { return held.number == version->number; };
@@ -98,6 +99,12 @@ Vec2 IdealRobots::position_m(RobotId id, Time t) {
   Robot& robot = robots_.at(id);
   advance(robot, t);
   return robot.executing.trajectory.state_at(t).position_m;
+}
+
+Vec2 IdealRobots::velocity_mps(RobotId id, Time t) {
+  Robot& robot = robots_.at(id);
+  advance(robot, t);
+  return robot.executing.trajectory.state_at(t).velocity_mps;
 }
 
 double IdealRobots::clearance_m(Time t) {

@@ -17,6 +17,7 @@ class IdealRobots {
   IdealRobots(Bus& bus, const Scenario& scenario);
 
   Vec2 position_m(RobotId robot, Time t);
+  Vec2 velocity_mps(RobotId robot, Time t);
   /// The smallest distance between two robots' edges at a time.
   double clearance_m(Time t);
   double radius_m() const { return radius_m_; }

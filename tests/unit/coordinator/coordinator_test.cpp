@@ -98,43 +98,64 @@ TEST_CASE("a new agent's registration cannot bring in versions that were never g
   CHECK(floor.coordinator.state().invalid() == 1);
 }
 
-TEST_CASE("a coordinator that hears of a higher one falls silent") {
+TEST_CASE("a coordinator that stands by answers nobody, and begins with nothing in an epoch of its own") {
   Floor floor;
   floor.register_both();
-  msg::CoordinatorState other;
-  other.epoch(kEpoch + 1);
-  floor.coordinator.on_coordinator_state(other);
+  floor.coordinator.begin_epoch(0);
   CHECK_FALSE(floor.coordinator.is_granting());
-  CHECK_FALSE(floor.coordinator.on_proposal(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)));
-  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
-}
-
-TEST_CASE("a coordinator whose clock is behind begins above the epoch that agents have obeyed") {
-  Floor floor;
-  floor.coordinator.on_registration(registration_of(floor.a, kEpoch + 50));
-  const Epoch risen = floor.coordinator.epoch();
-  CHECK(risen > kEpoch + 50);
+  CHECK(floor.coordinator.state().coordinator_phase() == msg::COORDINATOR_STANDBY);
+  CHECK(floor.coordinator.state().epoch() == 0);
+  CHECK(floor.coordinator.state().missing().empty());
+  const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
+  CHECK_FALSE(floor.coordinator.on_proposal(proposal));
+  CHECK_FALSE(floor.coordinator.on_proposal(proposal_of({continued(floor.a, 10, 1, {0, 3})}, 0)));
+  CHECK_FALSE(floor.coordinator.on_registration(registration_of(floor.a, 0)));
+  floor.coordinator.on_feedback(fact(floor.a, 1));
+  CHECK(floor.coordinator.ledger().versions(1).empty());
+  floor.coordinator.begin_epoch(kEpoch + 5);
   CHECK(floor.coordinator.state().missing().size() == 2);
-  floor.coordinator.on_registration(registration_of(floor.a, risen));
-  floor.coordinator.on_registration(registration_of(floor.b, risen));
-  CHECK(floor.coordinator.is_granting());
-  // Once it grants, an agent that obeys a later coordinator shows that it has been superseded.
-  floor.coordinator.on_registration(registration_of(floor.a, risen + 90, 5));
-  CHECK(floor.coordinator.is_superseded());
-  CHECK(floor.coordinator.epoch() == risen);
+  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_WRONG_EPOCH);
 }
 
-TEST_CASE("two coordinators never share an epoch") {
-  Coordinator one(floor_for_tests(), {1, 2}, 100), two(floor_for_tests(), {1, 2}, 101);
-  const auto registration = registration_of(standing(1, {0, 0}), 500);
-  one.on_registration(registration);
-  two.on_registration(registration);
-  CHECK(one.epoch() != two.epoch());
-  // Should it happen all the same, the later life wins.
-  msg::CoordinatorState twin = one.state();
-  twin.head().incarnation(101);
-  one.on_coordinator_state(twin);
-  CHECK(one.is_superseded());
+TEST_CASE("every registration of a robot's agent is answered, with an echo of when it was sent") {
+  Floor floor;
+  const auto answer = [&](msg::Registration registration) {
+    registration.head().stamp_ns(4711);
+    const auto verdict = floor.coordinator.on_registration(registration);
+    REQUIRE(verdict);
+    CHECK(verdict->robot() == registration.robot());
+    CHECK(verdict->epoch() == kEpoch);
+    CHECK(verdict->proposal_number() == 0);
+    CHECK(verdict->granted() == 0);
+    CHECK(verdict->asked_stamp_ns() == 4711);
+    return verdict->reasons()[0];
+  };
+  CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::REASON_WRONG_EPOCH);
+  CHECK(answer(registration_of(floor.a, kEpoch - 50)) == msg::REASON_WRONG_EPOCH);
+  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::REASON_GRANTED);
+  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::REASON_GRANTED);
+  CHECK(answer(registration_of(floor.a, kEpoch, 1)) == msg::REASON_OLD_INCARNATION);
+  auto malformed = registration_of(floor.b, kEpoch);
+  malformed.version_count(0);
+  CHECK(answer(malformed) == msg::REASON_MALFORMED);
+  CHECK_FALSE(floor.coordinator.on_registration(registration_of(standing(3, {0, 0}), kEpoch)));
+  malformed.head().sender(1);
+  CHECK_FALSE(floor.coordinator.on_registration(malformed));
+  CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
+}
+
+TEST_CASE("a verdict echoes when the proposal that it answers was sent, a repeated one's too") {
+  Floor floor;
+  floor.register_both();
+  auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
+  proposal.head().stamp_ns(100);
+  CHECK(floor.ask(proposal).asked_stamp_ns() == 100);
+  proposal.head().stamp_ns(200);
+  CHECK(floor.ask(proposal).asked_stamp_ns() == 200);
+  CHECK(floor.ask(proposal).granted() == 10);
+  proposal.epoch(kEpoch - 1);
+  CHECK(floor.ask(proposal).asked_stamp_ns() == 200);
 }
 
 TEST_CASE("a registration that names one version twice is refused") {

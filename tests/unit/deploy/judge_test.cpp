@@ -200,6 +200,36 @@ TEST_CASE("counters are summed over the lives of restarted agents, simulators an
   CHECK_THAT(report.verdict(), Catch::Contains("5 contacts") && Catch::Contains("1 firmware violations"));
 }
 
+TEST_CASE("of several coordinators the one with the highest epoch speaks, and the counts of all are summed") {
+  Judge judge(kTwo);
+  const auto of = [](std::uint32_t number, Epoch epoch, std::uint64_t message_number, double at_s,
+                     msg::CoordinatorPhase phase) {
+    msg::CoordinatorState message = state(message_number, at_s, phase, 10 - number);
+    message.coordinator(number);
+    message.epoch(epoch);
+    message.invalid(10 + number);
+    return message;
+  };
+  judge.on_coordinator(of(1, 0, 1, 0.5, msg::CoordinatorPhase::COORDINATOR_STANDBY));
+  CHECK_FALSE(judge.coordinator_seen());
+  auto registering = of(0, 100, 1, 1, kRegistering);
+  registering.missing({3, 7});
+  judge.on_coordinator(registering);
+  CHECK(judge.unregistered() == std::vector<RobotId>{3, 7});
+  judge.on_coordinator(of(0, 100, 2, 2, kGranting));
+  registering = of(1, 200, 2, 3, kRegistering);
+  registering.missing({7});
+  judge.on_coordinator(registering);
+  CHECK(judge.unregistered() == std::vector<RobotId>{7});
+  judge.on_coordinator(of(0, 100, 3, 4, kGranting));  // has not heard of it yet
+  CHECK(judge.unregistered() == std::vector<RobotId>{7});
+  judge.on_coordinator(of(0, 0, 4, 5, msg::CoordinatorPhase::COORDINATOR_STANDBY));
+  CHECK(judge.unregistered() == std::vector<RobotId>{7});
+  CHECK(judge.granting_since() == after(2));
+  CHECK(judge.report().invalid_messages == 21);
+  CHECK(judge.dropped() == 0);
+}
+
 TEST_CASE("old and repeated ground truth does not move robots back") {
   Judge judge(kTwo);
   judge.on_truth(truth(5, 5, {body(3, 1, 0)}));

@@ -80,9 +80,29 @@ TEST_CASE("killed processes that are restarted bring everybody to their goals") 
   CHECK(system.judge().report().firmware_violations == 0);
 }
 
+TEST_CASE("with two coordinators the death of either does not keep anybody from arriving") {
+  const std::string process = GENERATE("coordinator", "coordinator 1");
+  const bool comes_back = GENERATE(false, true);
+  CAPTURE(process, comes_back);
+  Scenario scenario = crossing();
+  scenario.coordinators = 2;
+  SimSystem system(scenario, 4);
+  while (!system.judge().granting_since() && system.now() < system.begin() + 20s) system.run_for(10ms);
+  system.run_for(1s);
+  system.kill(process);
+  system.run_for(400ms);
+  CHECK_FALSE(system.judge().all_at_rest());
+  if (comes_back) system.restart(process);
+  CHECK(system.run_until_arrived(system.now() + 30s));
+  CHECK(system.judge().report().contacts == 0);
+  CHECK(system.judge().report().firmware_violations == 0);
+  CHECK(system.judge().report().deaths.at(0).process == process);
+}
+
 TEST_CASE("a process that the system does not have cannot be started") {
   SimSystem system(crossing(), 1);
   CHECK_THROWS_WITH(system.restart("agent 99"), Catch::Contains("no process \"agent 99\""));
+  CHECK_THROWS_WITH(system.restart("coordinator 1"), Catch::Contains("no process \"coordinator 1\""));
 }
 
 }  // namespace sidestep

@@ -94,6 +94,7 @@ odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
 command_loss: 0.25
 network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
 restart: [agents, vision]
+coordinators: 3
 ball: {position_m: [1, 2], velocity_mps: [-1, 0.5]}
 obstacles: [{centre_m: [3, 3], radius_m: 0.5}]
 opponents:
@@ -134,6 +135,7 @@ robots:
   CHECK(s.network.duplicate == 0.1);
   CHECK(s.network.delay_min == Duration{0});
   CHECK(s.network.delay_max == std::chrono::milliseconds(150));
+  CHECK(s.coordinators == 3);
   CHECK((s.restart.agents && s.restart.vision && !s.restart.coordinator));
   REQUIRE(s.ball);
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
@@ -267,6 +269,8 @@ TEST_CASE("numbers out of range, infinite or not numbers are refused with their 
   }
   check_refused(kRobot + "network: {delay_min_ms: 5,\n delay_max_ms: 4}\n", 3,
                 "expected at least delay_min_ms");
+  check_refused(kRobot + "coordinators: 0\n", 2, "expected 1 to 8, got 0");
+  check_refused(kRobot + "coordinators: 9\n", 2, "expected 1 to 8, got 9");
   check_refused(kRobot + "ball: {position_m: [5, 0]}\n", 2, "outside the field");
   check_refused("robots:\n- id: 1024\n  start_m: [0, 0]\n  goals_m: [[1, 0]]\n", 2,
                 "expected 0 to 1023, got 1024");

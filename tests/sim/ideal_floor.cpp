@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/sim/ideal_floor.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr Duration kLook{5'000'000};
+
+}  // namespace
+
+IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed)
+    : scenario(s),
+      network(seed, kBegin, s.network),
+      robots(robots_bus, scenario),
+      watch(robots_bus, scenario),
+      rng_(seed) {
+  for (int number = 0; number < scenario.coordinators; ++number)
+    start_coordinator(static_cast<CoordinatorNumber>(number));
+  for (const RobotSpec& robot : scenario.robots) start_agent(robot.id);
+}
+
+Incarnation IdealFloor::next_incarnation() {
+  const auto now = static_cast<Incarnation>(to_ns(network.now()));
+  return last_incarnation_ = std::max(last_incarnation_ + 1, now + rng_.below(1'000'000));
+}
+
+void IdealFloor::start_coordinator(CoordinatorNumber number) {
+  auto& process = coordinators_.try_emplace(number, network).first->second;
+  const CoordinatorIdentity self{number, next_incarnation()};
+  process.node = std::make_unique<CoordinatorNode>(process.bus, scenario, self, scenario.coordinators > 1);
+}
+
+int IdealFloor::granting() {
+  int found = -1;
+  for (const auto& [number, process] : coordinators_) {
+    if (!process.node->coordinator().is_granting()) continue;
+    if (found >= 0) return -1;
+    found = static_cast<int>(number);
+  }
+  return found;
+}
+
+TroubledBus& IdealFloor::start_agent(RobotId robot) {
+  auto& process = agents_.emplace(robot, network)->second;
+  process.node = std::make_unique<AgentNode>(process.bus, scenario, robot, next_incarnation());
+  return process.bus;
+}
+
+std::vector<TroubledBus*> IdealFloor::agent_buses(RobotId robot) {
+  std::vector<TroubledBus*> buses;
+  const auto [begin, end] = agents_.equal_range(robot);
+  for (auto at = begin; at != end; ++at) buses.push_back(&at->second.bus);
+  return buses;
+}
+
+double IdealFloor::run(double seconds) {
+  double smallest = 1e9;
+  const Time end = network.now() + from_seconds(seconds);
+  while (network.now() < end) {
+    network.run_until(std::min(end, network.now() + kLook));
+    smallest = std::min(smallest, robots.clearance_m(network.now()));
+  }
+  return smallest;
+}
+
+int IdealFloor::arrived() {
+  int count = 0;
+  for (const RobotSpec& robot : scenario.robots) {
+    const double to_go = (robots.position_m(robot.id, network.now()) - robot.goals.back().position_m).norm();
+    count += to_go < scenario.goal_tolerance_m;
+  }
+  return count;
+}
+
+double IdealFloor::run_until_arrived(double most_seconds) {
+  double smallest = 1e9;
+  const Time end = network.now() + from_seconds(most_seconds);
+  while (network.now() < end && arrived() < static_cast<int>(scenario.robots.size()))
+    smallest = std::min(smallest, run(0.05));
+  return smallest;
+}
+
+bool IdealFloor::run_until_fast(double speed) {
+  const Time end = network.now() + std::chrono::seconds(10);
+  while (network.now() < end && fastest_mps() < speed) (void)run(0.005);
+  return fastest_mps() >= speed;
+}
+
+double IdealFloor::speed_mps(RobotId robot) { return robots.velocity_mps(robot, network.now()).norm(); }
+
+double IdealFloor::fastest_mps() {
+  double fastest = 0;
+  for (const RobotSpec& robot : scenario.robots) fastest = std::max(fastest, speed_mps(robot.id));
+  return fastest;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "agents/agent/agent_node.hpp"
+#include "coordinator/coordinator_node.hpp"
+#include "tests/sim/ideal_robots.hpp"
+#include "tests/sim/ledger_watch.hpp"
+#include "tests/sim/troubled_bus.hpp"
+
+namespace sidestep {
+
+/// Agents and coordinators around ideal robots: what is promised here is promised exactly, to the last
+/// micrometre.
+class IdealFloor {
+ public:
+  /// Starts an agent for each robot and as many coordinators as the scenario has.
+  IdealFloor(const Scenario& scenario, std::uint64_t seed);
+
+  void start_coordinator(CoordinatorNumber number);
+  void kill_coordinator(CoordinatorNumber number) { coordinators_.erase(number); }
+  TroubledBus& coordinator_bus(CoordinatorNumber number) { return coordinators_.at(number).bus; }
+  const Coordinator& coordinator(CoordinatorNumber number) {
+    return coordinators_.at(number).node->coordinator();
+  }
+  /// The number of the coordinator that grants; -1 when none or more than one does.
+  int granting();
+
+  /// Starts one more agent for a robot; earlier ones live on.
+  TroubledBus& start_agent(RobotId robot);
+  void kill_agents(RobotId robot) { agents_.erase(robot); }
+  /// The buses of the robot's agents, in the order of their starts.
+  std::vector<TroubledBus*> agent_buses(RobotId robot);
+
+  /// Runs for so many seconds; the smallest clearance of any two robots meanwhile.
+  double run(double seconds);
+  int arrived();
+  /// Runs until all have arrived, at most for so long; the smallest clearance meanwhile.
+  double run_until_arrived(double most_seconds);
+  /// Runs until the fastest robot is as fast as this; false when none is within ten seconds.
+  bool run_until_fast(double speed_mps);
+  double speed_mps(RobotId robot);
+  double fastest_mps();
+
+  const Scenario scenario;
+  SimNetwork network;
+  SimBus robots_bus{network};
+  IdealRobots robots;
+  LedgerWatch watch;
+
+ private:
+  template <typename Node>
+  struct Process {
+    explicit Process(SimNetwork& network) : bus(network) {}
+    TroubledBus bus;
+    std::unique_ptr<Node> node;
+  };
+
+  Rng rng_;
+  Incarnation last_incarnation_ = 0;
+  std::map<CoordinatorNumber, Process<CoordinatorNode>> coordinators_;
+  std::multimap<RobotId, Process<AgentNode>> agents_;
+  Incarnation next_incarnation();
+};
+
+}  // namespace sidestep
