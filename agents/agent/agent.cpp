@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/messaging/codec.hpp"
 
@@ -18,6 +19,11 @@ constexpr double kLookAhead_m = 0.5;
 // A robot that has been at rest for so long is an obstacle that others plan round; at most so many of them.
 constexpr Duration kStandsAfter{1'000'000'000};
 constexpr std::size_t kMostStanding = 8;
+// Ways lead round the nearest few of what moves without asking, as far from it as it comes in so long.
+constexpr std::size_t kMostAvoided = 4;
+constexpr double kAvoidedFrom_m = 1.5;
+constexpr double kAvoidedStep_m = 0.05;
+constexpr Duration kAvoidedAhead{150'000'000};
 // A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way
 // and more.
 constexpr Duration kLostAfter{300'000'000};
@@ -37,22 +43,54 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       goal_tolerance_m_(scenario.goal_tolerance_m),
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
+      obstacles_(scenario.opponent_speed_mps, from_seconds(2 * scenario.clock_bound_s)),
       safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       estimate_{robot_.start_m, Vec2::Zero()} {}
 
-void Agent::update_ways(Time now) {
+double Agent::planning_keep_m() const { return rules_.radius_m + rules_.margin_m + kPlanningRoom_m; }
+
+std::vector<Circle> Agent::moving_in_the_way(Time now) {
   const Vec2& here = estimate_.position_m;
-  std::vector<Vec2> standing = neighbours_.standing(now - kStandsAfter, here, kMostStanding);
-  // Whoever stands on the goal is no obstacle on the way to it.
-  std::erase_if(standing, [&](const Vec2& p) {
-    return (p - goal().position_m).norm() < rules_.keep_m() + kPlanningRoom_m;
+  std::vector<Circle> found;
+  for (const MovingObstacle& seen : obstacles_.recent(now)) {
+    if ((seen.position_m - here).norm() > kAvoidedFrom_m) continue;
+    // In steps, so that ways are not found anew in every cycle.
+    const Vec2 place = (seen.position_m / kAvoidedStep_m).array().round().matrix() * kAvoidedStep_m;
+    const double radius = std::round(seen.radius_m / kAvoidedStep_m) * kAvoidedStep_m;
+    // As much room as there is before the goal.
+    const double room = (place - goal().position_m).norm() - radius - planning_keep_m() - kCloseEnough_m;
+    const double wanted = kAvoidedStep_m + seen.speed_mps * to_seconds(kAvoidedAhead);
+    found.push_back({place, radius + std::clamp(room, 0.0, wanted)});
+  }
+  std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - here).squaredNorm(); });
+  if (found.size() > kMostAvoided) found.resize(kMostAvoided);
+  std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });
+  return found;
+}
+
+std::vector<Circle> Agent::in_the_way(Time now) {
+  std::vector<Circle> found = moving_in_the_way(now);
+  for (const Vec2& place : neighbours_.standing(now - kStandsAfter, estimate_.position_m, kMostStanding)) {
+    found.push_back({place, rules_.radius_m});
+  }
+  // Whoever is on the goal is no obstacle on the way to it.
+  std::erase_if(found, [&](const Circle& circle) {
+    return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_keep_m();
   });
-  if (ways_ && standing == standing_) return;
-  standing_ = std::move(standing);
+  return found;
+}
+
+void Agent::update_ways(Time now) {
+  std::vector<Circle> found = in_the_way(now);
+  const auto is_same = [](const Circle& a, const Circle& b) {
+    return a.centre_m == b.centre_m && a.radius_m == b.radius_m;
+  };
+  if (ways_ && std::ranges::equal(found, in_the_way_, is_same)) return;
+  in_the_way_ = std::move(found);
   std::vector<Circle> obstacles = rules_.obstacles;
-  for (const Vec2& place : standing_) obstacles.push_back({place, rules_.radius_m});
-  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m + kPlanningRoom_m,
+  obstacles.insert(obstacles.end(), in_the_way_.begin(), in_the_way_.end());
+  ways_.emplace(obstacles, rules_.field, rules_.radius_m, planning_keep_m() - rules_.radius_m,
                 goal().position_m);
 }
 
@@ -73,6 +111,7 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
 }
 
 void Agent::on_world(const msg::WorldState& world, Time now) {
+  obstacles_.on_world(world, now);
   for (const msg::TrackedRobot& seen : world.robots()) {
     if (seen.robot() != robot_.id || seen.seen_at_ns() <= last_fix_ns_) continue;
     const bool is_sound = std::isfinite(seen.seen_x_m()) && std::isfinite(seen.seen_y_m()) &&
@@ -115,7 +154,7 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Vec2 direction = direction_beside(there.position_m, route);
   const MotionWish wish = wished_motion(route.length_m * direction, there.velocity_mps, rules_.limits, cycle_,
                                         cycle_ * negotiation_.lead());
-  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold};
+  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, obstacles_.recent(now)};
 }
 
 Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
@@ -174,7 +213,7 @@ msg::AgentStatus Agent::status(Time now) const {
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);
   status.denials(n.counts().denials);
-  status.invalid(n.counts().invalid + neighbours_.invalid() + invalid_);
+  status.invalid(n.counts().invalid + neighbours_.invalid() + obstacles_.invalid() + invalid_);
   return status;
 }
 

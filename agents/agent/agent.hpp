@@ -5,6 +5,7 @@
 
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
+#include "agents/agent/seen_obstacles.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/passing.hpp"
 #include "agents/planning/visibility_graph.hpp"
@@ -45,8 +46,13 @@ class Agent {
 
  private:
   const Goal& goal() const { return robot_.goals[goal_index_]; }
-  /// Finds the ways to the goal anew when the obstacles on the way, robots that stand included, have changed.
+  /// Finds the ways to the goal anew when what is in the way, robots that stand and what moves without asking
+  /// included, has changed.
   void update_ways(Time now);
+  std::vector<Circle> in_the_way(Time now);
+  std::vector<Circle> moving_in_the_way(Time now);
+  /// How far from the edge of what is in the way a robot's centre stays where it plans.
+  double planning_keep_m() const;
   /// The way's direction, turned right by the preference for that side as far as obstacles allow.
   Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
@@ -56,11 +62,12 @@ class Agent {
   const double goal_tolerance_m_;
   Negotiation negotiation_;
   Neighbours neighbours_;
+  SeenObstacles obstacles_;
   SafetySearch safety_search_;
   Rng rng_;
   std::size_t goal_index_ = 0;
   std::optional<VisibilityGraph> ways_;  // to the current goal
-  std::vector<Vec2> standing_;           // robots that ways_ leads round
+  std::vector<Circle> in_the_way_;       // that ways_ leads round, besides the scenario's obstacles
   PassingOnTheRight passing_;
   bool arrived_ = false;
   State estimate_;                   // the robot's own

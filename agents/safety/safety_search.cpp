@@ -34,6 +34,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, std::span<const Vers
     if (std::any_of(chosen.begin(), chosen.begin() + result.count, close_to_sample)) continue;
     const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, sample.acceleration_mps2,
                                                        query.phase, rules_.limits.deceleration_mps2);
+    if (!rests_before_all(trajectory, query.moving, rules_.radius_m + rules_.margin_m)) continue;
     if (!is_allowed(trajectory, result.checks)) continue;
     result.wish_is_clear = result.wish_is_clear || sample.distance2 == 0;
     chosen[result.count] = sample.acceleration_mps2;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/motion/moving_obstacle.hpp"
 #include "common/motion/validity.hpp"
 #include "common/motion/version.hpp"
 #include "common/random/rng.hpp"
@@ -18,6 +19,7 @@ struct SearchQuery {
   State at_start;
   Vec2 wish_mps2{0, 0};
   Duration phase{};  ///< how long the acceleration is held before the stop manoeuvre begins
+  std::span<const MovingObstacle> moving{};  ///< to be at rest before
 };
 
 struct SearchSettings {

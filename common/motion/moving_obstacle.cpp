@@ -69,4 +69,10 @@ bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, 
   return true;
 }
 
+bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles,
+                      double keep_m) {
+  return std::ranges::all_of(
+      obstacles, [&](const MovingObstacle& obstacle) { return rests_before(trajectory, obstacle, keep_m); });
+}
+
 }  // namespace sidestep

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "common/geometry/vec2.hpp"
 #include "common/motion/trajectory.hpp"
 #include "common/time/time.hpp"
@@ -28,5 +30,6 @@ struct MovingObstacle {
 /// bounds it from below, and halving the phase brings the bound up to the quartic itself (Lane, Riesenfeld
 /// 1981).
 bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double keep_m);
+bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles, double keep_m);
 
 }  // namespace sidestep

@@ -55,6 +55,19 @@ struct Driven {
     seen.seen_x_m(x);
     agent.on_world(world, at_s(now));
   }
+  /// As see(), with somebody who moves without asking.
+  void see_obstacle(double x, double y, double seen_at, double now) {
+    msg::WorldState world;
+    msg::TrackedRobot& seen = world.robots().emplace_back();
+    seen.robot(3);
+    seen.seen_at_ns(to_ns(at_s(seen_at)));
+    world.obstacle_count(1);
+    world.obstacles()[0].seen_at_ns(to_ns(at_s(seen_at)));
+    world.obstacles()[0].x_m(x);
+    world.obstacles()[0].y_m(y);
+    world.obstacles()[0].radius_m(0.09);
+    agent.on_world(world, at_s(now));
+  }
   bool plans(double now) { return agent.plan(at_s(now), at_s(now + kCycle_s)).has_value(); }
 };
 
@@ -136,4 +149,30 @@ TEST_CASE("a robot whose held version ends at its goal has nothing to propose") 
   agent.on_world(world, at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
   CHECK(agent.status(at_s(1)).agent_phase() == msg::AGENT_ARRIVED);
+}
+
+TEST_CASE(
+    "nothing is proposed while somebody who moves without asking is too near, and it goes on afterwards") {
+  Driven d;
+  d.see_obstacle(0.25, 0, 0.6, 0.61);
+  auto query = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  REQUIRE(query);
+  CHECK_FALSE(d.agent.search(*query, at_s(0.62)));
+  // It has gone away, to where it is in nobody's way.
+  d.see_obstacle(0, 1.8, 0.7, 0.71);
+  query = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s));
+  REQUIRE(query);
+  CHECK(d.agent.search(*query, at_s(0.72)));
+}
+
+TEST_CASE("a robot's way leads round where somebody is who moves without asking") {
+  Driven d;
+  d.see_obstacle(0.6, 0.02, 0.6, 0.61);
+  const auto query = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  REQUIRE(query);
+  CHECK(std::abs(query->wish_mps2.y()) > 1);
+  d.see_obstacle(0, 1.8, 0.7, 0.71);
+  const auto straight = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s));
+  REQUIRE(straight);
+  CHECK(straight->wish_mps2.x() > 2);
 }

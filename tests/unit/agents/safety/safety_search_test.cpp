@@ -78,3 +78,43 @@ TEST_CASE("the same seed gives the same candidates") {
     }
   }
 }
+
+TEST_CASE("whatever moves without asking, every candidate is at rest before it could be there") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  FloorRules rules;
+  rules.field = {6, 6};
+  SafetySearch search(rules, {});
+  std::size_t found = 0, blocked = 0, refused = 0;
+  for (int scene = 0; scene < 1000; ++scene) {
+    std::vector<MovingObstacle> moving;
+    for (int i = 0; i < 3; ++i) {
+      moving.push_back({{rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5)},
+                        0.09,
+                        kStart - from_seconds(rng.uniform(0, 0.05)),
+                        1.5});
+    }
+    const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
+    SearchQuery query{kStart, {{0, 0}, velocity}, 3 * rotated({1, 0}, rng.uniform(-3, 3)), kCycle};
+    Rng again = rng;
+    const std::size_t without = search.search(query, {}, again).count;
+    query.moving = moving;
+    const auto result = search.search(query, {}, rng);
+    ++(result.count ? found : blocked);
+    refused += result.count < without;
+    for (std::size_t i = 0; i < result.count; ++i) {
+      const Trajectory& candidate = result.candidates[i];
+      // By dense sampling.
+      for (const MovingObstacle& obstacle : moving) {
+        for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
+          const double distance = (candidate.state_at(t).position_m - obstacle.position_m).norm();
+          REQUIRE(distance > rules.radius_m + rules.margin_m + obstacle.reach_m(t));
+        }
+      }
+    }
+  }
+  CHECK(found > 100);
+  CHECK(blocked > 100);
+  CHECK(refused > 100);
+}
