@@ -154,7 +154,7 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Vec2 direction = direction_beside(there.position_m, route);
   const MotionWish wish = wished_motion(route.length_m * direction, there.velocity_mps, rules_.limits, cycle_,
                                         cycle_ * negotiation_.lead());
-  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, obstacles_.recent(now)};
+  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, base.grown_m, obstacles_.recent(now)};
 }
 
 Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
@@ -168,7 +168,7 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
-  const SearchResult result = safety_search_.search(query, neighbours_.versions(), rng_);
+  const SearchResult result = safety_search_.search(query, neighbours_.crowd(), rng_);
   passing_.update(result.wish_is_clear, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
   return negotiation_.propose({result.candidates.data(), result.count}, base_, now);

@@ -29,17 +29,19 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
       ++invalid_;
     }
   }
-  versions_.clear();
-  for (const Page& p : pages_) versions_.insert(versions_.end(), p.versions.begin(), p.versions.end());
+  crowd_.clear();
+  for (const Page& p : pages_) {
+    for (const Version& version : p.versions) crowd_.add(version);
+  }
 }
 
 std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) const {
   std::vector<const Version*> found;
-  for (const Version& version : versions_) {
+  for (const Version& version : versions()) {
     const auto moves = [&](const Version& other) {
       return other.robot == version.robot && other.trajectory.end() > since;
     };
-    if (std::ranges::none_of(versions_, moves)) found.push_back(&version);
+    if (std::ranges::none_of(versions(), moves)) found.push_back(&version);
   }
   const auto distance = [&](const Version* v) {
     return (v->trajectory.rest_position_m() - here).squaredNorm();

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/motion/version.hpp"
+#include "common/motion/crowd.hpp"
 #include "idl/negotiation.h"
 
 namespace sidestep {
@@ -19,7 +19,9 @@ class Neighbours {
   /// farther than `horizon_m` from `here` are left out.
   void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
 
-  std::span<const Version> versions() const { return versions_; }
+  std::span<const Version> versions() const { return crowd_.versions(); }
+  /// The same, to be found by place.
+  Crowd& crowd() { return crowd_; }
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at
   /// rest since `since`, at most `most` of them, in the order of their ids.
   std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most) const;
@@ -33,7 +35,7 @@ class Neighbours {
   };
   RobotId self_;
   std::vector<Page> pages_;
-  std::vector<Version> versions_;  // of all pages
+  Crowd crowd_;  // of all pages
   std::uint64_t invalid_ = 0;
 };
 

@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "agents/safety/candidate_choice.hpp"
+#include "common/motion/crowd.hpp"
 #include "common/motion/moving_obstacle.hpp"
 #include "common/motion/validity.hpp"
-#include "common/motion/version.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
@@ -18,7 +19,8 @@ struct SearchQuery {
   Time start{};
   State at_start;
   Vec2 wish_mps2{0, 0};
-  Duration phase{};  ///< how long the acceleration is held before the stop manoeuvre begins
+  Duration phase{};    ///< how long the acceleration is held before the stop manoeuvre begins
+  double grown_m = 0;  ///< how much larger than its radius the robot has to be taken
   std::span<const MovingObstacle> moving{};  ///< to be at rest before
 };
 
@@ -42,23 +44,35 @@ struct SearchResult {
 /// Allocates nothing once warm.
 class SafetySearch {
  public:
-  SafetySearch(const FloorRules& rules, const SearchSettings& settings);
+  SafetySearch(const FloorRules& rules, const SearchSettings& settings,
+               const batch::Kernels& kernels = batch::best_kernels());
 
-  SearchResult search(const SearchQuery& query, std::span<const Version> others, Rng& rng);
+  SearchResult search(const SearchQuery& query, Crowd& others, Rng& rng);
 
  private:
-  struct Sample {
-    Vec2 acceleration_mps2;
-    double distance2;  // from the wish, squared
+  /// Somebody or something that a candidate may come near to.
+  struct Other {
+    const Trajectory* trajectory;  // nullptr: an obstacle
+    Vec2 centre_m;
+    double keep_m;
+    bool is_clear(const Trajectory& candidate) const;
   };
-  void draw_samples(const SearchQuery& query, Rng& rng);
-  void find_near(const SearchQuery& query, std::span<const Version> others);
-  bool is_allowed(const Trajectory& trajectory, int& checks);
+  void draw(const SearchQuery& query, const Vec2& wish_mps2, Rng& rng);
+  void find_near(const SearchQuery& query, const Circle& disc, Crowd& others);
+  void consider(const Outline& outline, const Other& other, Time start);
+  void compare(const SearchQuery& query, const Outline& wish, double room_m, int& checks);
+  bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
   SearchSettings settings_;
-  std::vector<Sample> samples_;
-  std::vector<const Version*> near_;
+  const batch::Kernels* kernels_;
+  std::vector<Outline> obstacles_;  // as rules_.obstacles
+  CandidateChoice choice_;
+  std::vector<std::uint32_t> found_;
+  batch::Lanes lanes_;               // of the others that may be near,
+  std::vector<Other> in_lanes_;      // who they are,
+  std::vector<Other> near_, exact_;  // and of them and the rest those who have to be asked one by one
+  bool is_near_border_ = false;
 };
 
 /// An acceleration held for a phase, then the stop manoeuvre.

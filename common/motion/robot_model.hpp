@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/geometry/vec2.hpp"
+#include "common/motion/batch/kernels.hpp"
 #include "common/motion/limits.hpp"
 #include "common/random/rng.hpp"
 #include "common/time/time.hpp"
@@ -23,5 +24,15 @@ Vec2 limited(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const Moti
 
 /// Uniform over A(v).
 Vec2 sample(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);
+
+/// As sample(), with x along the velocity.
+Vec2 sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng);
+
+/// The direction of a velocity; along x at rest.
+Vec2 forward_of(const Vec2& velocity_mps);
+
+/// What batch::Kernels::limit takes to do as limited() does to many, drawn by sample_ahead().
+batch::LimitSettings limit_settings(const Vec2& velocity_mps, const Vec2& wish_mps2,
+                                    const MotionLimits& limits, Duration duration);
 
 }  // namespace sidestep

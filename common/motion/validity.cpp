@@ -24,20 +24,6 @@ double largest_excursion(double x, double v, double a, double seconds) {
   return largest;
 }
 
-bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory) {
-  const double room_x = field.length_m / 2 - radius_m, room_y = field.width_m / 2 - radius_m;
-  State state = trajectory.at_start();
-  if (std::abs(state.position_m.x()) > room_x || std::abs(state.position_m.y()) > room_y) return false;
-  for (const Phase& phase : trajectory.phases()) {
-    const double seconds = to_seconds(phase.duration);
-    const Vec2 &p = state.position_m, &v = state.velocity_mps, &a = phase.acceleration_mps2;
-    if (largest_excursion(p.x(), v.x(), a.x(), seconds) > room_x) return false;
-    if (largest_excursion(p.y(), v.y(), a.y(), seconds) > room_y) return false;
-    state = state_after(state, a, seconds);
-  }
-  return true;
-}
-
 }  // namespace
 
 FloorRules floor_rules(const Scenario& scenario) {
@@ -71,6 +57,20 @@ msg::Reason check_place(const Trajectory& trajectory, const FloorRules& rules) {
     if (!is_clear(trajectory, obstacle.centre_m, keep)) return msg::REASON_OBSTACLE;
   }
   return msg::REASON_GRANTED;
+}
+
+bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory) {
+  const double room_x = field.length_m / 2 - radius_m, room_y = field.width_m / 2 - radius_m;
+  State state = trajectory.at_start();
+  if (std::abs(state.position_m.x()) > room_x || std::abs(state.position_m.y()) > room_y) return false;
+  for (const Phase& phase : trajectory.phases()) {
+    const double seconds = to_seconds(phase.duration);
+    const Vec2 &p = state.position_m, &v = state.velocity_mps, &a = phase.acceleration_mps2;
+    if (largest_excursion(p.x(), v.x(), a.x(), seconds) > room_x) return false;
+    if (largest_excursion(p.y(), v.y(), a.y(), seconds) > room_y) return false;
+    state = state_after(state, a, seconds);
+  }
+  return true;
 }
 
 bool continues(const Trajectory& trajectory, const Trajectory& base) {

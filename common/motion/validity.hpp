@@ -33,6 +33,9 @@ msg::Reason check_limits(const Trajectory& trajectory, const MotionLimits& limit
 /// or REASON_OBSTACLE.
 msg::Reason check_place(const Trajectory& trajectory, const FloorRules& rules);
 
+/// Whether a disc that follows the trajectory stays on the field.
+bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory);
+
 /// Whether the trajectory starts after the base has, where and as fast as the base is then.
 bool continues(const Trajectory& trajectory, const Trajectory& base);
 

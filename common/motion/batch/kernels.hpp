@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Compiled once for each instruction set: nothing here may be an inline function that linkers merge.
+#include <cstddef>
+#include <cstdint>
+
+namespace sidestep::batch {
+
+inline constexpr std::size_t kLanes = 8;  ///< of a block, whatever the machine's vectors hold
+inline constexpr std::size_t kSteps = 8;  ///< into which a comparison divides its time
+inline constexpr std::size_t kSamples = kSteps + 1;
+
+/// A number for each of a block's lanes.
+struct alignas(64) Row {
+  double lane[kLanes];
+};
+
+/// Motions of two phases and a rest each, over time from the comparison's begin on.
+struct MotionBlock {
+  Row start_s;
+  Row first_s, x_m, y_m, vx_mps, vy_mps, half_ax, half_ay;
+  Row second_s, second_vx, second_vy, second_half_ax, second_half_ay;
+};
+
+/// Where motions are at kSamples times, equally far apart.
+struct TrackBlock {
+  Row x_m[kSamples], y_m[kSamples];
+};
+struct Track {
+  double x_m[kSamples], y_m[kSamples];
+};
+
+/// What a comparison decides by, squared: chords of the relative motion that keep this far are clear, those
+/// that come nearer than that are not. What happens before `start_s` does not count.
+struct BoundsBlock {
+  Row start_s, clear_from, blocked_below;
+};
+
+/// The decisions, summed up over comparisons: clear where `clear` >= 0, in the way where `blocked` < 0.
+struct GapBlock {
+  Row clear, blocked;
+};
+
+/// Accelerations and how far they are from the wished one, squared; infinitely far: not to be chosen.
+struct AccelerationBlock {
+  Row x, y, distance2;
+};
+
+/// The state from which accelerations are held, the limits, and the wish.
+struct LimitSettings {
+  double forward_x, forward_y;  ///< the direction in which drawn accelerations lie ahead
+  double vx_mps, vy_mps;
+  bool is_at_rest;
+  double inverse_acceleration2, inverse_deceleration2, inverse_speed;
+  double speed_limit_mps, seconds, inverse_seconds;
+  double wish_x, wish_y;
+};
+
+/// Accelerations that are held and followed by the stop manoeuvre.
+struct StopSettings {
+  double x_m, y_m, vx_mps, vy_mps, hold_s, deceleration_mps2;
+};
+
+/// The inner loops of the safety layer. Every instruction set gives the same bits.
+struct Kernels {
+  const char* name;
+  /// Sets bit k of a block's mask where the discs of lane k and of the query touch.
+  void (*touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
+                   double y, double radius, std::uint8_t* masks);
+  void (*sample)(const MotionBlock* motions, std::size_t blocks, double step_s, TrackBlock* tracks);
+  /// Lowers the gaps to what `one` has to each lane; `bounds` has one block for all or one for each.
+  void (*compare)(const Track& one, const TrackBlock* lanes, const BoundsBlock* bounds, bool one_bounds,
+                  std::size_t blocks, double step_s, GapBlock* gaps);
+  /// Turns accelerations drawn in the frame of the velocity to the floor's, limits them (as limited() does)
+  /// and measures their distances from the wish.
+  void (*limit)(const LimitSettings& settings, AccelerationBlock* accelerations, std::size_t blocks);
+  void (*stop)(const StopSettings& settings, const AccelerationBlock* accelerations, std::size_t blocks,
+               MotionBlock* motions);
+  /// Takes those within the spread of (x, y), and whatever is blocked, out of the choice; returns the nearest
+  /// that is left, or the number of lanes.
+  std::size_t (*choose)(double x, double y, double spread2, AccelerationBlock* accelerations,
+                        const GapBlock* gaps, std::size_t blocks);
+};
+
+}  // namespace sidestep::batch

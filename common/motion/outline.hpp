@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/geometry/circle.hpp"
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+/// A trajectory as many are compared with at a time: in at most two phases, and what bounds it.
+struct Outline {
+  Time start{};
+  bool is_plain = false;  ///< has at most two phases and moderate numbers; others are compared one by one
+  Phase first, second;    ///< the first may be empty only if the second is
+  State at_start;
+  Vec2 second_velocity_mps{0, 0};  ///< as the second phase begins
+  double seconds = 0;              ///< until it rests
+  double acceleration_mps2 = 0;    ///< the largest
+  Circle disc;                     ///< never left, from the start on for ever
+};
+
+Outline outline_of(const Trajectory& trajectory);
+
+}  // namespace sidestep
