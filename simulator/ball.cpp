@@ -13,6 +13,7 @@ void Ball::step(const Field& field, std::span<const Circle> obstacles, std::span
     bounce_off_disc(obstacle.centre_m, obstacle.radius_m, Vec2::Zero(), settings_.wall_restitution);
   }
   for (const Body& robot : robots) {
+    if (!robot.is_on_floor()) continue;
     bounce_off_disc(robot.position_m(), robot_radius_m, robot.velocity_mps(), settings_.robot_restitution);
   }
   bounce_off_walls(field);

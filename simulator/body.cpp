@@ -24,6 +24,13 @@ Body::Body(const Vec2& position_m, double heading_rad, const BodySettings& setti
       decay_(std::exp(-kPhysicsStepSeconds / settings.lag_s)) {}
 
 void Body::step(const Actuation& wanted) {
+  if (is_plain_)
+    roll(wanted);
+  else if (is_on_floor_)
+    slide(wanted);
+}
+
+void Body::roll(const Actuation& wanted) {
   constexpr double dt = kPhysicsStepSeconds;
   const double lag = settings_.lag_s;
   const double gained = 1 - decay_;
@@ -49,6 +56,70 @@ void Body::step(const Actuation& wanted) {
 void Body::push(const Vec2& shift_m, const Vec2& velocity_change_mps) {
   state_.position_m += shift_m;
   state_.velocity_mps = limited(state_.velocity_mps + velocity_change_mps, settings_.speed_mps);
+}
+
+// The wheels do what is wanted; the floor gives the body its share of that, and of the friction between the
+// two.
+void Body::slide(const Actuation& wanted) {
+  constexpr double dt = kPhysicsStepSeconds;
+  const State before = state_;
+  state_.velocity_mps -= slip_mps_;
+  const Vec2 wheels_before = state_.velocity_mps;
+  roll(wanted);
+  Vec2 wheels = state_.velocity_mps;
+  Vec2 rolled = state_.position_m - before.position_m;
+  const Vec2 gained = wheels - wheels_before;
+  if (blocked_rad_) {
+    const Vec2 blocked = rotated(Vec2(1, 0), heading_rad_ + *blocked_rad_);
+    wheels -= blocked * wheels.dot(blocked);
+    rolled -= blocked * rolled.dot(blocked);
+    acceleration_mps2_ -= blocked * acceleration_mps2_.dot(blocked);
+  }
+  slip_mps_ = before.velocity_mps + grip_ * gained - wheels;
+  const double slip = slip_mps_.norm();
+  const double pulled = grip_ * settings_.friction_mps2 * dt;
+  slip_mps_ = pulled < slip ? Vec2(slip_mps_ * (1 - pulled / slip)) : Vec2(0, 0);
+
+  state_.velocity_mps = limited(wheels + slip_mps_, settings_.speed_mps);
+  slip_mps_ = state_.velocity_mps - wheels;
+  const Vec2 moved = 0.5 * dt * (before.velocity_mps + state_.velocity_mps);
+  state_.position_m = before.position_m + moved;
+  slid_m_ += moved - rolled;
+  is_plain_ = !is_sliding();
+}
+
+bool Body::is_sliding() const { return grip_ < 1 || blocked_rad_ || !slip_mps_.isZero(0); }
+
+void Body::shove(const Vec2& velocity_change_mps) {
+  const Vec2 wheels = state_.velocity_mps - slip_mps_;
+  state_.velocity_mps = limited(state_.velocity_mps + velocity_change_mps, settings_.speed_mps);
+  slip_mps_ = state_.velocity_mps - wheels;
+  is_plain_ = is_on_floor_ && !is_sliding();
+}
+
+void Body::set_grip(double share) {
+  grip_ = share;
+  is_plain_ = is_on_floor_ && !is_sliding();
+}
+
+void Body::set_blocked(std::optional<double> direction_rad) {
+  blocked_rad_ = direction_rad;
+  is_plain_ = is_on_floor_ && !is_sliding();
+}
+
+void Body::lift() {
+  state_.velocity_mps.setZero();
+  acceleration_mps2_.setZero();
+  slip_mps_.setZero();
+  angular_radps_ = angular_acceleration_radps2_ = 0;
+  is_plain_ = is_on_floor_ = false;
+}
+
+void Body::put_down(const Vec2& position_m, double heading_rad) {
+  state_.position_m = position_m;
+  heading_rad_ = heading_rad;
+  is_on_floor_ = true;
+  is_plain_ = !is_sliding();
 }
 
 }  // namespace sidestep

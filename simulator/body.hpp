@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "common/geometry/vec2.hpp"
 #include "common/motion/trajectory.hpp"
 #include "common/time/time.hpp"
@@ -18,6 +20,7 @@ struct BodySettings {
   double speed_mps = 2.5;
   double angular_acceleration_radps2 = 40;
   double angular_speed_radps = 8;
+  double friction_mps2 = 6;  ///< with which the floor pulls a body along that its wheels slide on
 };
 
 /// What firmware asks of the motors, in the world's frame.
@@ -27,7 +30,7 @@ struct Actuation {
 };
 
 /// An omnidirectional robot's body. Its acceleration follows the wanted one with a first-order lag and within
-/// limits.
+/// limits. The wheels roll, so that they measure how the body moves, unless something makes them slide.
 class Body {
  public:
   Body(const Vec2& position_m, double heading_rad, const BodySettings& settings);
@@ -39,6 +42,21 @@ class Body {
   /// Something outside moved it: a contact.
   void push(const Vec2& shift_m, const Vec2& velocity_change_mps);
 
+  /// Something outside changed its velocity past its wheels, which go on as they did: it slides until the
+  /// floor has pulled it along.
+  void shove(const Vec2& velocity_change_mps);
+  /// The share of every acceleration, 0 to 1, that reaches the floor.
+  void set_grip(double share);
+  /// A wheel stands still: no rolling along a direction, an angle from the heading; nothing: all turn.
+  void set_blocked(std::optional<double> direction_rad);
+  /// Off the floor a body does not move.
+  void lift();
+  /// Back on the floor, at rest.
+  void put_down(const Vec2& position_m, double heading_rad);
+  bool is_on_floor() const { return is_on_floor_; }
+  /// Where it would be if its wheels had never slid.
+  Vec2 rolled_to_m() const { return state_.position_m - slid_m_; }
+
   const Vec2& position_m() const { return state_.position_m; }
   const Vec2& velocity_mps() const { return state_.velocity_mps; }
   const Vec2& acceleration_mps2() const { return acceleration_mps2_; }
@@ -47,6 +65,10 @@ class Body {
   double angular_radps() const { return angular_radps_; }
 
  private:
+  void roll(const Actuation& wanted);
+  void slide(const Actuation& wanted);
+  bool is_sliding() const;
+
   State state_;
   Vec2 acceleration_mps2_{0, 0};
   double heading_rad_;
@@ -54,6 +76,13 @@ class Body {
   double angular_acceleration_radps2_ = 0;
   BodySettings settings_;
   double decay_;
+
+  bool is_plain_ = true;  ///< on the floor, and rolling
+  bool is_on_floor_ = true;
+  double grip_ = 1;
+  std::optional<double> blocked_rad_;
+  Vec2 slip_mps_{0, 0};  ///< of the body against what its wheels roll
+  Vec2 slid_m_{0, 0};
 };
 
 }  // namespace sidestep

@@ -43,7 +43,7 @@ void Cameras::capture(Time now, std::span<const Body> robots, const Vec2* ball_m
   frame.captured_at_ns(to_ns(now));
   frame.robots().clear();
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    if (!view.sees(robots[i].position_m()) || rng_.chance(spec_.missed)) continue;
+    if (!robots[i].is_on_floor() || !view.sees(robots[i].position_m()) || rng_.chance(spec_.missed)) continue;
     msg::RobotDetection seen;
     seen.robot(ids_[i]);
     seen.x_m(robots[i].position_m().x() + spec_.position_noise_m * rng_.normal());

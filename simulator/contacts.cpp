@@ -58,16 +58,18 @@ void Contacts::find_near(std::span<const Body> bodies) {
   });
   const double robots_near = 2 * radius_m_ + near;
   for (std::size_t i = 0; i < count; ++i) {
+    if (!bodies[by_x_[i]].is_on_floor()) continue;
     const Vec2& here = bodies[by_x_[i]].position_m();
     for (std::size_t j = i + 1; j < count; ++j) {
       const Vec2 apart = bodies[by_x_[j]].position_m() - here;
       if (apart.x() > robots_near) break;
-      if (apart.squaredNorm() <= robots_near * robots_near) {
+      if (apart.squaredNorm() <= robots_near * robots_near && bodies[by_x_[j]].is_on_floor()) {
         add(std::min(by_x_[i], by_x_[j]), std::max(by_x_[i], by_x_[j]));
       }
     }
   }
   for (std::uint32_t robot = 0; robot < count; ++robot) {
+    if (!bodies[robot].is_on_floor()) continue;
     for (std::uint32_t k = 0; k < obstacles_.size(); ++k) {
       const double limit = obstacles_[k].radius_m + radius_m_ + near;
       if ((bodies[robot].position_m() - obstacles_[k].centre_m).squaredNorm() <= limit * limit) {

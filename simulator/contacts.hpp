@@ -17,7 +17,8 @@ struct ContactTotals {
 };
 
 /// Finds, counts and separates robots that touch each other or an obstacle. Counts a pair again only after it
-/// was apart by kApart_m. Pairs that cannot meet before the next look at all of them are left out.
+/// was apart by kApart_m. Bodies off the floor touch nothing. Pairs that cannot meet before the next look at
+/// all of them are left out.
 class Contacts {
  public:
   Contacts(std::span<const Circle> obstacles, double robot_radius_m, double speed_limit_mps);
@@ -25,6 +26,9 @@ class Contacts {
   /// Looks at where the bodies are after a physics step, and pushes apart those that touch, without any
   /// bounce.
   void step(std::span<Body> bodies);
+
+  /// Bodies have come, gone or been moved: whatever was near whom, it is looked for again.
+  void search_again() { steps_to_next_search_ = 0; }
 
   const ContactTotals& totals() const { return totals_; }
 

@@ -10,6 +10,10 @@ namespace sidestep {
 namespace {
 
 constexpr double kFarthest_m = 1e4;  // no floor is larger
+constexpr double kMostGrown_m = 1;
+// What claims to be higher would leave no room for numbers above it.
+constexpr Incarnation kHighestIncarnation = Incarnation{1} << 62;
+constexpr VersionNumber kHighestNumber = VersionNumber{1} << 63;
 
 struct CheckedCommand {
   Incarnation incarnation;
@@ -26,13 +30,13 @@ bool is_sane(const msg::PoseFix& fix) {
 std::optional<CheckedCommand> check(const msg::Command& command, RobotId robot) {
   CheckedCommand checked{command.head().incarnation(), command.epoch(), std::nullopt};
   if (command.robot() != robot || command.head().sender() != robot) return std::nullopt;
-  if (checked.incarnation == 0 || checked.epoch > kHighestEpoch || !std::isfinite(command.heading_rad()))
-    return std::nullopt;
+  if (checked.incarnation == 0 || checked.incarnation > kHighestIncarnation) return std::nullopt;
+  if (checked.epoch > kHighestEpoch || !std::isfinite(command.heading_rad())) return std::nullopt;
   if (command.has_fix() && !is_sane(command.fix())) return std::nullopt;
   if (command.has_version()) {
     checked.version = decode(command.granted());
-    if (!checked.version || checked.version->robot != robot || checked.version->number == 0)
-      return std::nullopt;
+    if (!checked.version || checked.version->robot != robot) return std::nullopt;
+    if (checked.version->number == 0 || checked.version->number > kHighestNumber) return std::nullopt;
     if (checked.version->incarnation > checked.incarnation) return std::nullopt;
   }
   return checked;
@@ -59,11 +63,14 @@ void Firmware::on_command(const msg::Command& command, Time now) {
     ++counts_.refused_malformed;
     return;
   }
+  highest_ = std::max({highest_, checked->incarnation, checked->version ? checked->version->number : 0});
   if (checked->incarnation < obeyed_) {
     ++counts_.refused_fenced;
     return;
   }
   obey(checked->incarnation);
+  heard_stamp_ns_ = command.head().stamp_ns();
+  heard_at_ = now;
   // A new agent may not have heard of the epoch that an earlier one has obeyed: it is told, but not obeyed so
   // far.
   const bool is_old_epoch = checked->epoch < obeyed_epoch_;
@@ -98,11 +105,18 @@ void Firmware::take(const Version& version, Time now) {
     ++counts_.refused_fenced;
   } else if (version.trajectory.start() <= now) {
     ++counts_.refused_late;
-  } else if (version.number < executing_.number) {
+  } else if (!may_take(version)) {
     ++counts_.refused_base;  // it continues something older still
   } else {
     insert(version);
   }
+}
+
+bool Firmware::may_take(const Version& version) const {
+  if (version.number <= newest_) return false;
+  const Trajectory& trajectory = version.trajectory;
+  const bool is_stand = trajectory.phases().empty() && trajectory.at_start().velocity_mps.isZero(0);
+  return !is_lifted_ || (version.base == 0 && is_stand);
 }
 
 void Firmware::insert(const Version& version) {
@@ -138,8 +152,10 @@ bool Firmware::switch_next(Time now) {
   while (pending_count_ > 0 && pending_[0].trajectory.start() <= now) {
     const Version due = pending_[0];
     remove_pending(0);
-    if (due.base == executing_.number && due.number > executing_.number) {
+    if (due.base == executing_.number && due.number > newest_) {
       executing_ = due;
+      newest_ = due.number;
+      is_off_reference_ = false;
       ++counts_.taken;
       return true;
     }
@@ -168,9 +184,18 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
                      (believed_angular - last_wish_.angular_acceleration_radps2) * decay_;
   estimator_.advance(now, odometry, believed, believed_angular);
 
+  if (is_lifted_) return last_wish_ = {};
+  const bool may_break_off = now > last_fact_ && now > executing_.trajectory.start();
+  if (is_rebooting_ && may_break_off) start_again(now);
+
+  State now_wanted = executing_.trajectory.state_at(now);
+  if (may_break_off && is_beyond_bound(estimator_.position_m() - now_wanted.position_m)) {
+    break_off(now);
+    now_wanted = executing_.trajectory.at_start();
+  }
+
   // With a motor lag T, p + T v and v + T a move as a double integrator without any lag under the wish.
   const double lag = settings_.body.lag_s;
-  const State now_wanted = executing_.trajectory.state_at(now);
   const Trajectory& ahead = planned(now + look_ahead_);
   const Vec2 position_lead = now_wanted.position_m + lag * now_wanted.velocity_mps -
                              (estimator_.position_m() + lag * estimator_.velocity_mps());
@@ -191,9 +216,65 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   return last_wish_;
 }
 
+// The uncertainty counts for half of the bound at most: a robot that nobody sees is not thereby off its
+// reference.
+bool Firmware::is_beyond_bound(const Vec2& error_m) const {
+  const double half = 0.5 * settings_.tracking_bound_m;
+  if (error_m.squaredNorm() < half * half) return false;
+  const double allowed = settings_.tracking_bound_m + executing_.grown_m;
+  return error_m.norm() + std::min(2 * estimator_.deviation_m(), half) > allowed;
+}
+
+void Firmware::break_off(Time now) {
+  Version stop;
+  stop.robot = robot_;
+  stop.incarnation = obeyed_;
+  highest_ = std::max(highest_, newest_) + kOwnNumberGap;
+  stop.number = highest_;
+  stop.base = executing_.number;
+  stop.trajectory = Trajectory(now, {estimator_.position_m(), estimator_.velocity_mps()});
+  append_stop(stop.trajectory, settings_.deceleration_mps2);
+  // What moved it past its wheels may do so again until the next sight.
+  stop.grown_m = std::min(2 * estimator_.deviation_m() + estimator_.jump_m(), kMostGrown_m);
+  executing_ = stop;
+  newest_ = stop.number;
+  is_off_reference_ = true;
+  pending_count_ = 0;
+  ++counts_.broke_off;
+}
+
+void Firmware::lift(Time now) {
+  is_lifted_ = true;
+  is_rebooting_ = false;
+  is_off_reference_ = false;
+  pending_count_ = 0;
+  executing_ = {robot_, 0, 0, 0, Trajectory::resting(now, estimator_.position_m()), 0};
+}
+
+void Firmware::put_down(double heading_rad, Time now) {
+  is_lifted_ = false;
+  heading_goal_rad_ = heading_rad;
+  estimator_ = PoseEstimator(executing_.trajectory.rest_position_m(), heading_rad, now, settings_.estimator);
+  last_wish_ = believed_ = {};
+}
+
+void Firmware::start_again(Time now) {
+  Firmware again(robot_, estimator_.position_m(), estimator_.heading_rad(), now, settings_);
+  again.estimator_ = estimator_;
+  again.obeyed_ = obeyed_;
+  again.obeyed_epoch_ = obeyed_epoch_;
+  again.highest_ = highest_;
+  again.newest_ = newest_;
+  again.executing_ = executing_;
+  again.last_fact_ = last_fact_;
+  *this = again;
+  break_off(now);
+}
+
 msg::Feedback Firmware::feedback(Time now) {
   while (switch_next(now)) {
   }
+  last_fact_ = std::max(last_fact_, now);
   const Vec2 position =
       estimator_.position_m() + estimator_.velocity_mps() * to_seconds(now - estimator_.time());
   const Vec2 reference = executing_.trajectory.state_at(now).position_m;
@@ -203,6 +284,10 @@ msg::Feedback Firmware::feedback(Time now) {
   facts.obeyed_epoch(obeyed_epoch_);
   facts.at_ns(to_ns(now));
   facts.executing(encode(executing_));
+  facts.is_off_reference(is_off_reference_);
+  facts.is_lifted(is_lifted_);
+  facts.heard_stamp_ns(heard_stamp_ns_);
+  facts.heard_at_ns(to_ns(heard_at_));
   facts.x_m(position.x());
   facts.y_m(position.y());
   facts.vx_mps(estimator_.velocity_mps().x());

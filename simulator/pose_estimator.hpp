@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,9 @@ class PoseEstimator {
 
   /// Corrects by a sight of the robot. False, and nothing changed: not a number, from the future, too old
   /// (beyond kMemory), or not newer than the last one.
+  ///
+  /// Fixes that agree with each other but not with the odometry mean that something moved the robot past its
+  /// wheels: then the estimate goes where they say.
   bool correct(Time captured_at, const Vec2& position_m, double heading_rad);
 
   Time time() const { return time_; }
@@ -48,6 +52,10 @@ class PoseEstimator {
   double angular_radps() const { return angular_radps_; }
   /// Estimated relative error of the odometry: what it measures is (1 + scale_error) times the truth, nearly.
   double scale_error() const { return scale_; }
+  /// Root mean square distance from the truth, as far as the filter can tell.
+  double deviation_m() const;
+  /// How far the last fix showed the robot to have been moved past its wheels, 0: it did not.
+  double jump_m() const { return jump_m_; }
 
   static constexpr std::int64_t kMemory = 512;  ///< control periods
 
@@ -56,6 +64,14 @@ class PoseEstimator {
     Vec2 path_m{0, 0};  ///< odometry summed since the creation
     double turned_rad = 0;
   };
+  /// What a fix said against the prediction.
+  struct Innovation {
+    Vec2 offset_m{0, 0};
+    double variance_m2 = 0;  ///< per axis, as expected
+  };
+  bool was_moved_past_wheels(const Innovation& latest);
+  Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
+
   std::vector<Sample> past_;  ///< ring, one a control period
   std::int64_t count_ = 0;    ///< samples since the creation or the last gap
 
@@ -71,6 +87,8 @@ class PoseEstimator {
   double scale_ = 0;
   Eigen::Matrix3d covariance_;  ///< of position at the anchor and scale
   double heading_anchor_rad_;   ///< heading when turned_rad_ was 0
+  double jump_m_ = 0;
+  std::array<Innovation, 3> surprises_;  ///< latest first, before any of them was cut off
   EstimatorSettings settings_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/senders.hpp"
+#include "simulator/disturbance_check.hpp"
 
 namespace sidestep {
 namespace {
@@ -26,6 +27,8 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       cycle_(scenario.cycle),
       delay_(scenario.vision.delay),
       command_loss_(scenario.command_loss),
+      field_(scenario.field),
+      radius_m_(scenario.radius_m),
       incarnation_(incarnation),
       clock_(bus.now()),
       world_(scenario, bus.now(), seed),
@@ -37,6 +40,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
   const Time begin = bus.now();
   const std::size_t count = world_.robot_count();
   for (std::size_t i = 0; i < count; ++i) {
+    index_of_[world_.id(i)] = i;
     watched_start_.push_back(begin);
     feedback_.push_back(bus.advertise(topics::kFeedback, world_.id(i)));
     feedback_due_.push_back(begin +
@@ -44,6 +48,8 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
     bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
                                 [this, i](const msg::Command& command) { on_command(i, command); });
   }
+  bus.subscribe<msg::Disturbance>(topics::kDisturbance,
+                                  [this](const msg::Disturbance& what) { on_disturbance(what); });
   bus.at(begin, [this] { wake(); });
 }
 
@@ -86,8 +92,21 @@ void SimulatorNode::on_command(std::size_t robot, const msg::Command& command) {
   watch_start(robot, now);
 }
 
+void SimulatorNode::on_disturbance(const msg::Disturbance& what) {
+  const Time now = clock();
+  advance(now);
+  const auto robot = index_of_.find(what.robot());
+  if (robot == index_of_.end() || !is_sound(what, field_, radius_m_) ||
+      !world_.disturb(robot->second, what, now)) {
+    ++disturbances_refused_;
+    return;
+  }
+  publish_news(now);
+  watch_start(robot->second, now);
+}
+
 void SimulatorNode::watch_start(std::size_t robot, Time now) {
-  const Time start = world_.firmware(robot).next_start();
+  const Time start = world_.next_start(robot);
   if (start == watched_start_[robot] || start - now > kFarAhead) return;
   watched_start_[robot] = start;
   bus_.at(start, [this, robot] { on_start(robot); });
@@ -96,7 +115,7 @@ void SimulatorNode::watch_start(std::size_t robot, Time now) {
 void SimulatorNode::on_start(std::size_t robot) {
   const Time now = clock();
   advance(now);
-  if (world_.firmware(robot).next_start() > now) return;
+  if (world_.next_start(robot) > now) return;
   publish_feedback(robot, now);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "common/config/scenario.hpp"
@@ -13,8 +14,8 @@
 namespace sidestep {
 
 /// The simulator as a process of the system: takes commands over a lossy radio, moves the world to the bus's
-/// time, and publishes robots' facts, camera frames, and truth for judges. Whoever owns the bus stops it
-/// before this goes.
+/// time, does to robots what disturbances say, and publishes robots' facts, camera frames, and truth for
+/// judges. Whoever owns the bus stops it before this goes.
 class SimulatorNode {
  public:
   SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed);
@@ -24,6 +25,8 @@ class SimulatorNode {
   const World& world() const { return world_; }
   /// Commands that the radio lost.
   std::uint64_t commands_lost() const { return commands_lost_; }
+  /// Disturbances that made no sense, or could not be done to that robot.
+  std::uint64_t disturbances_refused() const { return disturbances_refused_; }
 
  private:
   struct Frame {
@@ -35,6 +38,7 @@ class SimulatorNode {
   void wake();
   void advance(Time now);
   void on_command(std::size_t robot, const msg::Command& command);
+  void on_disturbance(const msg::Disturbance& what);
   void watch_start(std::size_t robot, Time now);
   void on_start(std::size_t robot);
   void publish_feedback(std::size_t robot, Time now);
@@ -47,13 +51,17 @@ class SimulatorNode {
   Duration cycle_;
   Duration delay_;
   double command_loss_;
+  Field field_;
+  double radius_m_;
   Incarnation incarnation_;
   Time clock_;
   World world_;
   Cameras cameras_;
   Rng radio_;
   std::uint64_t commands_lost_ = 0;
+  std::uint64_t disturbances_refused_ = 0;
 
+  std::unordered_map<RobotId, std::size_t> index_of_;
   std::vector<Writer<msg::Feedback>> feedback_;
   std::vector<Time> feedback_due_;
   std::vector<Time> watched_start_;  ///< of each robot's version that a timer waits for

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world.hpp"
 
+#include <algorithm>
+
 namespace sidestep {
 namespace {
 
@@ -9,6 +11,8 @@ FirmwareSettings firmware_settings(const Scenario& scenario) {
   settings.estimator.velocity_noise_mps = scenario.odometry.velocity_noise_mps;
   settings.estimator.scale_error = scenario.odometry.scale_error;
   settings.estimator.fix_noise_m = scenario.vision.position_noise_m;
+  settings.tracking_bound_m = scenario.tracking_bound_m;
+  settings.deceleration_mps2 = scenario.limits.deceleration_mps2;
   return settings;
 }
 
@@ -37,12 +41,22 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
   news_.reserve(scenario.robots.size());
   for (const RobotSpec& spec : scenario.robots) {
     bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
-    Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, begin, settings);
-    const FirmwareJudge judge(firmware.executing());
+    const Time clock = begin + spec.clock_offset;
+    Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, clock, settings);
+    const FirmwareJudge judge(firmware.executing(), settings.tracking_bound_m, settings.deceleration_mps2);
     Rng noise = rng.fork();
     const double scale = 1 + scenario.odometry.scale_error * noise.normal();
-    robots_.push_back(
-        {spec.id, std::move(firmware), judge, noise, scale, {}, spec.start_m, spec.start_heading_rad});
+    robots_.push_back({spec.id,
+                       std::move(firmware),
+                       judge,
+                       noise,
+                       scale,
+                       {},
+                       spec.start_m,
+                       spec.start_heading_rad,
+                       spec.clock_offset,
+                       clock});
+    if (spec.is_absent) lift(robots_.size() - 1, begin);
   }
   if (scenario.ball)
     ball_.emplace(State{scenario.ball->position_m, scenario.ball->velocity_mps}, BallSettings{});
@@ -57,18 +71,38 @@ void World::step() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].wish);
   contacts_.step(bodies_);
   if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
+  if (!effects_.empty()) end_effects();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    switch_versions(i, time_);
-    robots_[i].wish = robots_[i].firmware.tick(time_, measure(i));
+    Robot& robot = robots_[i];
+    const Time now = robot_time(i, time_);
+    switch_versions(i, now);
+    robot.wish = robot.firmware.tick(now, measure(i));
+    if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.known_stop) {
+      robot.known_stop = robot.firmware.executing().number;
+      robot.judge.broke_off(robot.firmware.executing());
+      note_news(i);
+    }
   }
+}
+
+// Facts must stay true, so a clock that is set back stands until its time has come.
+Time World::robot_time(std::size_t index, Time now) {
+  Robot& robot = robots_[index];
+  return robot.clock = std::max(robot.clock, now + robot.clock_offset);
+}
+
+Time World::next_start(std::size_t index) const {
+  const Time start = robots_[index].firmware.next_start();
+  return start == Time::max() ? start : start - robots_[index].clock_offset;
 }
 
 Odometry World::measure(std::size_t index) {
   Robot& robot = robots_[index];
   const Body& body = bodies_[index];
-  const Vec2 velocity = (body.position_m() - robot.last_position_m) / kPhysicsStepSeconds;
+  const Vec2 rolled_to = body.rolled_to_m();
+  const Vec2 velocity = (rolled_to - robot.last_position_m) / kPhysicsStepSeconds;
   const double turning = (body.heading_rad() - robot.last_heading_rad) / kPhysicsStepSeconds;
-  robot.last_position_m = body.position_m();
+  robot.last_position_m = rolled_to;
   robot.last_heading_rad = body.heading_rad();
   const double x_noise = velocity_noise_mps_ * nearly_normal(robot.noise);
   const double y_noise = velocity_noise_mps_ * nearly_normal(robot.noise);
@@ -101,18 +135,20 @@ void World::clear_news(std::size_t index) {
 
 void World::on_command(std::size_t index, const msg::Command& command, Time now) {
   Robot& robot = robots_[index];
-  switch_versions(index, now);
-  robot.judge.command_arrived(command, now);
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  robot.judge.command_arrived(command, clock);
   const Incarnation obeyed = robot.firmware.obeyed_incarnation();
   const Epoch epoch = robot.firmware.obeyed_epoch();
-  robot.firmware.on_command(command, now);
+  robot.firmware.on_command(command, clock);
   if (robot.firmware.obeyed_incarnation() != obeyed || robot.firmware.obeyed_epoch() != epoch)
     note_news(index);
 }
 
 msg::Feedback World::feedback(std::size_t index, Time now) {
-  switch_versions(index, now);
-  msg::Feedback facts = robots_[index].firmware.feedback(now);
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  msg::Feedback facts = robots_[index].firmware.feedback(clock);
   robots_[index].judge.reported(facts);
   return facts;
 }
@@ -124,7 +160,10 @@ std::uint64_t World::firmware_violations() const {
 }
 
 double World::reference_error_m(std::size_t index) const {
-  const State reference = robots_[index].firmware.executing().trajectory.state_at(time_);
+  const Robot& robot = robots_[index];
+  if (robot.firmware.is_lifted()) return 0;
+  const Time now = std::max(robot.clock, time_ + robot.clock_offset);
+  const State reference = robot.firmware.executing().trajectory.state_at(now);
   return (bodies_[index].position_m() - reference.position_m).norm();
 }
 
@@ -137,9 +176,11 @@ void World::fill(msg::GroundTruth& truth) const {
   const Vec2 ball = ball_ ? ball_->state().position_m : Vec2(0, 0);
   truth.ball_x_m(ball.x());
   truth.ball_y_m(ball.y());
+  std::size_t count = 0;
   truth.robots().resize(robots_.size());
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    msg::TruthRobot& robot = truth.robots()[i];
+    if (!bodies_[i].is_on_floor()) continue;
+    msg::TruthRobot& robot = truth.robots()[count++];
     robot.robot(robots_[i].id);
     robot.x_m(bodies_[i].position_m().x());
     robot.y_m(bodies_[i].position_m().y());
@@ -148,6 +189,7 @@ void World::fill(msg::GroundTruth& truth) const {
     robot.vy_mps(bodies_[i].velocity_mps().y());
     robot.reference_error_m(reference_error_m(i));
   }
+  truth.robots().resize(count);
 }
 
 }  // namespace sidestep

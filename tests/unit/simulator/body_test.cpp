@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/body.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -60,6 +61,121 @@ TEST_CASE("a wish that is not a number counts as none") {
   for (int step = 0; step < 10; ++step) body.step({Vec2(nan, std::numeric_limits<double>::infinity()), nan});
   CHECK(body.position_m().norm() == 0);
   CHECK(body.heading_rad() == 0);
+}
+
+// What the wheels measure since the last call.
+struct Wheels {
+  explicit Wheels(const Body& of) : body(of), last(of.rolled_to_m()) {}
+  Vec2 velocity() {
+    const Vec2 moved = body.rolled_to_m() - last;
+    last = body.rolled_to_m();
+    return moved / kPhysicsStepSeconds;
+  }
+  const Body& body;
+  Vec2 last;
+};
+
+TEST_CASE("a shoved body slides until friction has stopped it, and its wheels do not notice") {
+  const double shove_mps = GENERATE(0.1, 0.3, 1.0);
+  CAPTURE(shove_mps);
+  const BodySettings settings;
+  Body body({0, 0}, 0, settings);
+  for (int i = 0; i < 300; ++i) body.step({{i < 200 ? 3.0 : 0.0, 0}, 0});
+  const Vec2 before = body.velocity_mps();
+  Wheels wheels(body);
+  Vec2 rolled = body.position_m();
+  body.shove({0, shove_mps});
+  CHECK(body.velocity_mps().y() == Approx(shove_mps));
+  for (int i = 0; i < 500; ++i) {
+    body.step({});
+    const Vec2 seen = wheels.velocity();
+    REQUIRE((seen - before).norm() < 0.01);
+    rolled += seen * kPhysicsStepSeconds;
+  }
+  const double slid_m = shove_mps * shove_mps / (2 * settings.friction_mps2);
+  CHECK(body.position_m().y() == Approx(slid_m).epsilon(0.02));
+  CHECK((body.velocity_mps() - before).norm() < 0.01);
+  CHECK((rolled - Vec2(body.position_m().x(), 0)).norm() < 1e-9);
+}
+
+TEST_CASE("without grip a body goes on as it was, whatever its wheels do") {
+  Body body({0, 0}, 0, {});
+  for (int i = 0; i < 300; ++i) body.step({{i < 200 ? 3.0 : 0.0, 0}, 0});
+  const Vec2 start = body.position_m(), velocity = body.velocity_mps();
+  Wheels wheels(body);
+  body.set_grip(0);
+  Vec2 seen;
+  for (int i = 0; i < 100; ++i) {
+    body.step({{-5, 0}, 0});
+    seen = wheels.velocity();
+  }
+  CHECK((body.position_m() - start - 0.1 * velocity).norm() < 1e-9);
+  CHECK(seen.x() < velocity.x() - 0.35);
+  body.set_grip(1);
+  for (int i = 0; i < 300; ++i) {
+    body.step({});
+    seen = wheels.velocity();
+  }
+  CHECK((seen - body.velocity_mps()).norm() < 1e-9);
+}
+
+TEST_CASE("with a share of the grip a body gains that share") {
+  const double grip = GENERATE(0.2, 0.7);
+  CAPTURE(grip);
+  const BodySettings settings;
+  Body body({0, 0}, 0, settings);
+  body.set_grip(grip);
+  Wheels wheels(body);
+  Vec2 seen;
+  for (int i = 0; i < 200; ++i) {
+    body.step({{2, 0}, 0});
+    seen = wheels.velocity();
+  }
+  // The wheels spin up as ever; the body gets its share of that, and of the friction of wheels that spin
+  // faster.
+  const double spun = 2 * (0.2 - settings.lag_s);
+  const double most = grip * (2 + settings.friction_mps2) * 0.2;
+  CHECK(seen.x() == Approx(spun).margin(0.01));
+  CHECK(body.velocity_mps().x() <= std::min(spun, most) + 0.01);
+  CHECK(body.velocity_mps().x() >= grip * spun - 0.01);
+}
+
+TEST_CASE("a blocked wheel stops one direction, and its wheels notice") {
+  const double heading = 0.7, blocked = GENERATE(0.0, 1.2);
+  CAPTURE(blocked);
+  Body body({0, 0}, heading, {});
+  const Vec2 along = rotated(Vec2(1, 0), heading + blocked), across = left_of(along);
+  for (int i = 0; i < 300; ++i) {
+    body.step({i < 200 ? Vec2(2 * along + 2 * across) : Vec2(0, 0), 0});
+  }
+  const double before = body.velocity_mps().dot(across);
+  Wheels wheels(body);
+  body.set_blocked(blocked);
+  body.step({});
+  CHECK(std::abs(wheels.velocity().dot(along)) < 1e-9);
+  for (int i = 0; i < 300; ++i) body.step({});
+  wheels.velocity();
+  body.step({});
+  CHECK(std::abs(body.velocity_mps().dot(along)) < 1e-9);
+  CHECK(body.velocity_mps().dot(across) == Approx(before).epsilon(0.02));
+  body.set_blocked(std::nullopt);
+  body.step({4 * along, 0});
+  CHECK(body.velocity_mps().dot(along) > 0);
+}
+
+TEST_CASE("a body off the floor does not move, and comes back at rest") {
+  Body body({0, 0}, 0, {});
+  for (int i = 0; i < 300; ++i) body.step({{3, 0}, 0});
+  body.lift();
+  const Vec2 there = body.position_m();
+  for (int i = 0; i < 100; ++i) body.step({{3, 0}, 1});
+  CHECK(body.position_m() == there);
+  CHECK_FALSE(body.is_on_floor());
+  body.put_down({1, 2}, 0.5);
+  CHECK(body.is_on_floor());
+  body.step({});
+  CHECK(body.position_m() == Vec2(1, 2));
+  CHECK(body.velocity_mps() == Vec2(0, 0));
 }
 
 }  // namespace

@@ -48,8 +48,9 @@ class ManualBus : public Bus {
     writer->is_feedback = std::string(topic.name) == topics::kFeedback.name;
     return writer;
   }
-  void make_reader(const TopicInfo&, const std::string&, std::function<void(const void*)> callback) override {
-    on_command_ = std::move(callback);
+  void make_reader(const TopicInfo& topic, const std::string&,
+                   std::function<void(const void*)> callback) override {
+    if (std::string(topic.name) == topics::kCommand.name) on_command_ = std::move(callback);
   }
 
  private:

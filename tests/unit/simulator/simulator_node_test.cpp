@@ -263,5 +263,62 @@ TEST_CASE("hostile commands over the bus do not stop the simulator") {
   CHECK(scene.node.world().firmware_violations() == 0);
 }
 
+TEST_CASE("what a hand does is reported at once, and nonsense changes nothing") {
+  Scenario scenario = lonely_robots(2);
+  scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
+  Scene scene(scenario);
+  Writer<msg::Disturbance> hand = scene.outside.advertise(topics::kDisturbance);
+  scene.run(milliseconds(50));
+  const auto send = [&](RobotId robot, msg::DisturbanceKind kind) {
+    msg::Disturbance what;
+    what.robot(robot);
+    what.disturbance_kind(kind);
+    what.grip(2);
+    what.vx_mps(std::numeric_limits<double>::quiet_NaN());
+    what.clock_offset_ns(5'000'000);
+    hand.publish(what, scene.network.now());
+    scene.run(std::chrono::microseconds(250));
+  };
+  send(7, msg::DISTURBANCE_LIFT);
+  send(0, msg::DISTURBANCE_SLIP);
+  send(0, msg::DISTURBANCE_PUSH);
+  send(0, static_cast<msg::DisturbanceKind>(99));
+  send(0, msg::DISTURBANCE_PLACE);  // it stands on the floor
+  CHECK(scene.node.disturbances_refused() == 5);
+  CHECK_FALSE(scene.facts[0].back().is_lifted());
+  send(0, msg::DISTURBANCE_LIFT);
+  CHECK(scene.facts[0].back().is_lifted());
+  CHECK(scene.facts[0].back().at_ns() == to_ns(scene.network.now() - std::chrono::microseconds(150)));
+  send(1, msg::DISTURBANCE_REBOOT);
+  scene.run(milliseconds(6));
+  CHECK(scene.facts[1].back().is_off_reference());
+  CHECK(scene.facts[1].back().executing().version_number() >= Firmware::kOwnNumberGap);
+  send(1, msg::DISTURBANCE_CLOCK);
+  scene.run(milliseconds(100));
+  CHECK(scene.facts[1].back().at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);
+  scene.run(milliseconds(20));
+  CHECK(scene.truths.back().robots().size() == 1);
+  CHECK(scene.node.disturbances_refused() == 5);
+  CHECK(scene.node.world().firmware_violations() == 0);
+}
+
+TEST_CASE("a version's start is watched by the robot's clock") {
+  Scenario scenario = lonely_robots(1);
+  scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
+  scenario.robots[0].clock_offset = GENERATE(milliseconds(-3), milliseconds(3));
+  Scene scene(scenario);
+  scene.run(milliseconds(50));
+  const Time robot_now = scene.network.now() + scenario.robots[0].clock_offset;
+  const Time start = robot_now + std::chrono::microseconds(10'300);
+  scene.send(0, test::command_with({0, 9, 1, 0, Trajectory::resting(start, scenario.robots[0].start_m)}));
+  scene.run(milliseconds(30));
+  const auto& facts = scene.facts[0];
+  const auto first = std::find_if(facts.begin(), facts.end(),
+                                  [](const msg::Feedback& f) { return f.executing().version_number() == 1; });
+  REQUIRE(first != facts.end());
+  CHECK(first->at_ns() == to_ns(start));
+  CHECK(first->head().stamp_ns() == to_ns(start - scenario.robots[0].clock_offset));
+}
+
 }  // namespace
 }  // namespace sidestep

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/codec.hpp"
+#include "common/motion/robot_model.hpp"
+#include "common/random/rng.hpp"
+#include "simulator/world.hpp"
+
+namespace sidestep::test {
+
+/// Plays vision and an agent that hears everything at once for one robot of a World: forwards noisy, late
+/// fixes, and continues whatever the robot executes by random versions, or lets it rest. Asks for a stand
+/// when the robot is lifted.
+class FollowedRobot {
+ public:
+  FollowedRobot(const Scenario& scenario, World& world, std::size_t robot, std::uint64_t seed)
+      : scenario_(scenario),
+        world_(world),
+        robot_(robot),
+        rng_(seed),
+        due_(world.time() + from_seconds(rng_.uniform(0.0, 0.016))),
+        home_m_(world.bodies()[robot].position_m()) {}
+
+  bool drives = true;
+  Vec2 stand_m{0, 0};
+
+  /// Called at every step.
+  void act(Time now) {
+    if (now < due_) return;
+    due_ += scenario_.cycle;
+    look(now);
+    msg::Command command;
+    command.robot(world_.id(robot_));
+    command.head().sender(world_.id(robot_));
+    command.head().incarnation(1);
+    command.head().stamp_ns(to_ns(now));
+    const auto seen = std::find_if(seen_.rbegin(), seen_.rend(), [&](const msg::PoseFix& fix) {
+      return time_from_ns(fix.captured_at_ns()) + scenario_.vision.delay <= now;
+    });
+    if (seen != seen_.rend()) {
+      command.has_fix(true);
+      command.fix(*seen);
+    }
+    const msg::Feedback facts = world_.feedback(robot_, now);
+    if (const auto version = next_version(facts)) {
+      command.has_version(true);
+      command.granted(encode(*version));
+    }
+    world_.on_command(robot_, command, now);
+  }
+
+ private:
+  void look(Time now) {
+    const Body& body = world_.bodies()[robot_];
+    if (!body.is_on_floor()) return seen_.clear();
+    const double sigma = scenario_.vision.position_noise_m;
+    msg::PoseFix fix;
+    fix.captured_at_ns(to_ns(now));
+    fix.x_m(body.position_m().x() + sigma * rng_.normal());
+    fix.y_m(body.position_m().y() + sigma * rng_.normal());
+    fix.heading_rad(body.heading_rad() + scenario_.vision.heading_noise_rad * rng_.normal());
+    seen_.push_back(fix);
+    if (seen_.size() > 100) seen_.pop_front();
+  }
+
+  std::optional<Version> next_version(const msg::Feedback& facts) {
+    const auto executing = decode(facts.executing());
+    const Time start = time_from_ns(facts.at_ns()) + scenario_.cycle - 2 * kPhysicsStep;
+    newest_ = std::max(newest_, executing->number) + 1;
+    if (facts.is_lifted()) {
+      if (executing->number > 0) return std::nullopt;
+      return Version{world_.id(robot_), 1, newest_, 0, Trajectory::resting(start, stand_m)};
+    }
+    if (!drives) return std::nullopt;
+    const State state = executing->trajectory.state_at(start);
+    if (rng_.chance(0.1)) wish_ = rotated(Vec2(rng_.uniform(0, 4), 0), rng_.uniform(-3.14159, 3.14159));
+    if ((state.position_m - home_m_).norm() > 3) wish_ = (home_m_ - state.position_m).normalized() * 3;
+    Trajectory trajectory(start, state);
+    trajectory.append(scenario_.cycle, limited(wish_, state.velocity_mps, scenario_.limits, scenario_.cycle));
+    append_stop(trajectory, scenario_.limits.deceleration_mps2);
+    return Version{world_.id(robot_), 1, newest_, executing->number, trajectory};
+  }
+
+  const Scenario& scenario_;
+  World& world_;
+  std::size_t robot_;
+  Rng rng_;
+  Time due_;
+  Vec2 home_m_;
+  Vec2 wish_{0, 0};
+  VersionNumber newest_ = 1;
+  std::deque<msg::PoseFix> seen_;
+};
+
+inline msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) {
+  msg::Disturbance what;
+  what.robot(robot);
+  what.disturbance_kind(kind);
+  return what;
+}
+
+}  // namespace sidestep::test
