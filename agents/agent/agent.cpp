@@ -27,8 +27,6 @@ constexpr Duration kAvoidedAhead{150'000'000};
 // A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way
 // and more.
 constexpr Duration kLostAfter{300'000'000};
-// Nothing is seen farther in the future than clocks may differ.
-constexpr Duration kClocksDiffer{20'000'000};
 // Nearer to the goal than this a robot does not try to do better.
 constexpr double kCloseEnough_m = 0.001;
 
@@ -39,11 +37,12 @@ const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find
 Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
     : robot_(spec_of(scenario, robot)),
       rules_(floor_rules(scenario)),
+      clocks_differ_(from_seconds(2 * scenario.clock_bound_s)),
       cycle_(scenario.cycle),
       goal_tolerance_m_(scenario.goal_tolerance_m),
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
-      obstacles_(scenario.opponent_speed_mps, from_seconds(2 * scenario.clock_bound_s)),
+      obstacles_(scenario.opponent_speed_mps, clocks_differ_),
       safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       estimate_{robot_.start_m, Vec2::Zero()} {}
@@ -99,6 +98,9 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   const Vec2 position(feedback.x_m(), feedback.y_m()), velocity(feedback.vx_mps(), feedback.vy_mps());
   if (feedback.robot() != robot_.id || !position.allFinite() || !velocity.allFinite()) return;
   estimate_ = {position, velocity};
+  const VersionNumber stop = feedback.is_off_reference() ? feedback.executing().version_number() : 0;
+  off_reference_ += stop > last_stop_;
+  last_stop_ = std::max(last_stop_, stop);
   if (!negotiation_.is_fenced()) return;
   const Trajectory& executing = negotiation_.executing().trajectory;
   const bool at_rest = time_from_ns(feedback.at_ns()) >= executing.end();
@@ -116,7 +118,7 @@ void Agent::on_world(const msg::WorldState& world, Time now) {
     if (seen.robot() != robot_.id || seen.seen_at_ns() <= last_fix_ns_) continue;
     const bool is_sound = std::isfinite(seen.seen_x_m()) && std::isfinite(seen.seen_y_m()) &&
                           std::isfinite(seen.seen_heading_rad()) &&
-                          seen.seen_at_ns() <= to_ns(now + kClocksDiffer);
+                          seen.seen_at_ns() <= to_ns(now + clocks_differ_);
     if (!is_sound) {
       ++invalid_;
       continue;
@@ -140,7 +142,8 @@ void Agent::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
 
 std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Duration unseen = now - time_from_ns(last_fix_ns_);
-  const bool is_lost = unseen > kLostAfter || unseen < -kClocksDiffer;
+  // Farther in the future than it can be unknown what the robot's clock shows, somebody has set a clock.
+  const bool is_lost = unseen > kLostAfter || unseen < -kLostAfter;
   if (!negotiation_.may_propose(now) || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
@@ -209,6 +212,7 @@ msg::AgentStatus Agent::status(Time now) const {
   status.speed_mps(estimate_.velocity_mps.norm());
   status.cycles(n.counts().cycles);
   status.missed_cycles(n.counts().missed);
+  status.off_reference(off_reference_);
   status.lost_versions(n.counts().lost);
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);

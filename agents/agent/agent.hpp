@@ -17,12 +17,14 @@
 namespace sidestep {
 
 /// One robot's mind: from what it sees and is told to what it proposes and commands, one decision a cycle.
+/// All times are by the robot's clock, as far as the caller knows it.
 class Agent {
  public:
   /// `scenario` has to have the robot.
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation);
 
   void on_feedback(const msg::Feedback& feedback);
+  /// `now`: the latest that it can be by the robot's clock.
   void on_world(const msg::WorldState& world, Time now);
   void on_ledger(const msg::LedgerPage& page);
   void on_coordinator_state(const msg::CoordinatorState& state, Time now);
@@ -58,6 +60,7 @@ class Agent {
 
   const RobotSpec robot_;
   const FloorRules rules_;
+  const Duration clocks_differ_;  // any two of those that keep the bound, at most
   const Duration cycle_;
   const double goal_tolerance_m_;
   Negotiation negotiation_;
@@ -74,8 +77,10 @@ class Agent {
   std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
   std::optional<Version> forwarded_;
-  std::uint64_t invalid_ = 0;  // sights that made no sense
-  VersionNumber base_ = 0;     // of the query that plan() made
+  std::uint64_t invalid_ = 0;        // sights that made no sense
+  std::uint64_t off_reference_ = 0;  // times the robot made a stop of its own,
+  VersionNumber last_stop_ = 0;      // and the newest
+  VersionNumber base_ = 0;           // of the query that plan() made
 };
 
 }  // namespace sidestep

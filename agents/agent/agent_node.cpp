@@ -33,32 +33,37 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       robot_(robot),
       cycle_(scenario.cycle),
       agent_(scenario, robot, incarnation),
+      clocks_(robot, from_seconds(scenario.clock_bound_s)),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)) {
   bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
+                   clocks_.on_feedback(feedback, agent_.negotiation().incarnation(), bus_.now());
                    agent_.on_feedback(feedback);
                    register_if_due();
                    if (agent_.negotiation().is_contradicted()) negotiate_if_time();
                  }));
   bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
-  bus_.subscribe(topics::kWorld,
-                 std::function([this](const msg::WorldState& w) { agent_.on_world(w, bus_.now()); }));
+  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) {
+                   agent_.on_world(w, bus_.now() + clocks_.robot_ahead_at_most(bus_.now()));
+                 }));
   bus_.subscribe(topics::kLedger,
                  std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
   bus_.subscribe(topics::kCoordinator,
                  std::function([this](const msg::CoordinatorState& state) { on_coordinator_state(state); }));
-  const Time now = bus_.now();
+  const Time now = robot_now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + phase_of(scenario, robot) + cycle_;
-  bus_.at(next_cycle_, [this] { begin_cycle(); });
+  begin_next_cycle_later();
   publish_status();
 }
 
 void AgentNode::begin_cycle() {
-  const Time now = bus_.now();
-  if (next_cycle_ <= now) next_cycle_ += cycle_ * ((now - next_cycle_) / cycle_ + 1);
-  bus_.at(next_cycle_, [this] { begin_cycle(); });
+  // The timer was set by what was known of the robot's clock then.
+  const Duration early = next_cycle_ - robot_now();
+  const Time now = early > Duration{0} && early < cycle_ / 2 ? next_cycle_ : robot_now();
+  next_cycle_ = cycle_after(now);
+  begin_next_cycle_later();
   agent_.negotiation().close_cycle(now);
   if (agent_.negotiation().is_superseded()) return;
   if (!commanded_) {
@@ -67,6 +72,7 @@ void AgentNode::begin_cycle() {
   }
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
+  if (measurement_wait_ > 0) --measurement_wait_;
   register_if_due();
   if (!agent_.negotiation().is_fenced()) return;
   if (!agent_.negotiation().is_settled_after(now)) {
@@ -76,19 +82,30 @@ void AgentNode::begin_cycle() {
   }
 }
 
+Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_ahead(); }
+
+Time AgentNode::cycle_after(Time now) const {
+  const Duration into = (now - next_cycle_) % cycle_;
+  return now - into + (into < Duration{0} ? Duration{0} : cycle_);
+}
+
+void AgentNode::begin_next_cycle_later() {
+  bus_.at(next_cycle_ - clocks_.robot_ahead(), [this] { begin_cycle(); });
+}
+
 void AgentNode::on_coordinator_state(const msg::CoordinatorState& state) {
   const Negotiation& negotiation = agent_.negotiation();
   const Epoch before = negotiation.epoch();
-  const bool could_propose = negotiation.may_propose(bus_.now());
-  agent_.on_coordinator_state(state, bus_.now());
+  const bool could_propose = negotiation.may_propose(robot_now());
+  agent_.on_coordinator_state(state, robot_now());
   if (negotiation.is_superseded()) return;
   // News of a coordinator goes on at once: robots stand still until all have heard of it.
   if (negotiation.epoch() != before) {
-    auto command = agent_.command(bus_.now());
+    auto command = agent_.command(robot_now());
     publish(command_writer_, command);
   }
   register_if_due();
-  if (!could_propose && negotiation.may_propose(bus_.now()) && !negotiation.is_settled_after(bus_.now())) {
+  if (!could_propose && negotiation.may_propose(robot_now()) && !negotiation.is_settled_after(robot_now())) {
     negotiate_if_time();
   }
 }
@@ -98,29 +115,47 @@ void AgentNode::register_if_due() {
     registration_wait_ = 0;
   } else if (registration_wait_ == 0) {
     registration_wait_ = kCyclesBetweenRegistrations;
-    auto registration = agent_.negotiation().registration();
-    publish(registration_writer_, registration);
+    publish_registration();
   }
 }
 
+void AgentNode::publish_registration() {
+  auto registration = agent_.negotiation().registration();
+  clocks_.on_asked(bus_.now());
+  publish(registration_writer_, registration);
+}
+
+bool AgentNode::clocks_agree() {
+  clocks_.on_epoch(agent_.negotiation().epoch());
+  if (clocks_.is_measurement_due(bus_.now()) && measurement_wait_ == 0) {
+    measurement_wait_ = kCyclesBetweenRegistrations;
+    publish_registration();
+  }
+  return clocks_.allows_motion(bus_.now());
+}
+
 void AgentNode::negotiate_if_time() {
-  if (next_cycle_ - bus_.now() > cycle_ / 4) negotiate(next_start());
+  if (next_cycle_ - robot_now() > cycle_ / 4) negotiate(next_start());
 }
 
 Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1); }
 
 void AgentNode::negotiate(Time start) {
-  const auto query = timed(plan_, [&] { return agent_.plan(bus_.now(), start); });
-  if (!query) return;
-  auto proposal = timed(search_, [&] { return agent_.search(*query, bus_.now()); });
-  if (proposal) publish(proposal_writer_, *proposal);
+  const auto query = timed(plan_, [&] { return agent_.plan(robot_now(), start); });
+  if (!query || !clocks_agree()) return;
+  auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); });
+  if (!proposal) return;
+  clocks_.on_asked(bus_.now());
+  publish(proposal_writer_, *proposal);
 }
 
 void AgentNode::on_verdict(const msg::Verdict& verdict) {
   const auto& counts = agent_.negotiation().counts();
   const auto answered = [&] { return counts.grants + counts.denials; };
   const auto before = answered();
-  auto command = agent_.on_verdict(verdict, bus_.now());
+  clocks_.on_epoch(agent_.negotiation().epoch());
+  clocks_.on_verdict(verdict, bus_.now());
+  auto command = agent_.on_verdict(verdict, robot_now());
   if (answered() != before) negotiation_.add(agent_.negotiation().last_round_trip());
   if (!command) return;
   commanded_ = true;
@@ -129,7 +164,8 @@ void AgentNode::on_verdict(const msg::Verdict& verdict) {
 
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
-  auto status = agent_.status(bus_.now());
+  auto status = agent_.status(robot_now());
+  clocks_.fill(status, bus_.now());
   negotiation_.to_message(status.negotiation());
   plan_.to_message(status.plan());
   search_.to_message(status.search());

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "agents/agent/agent.hpp"
+#include "agents/agent/clock_watch.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/time/histogram.hpp"
 
 namespace sidestep {
 
 /// Connects an agent to the bus and runs its control cycle. Robots' cycles are spread evenly over the cycle
-/// time, so that proposals do not all come at once.
+/// time, so that proposals do not all come at once. Versions begin and end by the robot's clock, so the agent
+/// lives by that, as far as it is known to differ from the bus's.
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
@@ -19,6 +21,13 @@ class AgentNode {
   void begin_cycle();
   void on_coordinator_state(const msg::CoordinatorState& state);
   void register_if_due();
+  void publish_registration();
+  /// Whether the clocks allow to propose; sees to it that they are measured.
+  bool clocks_agree();
+  Time robot_now() const;
+  /// The first begin of a cycle of this robot's after a time.
+  Time cycle_after(Time now) const;
+  void begin_next_cycle_later();
   /// Proposes for the next cycle, unless that begins too soon for an answer.
   void negotiate_if_time();
   /// Proposes what to do from a time on.
@@ -34,9 +43,11 @@ class AgentNode {
   RobotId robot_;
   Duration cycle_;
   Agent agent_;
-  Time next_cycle_;
+  ClockWatch clocks_;
+  Time next_cycle_;            // by the robot's clock, as all times that the agent gets
   bool commanded_ = false;     // in this cycle
   int registration_wait_ = 0;  // cycles until it registers again
+  int measurement_wait_ = 0;   // cycles until it asks for another measurement
   DurationHistogram negotiation_, plan_, search_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;

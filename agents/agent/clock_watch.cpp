@@ -62,6 +62,10 @@ void ClockWatch::fill(msg::AgentStatus& status, Time now) const {
   const auto offset = robot_to_coordinator(now);
   status.clock_offset_s(offset ? to_seconds(offset->middle()) : 0);
   status.clock_uncertainty_s(offset ? to_seconds(offset->uncertainty()) : -1);
+  status.invalid(status.invalid() + invalid_);
+  const bool is_on_its_way =
+      status.agent_phase() == msg::AGENT_DRIVING || status.agent_phase() == msg::AGENT_WAITING;
+  if (is_on_its_way && is_beyond_bound(now)) status.agent_phase(msg::AGENT_OFF_CLOCK);
 }
 
 }  // namespace sidestep

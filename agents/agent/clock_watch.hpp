@@ -47,9 +47,8 @@ class ClockWatch {
   Duration robot_ahead_at_most(Time now) const;
   /// The robot's clock against the coordinator's.
   std::optional<OffsetInterval> robot_to_coordinator(Time now) const;
+  /// Completes a status by what has been measured.
   void fill(msg::AgentStatus& status, Time now) const;
-
-  std::uint64_t invalid() const { return invalid_; }
 
  private:
   RobotId robot_id_;

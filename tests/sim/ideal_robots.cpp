@@ -43,6 +43,8 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
   const Time now = bus_.now();
   advance(robot, now);
   if (command.head().incarnation() < robot.obeyed) return;
+  robot.heard_stamp_ns = command.head().stamp_ns();
+  robot.heard_at = now;
   const bool is_news = command.head().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
   if (command.head().incarnation() > robot.obeyed) {
     robot.obeyed = command.head().incarnation();
@@ -81,6 +83,8 @@ void IdealRobots::report(Robot& robot) {
   feedback.obeyed_incarnation(robot.obeyed);
   feedback.obeyed_epoch(robot.obeyed_epoch);
   feedback.at_ns(to_ns(now));
+  feedback.heard_stamp_ns(robot.heard_stamp_ns);
+  feedback.heard_at_ns(to_ns(robot.heard_at));
   feedback.executing(encode(robot.executing));
   feedback.x_m(state.position_m.x());
   feedback.y_m(state.position_m.y());

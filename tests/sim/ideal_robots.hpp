@@ -27,6 +27,8 @@ class IdealRobots {
     RobotId id;
     Incarnation obeyed = 0;
     Epoch obeyed_epoch = 0;
+    std::int64_t heard_stamp_ns = 0;  // of the obeyed agent's last command,
+    Time heard_at{};                  // which came then
     Version executing;
     std::vector<Version> pending;  // by start
     Writer<msg::Feedback> writer;

@@ -57,6 +57,11 @@ struct Between {
     const Time answered = time_from_ns(v.head().stamp_ns()) - from_seconds(coordinator_s);
     clocks.on_verdict(v, answered + from_seconds(delay()));
   }
+  std::uint64_t invalid(double now) const {
+    msg::AgentStatus status;
+    clocks.fill(status, at_s(now));
+    return status.invalid();
+  }
   void hear_both(double from, int cycles) {
     for (int i = 0; i < cycles; ++i) {
       hear_robot(from + i * kCycle_s);
@@ -118,7 +123,9 @@ TEST_CASE("an offset beyond the bound by more than the quickest messages take is
   CHECK(b.clocks.is_beyond_bound(at_s(1)));
   CHECK_FALSE(b.clocks.allows_motion(at_s(1)));
   msg::AgentStatus status;
+  status.agent_phase(msg::AGENT_WAITING);
   b.clocks.fill(status, at_s(1));
+  CHECK(status.agent_phase() == msg::AGENT_OFF_CLOCK);
   CHECK(std::abs(status.clock_offset_s() - offset_s) <= status.clock_uncertainty_s());
   // Somebody sets it right.
   b.robot_s = 0;
@@ -174,7 +181,7 @@ TEST_CASE("echoes of somebody else's messages, and stamps that make no sense, do
   foreign.asked_stamp_ns(0);
   b.clocks.on_verdict(foreign, at_s(0.011));
   CHECK_FALSE(b.clocks.allows_motion(at_s(0.02)));
-  CHECK(b.clocks.invalid() == 0);
+  CHECK(b.invalid(0.02) == 0);
   b.hear_coordinator(0.02);
   REQUIRE(b.clocks.allows_motion(at_s(0.03)));
 
@@ -204,7 +211,7 @@ TEST_CASE("echoes of somebody else's messages, and stamps that make no sense, do
   other = b.feedback(0.03);
   other.robot(kRobot + 1);
   b.clocks.on_feedback(other, kSelf, at_s(0.034));
-  CHECK(b.clocks.invalid() == refused);
+  CHECK(b.invalid(0.04) == refused);
   const auto after = b.clocks.robot_to_coordinator(at_s(0.03));
   REQUIRE(after);
   CHECK(after->low == before->low);
