@@ -10,8 +10,10 @@
 namespace sidestep {
 namespace {
 
-// Others that begin farther away than this are nobody's concern in this cycle and the next few.
-constexpr double kHorizon_m = 2.5;
+// For so long a robot may go on as fast as it may before it stops: a few cycles of what is granted ahead.
+constexpr double kAhead_s = 0.15;
+// By so much a page of the ledger may be older than the search that it is for.
+constexpr double kPageAge_s = 0.225;
 // Robots keep this much more from obstacles where they plan than where they must.
 constexpr double kPlanningRoom_m = 0.03;
 // A robot passes on the right only where nothing stands for so far.
@@ -29,6 +31,12 @@ constexpr Duration kAvoidedAhead{150'000'000};
 constexpr Duration kLostAfter{300'000'000};
 // Nearer to the goal than this a robot does not try to do better.
 constexpr double kCloseEnough_m = 0.001;
+
+/// Two robots that begin farther apart than this cannot come near to each other with what they do next.
+double search_horizon_m(const FloorRules& rules) {
+  const double speed = rules.limits.speed_mps;
+  return 2 * speed * (kAhead_s + speed / (2 * rules.limits.deceleration_mps2)) + rules.keep_m();
+}
 
 const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find_robot(scenario, robot); }
 
@@ -133,7 +141,8 @@ void Agent::on_world(const msg::WorldState& world, Time now) {
 }
 
 void Agent::on_ledger(const msg::LedgerPage& page) {
-  neighbours_.on_page(page, estimate_.position_m, kHorizon_m);
+  const double horizon = search_horizon_m(rules_) + 2 * rules_.limits.speed_mps * kPageAge_s;
+  neighbours_.on_page(page, estimate_.position_m, horizon);
 }
 
 void Agent::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
@@ -171,7 +180,8 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
-  const SearchResult result = safety_search_.search(query, neighbours_.crowd(), rng_);
+  Crowd& others = neighbours_.crowd(query.at_start.position_m, search_horizon_m(rules_));
+  const SearchResult result = safety_search_.search(query, others, rng_);
   passing_.update(result.wish_is_clear, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
   return negotiation_.propose({result.candidates.data(), result.count}, base_, now);

@@ -19,6 +19,7 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
   if (older) return;
   page.epoch = message.epoch();
   page.number = message.head().message_number();
+  if (!page.versions.empty()) is_gathered_ = false;
   page.versions.clear();
   for (const msg::Version& entry : message.versions()) {
     const Vec2 offset(entry.x_m() - here.x(), entry.y_m() - here.y());
@@ -29,15 +30,33 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
       ++invalid_;
     }
   }
-  crowd_.clear();
-  for (const Page& p : pages_) {
-    for (const Version& version : p.versions) crowd_.add(version);
-  }
+  if (!page.versions.empty()) is_gathered_ = false;
 }
 
-std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) const {
+std::span<const Version> Neighbours::versions() {
+  if (!is_gathered_) {
+    versions_.clear();
+    for (const Page& p : pages_) versions_.insert(versions_.end(), p.versions.begin(), p.versions.end());
+    is_gathered_ = true;
+  }
+  return versions_;
+}
+
+Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
+  crowd_.clear();
+  for (const Page& page : pages_) {
+    for (const Version& version : page.versions) {
+      const Vec2 offset = version.trajectory.at_start().position_m - here;
+      if (offset.squaredNorm() <= horizon * horizon) crowd_.add(version);
+    }
+  }
+  return crowd_;
+}
+
+std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
   std::vector<const Version*> found;
   for (const Version& version : versions()) {
+    if (version.trajectory.end() > since) continue;
     const auto moves = [&](const Version& other) {
       return other.robot == version.robot && other.trajectory.end() > since;
     };

@@ -10,7 +10,7 @@
 namespace sidestep {
 
 /// What the other robots nearby may be executing, as the coordinator last published it. The coordinator has
-/// the last word; this is for proposing what it will grant.
+/// the last word; this is for proposing what it will grant. Allocates nothing once warm.
 class Neighbours {
  public:
   explicit Neighbours(RobotId self) : self_(self) {}
@@ -19,12 +19,13 @@ class Neighbours {
   /// farther than `horizon_m` from `here` are left out.
   void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
 
-  std::span<const Version> versions() const { return crowd_.versions(); }
-  /// The same, to be found by place.
-  Crowd& crowd() { return crowd_; }
+  /// All of them, page by page.
+  std::span<const Version> versions();
+  /// Those that begin within `horizon_m` of `here`, to be found by place.
+  Crowd& crowd(const Vec2& here_m, double horizon_m);
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at
   /// rest since `since`, at most `most` of them, in the order of their ids.
-  std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most) const;
+  std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most);
   std::uint64_t invalid() const { return invalid_; }
 
  private:
@@ -35,7 +36,9 @@ class Neighbours {
   };
   RobotId self_;
   std::vector<Page> pages_;
-  Crowd crowd_;  // of all pages
+  bool is_gathered_ = true;
+  std::vector<Version> versions_;  // of all pages, when gathered
+  Crowd crowd_;
   std::uint64_t invalid_ = 0;
 };
 

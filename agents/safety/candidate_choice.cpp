@@ -46,18 +46,6 @@ void CandidateChoice::draw(const Vec2& velocity, const Vec2& wish, Duration phas
   last_kept_.reset();
 }
 
-batch::Track CandidateChoice::sample_wish(const State& at_start, double phase_s, double step_s) {
-  const batch::StopSettings settings{at_start.position_m.x(),
-                                     at_start.position_m.y(),
-                                     at_start.velocity_mps.x(),
-                                     at_start.velocity_mps.y(),
-                                     phase_s,
-                                     limits_.deceleration_mps2};
-  kernels_->stop(settings, accelerations_.data(), 1, motions_.data());
-  kernels_->sample(motions_.data(), 1, step_s, tracks_.data());
-  return batch::track_of(tracks_.front(), 0);
-}
-
 void CandidateChoice::sample(const State& at_start, double phase_s, double step_s) {
   const batch::StopSettings settings{at_start.position_m.x(),
                                      at_start.position_m.y(),
@@ -67,20 +55,21 @@ void CandidateChoice::sample(const State& at_start, double phase_s, double step_
                                      limits_.deceleration_mps2};
   step_s_ = step_s;
   kernels_->stop(settings, accelerations_.data(), accelerations_.size(), motions_.data());
-  kernels_->sample(motions_.data(), motions_.size(), step_s, tracks_.data());
+  kernels_->sample(motions_.data(), motions_.size(), 0, step_s, tracks_.data());
 }
 
 void CandidateChoice::compare(const batch::Track& other, double start_s, double keep_m,
                               double other_acceleration) {
-  const double own = std::max(limits_.acceleration_mps2, limits_.deceleration_mps2);
-  // A little more, for rounding.
-  const double deviation = batch::deviation_m(1.001 * own + other_acceleration, step_s_);
-  batch::BoundsBlock bounds;
+  // A little more than the largest, for rounding.
+  const double own = 1.001 * std::max(limits_.acceleration_mps2, limits_.deceleration_mps2);
+  batch::KeepBlock keep;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    bounds.start_s.lane[lane] = start_s;
-    batch::set_bounds(bounds, lane, keep_m, deviation, 0);
+    keep.start_s.lane[lane] = start_s;
+    keep.keep_m.lane[lane] = keep_m;
+    keep.acceleration_mps2.lane[lane] = own;
   }
-  kernels_->compare(other, tracks_.data(), &bounds, true, tracks_.size(), step_s_, gaps_.data());
+  kernels_->compare(batch::comparison(0, step_s_, other_acceleration, 0), other, tracks_.data(), &keep, true,
+                    tracks_.size(), true, gaps_.data());
 }
 
 std::optional<std::size_t> CandidateChoice::take_nearest(double spread) {

@@ -48,15 +48,12 @@ bool SafetySearch::Other::is_clear(const Trajectory& candidate) const {
 
 SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settings,
                            const batch::Kernels& kernels)
-    : rules_(rules),
-      settings_(settings),
-      kernels_(&kernels),
-      choice_(settings.samples, rules.limits, kernels) {
+    : rules_(rules), settings_(settings), choice_(settings.samples, rules.limits, kernels), lanes_(kernels) {
   for (const Circle& obstacle : rules.obstacles)
     obstacles_.push_back(outline_of(Trajectory::resting(Time{}, obstacle.centre_m)));
   constexpr std::size_t kUsuallyEnough = 64;
   found_.reserve(kUsuallyEnough);
-  in_lanes_.reserve(kUsuallyEnough);
+  others_.reserve(kUsuallyEnough);
   near_.reserve(kUsuallyEnough);
   exact_.reserve(kUsuallyEnough);
 }
@@ -86,9 +83,8 @@ SearchResult SafetySearch::search(const SearchQuery& query, Crowd& others, Rng& 
 }
 
 void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd& others) {
-  lanes_.clear();
-  in_lanes_.clear();
-  exact_.clear();
+  lanes_.restart(query.start);
+  others_.clear();
   const double keep = rules_.keep_m() + query.grown_m;
   // Room for what clearances are computed to.
   constexpr double kRoom_m = 1e-6;
@@ -96,7 +92,9 @@ void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd
   others.find({disc.centre_m, disc.radius_m + keep + kRoom_m}, found_);
   for (const std::uint32_t index : found_) {
     const Version& version = others.versions()[index];
-    consider(others.outline(index), {&version.trajectory, {}, keep + version.grown_m}, query.start);
+    if (query.robot == version.robot) continue;
+    lanes_.add(others.outline(index), keep + version.grown_m);
+    others_.push_back({&version.trajectory, Vec2(0, 0), keep + version.grown_m});
   }
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Circle& obstacle = rules_.obstacles[i];
@@ -105,20 +103,12 @@ void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd
     if ((obstacle.centre_m - disc.centre_m).squaredNorm() > far * far) continue;
     Outline outline = obstacles_[i];
     outline.start = query.start;
-    consider(outline, {nullptr, obstacle.centre_m, clearance}, query.start);
+    lanes_.add(outline, clearance);
+    others_.push_back({nullptr, obstacle.centre_m, clearance});
   }
   const double room_x = rules_.field.length_m / 2 - rules_.radius_m - disc.radius_m;
   const double room_y = rules_.field.width_m / 2 - rules_.radius_m - disc.radius_m;
   is_near_border_ = !(std::abs(disc.centre_m.x()) < room_x && std::abs(disc.centre_m.y()) < room_y);
-}
-
-void SafetySearch::consider(const Outline& outline, const Other& other, Time start) {
-  if (outline.is_plain && to_seconds(outline.start - start) + outline.seconds <= batch::kLongest_s) {
-    lanes_.add(outline, other.keep_m, start);
-    in_lanes_.push_back(other);
-  } else {
-    exact_.push_back(other);
-  }
 }
 
 /// All candidates are about where the wish leads, so whoever is clear of that by the room that they take is
@@ -126,24 +116,30 @@ void SafetySearch::consider(const Outline& outline, const Other& other, Time sta
 void SafetySearch::compare(const SearchQuery& query, const Outline& wish, double room_m, int& checks) {
   const double phase_s = to_seconds(query.phase);
   const double seconds = phase_s + longest_stop_s(query, rules_.limits);
-  const bool is_plain = wish.is_plain && seconds <= batch::kLongest_s;
-  if (!is_plain) exact_.insert(exact_.end(), in_lanes_.begin(), in_lanes_.end());
-  near_ = exact_;
-  if (!is_plain || lanes_.size() == 0) return;
-  const double step_s = std::max(lanes_.seconds(), seconds) / batch::kSteps;
-  const batch::Track track = choice_.sample_wish(query.at_start, phase_s, step_s);
-  lanes_.sample(*kernels_, step_s);
-  lanes_.compare(*kernels_, track, wish.acceleration_mps2, room_m);
+  if (!wish.is_plain || seconds > batch::kLongest_s) {
+    near_ = exact_ = others_;
+    return;
+  }
+  exact_.clear();
+  near_.clear();
+  if (others_.empty()) return;
+  lanes_.sample(query.start, seconds);
+  lanes_.compare(batch::track_of(wish, query.start, lanes_.step_s()), wish.acceleration_mps2, room_m);
   checks += static_cast<int>(lanes_.size());
+  if (lanes_.are_all_clear()) return;
   bool is_sampled = false;
   for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-    if (lanes_.is_clear(lane)) continue;
-    if (!is_sampled) choice_.sample(query.at_start, phase_s, step_s);
-    is_sampled = true;
-    choice_.compare(lanes_.track(lane), lanes_.start_s(lane), lanes_.keep_m(lane),
-                    lanes_.acceleration_mps2(lane));
-    checks += static_cast<int>(choice_.size());
-    near_.push_back(in_lanes_[lane]);
+    if (lanes_.is_exact(lane)) {
+      exact_.push_back(others_[lane]);
+      near_.push_back(others_[lane]);
+    } else if (!lanes_.is_clear(lane)) {
+      if (!is_sampled) choice_.sample(query.at_start, phase_s, lanes_.step_s());
+      is_sampled = true;
+      choice_.compare(lanes_.track(lane), lanes_.start_s(lane), lanes_.keep_m(lane),
+                      lanes_.acceleration_mps2(lane));
+      checks += static_cast<int>(choice_.size());
+      near_.push_back(others_[lane]);
+    }
   }
 }
 

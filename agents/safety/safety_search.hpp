@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct SearchQuery {
   Time start{};
   State at_start;
   Vec2 wish_mps2{0, 0};
-  Duration phase{};    ///< how long the acceleration is held before the stop manoeuvre begins
-  double grown_m = 0;  ///< how much larger than its radius the robot has to be taken
+  Duration phase{};                          ///< how long the acceleration is held before the stop
+  double grown_m = 0;                        ///< how much larger than its radius the robot has to be taken
   std::span<const MovingObstacle> moving{};  ///< to be at rest before
+  std::optional<RobotId> robot{};  ///< whose own versions, if they are among the others, do not count
 };
 
 struct SearchSettings {
@@ -59,19 +61,17 @@ class SafetySearch {
   };
   void draw(const SearchQuery& query, const Vec2& wish_mps2, Rng& rng);
   void find_near(const SearchQuery& query, const Circle& disc, Crowd& others);
-  void consider(const Outline& outline, const Other& other, Time start);
   void compare(const SearchQuery& query, const Outline& wish, double room_m, int& checks);
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
   SearchSettings settings_;
-  const batch::Kernels* kernels_;
   std::vector<Outline> obstacles_;  // as rules_.obstacles
   CandidateChoice choice_;
   std::vector<std::uint32_t> found_;
-  batch::Lanes lanes_;               // of the others that may be near,
-  std::vector<Other> in_lanes_;      // who they are,
-  std::vector<Other> near_, exact_;  // and of them and the rest those who have to be asked one by one
+  batch::Lanes lanes_;               // of the others who may be near, and
+  std::vector<Other> others_;        // who they are;
+  std::vector<Other> near_, exact_;  // those who are near, and those of them whom batches cannot compare
   bool is_near_border_ = false;
 };
 

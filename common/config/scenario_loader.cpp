@@ -173,6 +173,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   // Placement is judged last, when a misspelt key can no longer be what is wrong with it.
   map.find("robots");
   map.find("circle");
+  map.find("streams");
   map.finish();
   read_robots(map, scenario);
   return scenario;

@@ -91,6 +91,42 @@ void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
   }
 }
 
+/// Robots all over a square, a square of spacing² for each, in lanes like the fields of a chess board: those
+/// on white fields go along x, those on black ones along y, every other lane the other way.
+void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
+  const YAML::Node node = map.find("streams");
+  if (!node.IsDefined()) return;
+  YamlMap streams(node, map.place_of("streams"));
+  int count = 0, lanes_crossed = 0;
+  double spacing_m = 0;
+  for (const char* key : {"count", "spacing_m", "lanes_crossed"}) streams.require(key);
+  streams.read("count", {2, static_cast<double>(kMaxRobots)}, count);
+  streams.read("spacing_m", {0.01, 100}, spacing_m);
+  streams.read("lanes_crossed", {2, 1000}, lanes_crossed);
+  if (lanes_crossed % 2 != 0) {
+    // An odd way would end on a field of the other colour, perhaps another robot's goal.
+    streams.place_of("lanes_crossed").refuse(fmt::format("expected an even number, got {}", lanes_crossed));
+  }
+  streams.finish();
+  const int side = static_cast<int>(std::ceil(std::sqrt(count)));
+  const int line = streams.place().line;
+  for (int i = 0; i < count; ++i) {
+    const int column = i % side, row = i / side;
+    const bool along_x = (column + row) % 2 == 0;
+    const double sign = (along_x ? row : column) % 2 == 0 ? 1 : -1;
+    const Vec2 direction = sign * (along_x ? Vec2(1, 0) : Vec2(0, 1));
+    const Vec2 start = spacing_m * Vec2(column - 0.5 * (side - 1), row - 0.5 * (side - 1));
+    PlacedRobot placed;
+    placed.robot = {static_cast<RobotId>(i),
+                    along_x ? Team::kBlue : Team::kYellow,
+                    start,
+                    std::atan2(direction.y(), direction.x()),
+                    {Goal{start + spacing_m * lanes_crossed * direction, std::nullopt}}};
+    placed.lines = {line, {line}};
+    robots.push_back(placed);
+  }
+}
+
 }  // namespace
 
 void read_robots(YamlMap& map, Scenario& scenario) {
@@ -105,8 +141,9 @@ void read_robots(YamlMap& map, Scenario& scenario) {
     }
   }
   read_circle(map, robots);
+  read_streams(map, robots);
   if (robots.empty())
-    map.place().refuse("no robots, expected a key \"robots\" or \"circle\" that gives some");
+    map.place().refuse("no robots, expected a key \"robots\", \"circle\" or \"streams\" that gives some");
   std::stable_sort(robots.begin(), robots.end(),
                    [](const PlacedRobot& a, const PlacedRobot& b) { return a.robot.id < b.robot.id; });
   std::vector<RobotLines> lines;

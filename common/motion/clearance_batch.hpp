@@ -11,17 +11,17 @@
 namespace sidestep {
 
 /// Compares one trajectory with many at a time: is_clear() for each of them, decided as is_clear() decides,
-/// but most of it several to an instruction. Allocates nothing once warm.
+/// but most of it several to an instruction. Cheapest where several, one after the other, begin at the same
+/// time and are compared with the same many. Allocates nothing once warm.
 class ClearanceBatch {
  public:
-  explicit ClearanceBatch(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
+  explicit ClearanceBatch(const batch::Kernels& kernels = batch::best_kernels()) : lanes_(kernels) {}
 
-  void clear() { others_.clear(); }
+  /// Forgets all that were added. What will be compared begins about `base`.
+  void restart(Time base);
   std::size_t size() const { return others_.size(); }
-  /// Both are read until clear(). `outline` is the trajectory's.
-  void add(const Outline& outline, const Trajectory& trajectory, double keep_m) {
-    others_.push_back({&outline, &trajectory, keep_m});
-  }
+  /// The trajectory, whose outline it is, is read until the next restart().
+  void add(const Outline& outline, const Trajectory& trajectory, double keep_m);
 
   /// For each that was added, in that order: is_clear(one, trajectory, keep_m).
   std::span<const std::uint8_t> compare(const Trajectory& one);
@@ -31,17 +31,14 @@ class ClearanceBatch {
 
  private:
   struct Other {
-    const Outline* outline;
     const Trajectory* trajectory;
     double keep_m;
   };
   bool exact(const Trajectory& one, const Other& other);
 
-  const batch::Kernels* kernels_;
-  std::vector<Other> others_;
-  std::vector<std::size_t> plain_;  // of others_, in the lanes' order
+  batch::Lanes lanes_;
+  std::vector<Other> others_;  // as the lanes
   std::vector<std::uint8_t> clear_;
-  batch::Lanes lanes_, self_;
   std::uint64_t left_to_exact_ = 0;
 };
 

@@ -16,7 +16,7 @@ struct alignas(64) Row {
   double lane[kLanes];
 };
 
-/// Motions of two phases and a rest each, over time from the comparison's begin on.
+/// Motions of two phases and a rest each.
 struct MotionBlock {
   Row start_s;
   Row first_s, x_m, y_m, vx_mps, vy_mps, half_ax, half_ay;
@@ -31,10 +31,18 @@ struct Track {
   double x_m[kSamples], y_m[kSamples];
 };
 
-/// What a comparison decides by, squared: chords of the relative motion that keep this far are clear, those
-/// that come nearer than that are not. What happens before `start_s` does not count.
-struct BoundsBlock {
-  Row start_s, clear_from, blocked_below;
+/// What each lane brings to a comparison. What happens before `start_s` does not count.
+struct KeepBlock {
+  Row start_s, keep_m, acceleration_mps2;
+};
+
+/// What a comparison decides by: chords of the relative motion are farther apart than the distance to keep
+/// and `clear_room_m`, or come nearer than it less `blocked_room_m`; both also have room for how far the
+/// motion may be from its chords.
+struct ComparisonSettings {
+  double begin_s, step_s;    ///< when the comparison begins, on the lanes' clock
+  double acceleration_mps2;  ///< of the one that all are compared with
+  double clear_room_m, blocked_room_m;
 };
 
 /// The decisions, summed up over comparisons: clear where `clear` >= 0, in the way where `blocked` < 0.
@@ -68,10 +76,19 @@ struct Kernels {
   /// Sets bit k of a block's mask where the discs of lane k and of the query touch.
   void (*touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
                    double y, double radius, std::uint8_t* masks);
-  void (*sample)(const MotionBlock* motions, std::size_t blocks, double step_s, TrackBlock* tracks);
-  /// Lowers the gaps to what `one` has to each lane; `bounds` has one block for all or one for each.
-  void (*compare)(const Track& one, const TrackBlock* lanes, const BoundsBlock* bounds, bool one_bounds,
-                  std::size_t blocks, double step_s, GapBlock* gaps);
+  /// The latest time at which a motion rests, of those that rest by `latest_s`, or `earliest_s`; sets the
+  /// bits of those that do not.
+  double (*rest)(const MotionBlock* motions, std::size_t blocks, double earliest_s, double latest_s,
+                 std::uint8_t* later);
+  void (*sample)(const MotionBlock* motions, std::size_t blocks, double begin_s, double step_s,
+                 TrackBlock* tracks);
+  /// What `one` has to each lane; lowers the gaps to that if they are to be kept. `keeps` has one block for
+  /// all or one for each.
+  void (*compare)(const ComparisonSettings& settings, const Track& one, const TrackBlock* lanes,
+                  const KeepBlock* keeps, bool one_for_all, std::size_t blocks, bool keep_gaps,
+                  GapBlock* gaps);
+  /// Sets the bits of lanes that are clear, and of those in the way.
+  void (*decide)(const GapBlock* gaps, std::size_t blocks, std::uint8_t* clear, std::uint8_t* blocked);
   /// Turns accelerations drawn in the frame of the velocity to the floor's, limits them (as limited() does)
   /// and measures their distances from the wish.
   void (*limit)(const LimitSettings& settings, AccelerationBlock* accelerations, std::size_t blocks);

@@ -28,6 +28,13 @@ inline Vector root(const Vector& v) {
   for (std::size_t i = 0; i < kWidth; ++i) result[i] = __builtin_sqrt(v[i]);
   return result;
 }
+/// Bit k: whether lane `at` + k is a.lane <= b.lane.
+inline unsigned not_above(const Vector& a, const Vector& b) {
+  const auto is = a <= b;
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) bits |= (is[i] != 0 ? 1u : 0u) << i;
+  return bits;
+}
 
 void touching(const Row* xs, const Row* ys, const Row* radii, std::size_t blocks, double x, double y,
               double radius, std::uint8_t* masks) {
@@ -36,14 +43,32 @@ void touching(const Row* xs, const Row* ys, const Row* radii, std::size_t blocks
     for (std::size_t at = 0; at < kLanes; at += kWidth) {
       const Vector dx = load(xs[block], at) - x, dy = load(ys[block], at) - y;
       const Vector far = load(radii[block], at) + radius;
-      const auto inside = dx * dx + dy * dy <= far * far;
-      for (std::size_t i = 0; i < kWidth; ++i) mask |= (inside[i] != 0 ? 1u : 0u) << (at + i);
+      mask |= not_above(dx * dx + dy * dy, far * far) << at;
     }
     masks[block] = static_cast<std::uint8_t>(mask);
   }
 }
 
-void sample(const MotionBlock* motions, std::size_t blocks, double step_s, TrackBlock* tracks) {
+double rest(const MotionBlock* motions, std::size_t blocks, double earliest_s, double latest_s,
+            std::uint8_t* later) {
+  Vector last = all(earliest_s);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const MotionBlock& m = motions[block];
+    unsigned in_time = 0;
+    for (std::size_t at = 0; at < kLanes; at += kWidth) {
+      const Vector rests = load(m.start_s, at) + load(m.first_s, at) + load(m.second_s, at);
+      in_time |= not_above(rests, all(latest_s)) << at;
+      last = larger(last, rests <= all(latest_s) ? rests : last);
+    }
+    later[block] = static_cast<std::uint8_t>(~in_time);
+  }
+  double latest = earliest_s;
+  for (std::size_t i = 0; i < kWidth; ++i) latest = last[i] > latest ? last[i] : latest;
+  return latest;
+}
+
+void sample(const MotionBlock* motions, std::size_t blocks, double begin_s, double step_s,
+            TrackBlock* tracks) {
   const Vector back = all(-step_s), zero = all(0);
   for (std::size_t block = 0; block < blocks; ++block) {
     const MotionBlock& m = motions[block];
@@ -56,7 +81,7 @@ void sample(const MotionBlock* motions, std::size_t blocks, double step_s, Track
       const Vector wx = load(m.second_vx, at), wy = load(m.second_vy, at);
       const Vector gx = load(m.second_half_ax, at), gy = load(m.second_half_ay, at);
       for (std::size_t k = 0; k < kSamples; ++k) {
-        const Vector into = static_cast<double>(k) * step_s - start;
+        const Vector into = begin_s + static_cast<double>(k) * step_s - start;
         // A motion that begins within a step is continued backwards to the step's begin.
         const Vector t = smaller(larger(into, back), first);
         const Vector u = smaller(larger(into - first, zero), second);
@@ -67,48 +92,89 @@ void sample(const MotionBlock* motions, std::size_t blocks, double step_s, Track
   }
 }
 
+/// What the samples so far say of a block's lanes.
+struct Gaps {
+  Vector clear, blocked;
+};
+
 // On each step the relative motion is near its chord. The chord's distance from the origin is that of an end,
 // or, where the foot of the perpendicular lies within, cross^2 / length^2.
-void compare(const Track& one, const TrackBlock* lanes, const BoundsBlock* bounds, bool one_bounds,
-             std::size_t blocks, double step_s, GapBlock* gaps) {
+template <bool kSomeStartLate>
+inline void compare_block(const ComparisonSettings& s, const Track& one, const TrackBlock& track,
+                          std::size_t at, const Vector& start, const Vector& clear_from,
+                          const Vector& blocked_below, Gaps& gaps) {
   const Vector infinite = all(kInfinity), zero = all(0);
-  for (std::size_t block = 0; block < blocks; ++block) {
-    const BoundsBlock& bound = bounds[one_bounds ? 0 : block];
-    const TrackBlock& track = lanes[block];
-    for (std::size_t at = 0; at < kLanes; at += kWidth) {
-      const Vector start = load(bound.start_s, at);
-      const Vector clear_from = load(bound.clear_from, at), blocked_below = load(bound.blocked_below, at);
-      Vector clear = load(gaps[block].clear, at), blocked = load(gaps[block].blocked, at);
-      Vector x = load(track.x_m[0], at) - one.x_m[0], y = load(track.y_m[0], at) - one.y_m[0];
-      Vector distance2 = x * x + y * y;
-      Vector counts = start > zero ? infinite : zero;  // infinite: the sample is too early
-      blocked = smaller(blocked, distance2 - blocked_below + counts);
-      for (std::size_t k = 1; k < kSamples; ++k) {
-        const Vector next_x = load(track.x_m[k], at) - one.x_m[k];
-        const Vector next_y = load(track.y_m[k], at) - one.y_m[k];
-        const Vector next_distance2 = next_x * next_x + next_y * next_y;
-        const Vector ex = next_x - x, ey = next_y - y;
-        const Vector length2 = ex * ex + ey * ey;
-        const Vector along = zero - (x * ex + y * ey);
-        const Vector across = x * ey - y * ex;
-        const Vector across2 = across * across;
-        const Vector within = along * (length2 - along);
-        const Vector early = start >= all(static_cast<double>(k) * step_s) ? infinite : zero;
-        const Vector next_counts = start > all(static_cast<double>(k) * step_s) ? infinite : zero;
-        const Vector chord_clear = within > zero ? across2 - clear_from * length2 : infinite;
-        const Vector chord_blocked = within > zero ? across2 - blocked_below * length2 : infinite;
-        const Vector ends_clear = smaller(distance2, next_distance2) - clear_from;
-        clear = smaller(clear, smaller(chord_clear, ends_clear) + early);
-        blocked = smaller(blocked, chord_blocked + counts);
-        blocked = smaller(blocked, next_distance2 - blocked_below + next_counts);
-        x = next_x;
-        y = next_y;
-        distance2 = next_distance2;
-        counts = next_counts;
-      }
-      store(gaps[block].clear, at, smaller(clear, distance2 - clear_from));
-      store(gaps[block].blocked, at, blocked);
+  Vector x = load(track.x_m[0], at) - one.x_m[0], y = load(track.y_m[0], at) - one.y_m[0];
+  Vector distance2 = x * x + y * y;
+  // Infinite where the sample is too early to count.
+  Vector early = zero;
+  if (kSomeStartLate) early = start > all(s.begin_s) ? infinite : zero;
+  gaps.blocked = smaller(gaps.blocked, distance2 - blocked_below + early);
+  for (std::size_t k = 1; k < kSamples; ++k) {
+    const Vector next_x = load(track.x_m[k], at) - one.x_m[k];
+    const Vector next_y = load(track.y_m[k], at) - one.y_m[k];
+    const Vector next_distance2 = next_x * next_x + next_y * next_y;
+    const Vector ex = next_x - x, ey = next_y - y;
+    const Vector length2 = ex * ex + ey * ey;
+    const Vector along = x * ex + y * ey;
+    const Vector across = x * ey - y * ex;
+    const Vector across2 = across * across;
+    const Vector within = along * (length2 + along);  // negative: the foot lies within
+    Vector chord_clear = within < zero ? across2 - clear_from * length2 : infinite;
+    chord_clear = smaller(chord_clear, smaller(distance2, next_distance2) - clear_from);
+    Vector chord_blocked = within < zero ? across2 - blocked_below * length2 : infinite;
+    Vector end_blocked = next_distance2 - blocked_below;
+    if (kSomeStartLate) {
+      const Vector time = all(s.begin_s + static_cast<double>(k) * s.step_s);
+      chord_clear += start >= time ? infinite : zero;
+      chord_blocked += early;
+      early = start > time ? infinite : zero;
+      end_blocked += early;
     }
+    gaps.clear = smaller(gaps.clear, chord_clear);
+    gaps.blocked = smaller(gaps.blocked, smaller(chord_blocked, end_blocked));
+    x = next_x;
+    y = next_y;
+    distance2 = next_distance2;
+  }
+  gaps.clear = smaller(gaps.clear, distance2 - clear_from);
+}
+
+void compare(const ComparisonSettings& s, const Track& one, const TrackBlock* lanes, const KeepBlock* keeps,
+             bool one_for_all, std::size_t blocks, bool keep_gaps, GapBlock* gaps) {
+  const Vector zero = all(0);
+  // A function whose second derivative is at most A is within A h^2 / 8 of its chord over a time h.
+  const double deviation_s2 = 0.125 * s.step_s * s.step_s;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const KeepBlock& keep = keeps[one_for_all ? 0 : block];
+    for (std::size_t at = 0; at < kLanes; at += kWidth) {
+      const Vector start = load(keep.start_s, at), keep_m = load(keep.keep_m, at);
+      const Vector deviation = (load(keep.acceleration_mps2, at) + s.acceleration_mps2) * deviation_s2;
+      const Vector clear_from = larger(keep_m + deviation + s.clear_room_m, zero);
+      const Vector blocked_below = keep_m - deviation - s.blocked_room_m;
+      const Vector blocked_below2 = blocked_below > zero ? blocked_below * blocked_below : all(-1);
+      Gaps found{all(kInfinity), all(kInfinity)};
+      if (keep_gaps) found = {load(gaps[block].clear, at), load(gaps[block].blocked, at)};
+      const bool some_start_late = not_above(start, all(s.begin_s)) + 1 != 1u << kWidth;
+      if (some_start_late)
+        compare_block<true>(s, one, lanes[block], at, start, clear_from * clear_from, blocked_below2, found);
+      else
+        compare_block<false>(s, one, lanes[block], at, start, clear_from * clear_from, blocked_below2, found);
+      store(gaps[block].clear, at, found.clear);
+      store(gaps[block].blocked, at, found.blocked);
+    }
+  }
+}
+
+void decide(const GapBlock* gaps, std::size_t blocks, std::uint8_t* clear, std::uint8_t* blocked) {
+  for (std::size_t block = 0; block < blocks; ++block) {
+    unsigned is_clear = 0, not_blocked = 0;
+    for (std::size_t at = 0; at < kLanes; at += kWidth) {
+      is_clear |= not_above(all(0), load(gaps[block].clear, at)) << at;
+      not_blocked |= not_above(all(0), load(gaps[block].blocked, at)) << at;
+    }
+    clear[block] = static_cast<std::uint8_t>(is_clear);
+    blocked[block] = static_cast<std::uint8_t>(~not_blocked);
   }
 }
 
@@ -201,6 +267,7 @@ std::size_t choose(double x, double y, double spread2, AccelerationBlock* accele
 
 }  // namespace
 
-const Kernels SIDESTEP_KERNELS{SIDESTEP_LEVEL_NAME, touching, sample, compare, limit, stop, choose};
+const Kernels SIDESTEP_KERNELS{
+    SIDESTEP_LEVEL_NAME, touching, rest, sample, compare, decide, limit, stop, choose};
 
 }  // namespace sidestep::batch

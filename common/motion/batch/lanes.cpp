@@ -2,7 +2,6 @@
 #include "common/motion/batch/lanes.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "common/motion/clearance.hpp"
 
@@ -11,22 +10,13 @@ namespace {
 
 // Far above all rounding, here and in the exact clearance; far below what matters.
 constexpr double kRounding_m = 1e-7;
-// Where a block's unused lanes are.
+// Where lanes are that do not count.
 constexpr double kNowhere_m = 1e6;
 
 }  // namespace
 
-// A function whose second derivative is at most A is within A h^2 / 8 of its chord over a time h.
-double deviation_m(double relative_acceleration_mps2, double step_s) {
-  return 0.125 * relative_acceleration_mps2 * step_s * step_s;
-}
-
-void set_bounds(BoundsBlock& bounds, std::size_t lane, double keep_m, double deviation_m, double room_m) {
-  const double allowance = deviation_m + kRounding_m + room_m;
-  const double clear_from = keep_m + kClearanceTolerance_m + allowance;
-  const double blocked_below = keep_m - allowance;
-  bounds.clear_from.lane[lane] = clear_from > 0 ? clear_from * clear_from : 0;
-  bounds.blocked_below.lane[lane] = blocked_below > 0 ? blocked_below * blocked_below : -1;
+ComparisonSettings comparison(double begin_s, double step_s, double acceleration, double room_m) {
+  return {begin_s, step_s, acceleration, room_m + kClearanceTolerance_m + kRounding_m, room_m + kRounding_m};
 }
 
 Track track_of(const TrackBlock& tracks, std::size_t lane) {
@@ -38,24 +28,55 @@ Track track_of(const TrackBlock& tracks, std::size_t lane) {
   return track;
 }
 
-void Lanes::grow() {
-  MotionBlock nowhere{};
-  std::fill_n(nowhere.x_m.lane, kLanes, kNowhere_m);
-  motions_.push_back(nowhere);
-  tracks_.emplace_back();
-  bounds_.push_back({});
-  gaps_.emplace_back();
-  keep_m_.resize(motions_.size() * kLanes);
-  acceleration_mps2_.resize(motions_.size() * kLanes);
-  rest_s_.resize(motions_.size() * kLanes);
+Track track_of(const Outline& outline, Time begin, double step_s) {
+  const double from_s = to_seconds(begin - outline.start);
+  const double first_s = to_seconds(outline.first.duration), second_s = to_seconds(outline.second.duration);
+  Track track;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const double into = from_s + static_cast<double>(k) * step_s;
+    const double t = std::min(std::max(into, -step_s), first_s);
+    const double u = std::min(std::max(into - first_s, 0.0), second_s);
+    const Vec2 position = outline.at_start.position_m +
+                          t * (outline.at_start.velocity_mps + (0.5 * t) * outline.first.acceleration_mps2) +
+                          u * (outline.second_velocity_mps + (0.5 * u) * outline.second.acceleration_mps2);
+    track.x_m[k] = position.x();
+    track.y_m[k] = position.y();
+  }
+  return track;
 }
 
-void Lanes::add(const Outline& outline, double keep_m, Time begin) {
-  if (count_ == motions_.size() * kLanes) grow();
-  MotionBlock& m = motions_[count_ / kLanes];
-  const std::size_t lane = count_ % kLanes;
-  const double start_s = to_seconds(outline.start - begin);
-  m.start_s.lane[lane] = start_s;
+void Lanes::restart(Time base) {
+  base_ = base;
+  count_ = 0;
+  is_sampled_ = false;
+}
+
+void Lanes::begin_block() {
+  const std::size_t block = count_ / kLanes;
+  if (block == motions_.size()) {
+    motions_.emplace_back();
+    keeps_.emplace_back();
+    tracks_.emplace_back();
+    gaps_.emplace_back();
+    for (auto* masks : {&exact_, &later_, &clear_, &blocked_}) masks->push_back(0);
+  }
+  motions_[block] = {};
+  keeps_[block] = {};
+  std::fill_n(motions_[block].x_m.lane, kLanes, kNowhere_m);
+  exact_[block] = 0;
+}
+
+void Lanes::add(const Outline& outline, double keep_m) {
+  const std::size_t block = count_ / kLanes, lane = count_ % kLanes;
+  if (lane == 0) begin_block();
+  ++count_;
+  is_sampled_ = false;
+  if (!outline.is_plain) {
+    exact_[block] = static_cast<std::uint8_t>(exact_[block] | 1u << lane);
+    return;
+  }
+  MotionBlock& m = motions_[block];
+  m.start_s.lane[lane] = to_seconds(outline.start - base_);
   m.first_s.lane[lane] = to_seconds(outline.first.duration);
   m.x_m.lane[lane] = outline.at_start.position_m.x();
   m.y_m.lane[lane] = outline.at_start.position_m.y();
@@ -68,37 +89,39 @@ void Lanes::add(const Outline& outline, double keep_m, Time begin) {
   m.second_vy.lane[lane] = outline.second_velocity_mps.y();
   m.second_half_ax.lane[lane] = 0.5 * outline.second.acceleration_mps2.x();
   m.second_half_ay.lane[lane] = 0.5 * outline.second.acceleration_mps2.y();
-  bounds_[count_ / kLanes].start_s.lane[lane] = start_s;
-  keep_m_[count_] = keep_m;
-  acceleration_mps2_[count_] = outline.acceleration_mps2;
-  rest_s_[count_] = start_s + outline.seconds;
-  ++count_;
+  keeps_[block].start_s.lane[lane] = m.start_s.lane[lane];
+  keeps_[block].keep_m.lane[lane] = keep_m;
+  keeps_[block].acceleration_mps2.lane[lane] = outline.acceleration_mps2;
 }
 
-double Lanes::seconds() const {
-  double longest = 0;
-  for (std::size_t i = 0; i < count_; ++i) longest = std::max(longest, rest_s_[i]);
-  return longest;
+void Lanes::sample(Time begin, double at_least_s) {
+  const double begin_s = to_seconds(begin - base_);
+  if (is_sampled_ && begin_s == begin_s_ && kSteps * step_s_ >= at_least_s) return;
+  const double rest_s =
+      kernels_->rest(motions_.data(), blocks(), begin_s + at_least_s, begin_s + kLongest_s, later_.data());
+  begin_s_ = begin_s;
+  step_s_ = (rest_s - begin_s) / kSteps;
+  kernels_->sample(motions_.data(), blocks(), begin_s_, step_s_, tracks_.data());
+  is_sampled_ = true;
 }
 
-void Lanes::sample(const Kernels& kernels, double step_s) {
-  step_s_ = step_s;
-  kernels.sample(motions_.data(), blocks(), step_s, tracks_.data());
+void Lanes::compare(const Track& one, double acceleration, double room_m) {
+  const ComparisonSettings settings = comparison(begin_s_, step_s_, acceleration, room_m);
+  kernels_->compare(settings, one, tracks_.data(), keeps_.data(), false, blocks(), false, gaps_.data());
+  kernels_->decide(gaps_.data(), blocks(), clear_.data(), blocked_.data());
 }
 
-void Lanes::compare(const Kernels& kernels, const Track& one, double acceleration_mps2, double room_m) {
-  constexpr double kUndecided = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count_; ++i) {
-    const double deviation = deviation_m(acceleration_mps2 + acceleration_mps2_[i], step_s_);
-    set_bounds(bounds_[i / kLanes], i % kLanes, keep_m_[i], deviation, room_m);
-  }
+bool Lanes::are_all_clear() const {
   for (std::size_t block = 0; block < blocks(); ++block) {
-    std::fill_n(gaps_[block].clear.lane, kLanes, kUndecided);
-    std::fill_n(gaps_[block].blocked.lane, kLanes, kUndecided);
+    if (exact_[block] != 0 || later_[block] != 0 || clear_[block] != 0xff) return false;
   }
-  kernels.compare(one, tracks_.data(), bounds_.data(), false, blocks(), step_s_, gaps_.data());
+  return true;
 }
 
 Track Lanes::track(std::size_t lane) const { return track_of(tracks_[lane / kLanes], lane % kLanes); }
+
+double Lanes::start_s(std::size_t lane) const {
+  return keeps_[lane / kLanes].start_s.lane[lane % kLanes] - begin_s_;
+}
 
 }  // namespace sidestep::batch

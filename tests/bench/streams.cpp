@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/streams.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "agents/navigation/motion_control.hpp"
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/codec.hpp"
+#include "deploy/sim_system.hpp"
+
+namespace sidestep::bench {
+namespace {
+
+constexpr Duration kUnderWay{2'000'000'000};
+
+/// What the coordinator published last of every robot, by robot.
+std::map<RobotId, std::vector<Version>> newest_ledger(SimSystem& system, Duration cycle) {
+  std::map<std::uint32_t, msg::LedgerPage> pages;
+  SimBus bus(system.network());
+  bus.subscribe(topics::kLedger,
+                std::function([&](const msg::LedgerPage& page) { pages[page.page_index()] = page; }));
+  system.run_for(2 * cycle);
+  std::map<RobotId, std::vector<Version>> ledger;
+  for (const auto& [index, page] : pages) {
+    for (const msg::Version& entry : page.versions()) {
+      const auto version = decode(entry);
+      if (!version) throw std::runtime_error("the coordinator publishes what is no version");
+      ledger[version->robot].push_back(*version);
+    }
+  }
+  return ledger;
+}
+
+/// What an agent wants next: straight to its goal, from the start of the cycle after its newest version's.
+SearchQuery next_query(const Scenario& scenario, const Version& newest) {
+  const Time start = newest.trajectory.start() + scenario.cycle;
+  const State there = newest.trajectory.state_at(start);
+  const Vec2 to_goal = find_robot(scenario, newest.robot)->goals.back().position_m - there.position_m;
+  const MotionWish wish =
+      wished_motion(to_goal, there.velocity_mps, scenario.limits, scenario.cycle, scenario.cycle);
+  SearchQuery query;
+  query.start = start;
+  query.at_start = there;
+  query.wish_mps2 = wish.acceleration_mps2;
+  query.phase = wish.hold;
+  return query;
+}
+
+Snapshot taken() {
+  Snapshot snapshot{load_scenario(SIDESTEP_SCENARIOS "/streams-1000.yaml"), {}};
+  SimSystem system(snapshot.scenario, 1);
+  while (!system.judge().granting_since()) system.run_for(snapshot.scenario.cycle);
+  system.run_for(kUnderWay);
+  for (auto& [id, versions] : newest_ledger(system, snapshot.scenario.cycle)) {
+    const auto newest = std::ranges::max_element(versions, {}, &Version::number);
+    snapshot.robots.push_back({next_query(snapshot.scenario, *newest), std::move(versions)});
+  }
+  std::ranges::sort(snapshot.robots, {}, [](const Snapshot::Robot& robot) {
+    return robot.query.at_start.position_m.squaredNorm();
+  });
+  return snapshot;
+}
+
+}  // namespace
+
+const Snapshot& crossing_streams() {
+  static const Snapshot snapshot = taken();
+  return snapshot;
+}
+
+}  // namespace sidestep::bench
