@@ -21,19 +21,23 @@ constexpr Duration kSettle = std::chrono::milliseconds(500);
 
 /// Members go in reverse order: the node before its bus, so that nothing calls back into a node that is gone.
 struct SimSystem::Process {
-  explicit Process(SimNetwork& network) : bus(network) {}
+  Process(SimNetwork& network, const SimPlace& place) : bus(network, place) {}
   SimBus bus;
   std::shared_ptr<void> node;
 };
 
-SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed)
+std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
+
+SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks)
     : scenario_(scenario),
       seed_(seed),
       rng_(seed),
+      clocks_(std::move(clocks)),
       begin_(kBegin),
       network_(seed, kBegin, scenario.network),
       judge_(scenario_),
       judge_bus_(network_) {
+  judge_bus_.listen_aside();
   judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
     judge_.on_truth(truth);
     if (truth_watcher_) truth_watcher_(truth);
@@ -42,20 +46,33 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed)
                                          [this](const auto& status) { judge_.on_status(status); });
   judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
                                               [this](const auto& state) { judge_.on_coordinator(state); });
-  for (const char* process : {"simulator", "vision"}) start(process);
-  for (int number = 0; number < scenario_.coordinators; ++number) start(coordinator_process(number));
-  for (const RobotSpec& robot : scenario_.robots) start(agent_process(robot.id));
+  for (const std::string& process : process_names(scenario_)) start(process);
 }
 
 SimSystem::~SimSystem() = default;
 
+std::vector<std::string> SimSystem::process_names(const Scenario& scenario) {
+  std::vector<std::string> names{"simulator", "vision"};
+  for (int number = 0; number < scenario.coordinators; ++number) names.push_back(coordinator_process(number));
+  for (const RobotSpec& robot : scenario.robots) names.push_back(agent_process(robot.id));
+  return names;
+}
+
+SimPlace SimSystem::place_of(const std::string& process) {
+  const auto known = ids_.find(process);
+  const ProcessId id = known != ids_.end() ? known->second : network_.new_process();
+  ids_[process] = id;
+  const auto clock = clocks_.find(process);
+  return {id, clock != clocks_.end() ? clock->second : Duration{0}};
+}
+
 void SimSystem::start(const std::string& name) {
-  auto process = std::make_unique<Process>(network_);
-  // Its randomness comes from its incarnation, so that has to come from the seed.
-  last_incarnation_ = std::max(last_incarnation_ + 1,
-                               static_cast<Incarnation>(to_ns(network_.now())) + rng_.below(1'000'000));
-  const Incarnation incarnation = last_incarnation_;
+  auto process = std::make_unique<Process>(network_, place_of(name));
   SimBus& bus = process->bus;
+  // As over DDS the time by the process's clock; and its randomness comes from it, so it has to come from the
+  // seed.
+  Incarnation& incarnation = incarnations_[name];
+  incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
   if (name == "simulator")
     process->node = std::make_shared<SimulatorNode>(bus, scenario_, incarnation, seed_);
   else if (name == "vision")
@@ -66,7 +83,7 @@ void SimSystem::start(const std::string& name) {
     process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
   }
   for (const RobotSpec& robot : scenario_.robots) {
-    if (name == agent_process(robot.id)) {
+    if (name == agent_process(robot.id) || name == twin_process(robot.id)) {
       process->node = std::make_shared<AgentNode>(bus, scenario_, robot.id, incarnation);
     }
   }
@@ -76,6 +93,15 @@ void SimSystem::start(const std::string& name) {
 
 void SimSystem::kill(const std::string& process) {
   if (processes_.erase(process) > 0) judge_.on_death(process, "signal 9 (SIGKILL)", now(), false);
+}
+
+void SimSystem::pause(const std::string& process, Duration duration, std::size_t most_waiting) {
+  const auto found = processes_.find(process);
+  if (found != processes_.end()) found->second->bus.pause(now() + duration, most_waiting);
+}
+
+void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {
+  network_.set_link(place_of(from).process, place_of(to).process, quality);
 }
 
 void SimSystem::restart(const std::string& process) {

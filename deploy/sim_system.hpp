@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/sim_bus.hpp"
@@ -14,13 +15,17 @@
 
 namespace sidestep {
 
+/// The name of the second agent of a robot.
+std::string twin_process(RobotId robot);
+
 /// The whole system on SimBus, in one thread and virtual time: one simulated process for the simulator,
 /// vision, each coordinator and each agent, and a judge that listens. The same scenario and seed give the
 /// same run, bit for bit.
 class SimSystem {
  public:
-  /// Starts every process at virtual time 1000 s.
-  SimSystem(const Scenario& scenario, std::uint64_t seed);
+  /// Starts every process at virtual time 1000 s. A process that is named in `clocks` has a clock that goes
+  /// ahead of virtual time by so much, in all its lives.
+  SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks = {});
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
   SimSystem& operator=(const SimSystem&) = delete;
@@ -37,6 +42,14 @@ class SimSystem {
   /// Starts a process that is dead, as a new incarnation that knows nothing of the old one.
   void restart(const std::string& process);
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
+  /// Starts another agent for a robot that has one, as twin_process(robot).
+  void start_twin(RobotId robot) { restart(twin_process(robot)); }
+  /// SIGSTOP for a while; see SimBus::pause. Does nothing when the process is dead.
+  void pause(const std::string& process, Duration duration, std::size_t most_waiting);
+  /// What the link between two processes does from now on, whatever their lives.
+  void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
+  /// The processes that a system starts with.
+  static std::vector<std::string> process_names(const Scenario& scenario);
 
   Time now() const { return network_.now(); }
   Time begin() const { return begin_; }
@@ -48,16 +61,19 @@ class SimSystem {
 
  private:
   struct Process;
+  SimPlace place_of(const std::string& process);
   void start(const std::string& process);
 
   const Scenario scenario_;
   std::uint64_t seed_;
   Rng rng_;
-  Incarnation last_incarnation_ = 0;
+  std::map<std::string, Duration> clocks_;
   Time begin_;
   SimNetwork network_;
   Judge judge_;
   SimBus judge_bus_;
+  std::map<std::string, ProcessId> ids_;
+  std::map<std::string, Incarnation> incarnations_;  // of the latest lives
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
   std::function<void(const msg::GroundTruth&)> truth_watcher_;

@@ -10,23 +10,40 @@
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/sim_links.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
 class SimNetwork;
+struct SimLife;
 
-/// One simulated process's view of a SimNetwork. Destroying it is kill -9: its timers never fire, nothing
-/// that is under way to it arrives; what it has sent does.
+/// Where a simulated process runs.
+struct SimPlace {
+  ProcessId process = 0;     ///< links and their faults go by it
+  Duration clock_offset{0};  ///< its clock against the network's time
+};
+
+/// One life of a simulated process, and its view of a SimNetwork. Destroying it is kill -9: its timers never
+/// fire, nothing that is under way to it arrives; what it has sent does.
 class SimBus : public Bus {
  public:
+  /// A process of its own, that no link's fault concerns.
   explicit SimBus(SimNetwork& network);
+  SimBus(SimNetwork& network, const SimPlace& place);
   ~SimBus() override;
   SimBus(const SimBus&) = delete;
   SimBus& operator=(const SimBus&) = delete;
 
+  /// By the process's own clock.
   Time now() const override;
   void at(Time when, std::function<void()> callback) override;
+
+  /// Hears everything at once and loses nothing: for judges, who are no part of the system.
+  void listen_aside();
+  /// SIGSTOP until a time of the network: no timer fires, messages pile up, `most_waiting` of them at most;
+  /// the others are lost as when a socket's buffer is full. Then everything comes at once.
+  void pause(Time until, std::size_t most_waiting);
 
  protected:
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
@@ -35,7 +52,8 @@ class SimBus : public Bus {
 
  private:
   SimNetwork& network_;
-  std::shared_ptr<bool> alive_;
+  Duration clock_offset_;
+  std::shared_ptr<SimLife> life_;
 };
 
 /// Many processes in one thread under virtual time: an event queue ordered by (time, order of scheduling),
@@ -55,19 +73,25 @@ class SimNetwork {
     }
   }
 
+  /// A number for another process.
+  ProcessId new_process() { return next_process_++; }
+  /// From now on this link does this, instead of what the NetworkSpec says.
+  void set_link(ProcessId from, ProcessId to, const LinkQuality& quality) { links_.set(from, to, quality); }
+
  private:
   friend class SimBus;
   class Writer;
   struct Reader {
-    std::shared_ptr<bool> alive;
+    std::shared_ptr<SimLife> life;
     std::function<void(const void*)> callback;
     Time last_event{};  ///< arrival of the last event, to keep events in order
   };
   struct Event {
     Time when;
     std::uint64_t order;
-    std::shared_ptr<bool> alive;
+    std::shared_ptr<SimLife> life;
     std::function<void()> run;
+    bool may_be_lost = false;  ///< where a paused process's messages pile up
   };
   struct Later {
     bool operator()(const Event& a, const Event& b) const {
@@ -78,14 +102,21 @@ class SimNetwork {
     std::vector<std::shared_ptr<Reader>> readers;
   };
 
-  void schedule(Time when, const std::shared_ptr<bool>& alive, std::function<void()> run);
-  void send(const TopicInfo& topic, Channel& channel, const void* message);
-  void deliver(const std::shared_ptr<Reader>& reader, Time when, const std::shared_ptr<const void>& message);
+  void schedule(Time when, const std::shared_ptr<SimLife>& life, std::function<void()> run,
+                bool may_be_lost = false);
+  void hold_back(Event event);
+  void send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message);
+  void send_event(ProcessId from, const std::shared_ptr<Reader>& reader,
+                  const std::shared_ptr<const void>& message);
+  void deliver(const std::shared_ptr<Reader>& reader, Time when, const std::shared_ptr<const void>& message,
+               bool may_be_lost);
   Duration draw_delay();
 
   Rng rng_;
   Time now_;
   NetworkSpec spec_;
+  SimLinks links_;
+  ProcessId next_process_ = 0;
   std::uint64_t order_ = 0;
   std::priority_queue<Event, std::vector<Event>, Later> events_;
   std::map<std::string, std::unique_ptr<Channel>> channels_;
