@@ -174,7 +174,8 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
   const double look_ahead = std::min(route.length_m, kLookAhead_m);
   for (const double share : {1.0, 0.75, 0.5, 0.25}) {
     const Vec2 direction = rotated(straight, -share * passing_.angle_rad(route.length_m));
-    if (ways_->sees(here, here + look_ahead * direction)) return direction;
+    const Vec2 ahead = here + look_ahead * direction;
+    if (rules_.field.contains(ahead, rules_.radius_m) && ways_->sees(here, ahead)) return direction;
   }
   return straight;
 }
