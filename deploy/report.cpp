@@ -46,7 +46,7 @@ std::string Report::verdict() const {
   if (!failure.empty()) add(failure);
   if (contacts > 0) add(fmt::format("{} contacts", contacts));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
-  if (arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
+  if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
   return why;
 }
 

@@ -28,6 +28,7 @@ struct Report {
   std::string failure;  ///< why the run ended early; empty: it did not
   int robots = 0;
   int arrived = 0;
+  bool must_arrive = true;  ///< whether everybody has to, for the run to pass
   std::uint64_t contacts = 0;
   double penetration_m_s = 0;
   std::optional<double> min_clearance_m;

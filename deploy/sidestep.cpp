@@ -6,6 +6,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
 #include "deploy/run.hpp"
+#include "deploy/search/seed_search.hpp"
 #include "deploy/simulate.hpp"
 #include "deploy/topic/topic_command.hpp"
 
@@ -27,19 +28,69 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
   command->callback([&] { action = [&options] { return run(options); }; });
 }
 
-void add_simulate_command(CLI::App& root, std::function<int()>& action, SimulateOptions& options) {
+/// "5..9" or "5".
+std::string read_seeds(const std::string& text, SearchOptions& search) {
+  std::size_t first = 0, last = 0;
+  int end = 0;
+  const bool is_range = std::sscanf(text.c_str(), "%zu..%zu%n", &first, &last, &end) == 2;
+  if (!is_range || static_cast<std::size_t>(end) != text.size() || last < first) {
+    return "expected FIRST..LAST, got \"" + text + "\"";
+  }
+  search.first_seed = first;
+  search.last_seed = last;
+  return {};
+}
+
+int simulate_or_search(const SimulateOptions& one, SearchOptions& many, bool draws_faults, bool is_many) {
+  if (!is_many) return draws_faults ? simulate_trial(one) : simulate(one);
+  many.scenario_file = one.scenario_file;
+  many.report_file = one.report_file;
+  if (one.seconds) many.duration = from_seconds(*one.seconds);
+  return search_seeds(many);
+}
+
+void add_simulate_command(CLI::App& root, std::function<int()>& action, SimulateOptions& options,
+                          SearchOptions& search) {
   CLI::App* command =
       root.add_subcommand("simulate", "Runs a scenario in one process and virtual time, repeatably");
-  command->add_option("SCENARIO", options.scenario_file, "scenario file, see deploy/scenarios/README.md")
-      ->required();
-  command->add_option("--report", options.report_file, "report file [reports/<scenario>-<seed>.json]");
-  command->add_option("--svg", options.picture_file, "draw the robots' ways into this file");
-  command->add_option("--seed", options.seed, "of everything that is random")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--seconds", options.seconds, "time limit instead of the scenario's")
+  CLI::Option* scenario = command->add_option("SCENARIO", options.scenario_file,
+                                              "scenario file, see deploy/scenarios/README.md; with --faults "
+                                              "draw the floor is drawn where there is none");
+  command->add_option("--report", options.report_file,
+                      "report file [reports/<scenario>-<seed>.json; --seeds: none]");
+  CLI::Option* svg =
+      command->add_option("--svg", options.picture_file, "draw the robots' ways into this file");
+  CLI::Option* seed = command->add_option("--seed", options.seed, "of everything that is random")
+                          ->check(CLI::NonNegativeNumber)
+                          ->capture_default_str();
+  command
+      ->add_option("--seconds", options.seconds,
+                   "time limit instead of the scenario's; with --faults draw the length of a run [60]")
       ->check(CLI::PositiveNumber);
-  command->callback([&] { action = [&options] { return simulate(options); }; });
+  CLI::Option* faults =
+      command
+          ->add_option("--faults",
+                       "draw: what goes wrong in the network and with processes is drawn from the seed")
+          ->check(CLI::IsMember({"draw"}));
+  CLI::Option* seeds = command
+                           ->add_option_function<std::string>(
+                               "--seeds",
+                               [&search](const std::string& text) {
+                                 if (const std::string why = read_seeds(text, search); !why.empty())
+                                   throw CLI::ValidationError("--seeds", why);
+                               },
+                               "FIRST..LAST: one run for each seed, on all cores")
+                           ->needs(faults)
+                           ->excludes(seed)
+                           ->excludes(svg);
+  command->add_option("--jobs", search.jobs, "processes for --seeds [as many as there are cores]")
+      ->check(CLI::PositiveNumber)
+      ->needs(seeds);
+  command->callback([=, &action, &options, &search] {
+    const bool draws_faults = faults->count() > 0, is_many = seeds->count() > 0;
+    if (!draws_faults && scenario->count() == 0) throw CLI::RequiredError("SCENARIO");
+    action = [=, &options, &search] { return simulate_or_search(options, search, draws_faults, is_many); };
+  });
 }
 
 }  // namespace
@@ -52,9 +103,10 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   RunOptions run_options;
   SimulateOptions simulate_options;
+  SearchOptions search_options;
   run_options.dds.participant = "sidestep-run";
   add_run_command(app, action, run_options);
-  add_simulate_command(app, action, simulate_options);
+  add_simulate_command(app, action, simulate_options, search_options);
   add_topic_command(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {

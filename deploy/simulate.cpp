@@ -10,6 +10,10 @@
 #include "common/process/process.hpp"
 #include "deploy/picture.hpp"
 #include "deploy/progress.hpp"
+#include "deploy/search/commit.hpp"
+#include "deploy/search/scene_draw.hpp"
+#include "deploy/search/seed_search.hpp"
+#include "deploy/search/trial.hpp"
 #include "deploy/sim_system.hpp"
 
 namespace sidestep {
@@ -56,7 +60,38 @@ std::string drive(SimSystem& system, double limit_s) {
   return system.judge().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
 }
 
+/// Completes and writes the report, prints it, and returns the exit code.
+int conclude(const SimulateOptions& options, Report& report, const Picture& picture,
+             steady_clock::time_point begin) {
+  report.program = "simulate";
+  report.seed = options.seed;
+  report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
+  const std::string path =
+      options.report_file.empty() ? default_report_path(report.scenario, options.seed) : options.report_file;
+  write_report(report, path);
+  if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
+  fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
+             summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
+  return report.verdict().empty() ? 0 : kExitFailure;
+}
+
 }  // namespace
+
+int simulate_trial(const SimulateOptions& options) {
+  const auto begin = steady_clock::now();
+  std::optional<Scenario> scenario;
+  if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
+  const Duration duration = options.seconds ? from_seconds(*options.seconds) : SearchOptions{}.duration;
+  const Trial trial = draw_trial(options.seed, duration, scenario);
+  fmt::print("commit {}\n{}\n", kCommit, floor_in_words(trial.scenario));
+  for (const std::string& line : in_words(trial.plan)) fmt::print("  {}\n", line);
+  Picture picture(trial.scenario);
+  Report report;
+  run_trial(trial, &report, [&](const msg::GroundTruth& truth) {
+    if (!options.picture_file.empty()) picture.add(truth);
+  });
+  return conclude(options, report, picture, begin);
+}
 
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
@@ -67,17 +102,8 @@ int simulate(const SimulateOptions& options) {
     system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
   const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
   Report report = system.judge().report();
-  report.program = "simulate";
-  report.seed = options.seed;
   report.failure = failure;
-  report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
-  const std::string path =
-      options.report_file.empty() ? default_report_path(scenario.name, options.seed) : options.report_file;
-  write_report(report, path);
-  if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
-  fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", scenario.name, options.seed,
-             summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
-  return report.verdict().empty() ? 0 : kExitFailure;
+  return conclude(options, report, picture, begin);
 }
 
 }  // namespace sidestep

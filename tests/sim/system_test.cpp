@@ -6,8 +6,8 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/report.hpp"
+#include "deploy/search/promise_watch.hpp"
 #include "deploy/sim_system.hpp"
-#include "tests/sim/ledger_watch.hpp"
 
 using namespace sidestep;
 
@@ -22,9 +22,9 @@ struct Watched {
   Scenario scenario;
   SimSystem system;
   SimBus bus{system.network()};
-  LedgerWatch watch{bus, scenario};
+  PromiseWatch watch{bus, scenario};
 
-  Watched(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {}
+  Watched(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) { bus.listen_aside(); }
 
   void require_safe() {
     const Report report = system.judge().report();
