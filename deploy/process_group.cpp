@@ -39,7 +39,7 @@ std::string reason_of(int status) {
 }
 
 /// Between fork and exec in a process that may have threads: system calls only.
-[[noreturn]] void become(char* const argv[], int output, pid_t parent) {
+[[noreturn]] void become(char* const argv[], int input, int output, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(126);  // the parent died before the line above
   setpgid(0, 0);                        // Ctrl-C is for the parent, which then stops its children in order
@@ -47,8 +47,7 @@ std::string reason_of(int status) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  const int input = open("/dev/null", O_RDONLY);
-  dup2(input, STDIN_FILENO);
+  dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   close_range(3, ~0U, 0);  // sockets of the parent's above all
@@ -66,12 +65,37 @@ void close_fd(int& fd) {
   fd = -1;
 }
 
+struct Pipe {
+  int read_end = -1;
+  int write_end = -1;
+};
+
+Pipe new_pipe() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
+  return {ends[0], ends[1]};
+}
+
+/// A pipe that holds the text already, whose reader then waits for its end.
+Pipe filled_pipe(const std::string& text) {
+  if (text.empty()) return {};
+  Pipe pipe = new_pipe();
+  fcntl(pipe.write_end, F_SETFL, O_NONBLOCK);
+  fcntl(pipe.write_end, F_SETPIPE_SZ, static_cast<int>(text.size()));
+  const ssize_t written = write(pipe.write_end, text.data(), text.size());
+  if (written == static_cast<ssize_t>(text.size())) return pipe;
+  close_fd(pipe.read_end);
+  close_fd(pipe.write_end);
+  throw std::runtime_error(fmt::format("{} bytes are too many for a child's stdin", text.size()));
+}
+
 }  // namespace
 
 struct ProcessGroup::Child {
   ChildSpec spec;
   pid_t pid = -1;
   int pidfd = -1;
+  int input = -1;
   int output = -1;
   bool is_running = false;
   SteadyTime started{};
@@ -115,9 +139,8 @@ pid_t ProcessGroup::start(const ChildSpec& spec) {
 }
 
 void ProcessGroup::spawn(Child& child) {
-  int pipe_ends[2];
-  if (pipe2(pipe_ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
-  fcntl(pipe_ends[0], F_SETFL, O_NONBLOCK);
+  Pipe input = filled_pipe(child.spec.input), output = new_pipe();
+  fcntl(output.read_end, F_SETFL, O_NONBLOCK);
   std::vector<char*> argv;
   for (auto& argument : child.spec.argv) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -127,16 +150,19 @@ void ProcessGroup::spawn(Child& child) {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
-  if (pid == 0) become(argv.data(), pipe_ends[1], parent);
+  if (pid == 0) become(argv.data(), input.read_end, output.write_end, parent);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  close(pipe_ends[1]);
+  close_fd(output.write_end);
+  close_fd(input.read_end);
+  close_fd(child.input);
+  child.input = input.write_end;
   if (pid < 0) {
-    close(pipe_ends[0]);
+    close_fd(output.read_end);
     fail("cannot start " + child.spec.name);
   }
   child.pid = pid;
   child.pidfd = pidfd_open(pid, 0);
-  child.output = pipe_ends[0];
+  child.output = output.read_end;
   child.is_running = true;
   child.started = steady_clock::now();
   child.restart_at = SteadyTime::max();
@@ -184,6 +210,7 @@ bool ProcessGroup::reap(Child& child, ChildEvent& event) {
   if (!child.is_running || waitpid(child.pid, &status, WNOHANG) != child.pid) return false;
   child.is_running = false;
   close_fd(child.pidfd);
+  close_fd(child.input);
   drain(child);
   close_fd(child.output);  // a grandchild may still hold the other end
   event = {ChildEvent::Kind::kDied, child.spec.name, child.pid, reason_of(status), false};
@@ -223,22 +250,24 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
 
 std::vector<std::string> ProcessGroup::terminate(Milliseconds patience) {
   is_terminating_ = true;
-  const auto tell_all = [this](int signal) {
-    for (const auto& child : children_) {
-      if (child->is_running) kill(child->pid, signal);
-    }
-  };
-  for (const auto& child : children_) child->restart_at = SteadyTime::max();
-  tell_all(SIGTERM);
+  for (const auto& child : children_) {
+    child->restart_at = SteadyTime::max();
+    if (!child->is_running) continue;
+    if (child->input >= 0)
+      close_fd(child->input);
+    else
+      kill(child->pid, SIGTERM);
+  }
   const SteadyTime until = steady_clock::now() + patience;
   while (running() > 0 && steady_clock::now() < until) {
     poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
   }
   std::vector<std::string> killed;
   for (const auto& child : children_) {
-    if (child->is_running) killed.push_back(child->spec.name);
+    if (!child->is_running) continue;
+    killed.push_back(child->spec.name);
+    kill(child->pid, SIGKILL);
   }
-  tell_all(SIGKILL);
   while (running() > 0) poll(Milliseconds{1000});
   is_terminating_ = false;
   return killed;

@@ -16,6 +16,8 @@ struct ChildSpec {
   std::string name;               ///< e.g. "agent 3"
   std::vector<std::string> argv;  ///< the program's path first
   bool restart = false;           ///< again when it ends
+  std::string input =
+      {};  ///< its stdin, which then stays open: its end asks the child to end. Empty: no stdin
 };
 
 /// What has happened to a child.

@@ -9,6 +9,9 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/hosts/namespaces.hpp"
+#include "deploy/hosts/placement.hpp"
+#include "deploy/hosts/process_command.hpp"
 #include "deploy/judge.hpp"
 #include "deploy/process_group.hpp"
 #include "deploy/progress.hpp"
@@ -28,8 +31,16 @@ constexpr std::size_t kShownLines = 8;
 
 class Launcher {
  public:
-  Launcher(const RunOptions& options, const Scenario& scenario, const std::string& log_path)
-      : options_(options), scenario_(scenario), group_(log_path), bus_(options.dds), judge_(scenario) {
+  /// `network` is null unless the launcher has made the hosts' namespaces.
+  Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
+           const NamespaceNetwork* network, const std::string& log_path)
+      : options_(options),
+        scenario_(scenario),
+        placement_(placement),
+        network_(network),
+        group_(log_path),
+        bus_(options.dds),
+        judge_(scenario) {
     bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) { judge_.on_truth(truth); });
     bus_.subscribe<msg::AgentStatus>(topics::kStatus,
                                      [this](const auto& status) { judge_.on_status(status); });
@@ -43,6 +54,12 @@ class Launcher {
       bus_.stop();
     });
     const Time begin = bus_.now();
+    if (network_) {
+      say(
+          fmt::format("the hosts are network namespaces; to look on: ip netns exec {} sidestep topic list "
+                      "--domain {} --interface {}",
+                      network_->hub(), options_.dds.domain, options_.dds.interface));
+    }
     start_core();
     while (!is_over()) {
       start_due_agents();
@@ -67,14 +84,13 @@ class Launcher {
 
   void start(const std::string& name, const std::string& program, bool restart,
              const std::vector<std::string>& more = {}) {
-    ChildSpec child{name, {program_beside_own(program), "--scenario", options_.scenario_file}, restart};
-    for (const std::string& argument : {std::string("--domain"), std::to_string(options_.dds.domain),
-                                        std::string("--interface"), options_.dds.interface}) {
-      child.argv.push_back(argument);
-    }
-    child.argv.insert(child.argv.end(), more.begin(), more.end());
-    const pid_t pid = group_.start(child);
-    say(fmt::format("started {} as pid {}", name, pid));
+    const HostSpec& host = placement_.host_of(name);
+    ProcessCall call{name, program, options_.scenario_file, options_.dds.domain, more, restart};
+    if (options_.faults) call.more.push_back("--faults");
+    const pid_t pid =
+        group_.start(child_on_host(call, host, network_ ? network_->name_of(host.target) : host.target));
+    say(fmt::format("started {} as pid {}{}", name, pid,
+                    options_.hosts_file.empty() ? "" : " on host " + host.name));
     last_start_ = bus_.now();
   }
 
@@ -179,6 +195,8 @@ class Launcher {
 
   const RunOptions& options_;
   const Scenario& scenario_;
+  const Placement& placement_;
+  const NamespaceNetwork* network_;
   ProcessGroup group_;
   DdsBus bus_;
   Judge judge_;
@@ -195,12 +213,23 @@ class Launcher {
 
 }  // namespace
 
-int run(const RunOptions& options) {
+int run(const RunOptions& given) {
+  RunOptions options = given;
   const Scenario scenario = load_scenario(options.scenario_file);
+  const Hosts hosts =
+      options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file);
+  const Placement placement(hosts, scenario);
+  options.dds.interface = hosts.interface;
+  std::optional<NamespaceNetwork> network;
+  std::optional<NamespaceVisit> visit;
+  if (hosts.create) {
+    remove_abandoned_namespaces();
+    visit.emplace(network.emplace(hosts).hub());
+  }
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
-  const Report report = Launcher(options, scenario, log_path).run();
+  const Report report = Launcher(options, scenario, placement, network ? &*network : nullptr, log_path).run();
   write_report(report, report_path);
   fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
   return report.verdict().empty() ? 0 : kExitFailure;

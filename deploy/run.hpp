@@ -11,10 +11,12 @@ namespace sidestep {
 
 struct RunOptions {
   std::string scenario_file;
+  std::string hosts_file;   ///< empty: everything on this machine, on the interface of `dds`
   std::string report_file;  ///< empty: reports/<scenario>-<time>.json; the log lies beside it
   DdsSettings dds;
   std::uint64_t seed = 1;         ///< of the simulator's noise
   std::optional<double> seconds;  ///< instead of the scenario's time limit
+  bool faults = false;            ///< processes take orders of `sidestep fault network`
 };
 
 /// Starts every process of the system, watches until all robots have arrived, the time is up or somebody

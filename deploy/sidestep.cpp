@@ -5,6 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
+#include "deploy/fault/fault_command.hpp"
 #include "deploy/run.hpp"
 #include "deploy/search/seed_search.hpp"
 #include "deploy/simulate.hpp"
@@ -25,6 +26,8 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
   command->add_option("--seconds", options.seconds, "time limit instead of the scenario's")
       ->check(CLI::PositiveNumber);
   add_dds_options(*command, options.dds);
+  command->add_option("--hosts", options.hosts_file, "hosts file, see deploy/hosts/README.md")
+      ->excludes(command->get_option("--interface"));
   command->callback([&] { action = [&options] { return run(options); }; });
 }
 
@@ -108,6 +111,7 @@ int main(int argc, char** argv) {
   add_run_command(app, action, run_options);
   add_simulate_command(app, action, simulate_options, search_options);
   add_topic_command(app, action);
+  add_fault_command(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {
     return action();

@@ -2,22 +2,18 @@
 #include "common/config/scenario_loader.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-#include <yaml-cpp/eventhandler.h>
 
 #include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
+#include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
 
 namespace sidestep {
 namespace {
 
+constexpr const char* kExpected = "a scenario";
 constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
 
@@ -120,46 +116,10 @@ void read_restart(YamlMap& map, RestartSpec& restart) {
   }
 }
 
-/// Remembers where the last document began.
-class DocumentMarks : public YAML::EventHandler {
- public:
-  int line = 1;
-
-  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-  }
-  void OnMapEnd() override {}
-};
-
-/// Load takes the first document and silently leaves the rest, and LoadAll never returns from some broken
-/// files (yaml-cpp 0.7): so the documents are counted to two at most.
-YAML::Node parse_document(const std::string& text, const std::string& file) {
-  try {
-    std::istringstream stream(text);
-    YAML::Parser parser(stream);
-    DocumentMarks marks;
-    if (!parser.HandleNextDocument(marks))
-      throw ScenarioError(file, 1, "the file is empty, expected a scenario");
-    if (parser.HandleNextDocument(marks)) {
-      throw ScenarioError(file, marks.line, "a second YAML document begins here, expected one");
-    }
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw ScenarioError(file, std::max(1, error.mark.line + 1), "not YAML: " + error.msg);
-  }
-}
-
 }  // namespace
 
 Scenario parse_scenario(const std::string& text, const std::string& file_name) {
-  const YAML::Node root = parse_document(text, file_name);
+  const YAML::Node root = parse_yaml(text, file_name, kExpected);
   const YamlPlace whole{file_name, 1, ""};
   YamlMap map(root, whole.of(root, ""));
   Scenario scenario;
@@ -180,14 +140,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
 }
 
 Scenario load_scenario(const std::string& path) {
-  const auto refuse = [&](const std::string& why) {
-    throw ScenarioError(path, 1, fmt::format("cannot read the file ({}), expected a scenario in YAML", why));
-  };
-  if (std::filesystem::is_directory(path)) refuse("a directory");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::strerror(errno));
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return parse_scenario(text, path);
+  return parse_scenario(read_yaml_file(path, kExpected), path);
 }
 
 }  // namespace sidestep

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/messaging/event_loop.hpp"
+#include "deploy/hosts/hosts_file.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -25,25 +28,87 @@ std::filesystem::path new_folder() {
 }  // namespace
 
 LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments)
-    : folder_(new_folder()), group_((folder_ / "launcher.log").string()), bus_(domain_.settings("judge")) {
-  bus_.subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
-  std::ofstream(folder_ / "scenario.yaml") << scenario;
-  std::vector<std::string> argv{
-      program_beside_own("sidestep"),   "run",      (folder_ / "scenario.yaml").string(), "--domain",
-      std::to_string(domain_.number()), "--report", (folder_ / "report.json").string()};
+    : LaunchedRun(scenario, more_arguments, "127.0.0.1") {
+  watch();
+}
+
+std::unique_ptr<LaunchedRun> LaunchedRun::on_three_hosts(const std::string& scenario,
+                                                         const std::vector<std::string>& more_arguments) {
+  const std::string file = std::string(SIDESTEP_SOURCE_DIR) + "/deploy/hosts/three-namespaces.yaml";
+  std::vector<std::string> arguments{"--hosts", file};
+  arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
+  std::unique_ptr<LaunchedRun> run(new LaunchedRun(scenario, arguments, load_hosts(file).interface));
+  const Time deadline = EventLoop::now() + std::chrono::minutes(1);
+  while (!run->printed("started simulator") && !run->exit_ && EventLoop::now() < deadline) {
+    for (const ChildEvent& event : run->group_.poll(std::chrono::milliseconds(20))) run->exit_ = event.reason;
+  }
+  if (run->exit_) throw std::runtime_error(run->output());
+  run->visit_.emplace("sidestep-" + std::to_string(run->pid_) + "-" + kHubName);
+  run->watch();
+  return run;
+}
+
+LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments,
+                         const std::string& interface)
+    : interface_(interface), folder_(new_folder()), group_((folder_ / "launcher.log").string()) {
+  std::ofstream(scenario_file()) << scenario;
+  std::vector<std::string> argv{program_beside_own("sidestep"),
+                                "run",
+                                scenario_file(),
+                                "--domain",
+                                std::to_string(domain_.number()),
+                                "--report",
+                                (folder_ / "report.json").string()};
   argv.insert(argv.end(), more_arguments.begin(), more_arguments.end());
   pid_ = group_.start({"run", argv, false});
 }
 
 LaunchedRun::~LaunchedRun() {
   (void)group_.terminate(std::chrono::seconds(10));
+  bus_.reset();
+  visit_.reset();
+  remove_abandoned_namespaces();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }
 
+void LaunchedRun::watch() {
+  bus_ = std::make_unique<DdsBus>(DdsSettings{domain_.number(), interface_, "judge"});
+  bus_->subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
+}
+
 void LaunchedRun::listen() {
-  bus_.run_until(bus_.now() + Duration{2'000'000});
-  for (const ChildEvent& event : group_.poll(std::chrono::milliseconds(0))) exit_ = event.reason;
+  bus_->run_until(bus_->now() + Duration{2'000'000});
+  for (const ChildEvent& event : group_.poll(std::chrono::milliseconds(0))) {
+    if (event.name == "run")
+      exit_ = event.reason;
+    else
+      exits_[event.name] = event.reason;
+  }
+}
+
+pid_t LaunchedRun::start(const std::string& name, const std::string& program,
+                         const std::vector<std::string>& arguments) {
+  std::vector<std::string> argv{program_beside_own(program)};
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  exits_.erase(name);
+  return group_.start({name, argv, false});
+}
+
+std::optional<std::string> LaunchedRun::exit_of(const std::string& name) const {
+  const auto found = exits_.find(name);
+  return found == exits_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::string LaunchedRun::command(const std::vector<std::string>& arguments) {
+  const std::string name = arguments.at(0);
+  start(name, "sidestep", arguments);
+  (void)until([&] { return exit_of(name).has_value(); });
+  return exit_of(name).value_or("");
+}
+
+std::vector<std::string> LaunchedRun::dds_arguments() const {
+  return {"--domain", std::to_string(domain_.number()), "--interface", interface_};
 }
 
 std::string LaunchedRun::wait_for_end() {
@@ -78,6 +143,18 @@ pid_t LaunchedRun::pid_of(const std::string& process) const {
   return found == all.end() ? 0 : found->second;
 }
 
+std::vector<RobotId> LaunchedRun::robots_on(const std::string& host) const {
+  std::vector<RobotId> result;
+  std::istringstream lines(output());
+  const std::string agent = "started agent ";
+  for (std::string line; std::getline(lines, line);) {
+    const auto at = line.find(agent);
+    if (at != std::string::npos && line.ends_with(" on host " + host))
+      result.push_back(static_cast<RobotId>(std::stoul(line.substr(at + agent.size()))));
+  }
+  return result;
+}
+
 double LaunchedRun::speed_mps(RobotId robot) const {
   for (const auto& r : truth_.robots()) {
     if (r.robot() == robot) return std::hypot(r.vx_mps(), r.vy_mps());
@@ -95,9 +172,11 @@ nlohmann::json LaunchedRun::report() const {
   return nlohmann::json::parse(text_of(folder_ / "report.json"), nullptr, false);
 }
 
-std::string shipped_scenario(const std::string& name) {
-  return text_of(std::filesystem::path(SIDESTEP_SOURCE_DIR) / "deploy/scenarios" / (name + ".yaml"));
+std::string shipped(const std::string& file) {
+  return text_of(std::filesystem::path(SIDESTEP_SOURCE_DIR) / "deploy" / file);
 }
+
+std::string shipped_scenario(const std::string& name) { return shipped("scenarios/" + name + ".yaml"); }
 
 bool is_running(pid_t pid) {
   const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");

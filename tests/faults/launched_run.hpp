@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "common/messaging/dds_bus.hpp"
 #include "common/motion/version.hpp"
+#include "deploy/hosts/namespaces.hpp"
 #include "deploy/process_group.hpp"
 #include "tests/own_domain.hpp"
 
@@ -21,6 +23,10 @@ class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments = {});
+  /// On the three hosts of the shipped hosts file. This thread stays in their network as long as the run
+  /// lives. Needs root.
+  static std::unique_ptr<LaunchedRun> on_three_hosts(const std::string& scenario,
+                                                     const std::vector<std::string>& more_arguments = {});
   ~LaunchedRun();
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;
@@ -28,24 +34,36 @@ class LaunchedRun {
   /// Listens until the condition holds; false when it does not within a minute, or the run ends before.
   template <typename Condition>
   bool until(Condition condition) {
-    const Time deadline = bus_.now() + std::chrono::minutes(1);
+    const Time deadline = bus_->now() + std::chrono::minutes(1);
     while (!condition()) {
       listen();
-      if (bus_.now() > deadline) return false;
+      if (bus_->now() > deadline) return false;
       if (exit_ && !condition()) return false;
     }
     return true;
   }
   /// Waits for the end of the run: "exit code 0", or what else it died of; empty when it does not end.
   std::string wait_for_end();
+  /// Starts another program of ours beside the run, logged with it, and goes on.
+  pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
+  /// Whether that has ended, and how: "exit code 0".
+  std::optional<std::string> exit_of(const std::string& name) const;
+  /// Runs `sidestep` with these arguments to its end, which it returns; empty when it does not end.
+  std::string command(const std::vector<std::string>& arguments);
+  /// "--domain N --interface A": how to take part.
+  std::vector<std::string> dds_arguments() const;
+  std::string scenario_file() const { return (folder_ / "scenario.yaml").string(); }
   /// The launcher's own process.
   pid_t pid() const { return pid_; }
   /// The latest process that was started under this name, e.g. "agent 3"; 0 when there was none.
   pid_t pid_of(const std::string& process) const;
   std::map<std::string, pid_t> children() const;
+  /// The robots whose agents were started on the host.
+  std::vector<RobotId> robots_on(const std::string& host) const;
   bool printed(const std::string& words) const;
   std::string output() const;
 
+  DdsBus& bus() { return *bus_; }
   const msg::GroundTruth& truth() const { return truth_; }
   double speed_mps(RobotId robot) const;
   double fastest_mps() const;
@@ -53,17 +71,25 @@ class LaunchedRun {
   nlohmann::json report() const;
 
  private:
+  LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments,
+              const std::string& interface);
   void listen();
+  void watch();
 
   OwnDomain domain_;
+  std::string interface_;
   std::filesystem::path folder_;
   ProcessGroup group_;
-  DdsBus bus_;
+  std::optional<NamespaceVisit> visit_;
+  std::unique_ptr<DdsBus> bus_;
   msg::GroundTruth truth_;
+  std::map<std::string, std::string> exits_;
   std::optional<std::string> exit_;
   pid_t pid_ = 0;
 };
 
+/// A shipped file's text, e.g. "scenarios/crossing.yaml".
+std::string shipped(const std::string& file);
 /// A shipped scenario's text.
 std::string shipped_scenario(const std::string& name);
 /// Whether a process of this id exists (a zombie does not count).

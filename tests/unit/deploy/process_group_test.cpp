@@ -144,6 +144,25 @@ TEST_CASE("terminating ends polite children by SIGTERM and stubborn ones by SIGK
   CHECK(group.poll(0ms).empty());
 }
 
+TEST_CASE("a child with an input reads it, again in its next life, and ends with it when it is asked to") {
+  ProcessGroup group(log_path());
+  const std::string text(100'000, 'x');
+  group.start({"reader", {"/bin/sh", "-c", "head -c 100000 | wc -c; read end; echo over"}, true, text});
+  const auto lines = [&] { return group.last_lines("reader"); };
+  const auto until = SteadyClock::now() + kDeadline;
+  while (lines().empty() && SteadyClock::now() < until) group.poll(1ms);
+  REQUIRE(lines() == std::vector<std::string>{"100000"});
+  CHECK(group.terminate(kDeadline).empty());
+  CHECK(lines().back() == "over");
+
+  ProcessGroup twice(log_path());
+  twice.start({"reader", {"/bin/sh", "-c", "head -c 3; kill -9 $$"}, true, "abc"});
+  while (twice.last_lines("reader").size() < 2 && SteadyClock::now() < until) twice.poll(1ms);
+  CHECK(twice.last_lines("reader") == std::vector<std::string>{"abc", "abc"});
+  CHECK_THROWS_WITH(twice.start({"full", {"/bin/cat"}, false, std::string(2 << 20, 'x')}),
+                    Catch::Contains("too many"));
+}
+
 TEST_CASE("a child that prints without end does not stall, and only its last lines are kept") {
   ProcessGroup group(log_path());
   group.start(shell("chatter", "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done"));
