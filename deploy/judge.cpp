@@ -95,7 +95,8 @@ bool Judge::has_arrived(const Watched& robot) const {
 
 void Judge::on_truth(const msg::GroundTruth& truth) {
   const bool is_sound = std::isfinite(truth.penetration_m_s()) && !std::isnan(truth.min_clearance_m()) &&
-                        is_time(truth.at_ns());
+                        std::isfinite(truth.crash_speed_mps()) &&
+                        std::isfinite(truth.robot_crash_speed_mps()) && is_time(truth.at_ns());
   msg::GroundTruth* life = is_sound ? slot_for(simulators_, truth.head()) : nullptr;
   if (!life) {
     ++dropped_;
@@ -106,6 +107,10 @@ void Judge::on_truth(const msg::GroundTruth& truth) {
   life->penetration_m_s(truth.penetration_m_s());
   life->min_clearance_m(truth.min_clearance_m());
   life->firmware_violations(truth.firmware_violations());
+  life->crashes(truth.crashes());
+  life->moving_crashes(truth.moving_crashes());
+  life->crash_speed_mps(truth.crash_speed_mps());
+  life->robot_crash_speed_mps(truth.robot_crash_speed_mps());
   if (life != &simulators_.back()) return;
 
   const Time at = time_from_ns(truth.at_ns());
@@ -221,6 +226,10 @@ Report Judge::report() const {
     report.contacts += life.contacts();
     report.penetration_m_s += life.penetration_m_s();
     report.firmware_violations += life.firmware_violations();
+    report.crashes += life.crashes();
+    report.moving_crashes += life.moving_crashes();
+    report.crash_speed_mps = std::max(report.crash_speed_mps, life.crash_speed_mps());
+    report.robot_crash_speed_mps = std::max(report.robot_crash_speed_mps, life.robot_crash_speed_mps());
     if (std::isfinite(life.min_clearance_m())) {
       report.min_clearance_m =
           std::min(report.min_clearance_m.value_or(life.min_clearance_m()), life.min_clearance_m());

@@ -19,6 +19,19 @@ std::string circle(const Vec2& centre_m, double radius_m, const std::string& sty
                      -kPixelsPerMetre * centre_m.y(), kPixelsPerMetre * radius_m, style);
 }
 
+/// An opponent goes its way whatever happens, so the way is what there is to draw.
+std::string way_of(const OpponentSpec& opponent) {
+  std::string points;
+  for (const Vec2& point : opponent.way_m) {
+    points += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * point.x(), -kPixelsPerMetre * point.y());
+  }
+  return fmt::format(
+             "<polyline points='{}' fill='none' stroke='#cf222e' stroke-width='3' stroke-dasharray='12 "
+             "12'/>\n",
+             points) +
+         circle(opponent.way_m.front(), opponent.radius_m, "fill='#cf222e' fill-opacity='0.7'");
+}
+
 }  // namespace
 
 void Picture::add(const msg::GroundTruth& truth) {
@@ -70,6 +83,7 @@ std::string Picture::svg() const {
   for (const Circle& obstacle : scenario_.obstacles) {
     svg += circle(obstacle.centre_m, obstacle.radius_m, "fill='#57606a'");
   }
+  for (const OpponentSpec& opponent : scenario_.opponents) svg += way_of(opponent);
   std::string ends;
   for (const RobotSpec& robot : scenario_.robots) {
     const auto found = tracks_.find(robot.id);

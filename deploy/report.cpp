@@ -45,6 +45,7 @@ std::string Report::verdict() const {
   const auto add = [&why](const std::string& part) { why += (why.empty() ? "" : ", ") + part; };
   if (!failure.empty()) add(failure);
   if (contacts > 0) add(fmt::format("{} contacts", contacts));
+  if (moving_crashes > 0) add(fmt::format("{} crashes of moving robots", moving_crashes));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
   return why;
@@ -62,6 +63,10 @@ std::string to_json(const Report& r) {
   json["contacts"] = r.contacts;
   json["penetration_m_s"] = rounded(r.penetration_m_s);
   json["min_clearance_m"] = rounded(r.min_clearance_m);
+  json["crashes"] = r.crashes;
+  json["moving_crashes"] = r.moving_crashes;
+  json["crash_speed_mps"] = rounded(r.crash_speed_mps);
+  json["robot_crash_speed_mps"] = rounded(r.robot_crash_speed_mps);
   json["makespan_s"] = rounded(r.makespan_s);
   json["mean_arrival_s"] = rounded(r.mean_arrival_s);
   json["arrival_over_straight"] = rounded(r.arrival_over_straight);
@@ -108,6 +113,11 @@ std::string summary(const Report& r) {
       r.arrival_over_straight ? fmt::format("{:.2f}", *r.arrival_over_straight) : "?", r.proposals, r.grants,
       r.denials, missed, r.firmware_violations, us(r.negotiation, 0.5), us(r.negotiation, 0.99),
       us(r.plan, 0.5), us(r.search, 0.5), us(r.search, 0.99));
+  if (r.crashes > 0) {
+    text += fmt::format(
+        "{} crashes with opponents, {} of them moving; fastest {:.2f} m/s, of which the robot {:.2f} m/s\n",
+        r.crashes, r.moving_crashes, r.crash_speed_mps, r.robot_crash_speed_mps);
+  }
   for (const Death& death : r.deaths) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");

@@ -32,6 +32,10 @@ struct Report {
   std::uint64_t contacts = 0;
   double penetration_m_s = 0;
   std::optional<double> min_clearance_m;
+  std::uint64_t crashes = 0;             ///< touches of a robot and an opponent,
+  std::uint64_t moving_crashes = 0;      ///< and those in which the robot was not at rest
+  double crash_speed_mps = 0;            ///< largest closing speed along the centre line of a crash
+  double robot_crash_speed_mps = 0;      ///< largest share of a robot in it
   std::optional<double> makespan_s;      ///< until the last arrived; none: not all have
   std::optional<double> mean_arrival_s;  ///< of those that arrived
   std::optional<double> arrival_over_straight;
@@ -51,8 +55,8 @@ struct Report {
   std::vector<Death> deaths;
   double duration_s = 0;  ///< wall clock
 
-  /// Why the run failed in one line; empty when everybody arrived, nobody touched and no firmware rule was
-  /// broken.
+  /// Why the run failed in one line; empty when everybody arrived, nobody touched, no robot moved when an
+  /// opponent touched it, and no firmware rule was broken.
   std::string verdict() const;
 };
 

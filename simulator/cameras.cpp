@@ -8,6 +8,8 @@
 namespace sidestep {
 namespace {
 
+constexpr double kLeastRadius_m = 0.001;
+
 double confidence(Rng& rng) { return rng.uniform(0.8, 1.0); }
 
 }  // namespace
@@ -30,8 +32,9 @@ void Cameras::find_next() {
   next_ = static_cast<std::size_t>(std::min_element(due_.begin(), due_.end()) - due_.begin());
 }
 
-void Cameras::capture(Time now, std::span<const Body> robots, const Vec2* ball_m,
-                      msg::DetectionFrame& frame) {
+void Cameras::capture(Time now, const Sights& sights, msg::DetectionFrame& frame) {
+  const std::span<const Body> robots = sights.robots;
+  const Vec2* const ball_m = sights.ball_m;
   const std::size_t camera = next_;
   const CameraView& view = views_[camera];
   do {
@@ -64,6 +67,21 @@ void Cameras::capture(Time now, std::span<const Body> robots, const Vec2* ball_m
     seen.confidence(confidence(rng_));
     frame.ball_count(1);
   }
+  see_opponents(view, sights.opponents, frame);
+}
+
+void Cameras::see_opponents(const CameraView& view, std::span<const Circle> opponents,
+                            msg::DetectionFrame& frame) {
+  std::uint8_t count = 0;
+  for (const Circle& opponent : opponents) {
+    if (count == msg::MAX_OBSTACLES) break;
+    if (!view.sees(opponent.centre_m) || rng_.chance(spec_.missed)) continue;
+    msg::ObstacleDetection& seen = frame.obstacles()[count++];
+    seen.x_m(opponent.centre_m.x() + spec_.position_noise_m * rng_.normal());
+    seen.y_m(opponent.centre_m.y() + spec_.position_noise_m * rng_.normal());
+    seen.radius_m(std::max(kLeastRadius_m, opponent.radius_m + spec_.position_noise_m * rng_.normal()));
+  }
+  frame.obstacle_count(count);
 }
 
 void Cameras::add_ghost(const CameraView& view, msg::DetectionFrame& frame) {

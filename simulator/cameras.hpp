@@ -21,8 +21,15 @@ struct CameraView {
   }
 };
 
+/// What there is to see.
+struct Sights {
+  std::span<const Body> robots;  ///< as the scenario lists them
+  const Vec2* ball_m = nullptr;
+  std::span<const Circle> opponents{};
+};
+
 /// The cameras over the field. Each takes a frame every period, a little after the one before it, and sees
-/// robots and ball as the scenario's VisionSpec says.
+/// robots, ball and opponents as the scenario's VisionSpec says.
 class Cameras {
  public:
   Cameras(const Scenario& scenario, Time begin, std::uint64_t seed);
@@ -31,11 +38,12 @@ class Cameras {
   Time next_capture() const { return due_[next_]; }
   /// Takes that frame, of what is there now, and leaves out the camera's frames that should have been before.
   /// All but the head is set.
-  void capture(Time now, std::span<const Body> robots, const Vec2* ball_m, msg::DetectionFrame& frame);
+  void capture(Time now, const Sights& sights, msg::DetectionFrame& frame);
 
   std::span<const CameraView> views() const { return views_; }
 
  private:
+  void see_opponents(const CameraView& view, std::span<const Circle> opponents, msg::DetectionFrame& frame);
   void add_ghost(const CameraView& view, msg::DetectionFrame& frame);
   void find_next();
 

@@ -17,7 +17,8 @@ constexpr double kFixFloor_m = 0.0005;  // fixes are filtered by vision, so thei
 constexpr double kOutlierDeviations = 4;
 // Sums of two or three offsets so far from what is expected come by chance once in a thousand robot-hours.
 constexpr double kSurpriseDeviations = 5;
-constexpr double kAgreement = 0.35;  // least projection of an offset on the one before, of the larger's length
+constexpr double kAgreement =
+    0.35;  // least projection of an offset on the one before, of the larger's length
 
 }  // namespace
 

@@ -147,7 +147,7 @@ void SimulatorNode::take_frame(Time now) {
   if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
   const Time captured_at = world_.time();
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
-  cameras_.capture(captured_at, world_.bodies(), ball, slot->message);
+  cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs()}, slot->message);
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kStaleFrame < now) return;
   slot->is_waiting = true;

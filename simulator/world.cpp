@@ -33,7 +33,8 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
       radius_m_(scenario.radius_m),
       velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
       time_(begin),
-      contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps) {
+      contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps),
+      opponents_(scenario.opponents, scenario.robots.size()) {
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
   bodies_.reserve(scenario.robots.size());
@@ -70,6 +71,7 @@ void World::step() {
   time_ += kPhysicsStep;
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].wish);
   contacts_.step(bodies_);
+  if (!opponents_.empty()) opponents_.step(bodies_, radius_m_);
   if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
   if (!effects_.empty()) end_effects();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -173,6 +175,11 @@ void World::fill(msg::GroundTruth& truth) const {
   truth.penetration_m_s(contacts().penetration_m_s);
   truth.min_clearance_m(contacts().min_clearance_m);
   truth.firmware_violations(firmware_violations());
+  const CrashTotals& crashes = opponents_.totals();
+  truth.crashes(crashes.crashes);
+  truth.moving_crashes(crashes.moving_crashes);
+  truth.crash_speed_mps(crashes.crash_speed_mps);
+  truth.robot_crash_speed_mps(crashes.robot_crash_speed_mps);
   const Vec2 ball = ball_ ? ball_->state().position_m : Vec2(0, 0);
   truth.ball_x_m(ball.x());
   truth.ball_y_m(ball.y());

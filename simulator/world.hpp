@@ -16,12 +16,13 @@
 #include "simulator/contacts.hpp"
 #include "simulator/firmware.hpp"
 #include "simulator/firmware_judge.hpp"
+#include "simulator/opponents.hpp"
 
 namespace sidestep {
 
-/// The floor: all bodies with their firmware, the ball and the obstacles, in steps of kPhysicsStep. Robots go
-/// by their index in the scenario's list. Times are by the host's clock; each robot has a clock of its own,
-/// which is ahead of it by a constant offset.
+/// The floor: all bodies with their firmware, the ball, the obstacles and the opponents, in steps of
+/// kPhysicsStep. Robots go by their index in the scenario's list. Times are by the host's clock; each robot
+/// has a clock of its own, which is ahead of it by a constant offset.
 class World {
  public:
   World(const Scenario& scenario, Time begin, std::uint64_t seed);
@@ -54,6 +55,7 @@ class World {
   std::span<const Body> bodies() const { return bodies_; }
   const std::optional<Ball>& ball() const { return ball_; }
   const ContactTotals& contacts() const { return contacts_.totals(); }
+  const Opponents& opponents() const { return opponents_; }
   std::uint64_t firmware_violations() const;
   /// Distance of a body from the version that it executes, by the robot's clock; 0 off the floor.
   double reference_error_m(std::size_t robot) const;
@@ -104,6 +106,7 @@ class World {
   std::vector<Robot> robots_;
   std::optional<Ball> ball_;
   Contacts contacts_;
+  Opponents opponents_;
   std::vector<std::uint32_t> news_;
   std::vector<Effect> effects_;
 };

@@ -8,6 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxPosition_m = 100;
+constexpr double kMaxObstacle_m = 10;
 constexpr double kMaxHeading_rad = 7;  // one turn either way, whatever range the sender prefers
 constexpr Duration kMaxAge{500'000'000};
 constexpr Duration kMaxAhead{100'000'000};
@@ -26,6 +27,11 @@ bool is_sane(const msg::BallDetection& d) {
          is_probability(d.confidence());
 }
 
+bool is_sane(const msg::ObstacleDetection& d) {
+  return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) && d.radius_m() > 0 &&
+         d.radius_m() <= kMaxObstacle_m;
+}
+
 bool is_timely(std::int64_t captured_at_ns, Time now) {
   return captured_at_ns >= to_ns(now - kMaxAge) && captured_at_ns <= to_ns(now + kMaxAhead);
 }
@@ -36,14 +42,14 @@ void Frame::clear(const msg::DetectionFrame& message) {
   camera_ = message.camera();
   captured_at_ = time_from_ns(message.captured_at_ns());
   is_usable_ = false;
-  robot_count_ = ball_count_ = 0;
+  robot_count_ = ball_count_ = obstacle_count_ = 0;
   rejected_ = 0;
 }
 
 void Frame::assign(const msg::DetectionFrame& message, Time now) {
   clear(message);
   if (!is_timely(message.captured_at_ns(), now) || message.ball_count() > msg::MAX_DETECTED_BALLS ||
-      message.robots().size() > kMaxRobots) {
+      message.obstacle_count() > msg::MAX_OBSTACLES || message.robots().size() > kMaxRobots) {
     rejected_ = std::max<std::uint64_t>(1, message.robots().size());
     return;
   }
@@ -59,6 +65,14 @@ void Frame::assign(const msg::DetectionFrame& message, Time now) {
     const auto& d = message.balls()[i];
     if (is_sane(d)) {
       balls_[ball_count_++] = {d.x_m(), d.y_m()};
+    } else {
+      ++rejected_;
+    }
+  }
+  for (std::size_t i = 0; i < message.obstacle_count(); ++i) {
+    const auto& d = message.obstacles()[i];
+    if (is_sane(d)) {
+      obstacles_[obstacle_count_++] = {{d.x_m(), d.y_m()}, d.radius_m()};
     } else {
       ++rejected_;
     }

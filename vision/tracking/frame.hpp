@@ -18,6 +18,11 @@ struct RobotSight {
   double heading_rad = 0;  ///< in [-pi, pi]
 };
 
+struct ObstacleSight {
+  Vec2 position_m{0, 0};
+  double radius_m = 0;
+};
+
 /// A DetectionFrame of which every number has been checked, and nothing else kept.
 class Frame {
  public:
@@ -27,11 +32,13 @@ class Frame {
   bool is_usable() const { return is_usable_; }
   std::span<const RobotSight> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
+  std::span<const ObstacleSight> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
   /// Detections of the message that are not in here; for a frame that is not usable at least 1.
   std::uint64_t rejected() const { return rejected_; }
 
   /// Takes over what makes sense: stamps from 500 ms ago to 100 ms ahead (cameras' clocks differ), positions
-  /// within 100 m, confidences in 0..1, robot numbers below kMaxRobots. Allocates nothing.
+  /// within 100 m, confidences in 0..1, robot numbers below kMaxRobots, obstacles' radii up to 10 m.
+  /// Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now);
 
  private:
@@ -42,9 +49,11 @@ class Frame {
   bool is_usable_ = false;
   std::size_t robot_count_ = 0;
   std::size_t ball_count_ = 0;
+  std::size_t obstacle_count_ = 0;
   std::uint64_t rejected_ = 0;
   std::array<RobotSight, kMaxRobots> robots_;
   std::array<Vec2, msg::MAX_DETECTED_BALLS> balls_;
+  std::array<ObstacleSight, msg::MAX_OBSTACLES> obstacles_;
 };
 
 }  // namespace sidestep

@@ -103,6 +103,12 @@ void consider(TrackState& state, const Sight& sight, const TrackModel& model) {
   state.candidate_hits = 1;
 }
 
+/// A robot that was pushed is seen a little beside its track, again and again; ghosts are not.
+bool was_moved(const TrackState& state, const Sight& sight, const TrackModel& model) {
+  return state.is_confirmed && state.candidate_hits >= model.near_hits &&
+         (sight.position_m - state.seen.position_m).norm() <= model.gate_m;
+}
+
 }  // namespace
 
 TrackState advanced(const TrackState& state, const Sight& sight, const TrackModel& model) {
@@ -114,7 +120,9 @@ TrackState advanced(const TrackState& state, const Sight& sight, const TrackMode
     return next;
   }
   consider(next, sight, model);
-  if (next.candidate_hits >= model.confirm_hits && (!next.is_confirmed || unseen >= model.relocate_after)) {
+  const bool is_believed =
+      next.candidate_hits >= model.confirm_hits && (!next.is_confirmed || unseen >= model.relocate_after);
+  if (is_believed || was_moved(next, sight, model)) {
     next.is_confirmed = true;
     next.filter = next.candidate;
     next.candidate_hits = 0;

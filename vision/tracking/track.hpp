@@ -17,12 +17,13 @@ struct TrackModel {
   double heading_noise_rad = 0.005;  ///< standard deviation of a sight
   MotionNoise motion{0.3, 3};        ///< robots brake with 5 m/s²: 5 / sqrt(3) as a standard deviation
   MotionNoise turning{10, 10};
-  double rolling_mps2 = 0;        ///< friction
-  double start_speed_mps = 1.5;   ///< standard deviation of the velocity at the first sight, per axis
-  double start_turn_radps = 5;    ///< the same for the heading's rate
-  double gate_sigma = 5;          ///< a sight farther from the track than this is not taken for it
-  double gate_m = 0.09;           ///< and neither is one farther than this, however uncertain the track is
-  int confirm_hits = 3;           ///< consistent sights before a track is believed
+  double rolling_mps2 = 0;       ///< friction
+  double start_speed_mps = 1.5;  ///< standard deviation of the velocity at the first sight, per axis
+  double start_turn_radps = 5;   ///< the same for the heading's rate
+  double gate_sigma = 5;         ///< a sight farther from the track than this is not taken for it
+  double gate_m = 0.09;          ///< and neither is one farther than this, however uncertain the track is
+  int confirm_hits = 3;          ///< consistent sights before a track is believed
+  int near_hits = 2;  ///< consistent sights within gate_m of a track that was moved: it goes on there
   Duration max_gap{100'000'000};  ///< between two consistent sights of a track that is not yet believed
   Duration relocate_after{150'000'000};  ///< unseen where it was for so long, a track may go on elsewhere
   Duration drop_after{1'000'000'000};    ///< unseen for so long, a track ends

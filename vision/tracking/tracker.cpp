@@ -55,11 +55,16 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   settings.robot.heading_noise_rad = std::max(kBestHeading_rad, scenario.vision.heading_noise_rad);
   settings.robot.gate_m = scenario.radius_m;
   settings.ball.position_noise_m = settings.robot.position_noise_m;
+  settings.obstacles.position_noise_m = settings.robot.position_noise_m;
+  settings.obstacles.speed_mps = scenario.opponent_speed_mps;
   return settings;
 }
 
 Tracker::Tracker(const TrackerSettings& settings, std::span<const RobotId> roster)
-    : settings_(settings), roster_(roster.begin(), roster.end()), robots_(roster.size()) {
+    : settings_(settings),
+      roster_(roster.begin(), roster.end()),
+      robots_(roster.size()),
+      obstacles_(settings.obstacles) {
   std::sort(roster_.begin(), roster_.end());
   index_of_.fill(kStranger);
   for (std::size_t i = 0; i < roster_.size(); ++i) index_of_.at(roster_[i]) = static_cast<std::uint16_t>(i);
@@ -81,11 +86,12 @@ void Tracker::update(const Frame& frame) {
   for (const Vec2& position_m : frame.balls()) {
     is_new |= ball_.add({frame.captured_at(), frame.camera(), position_m, 0}, settings_.ball);
   }
+  obstacles_.update(frame);
   frames_ += is_new ? 1 : 0;
 }
 
 void Tracker::world_at(Time t, msg::WorldState& world) const {
-  std::uint64_t rejected = rejected_ + ball_.rejected();
+  std::uint64_t rejected = rejected_ + ball_.rejected() + obstacles_.rejected();
   std::size_t count = 0;
   world.robots().resize(roster_.size());
   for (std::size_t i = 0; i < roster_.size(); ++i) {
@@ -101,6 +107,7 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
   world.valid_at_ns(to_ns(t));
   world.frames(frames_);
   world.rejected(rejected);
+  obstacles_.world_at(t, world);
   world.ball(tracked_ball(estimate_at(ball_.state(), t, settings_.ball)));
 }
 

@@ -9,6 +9,7 @@
 #include "common/config/scenario.hpp"
 #include "idl/vision.h"
 #include "vision/tracking/frame.hpp"
+#include "vision/tracking/obstacle_tracker.hpp"
 #include "vision/tracking/track.hpp"
 
 namespace sidestep {
@@ -16,6 +17,7 @@ namespace sidestep {
 struct TrackerSettings {
   TrackModel robot;
   TrackModel ball = ball_model();
+  ObstacleSettings obstacles;
 
   /// A ball keeps no heading, rolls with friction and is kicked: fast, and suddenly elsewhere.
   static TrackModel ball_model();
@@ -33,7 +35,8 @@ class Tracker {
 
   void update(const Frame& frame);
   /// Fills in valid_at_ns, counters, ball and robots as they are at a time, by extrapolation from their last
-  /// sight; ascending by robot number. Allocates when the message has held fewer robots so far.
+  /// sight, and obstacles as they were at their last sight; ascending by number. Allocates when the message
+  /// has held fewer robots so far.
   void world_at(Time t, msg::WorldState& world) const;
 
  private:
@@ -44,6 +47,7 @@ class Tracker {
   std::array<std::uint16_t, kMaxRobots> index_of_;  ///< place in the roster, or kStranger
   std::vector<Track> robots_;                       ///< as the roster
   Track ball_;
+  ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;
   std::uint64_t rejected_ = 0;
 };

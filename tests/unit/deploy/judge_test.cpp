@@ -303,4 +303,28 @@ TEST_CASE("progress has a row for each robot and says who is silent or moving") 
   CHECK(rows[1].team == Team::kYellow);
 }
 
+TEST_CASE("crashes are summed over the simulator's lives, and of speeds the largest counts") {
+  Judge judge(kTwo);
+  auto message = truth(1, 0.1, {});
+  message.crashes(2);
+  message.moving_crashes(1);
+  message.crash_speed_mps(1.5);
+  message.robot_crash_speed_mps(0.2);
+  judge.on_truth(message);
+  auto next_life = truth(1, 0.2, {}, 2);
+  next_life.crashes(1);
+  next_life.crash_speed_mps(0.7);
+  next_life.robot_crash_speed_mps(0.3);
+  judge.on_truth(next_life);
+  auto bad = truth(2, 0.3, {}, 2);
+  bad.crash_speed_mps(kNaN);
+  judge.on_truth(bad);
+  const Report report = judge.report();
+  CHECK(report.crashes == 3);
+  CHECK(report.moving_crashes == 1);
+  CHECK(report.crash_speed_mps == 1.5);
+  CHECK(report.robot_crash_speed_mps == 0.3);
+  CHECK(judge.dropped() == 1);
+}
+
 }  // namespace sidestep

@@ -46,6 +46,10 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "contacts",
                                          "penetration_m_s",
                                          "min_clearance_m",
+                                         "crashes",
+                                         "moving_crashes",
+                                         "crash_speed_mps",
+                                         "robot_crash_speed_mps",
                                          "makespan_s",
                                          "mean_arrival_s",
                                          "arrival_over_straight",
@@ -109,14 +113,26 @@ TEST_CASE("a report is written into a folder that is made for it, or it says why
   std::ifstream file(path);
   CHECK(nlohmann::json::parse(file)["scenario"] == "crossing");
   std::filesystem::remove_all(folder);
-  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"),
-                    Catch::Contains("cannot write /dev/null"));
+  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), Catch::Contains("cannot write /dev/null"));
 }
 
 TEST_CASE("a report is named after scenario and seed, or scenario and time") {
   CHECK(default_report_path("crossing", 7) == "reports/crossing-7.json");
   CHECK_THAT(default_report_path("crossing", std::nullopt),
              Catch::Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
+}
+
+TEST_CASE("a crash of a moving robot fails a run, one of a robot at rest is told only") {
+  Report report = example();
+  report.arrived = 2;
+  REQUIRE(report.verdict().empty());
+  report.crashes = 3;
+  report.crash_speed_mps = 1.5;
+  CHECK(report.verdict().empty());
+  CHECK_THAT(summary(report),
+             Catch::Contains("3 crashes with opponents, 0 of them moving; fastest 1.50 m/s"));
+  report.moving_crashes = 1;
+  CHECK(report.verdict() == "1 crashes of moving robots");
 }
 
 }  // namespace sidestep

@@ -41,7 +41,7 @@ TEST_CASE("every camera takes a frame every period, one after the other") {
   std::int64_t last = 0;
   for (int i = 0; i < 400; ++i) {
     const Time due = cameras.next_capture();
-    cameras.capture(due, bodies, nullptr, frame);
+    cameras.capture(due, {bodies}, frame);
     REQUIRE(frame.captured_at_ns() == to_ns(due));
     REQUIRE(frame.captured_at_ns() > last);
     last = frame.captured_at_ns();
@@ -60,7 +60,7 @@ TEST_CASE("a camera sees its share of the field and the overlap") {
   std::vector<std::set<RobotId>> seen(2);
   msg::DetectionFrame frame;
   for (int i = 0; i < 2; ++i) {
-    cameras.capture(cameras.next_capture(), bodies, nullptr, frame);
+    cameras.capture(cameras.next_capture(), {bodies}, frame);
     for (const auto& robot : frame.robots()) seen.at(frame.camera()).insert(robot.robot());
   }
   CHECK(seen[0] == std::set<RobotId>{3, 9});
@@ -82,7 +82,7 @@ TEST_CASE("noise and dropouts are as large as the scenario says") {
   int count = 0, balls = 0;
   const int frames = 20'000;
   for (int i = 0; i < frames; ++i) {
-    cameras.capture(cameras.next_capture(), bodies, &ball, frame);
+    cameras.capture(cameras.next_capture(), {bodies, &ball}, frame);
     balls += frame.ball_count();
     for (const auto& robot : frame.robots()) {
       const std::size_t index = robot.robot() == 3 ? 0 : robot.robot() == 8 ? 1 : 2;
@@ -110,7 +110,7 @@ TEST_CASE("ghosts appear as often as the scenario says, within the camera's view
   msg::DetectionFrame frame;
   int ghosts = 0;
   for (int i = 0; i < 10'000; ++i) {
-    cameras.capture(cameras.next_capture(), {}, nullptr, frame);
+    cameras.capture(cameras.next_capture(), {}, frame);
     REQUIRE(frame.robots().size() <= 1);
     for (const auto& ghost : frame.robots()) {
       REQUIRE(ghost.robot() < kMaxRobots);
@@ -125,10 +125,42 @@ TEST_CASE("a camera that was held up leaves frames out") {
   const Scenario scenario = scene();
   Cameras cameras(scenario, kBegin, 1);
   msg::DetectionFrame frame;
+  const auto bodies = bodies_of(scenario);
   const Time late = kBegin + std::chrono::seconds(10);
   int taken = 0;
-  for (; cameras.next_capture() <= late; ++taken) cameras.capture(late, bodies_of(scenario), nullptr, frame);
+  for (; cameras.next_capture() <= late; ++taken) cameras.capture(late, {bodies}, frame);
   CHECK(taken == 2);
+}
+
+TEST_CASE("opponents are seen as obstacles, with noise and dropouts, as many as a message holds") {
+  const std::uint64_t seed = GENERATE(1, 2);
+  CAPTURE(seed);
+  Scenario scenario = scene();
+  scenario.vision.columns = 1;
+  scenario.vision.position_noise_m = 0.002;
+  scenario.vision.missed = 0.1;
+  Cameras cameras(scenario, kBegin, seed);
+  std::vector<Circle> opponents{{{1, 1}, 0.2}, {{100, 0}, 0.2}, {{-1, 0.5}, 0.002}};
+  msg::DetectionFrame frame;
+  int count = 0;
+  double square = 0;
+  for (int i = 0; i < 5000; ++i) {
+    cameras.capture(cameras.next_capture(), {{}, nullptr, opponents}, frame);
+    REQUIRE(frame.obstacle_count() <= 2);
+    for (std::size_t k = 0; k < frame.obstacle_count(); ++k) {
+      const auto& seen = frame.obstacles()[k];
+      const Circle& real = opponents[seen.x_m() > 0 ? 0 : 2];
+      square += (Vec2(seen.x_m(), seen.y_m()) - real.centre_m).squaredNorm();
+      REQUIRE(std::abs(seen.radius_m() - real.radius_m) < 0.012);
+      REQUIRE(seen.radius_m() > 0);
+      ++count;
+    }
+  }
+  CHECK(count / 10'000.0 == Approx(0.9).epsilon(0.02));
+  CHECK(std::sqrt(square / (2 * count)) == Approx(0.002).epsilon(0.05));
+  opponents.assign(40, {{0, 0}, 0.1});
+  cameras.capture(cameras.next_capture(), {{}, nullptr, opponents}, frame);
+  CHECK(frame.obstacle_count() == msg::MAX_OBSTACLES);
 }
 
 }  // namespace

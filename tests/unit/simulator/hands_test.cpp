@@ -57,7 +57,7 @@ TEST_CASE("a lifted robot is in nobody's way and out of sight, and executes noth
   CHECK(facts.executing().version_number() == 0);
   Cameras cameras(scenario, kBegin, 1);
   msg::DetectionFrame frame;
-  cameras.capture(cameras.next_capture(), world.bodies(), nullptr, frame);
+  cameras.capture(cameras.next_capture(), {world.bodies()}, frame);
   for (const auto& seen : frame.robots()) CHECK(seen.robot() == 1);
   // The other drives through where it was.
   Trajectory dash(now + milliseconds(10), {{1, 0}, {0, 0}});

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/opponents.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "common/random/rng.hpp"
+#include "simulator/world.hpp"
+#include "tests/unit/simulator/commands.hpp"
+#include "tests/unit/simulator/random_drive.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+// Where somebody on a closed or reflected way is after a distance, by folding the distance.
+Vec2 along(const std::vector<Vec2>& way_m, bool is_round, double distance_m) {
+  double length = 0;
+  for (std::size_t i = 1; i < way_m.size(); ++i) length += (way_m[i] - way_m[i - 1]).norm();
+  double left = std::fmod(distance_m, is_round ? length : 2 * length);
+  if (left > length) left = 2 * length - left;
+  for (std::size_t i = 1; i < way_m.size(); ++i) {
+    const double leg = (way_m[i] - way_m[i - 1]).norm();
+    if (left <= leg)
+      return leg > 0 ? Vec2(way_m[i - 1] + (way_m[i] - way_m[i - 1]) * (left / leg)) : way_m[i];
+    left -= leg;
+  }
+  return way_m.back();
+}
+
+TEST_CASE("an opponent goes its way at its speed, to and fro or round") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  const bool is_round = GENERATE(false, true);
+  CAPTURE(seed, is_round);
+  Rng rng(seed);
+  OpponentSpec spec{0.1, rng.uniform(0.2, 3), {}};
+  for (std::uint64_t i = 0; i < 3 + seed % 3; ++i)
+    spec.way_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  if (is_round) spec.way_m.push_back(spec.way_m.front());
+  Opponents opponents(std::vector{spec}, 0);
+  for (int step = 1; step <= 20'000; ++step) {
+    opponents.step({}, 0.09);
+    const Vec2 expected = along(spec.way_m, is_round, step * spec.speed_mps * kPhysicsStepSeconds);
+    REQUIRE((opponents.discs()[0].centre_m - expected).norm() < 1e-6);
+  }
+}
+
+TEST_CASE("opponents on a point, or on points that lie on each other, stay where they are") {
+  const auto way = GENERATE(std::vector<Vec2>{{1, 2}}, std::vector<Vec2>{{1, 2}, {1, 2}},
+                            std::vector<Vec2>{{1, 2}, {1, 2}, {1, 2}});
+  Opponents opponents(std::vector{OpponentSpec{0.1, 1, way}}, 0);
+  for (int step = 0; step < 100; ++step) opponents.step({}, 0.09);
+  CHECK((opponents.discs()[0].centre_m - Vec2(1, 2)).norm() < 1e-9);
+}
+
+// One opponent drives along y = 0 from -1 to 1 and back, through a robot that stands in the middle, `beside`
+// it.
+Scenario crash_scene(double beside_m) {
+  Scenario scenario = test::lonely_robots(2);
+  scenario.robots[0].start_m = Vec2(0, beside_m);
+  scenario.robots[1].start_m = Vec2(0, 2);
+  scenario.opponents = {{0.11, 1, {{-1, 0}, {1, 0}}}};
+  return scenario;
+}
+
+TEST_CASE("an opponent that drives into a robot at rest crashes once at its own speed, and is no contact") {
+  World world(crash_scene(0), kBegin, 1);
+  world.advance(kBegin + milliseconds(1900));
+  msg::GroundTruth truth;
+  world.fill(truth);
+  CHECK(truth.crashes() == 1);
+  CHECK(truth.moving_crashes() == 0);
+  CHECK(truth.crash_speed_mps() == Approx(1).epsilon(0.01));
+  CHECK(truth.robot_crash_speed_mps() < 0.02);
+  CHECK(truth.contacts() == 0);
+  CHECK((world.bodies()[0].position_m() - Vec2(0, 0)).norm() < 0.003);
+  world.advance(kBegin + milliseconds(3900));
+  CHECK(world.opponents().totals().crashes == 2);
+}
+
+TEST_CASE("the speed of a crash is counted along the centre line") {
+  // Discs of 0.11 and 0.09 m whose centres pass at 0.12 m touch when they are 0.16 m apart along the way.
+  World world(crash_scene(0.12), kBegin, 1);
+  world.advance(kBegin + milliseconds(1900));
+  CHECK(world.opponents().totals().crashes == 1);
+  CHECK(world.opponents().totals().crash_speed_mps == Approx(0.8).epsilon(0.02));
+}
+
+TEST_CASE("a robot that drives into an opponent is seen to move, and its share is told") {
+  World world(crash_scene(0), kBegin, 1);
+  Trajectory dash(kBegin + milliseconds(100), {{0, 0}, {0, 0}});
+  dash.append(milliseconds(500), Vec2(-3, 0));
+  append_stop(dash, 5);
+  world.on_command(0, test::command_with({0, 1, 1, 0, dash}), kBegin);
+  world.advance(kBegin + milliseconds(1200));
+  const CrashTotals& totals = world.opponents().totals();
+  CHECK(totals.crashes == 1);
+  CHECK(totals.moving_crashes == 1);
+  // They meet after 0.8 m together: 1 m/s t + 1.5 (t - 0.1)² = 0.8.
+  const double t = (-(1 - 0.3) + std::sqrt(0.7 * 0.7 + 4 * 1.5 * (0.8 - 0.015))) / 3;
+  const double robot = 3 * (t - 0.1);
+  CHECK(totals.robot_crash_speed_mps == Approx(robot).epsilon(0.1));
+  CHECK(totals.crash_speed_mps == Approx(1 + robot).epsilon(0.1));
+}
+
+TEST_CASE("a lifted robot is not in an opponent's way") {
+  World world(crash_scene(0), kBegin, 1);
+  msg::Disturbance lift;
+  lift.disturbance_kind(msg::DISTURBANCE_LIFT);
+  REQUIRE(world.disturb(0, lift, kBegin));
+  world.advance(kBegin + milliseconds(1900));
+  CHECK(world.opponents().totals().crashes == 0);
+}
+
+}  // namespace
+}  // namespace sidestep
