@@ -39,7 +39,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)) {
   bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
-                   clocks_.on_feedback(feedback, agent_.negotiation().incarnation(), bus_.now());
+                   measure_robot_clock(feedback);
                    agent_.on_feedback(feedback);
                    register_if_due();
                    if (agent_.negotiation().is_contradicted()) negotiate_if_time();
@@ -87,6 +87,13 @@ Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_ahead(); }
 Time AgentNode::cycle_after(Time now) const {
   const Duration into = (now - next_cycle_) % cycle_;
   return now - into + (into < Duration{0} ? Duration{0} : cycle_);
+}
+
+void AgentNode::measure_robot_clock(const msg::Feedback& feedback) {
+  clocks_.on_feedback(feedback, agent_.negotiation().incarnation(), bus_.now());
+  // Its clock is another than was believed: what was the next cycle by the old belief is far away.
+  const Duration away = next_cycle_ - robot_now();
+  if (away > 2 * cycle_ || away < -2 * cycle_) next_cycle_ = cycle_after(robot_now());
 }
 
 void AgentNode::begin_next_cycle_later() {
@@ -141,8 +148,9 @@ void AgentNode::negotiate_if_time() {
 Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation().lead() - 1); }
 
 void AgentNode::negotiate(Time start) {
+  if (!agent_.negotiation().may_propose(robot_now()) || !clocks_agree()) return;
   const auto query = timed(plan_, [&] { return agent_.plan(robot_now(), start); });
-  if (!query || !clocks_agree()) return;
+  if (!query) return;
   auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); });
   if (!proposal) return;
   clocks_.on_asked(bus_.now());

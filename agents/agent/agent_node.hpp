@@ -24,6 +24,7 @@ class AgentNode {
   void publish_registration();
   /// Whether the clocks allow to propose; sees to it that they are measured.
   bool clocks_agree();
+  void measure_robot_clock(const msg::Feedback& feedback);
   Time robot_now() const;
   /// The first begin of a cycle of this robot's after a time.
   Time cycle_after(Time now) const;

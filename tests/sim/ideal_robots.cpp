@@ -40,7 +40,7 @@ void IdealRobots::publish_world() {
 }
 
 void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
-  const Time now = bus_.now();
+  const Time now = bus_.now() + robot.clock_ahead;
   advance(robot, now);
   if (command.head().incarnation() < robot.obeyed) return;
   robot.heard_stamp_ns = command.head().stamp_ns();
@@ -59,10 +59,7 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
   if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, knows)) return;
   robot.pending.push_back(*version);
   std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
-  bus_.at(version->trajectory.start(), [this, &robot] {
-    advance(robot, bus_.now());
-    report(robot);
-  });
+  bus_.at(version->trajectory.start() - robot.clock_ahead, [this, &robot] { report(robot); });
 }
 
 void IdealRobots::advance(Robot& robot, Time now) {
@@ -75,7 +72,8 @@ void IdealRobots::advance(Robot& robot, Time now) {
 }
 
 void IdealRobots::report(Robot& robot) {
-  const Time now = bus_.now();
+  const Time now = bus_.now() + robot.clock_ahead;
+  advance(robot, now);
   const State state = robot.executing.trajectory.state_at(now);
   msg::Feedback feedback;
   feedback.robot(robot.id);
@@ -90,25 +88,18 @@ void IdealRobots::report(Robot& robot) {
   feedback.y_m(state.position_m.y());
   feedback.vx_mps(state.velocity_mps.x());
   feedback.vy_mps(state.velocity_mps.y());
-  robot.writer.publish(feedback, now);
+  robot.writer.publish(feedback, bus_.now());
 }
 
 void IdealRobots::report_periodically(Robot& robot) {
   bus_.at(bus_.now() + 2 * cycle_, [this, &robot] { report_periodically(robot); });
-  advance(robot, bus_.now());
   report(robot);
 }
 
-Vec2 IdealRobots::position_m(RobotId id, Time t) {
+State IdealRobots::state_at(RobotId id, Time t) {
   Robot& robot = robots_.at(id);
-  advance(robot, t);
-  return robot.executing.trajectory.state_at(t).position_m;
-}
-
-Vec2 IdealRobots::velocity_mps(RobotId id, Time t) {
-  Robot& robot = robots_.at(id);
-  advance(robot, t);
-  return robot.executing.trajectory.state_at(t).velocity_mps;
+  advance(robot, t + robot.clock_ahead);
+  return robot.executing.trajectory.state_at(t + robot.clock_ahead);
 }
 
 double IdealRobots::clearance_m(Time t) {

@@ -30,7 +30,7 @@ void TroubledBus::run(std::function<void()> work) {
 }
 
 void TroubledBus::at(Time when, std::function<void()> callback) {
-  SimBus::at(when, [this, callback = std::move(callback)] { run(callback); });
+  SimBus::at(when - clock_ahead_, [this, callback = std::move(callback)] { run(callback); });
 }
 
 void TroubledBus::go_on() {

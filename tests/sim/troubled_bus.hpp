@@ -15,7 +15,11 @@ class TroubledBus : public SimBus {
  public:
   using SimBus::SimBus;
 
+  Time now() const override { return SimBus::now() + clock_ahead_; }
   void at(Time when, std::function<void()> callback) override;
+
+  /// From now on the process's clock is ahead of the network's by so much.
+  void set_clock_ahead(Duration ahead) { clock_ahead_ = ahead; }
 
   /// From now on nothing runs. What comes waits for the process.
   void stop() { is_stopped_ = true; }
@@ -36,6 +40,7 @@ class TroubledBus : public SimBus {
  private:
   void run(std::function<void()> work);
 
+  Duration clock_ahead_{0};
   bool is_stopped_ = false, is_deaf_ = false, is_mute_ = false;
   std::set<std::string> deaf_to_;
   std::deque<std::function<void()>> waiting_;
