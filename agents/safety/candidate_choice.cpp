@@ -21,6 +21,8 @@ CandidateChoice::CandidateChoice(int samples, const MotionLimits& limits, const 
     : kernels_(&kernels),
       limits_(limits),
       count_(static_cast<std::size_t>(samples) + 1),
+      drawn_x_(count_),
+      drawn_y_(count_),
       accelerations_(blocks_for(count_)),
       motions_(blocks_for(count_)),
       tracks_(blocks_for(count_)),
@@ -28,12 +30,12 @@ CandidateChoice::CandidateChoice(int samples, const MotionLimits& limits, const 
 
 void CandidateChoice::draw(const Vec2& velocity, const Vec2& wish, Duration phase, Rng& rng) {
   const batch::LimitSettings settings = limit_settings(velocity, wish, limits_, phase);
+  sample_ahead(settings.is_at_rest, limits_, rng, count_ - 1, drawn_x_.data(), drawn_y_.data());
   for (std::size_t i = 1; i < count_; ++i) {
-    const Vec2 drawn = sample_ahead(settings.is_at_rest, limits_, rng);
-    accelerations_[i / kLanes].x.lane[i % kLanes] = drawn.x();
-    accelerations_[i / kLanes].y.lane[i % kLanes] = drawn.y();
+    accelerations_[i / kLanes].x.lane[i % kLanes] = drawn_x_[i - 1];
+    accelerations_[i / kLanes].y.lane[i % kLanes] = drawn_y_[i - 1];
   }
-  kernels_->limit(settings, accelerations_.data(), accelerations_.size());
+  kernels_->choosing.limit(settings, accelerations_.data(), accelerations_.size());
   accelerations_[0].x.lane[0] = wish.x();
   accelerations_[0].y.lane[0] = wish.y();
   accelerations_[0].distance2.lane[0] = 0;
@@ -54,8 +56,8 @@ void CandidateChoice::sample(const State& at_start, double phase_s, double step_
                                      phase_s,
                                      limits_.deceleration_mps2};
   step_s_ = step_s;
-  kernels_->stop(settings, accelerations_.data(), accelerations_.size(), motions_.data());
-  kernels_->sample(motions_.data(), motions_.size(), 0, step_s, tracks_.data());
+  kernels_->choosing.stop(settings, accelerations_.data(), accelerations_.size(), motions_.data());
+  kernels_->comparing.sample(motions_.data(), motions_.size(), 0, step_s, tracks_.data());
 }
 
 void CandidateChoice::compare(const batch::Track& other, double start_s, double keep_m,
@@ -68,15 +70,15 @@ void CandidateChoice::compare(const batch::Track& other, double start_s, double 
     keep.keep_m.lane[lane] = keep_m;
     keep.acceleration_mps2.lane[lane] = own;
   }
-  kernels_->compare(batch::comparison(0, step_s_, other_acceleration, 0), other, tracks_.data(), &keep, true,
-                    tracks_.size(), true, gaps_.data());
+  kernels_->comparing.compare(batch::comparison(0, step_s_, other_acceleration, 0), other, tracks_.data(),
+                              &keep, true, tracks_.size(), true, gaps_.data());
 }
 
 std::optional<std::size_t> CandidateChoice::take_nearest(double spread) {
   const Vec2 kept = last_kept_ ? acceleration(*last_kept_) : Vec2(0, 0);
   const double spread2 = last_kept_ ? spread * spread : 0;
-  const std::size_t nearest = kernels_->choose(kept.x(), kept.y(), spread2, accelerations_.data(),
-                                               gaps_.data(), accelerations_.size());
+  const std::size_t nearest = kernels_->choosing.choose(kept.x(), kept.y(), spread2, accelerations_.data(),
+                                                        gaps_.data(), accelerations_.size());
   last_kept_.reset();
   if (nearest >= count_) return std::nullopt;
   accelerations_[nearest / kLanes].distance2.lane[nearest % kLanes] = kInfinity;

@@ -38,6 +38,7 @@ class CandidateChoice {
   const batch::Kernels* kernels_;
   MotionLimits limits_;
   std::size_t count_;
+  std::vector<double> drawn_x_, drawn_y_;
   std::vector<batch::AccelerationBlock> accelerations_;
   std::vector<batch::MotionBlock> motions_;
   std::vector<batch::TrackBlock> tracks_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/motion/clearance_batch.hpp"
 
+#include <algorithm>
+#include <bit>
+
 #include "common/motion/clearance.hpp"
 
 namespace sidestep {
@@ -29,9 +32,15 @@ std::span<const std::uint8_t> ClearanceBatch::compare(const Trajectory& one) {
   }
   lanes_.sample(one.start(), outline.seconds);
   lanes_.compare(batch::track_of(outline, one.start(), lanes_.step_s()), outline.acceleration_mps2, 0);
-  for (std::size_t i = 0; i < others_.size(); ++i) {
-    const bool is_decided = !lanes_.is_exact(i) && (lanes_.is_clear(i) || lanes_.is_blocked(i));
-    clear_[i] = is_decided ? lanes_.is_clear(i) : exact(one, others_[i]);
+  for (std::size_t i = 0; i < others_.size(); i += batch::kLanes) {
+    const std::size_t count = std::min(batch::kLanes, others_.size() - i);
+    const unsigned clear = lanes_.clear_bits(i / batch::kLanes);
+    for (std::size_t lane = 0; lane < count; ++lane) clear_[i + lane] = clear >> lane & 1;
+    unsigned open = lanes_.open_bits(i / batch::kLanes) & (0xffu >> (batch::kLanes - count));
+    for (; open != 0; open &= open - 1) {
+      const std::size_t lane = i + static_cast<std::size_t>(std::countr_zero(open));
+      clear_[lane] = exact(one, others_[lane]);
+    }
   }
   return clear_;
 }

@@ -112,8 +112,8 @@ void Crowd::find_between(std::size_t begin, std::size_t end, const Circle& circl
                          std::vector<std::uint32_t>& found) {
   if (begin == end) return;
   const std::size_t first = begin / batch::kLanes, last = (end - 1) / batch::kLanes;
-  kernels_->touching(&x_m_[first], &y_m_[first], &radius_m_[first], last - first + 1, circle.centre_m.x(),
-                     circle.centre_m.y(), circle.radius_m, masks_.data());
+  kernels_->comparing.touching(&x_m_[first], &y_m_[first], &radius_m_[first], last - first + 1,
+                               circle.centre_m.x(), circle.centre_m.y(), circle.radius_m, masks_.data());
   for (std::size_t block = first; block <= last; ++block) {
     unsigned mask = masks_[block - first];
     if (block == first) mask &= 0xffu << (begin % batch::kLanes);

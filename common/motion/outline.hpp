@@ -10,12 +10,13 @@ namespace sidestep {
 struct Outline {
   Time start{};
   bool is_plain = false;  ///< has at most two phases and moderate numbers; others are compared one by one
-  Phase first, second;    ///< the first may be empty only if the second is
   State at_start;
-  Vec2 second_velocity_mps{0, 0};  ///< as the second phase begins
-  double seconds = 0;              ///< until it rests
-  double acceleration_mps2 = 0;    ///< the largest
-  Circle disc;                     ///< never left, from the start on for ever
+  double first_s = 0, second_s = 0;  ///< how long the phases last; the first is empty only if both are
+  Vec2 first_half_mps2{0, 0}, second_half_mps2{0, 0};  ///< half their accelerations
+  Vec2 second_velocity_mps{0, 0};                      ///< as the second phase begins
+  double seconds = 0;                                  ///< until it rests
+  double acceleration_mps2 = 0;                        ///< the largest
+  Circle disc;                                         ///< never left, from the start on for ever
 };
 
 Outline outline_of(const Trajectory& trajectory);

@@ -28,6 +28,10 @@ Vec2 sample(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);
 /// As sample(), with x along the velocity.
 Vec2 sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng);
 
+/// As many of them.
+void sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng, std::size_t count, double* x_mps2,
+                  double* y_mps2);
+
 /// The direction of a velocity; along x at rest.
 Vec2 forward_of(const Vec2& velocity_mps);
 

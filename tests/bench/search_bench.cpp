@@ -57,10 +57,10 @@ void search_per_robot(benchmark::State& state, const batch::Kernels* kernels) {
 }
 
 const int kRegistered = [] {
-  for (const batch::Kernels* kernels : batch::available_kernels()) {
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
     for (const std::int64_t robots : {2, 20, 100, 1000}) {
-      benchmark::RegisterBenchmark((std::string("search_per_robot/") + kernels->name).c_str(),
-                                   search_per_robot, kernels)
+      benchmark::RegisterBenchmark((std::string("search_per_robot/") + kernels.name).c_str(),
+                                   search_per_robot, &kernels)
           ->ArgName("robots")
           ->Arg(robots);
     }

@@ -4,21 +4,27 @@
 #include "common/motion/batch/levels.hpp"
 
 namespace sidestep::batch {
+namespace {
 
-std::vector<const Kernels*> available_kernels() {
-  std::vector<const Kernels*> found{&kBaselineKernels};
+std::vector<Kernels> found() {
+  std::vector<Kernels> kernels{{"baseline", kBaselineComparing, kBaselineChoosing}};
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) found.push_back(&kAvx2Kernels);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    kernels.push_back({"avx2", kAvx2Comparing, kAvx2Choosing});
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    found.push_back(&kAvx512Kernels);
+    kernels.push_back({"avx512", kAvx512Comparing, kAvx512Choosing});
 #endif
-  return found;
+  return kernels;
 }
 
-const Kernels& best_kernels() {
-  static const Kernels& best = *available_kernels().back();
-  return best;
+}  // namespace
+
+const std::vector<Kernels>& available_kernels() {
+  static const std::vector<Kernels> kernels = found();
+  return kernels;
 }
+
+const Kernels& best_kernels() { return available_kernels().back(); }
 
 }  // namespace sidestep::batch

@@ -8,7 +8,7 @@
 namespace sidestep::batch {
 
 /// The kernels that this machine can run, the fastest last.
-std::vector<const Kernels*> available_kernels();
+const std::vector<Kernels>& available_kernels();
 
 /// The fastest of them.
 const Kernels& best_kernels();

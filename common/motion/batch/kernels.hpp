@@ -70,9 +70,8 @@ struct StopSettings {
   double x_m, y_m, vx_mps, vy_mps, hold_s, deceleration_mps2;
 };
 
-/// The inner loops of the safety layer. Every instruction set gives the same bits.
-struct Kernels {
-  const char* name;
+/// Finding and comparing.
+struct ComparingKernels {
   /// Sets bit k of a block's mask where the discs of lane k and of the query touch.
   void (*touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
                    double y, double radius, std::uint8_t* masks);
@@ -89,6 +88,10 @@ struct Kernels {
                   GapBlock* gaps);
   /// Sets the bits of lanes that are clear, and of those in the way.
   void (*decide)(const GapBlock* gaps, std::size_t blocks, std::uint8_t* clear, std::uint8_t* blocked);
+};
+
+/// Drawing and choosing candidates. Every instruction set gives the same bits.
+struct ChoosingKernels {
   /// Turns accelerations drawn in the frame of the velocity to the floor's, limits them (as limited() does)
   /// and measures their distances from the wish.
   void (*limit)(const LimitSettings& settings, AccelerationBlock* accelerations, std::size_t blocks);
@@ -98,6 +101,13 @@ struct Kernels {
   /// that is left, or the number of lanes.
   std::size_t (*choose)(double x, double y, double spread2, AccelerationBlock* accelerations,
                         const GapBlock* gaps, std::size_t blocks);
+};
+
+/// The inner loops of the safety layer for one instruction set.
+struct Kernels {
+  const char* name;
+  ComparingKernels comparing;
+  ChoosingKernels choosing;
 };
 
 }  // namespace sidestep::batch

@@ -9,9 +9,10 @@ namespace sidestep::batch {
 namespace {
 
 // Far above all rounding, here and in the exact clearance; far below what matters.
-constexpr double kRounding_m = 1e-7;
+constexpr double kRounding_m = 1e-6;
 // Where lanes are that do not count.
 constexpr double kNowhere_m = 1e6;
+constexpr double kLongAgo_s = -1e6;
 
 }  // namespace
 
@@ -30,15 +31,14 @@ Track track_of(const TrackBlock& tracks, std::size_t lane) {
 
 Track track_of(const Outline& outline, Time begin, double step_s) {
   const double from_s = to_seconds(begin - outline.start);
-  const double first_s = to_seconds(outline.first.duration), second_s = to_seconds(outline.second.duration);
   Track track;
   for (std::size_t k = 0; k < kSamples; ++k) {
     const double into = from_s + static_cast<double>(k) * step_s;
-    const double t = std::min(std::max(into, -step_s), first_s);
-    const double u = std::min(std::max(into - first_s, 0.0), second_s);
+    const double t = std::min(std::max(into, -step_s), outline.first_s);
+    const double u = std::min(std::max(into - outline.first_s, 0.0), outline.second_s);
     const Vec2 position = outline.at_start.position_m +
-                          t * (outline.at_start.velocity_mps + (0.5 * t) * outline.first.acceleration_mps2) +
-                          u * (outline.second_velocity_mps + (0.5 * u) * outline.second.acceleration_mps2);
+                          t * (outline.at_start.velocity_mps + t * outline.first_half_mps2) +
+                          u * (outline.second_velocity_mps + u * outline.second_half_mps2);
     track.x_m[k] = position.x();
     track.y_m[k] = position.y();
   }
@@ -60,9 +60,10 @@ void Lanes::begin_block() {
     gaps_.emplace_back();
     for (auto* masks : {&exact_, &later_, &clear_, &blocked_}) masks->push_back(0);
   }
-  motions_[block] = {};
-  keeps_[block] = {};
+  // Whatever else is left there from another time does not matter.
   std::fill_n(motions_[block].x_m.lane, kLanes, kNowhere_m);
+  std::fill_n(motions_[block].start_s.lane, kLanes, kLongAgo_s);
+  std::fill_n(keeps_[block].start_s.lane, kLanes, kLongAgo_s);
   exact_[block] = 0;
 }
 
@@ -77,18 +78,18 @@ void Lanes::add(const Outline& outline, double keep_m) {
   }
   MotionBlock& m = motions_[block];
   m.start_s.lane[lane] = to_seconds(outline.start - base_);
-  m.first_s.lane[lane] = to_seconds(outline.first.duration);
+  m.first_s.lane[lane] = outline.first_s;
   m.x_m.lane[lane] = outline.at_start.position_m.x();
   m.y_m.lane[lane] = outline.at_start.position_m.y();
   m.vx_mps.lane[lane] = outline.at_start.velocity_mps.x();
   m.vy_mps.lane[lane] = outline.at_start.velocity_mps.y();
-  m.half_ax.lane[lane] = 0.5 * outline.first.acceleration_mps2.x();
-  m.half_ay.lane[lane] = 0.5 * outline.first.acceleration_mps2.y();
-  m.second_s.lane[lane] = to_seconds(outline.second.duration);
+  m.half_ax.lane[lane] = outline.first_half_mps2.x();
+  m.half_ay.lane[lane] = outline.first_half_mps2.y();
+  m.second_s.lane[lane] = outline.second_s;
   m.second_vx.lane[lane] = outline.second_velocity_mps.x();
   m.second_vy.lane[lane] = outline.second_velocity_mps.y();
-  m.second_half_ax.lane[lane] = 0.5 * outline.second.acceleration_mps2.x();
-  m.second_half_ay.lane[lane] = 0.5 * outline.second.acceleration_mps2.y();
+  m.second_half_ax.lane[lane] = outline.second_half_mps2.x();
+  m.second_half_ay.lane[lane] = outline.second_half_mps2.y();
   keeps_[block].start_s.lane[lane] = m.start_s.lane[lane];
   keeps_[block].keep_m.lane[lane] = keep_m;
   keeps_[block].acceleration_mps2.lane[lane] = outline.acceleration_mps2;
@@ -97,18 +98,19 @@ void Lanes::add(const Outline& outline, double keep_m) {
 void Lanes::sample(Time begin, double at_least_s) {
   const double begin_s = to_seconds(begin - base_);
   if (is_sampled_ && begin_s == begin_s_ && kSteps * step_s_ >= at_least_s) return;
-  const double rest_s =
-      kernels_->rest(motions_.data(), blocks(), begin_s + at_least_s, begin_s + kLongest_s, later_.data());
+  const double rest_s = kernels_->comparing.rest(motions_.data(), blocks(), begin_s + at_least_s,
+                                                 begin_s + kLongest_s, later_.data());
   begin_s_ = begin_s;
   step_s_ = (rest_s - begin_s) / kSteps;
-  kernels_->sample(motions_.data(), blocks(), begin_s_, step_s_, tracks_.data());
+  kernels_->comparing.sample(motions_.data(), blocks(), begin_s_, step_s_, tracks_.data());
   is_sampled_ = true;
 }
 
 void Lanes::compare(const Track& one, double acceleration, double room_m) {
   const ComparisonSettings settings = comparison(begin_s_, step_s_, acceleration, room_m);
-  kernels_->compare(settings, one, tracks_.data(), keeps_.data(), false, blocks(), false, gaps_.data());
-  kernels_->decide(gaps_.data(), blocks(), clear_.data(), blocked_.data());
+  kernels_->comparing.compare(settings, one, tracks_.data(), keeps_.data(), false, blocks(), false,
+                              gaps_.data());
+  kernels_->comparing.decide(gaps_.data(), blocks(), clear_.data(), blocked_.data());
 }
 
 bool Lanes::are_all_clear() const {

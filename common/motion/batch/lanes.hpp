@@ -33,6 +33,11 @@ class Lanes {
   bool is_exact(std::size_t lane) const { return bit(exact_, lane) || bit(later_, lane); }
   bool is_clear(std::size_t lane) const { return bit(clear_, lane); }
   bool is_blocked(std::size_t lane) const { return bit(blocked_, lane); }
+  /// Eight lanes' bits: those of is_clear(), and those of lanes that batches do not decide.
+  unsigned clear_bits(std::size_t block) const { return clear_[block]; }
+  unsigned open_bits(std::size_t block) const {
+    return (~(clear_[block] | blocked_[block]) | exact_[block] | later_[block]) & 0xffu;
+  }
   /// Whether all lanes are clear, and none has to be compared exactly.
   bool are_all_clear() const;
 

@@ -5,9 +5,11 @@
 
 namespace sidestep::batch {
 
-extern const Kernels kBaselineKernels;
+extern const ComparingKernels kBaselineComparing;
+extern const ChoosingKernels kBaselineChoosing;
 #ifdef __x86_64__
-extern const Kernels kAvx2Kernels, kAvx512Kernels;
+extern const ComparingKernels kAvx2Comparing, kAvx512Comparing;
+extern const ChoosingKernels kAvx2Choosing, kAvx512Choosing;
 #endif
 
 }  // namespace sidestep::batch

@@ -131,10 +131,10 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
   FloorRules rules;
   rules.field = {2.2, 2.6};
   rules.obstacles = {{{0.5, 0.5}, 0.1}, {{-0.6, 0.2}, 0.15}};
-  for (const batch::Kernels* kernels : batch::available_kernels()) {
-    CAPTURE(seed, kernels->name);
-    SafetySearch search(rules, {}, *kernels);
-    Crowd crowd(*kernels);
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
+    CAPTURE(seed, kernels.name);
+    SafetySearch search(rules, {}, kernels);
+    Crowd crowd(kernels);
     Rng scenes(seed), rng(seed), slow_rng(seed);
     int found = 0, refused_wishes = 0;
     for (int i = 0; i < 4000; ++i) {

@@ -93,20 +93,19 @@ void compare(const batch::Kernels& kernels, Maker maker, std::uint64_t seed, int
 TEST_CASE(
     "a batch decides as the exact clearance does, over millions of pairs and on every instruction set") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
-  for (const batch::Kernels* kernels : batch::available_kernels()) {
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
     std::uint64_t pairs = 0, left_to_exact = 0;
     compare(
-        *kernels, [](Rng& rng) { return random_trajectory(rng, kBegin); }, seed, 10'000, pairs,
-        left_to_exact);
-    compare(*kernels, nasty, seed, 10'000, pairs, left_to_exact);
+        kernels, [](Rng& rng) { return random_trajectory(rng, kBegin); }, seed, 10'000, pairs, left_to_exact);
+    compare(kernels, nasty, seed, 10'000, pairs, left_to_exact);
     CHECK(pairs > 1'000'000);
   }
 }
 
 TEST_CASE("of the pairs that agents and coordinators compare, a batch leaves few to the exact clearance") {
-  for (const batch::Kernels* kernels : batch::available_kernels()) {
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
     Rng rng(7);
-    ClearanceBatch batch(*kernels);
+    ClearanceBatch batch(kernels);
     std::uint64_t pairs = 0;
     for (int round = 0; round < 2000; ++round) {
       std::vector<Trajectory> others;
@@ -123,7 +122,7 @@ TEST_CASE("of the pairs that agents and coordinators compare, a batch leaves few
         REQUIRE((clear[i] != 0) == is_clear(one, others[i], 0.19));
       pairs += others.size();
     }
-    CAPTURE(kernels->name, pairs, batch.left_to_exact());
+    CAPTURE(kernels.name, pairs, batch.left_to_exact());
     CHECK(batch.left_to_exact() * 20 < pairs);
   }
 }

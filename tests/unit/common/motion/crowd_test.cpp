@@ -12,9 +12,9 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
-  for (const batch::Kernels* kernels : batch::available_kernels()) {
-    CAPTURE(kernels->name);
-    Crowd crowd(*kernels);
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
+    CAPTURE(kernels.name);
+    Crowd crowd(kernels);
     for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 63u, 64u, 65u, 300u, 2000u}) {
       CAPTURE(count);
       const double half_side = rng.chance(0.5) ? 0.5 : rng.uniform(1, 200);

@@ -34,7 +34,8 @@ TEST_CASE("an outline is plain when what is left without empty phases are two of
   append_stop(stopping, 5);
   const Outline outline = outline_of(stopping);
   CHECK(outline.is_plain);
-  CHECK(outline.first.acceleration_mps2 == Vec2(1, 0));
+  CHECK(outline.first_half_mps2 == Vec2(0.5, 0));
+  CHECK(outline.second_half_mps2.x() == Approx(-2.5));
   CHECK(outline.second_velocity_mps.x() == Approx(1.1));
   CHECK(outline_of(Trajectory::resting(start, {1, 2})).is_plain);
   // It ends with a speed, or far away.

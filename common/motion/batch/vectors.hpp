@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Included by sources that are compiled for one instruction set, after they say how many numbers its vectors
+// hold. They must not include anything that has inline functions: the linker would keep one copy, perhaps
+// that of an instruction set which the machine does not have.
+#include "common/motion/batch/kernels.hpp"
+
+namespace sidestep::batch {
+namespace {
+
+constexpr std::size_t kWidth = SIDESTEP_VECTOR_WIDTH;
+typedef double Vector __attribute__((vector_size(kWidth * sizeof(double))));
+
+constexpr double kInfinity = __builtin_inf();
+
+inline Vector load(const Row& row, std::size_t at) {
+  Vector v;
+  __builtin_memcpy(&v, &row.lane[at], sizeof v);
+  return v;
+}
+inline void store(Row& row, std::size_t at, const Vector& v) {
+  __builtin_memcpy(&row.lane[at], &v, sizeof v);
+}
+inline Vector all(double value) { return value - Vector{}; }
+inline Vector smaller(const Vector& a, const Vector& b) { return a < b ? a : b; }
+inline Vector larger(const Vector& a, const Vector& b) { return a > b ? a : b; }
+inline Vector root(const Vector& v) {
+  Vector result;
+  for (std::size_t i = 0; i < kWidth; ++i) result[i] = __builtin_sqrt(v[i]);
+  return result;
+}
+/// Bit k: whether lane `at` + k is a.lane <= b.lane.
+inline unsigned not_above(const Vector& a, const Vector& b) {
+  const auto is = a <= b;
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) bits |= (is[i] != 0 ? 1u : 0u) << i;
+  return bits;
+}
+
+}  // namespace
+}  // namespace sidestep::batch
