@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/motion/clearance.hpp"
+#include "common/motion/outline.hpp"
 
 namespace sidestep {
 
@@ -11,7 +12,8 @@ Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster)
     : rules_(rules),
       roster_(std::move(roster)),
       index_(kMaxRobots, roster_.size()),
-      entries_(roster_.size()) {
+      entries_(roster_.size()),
+      places_(rules.field, roster_.size()) {
   std::sort(roster_.begin(), roster_.end());
   for (std::size_t i = 0; i < roster_.size(); ++i) index_.at(roster_[i]) = i;
 }
@@ -31,7 +33,7 @@ std::optional<RobotId> Ledger::enter(RobotId robot, std::span<const Version> ver
     if (!blocker) blocker = blocker_of(version.trajectory, robot);
     entry.set.add(version);
   }
-  bound(entry);
+  bound(index_of(robot));
   return blocker;
 }
 
@@ -48,42 +50,51 @@ Ruling Ledger::grant(const Version& candidate) {
   if (const auto reason = check_place(trajectory, rules_); reason != msg::REASON_GRANTED) return {reason};
   if (const auto blocker = blocker_of(trajectory, candidate.robot)) return {msg::REASON_CONFLICT, *blocker};
   entry.set.add(candidate);
-  bound(entry);
+  bound(index_of(candidate.robot));
   return {};
 }
 
 bool Ledger::forget(RobotId robot, VersionNumber executing, Time at) {
   Entry& entry = entries_[index_of(robot)];
   if (!entry.set.forget(executing, at)) return false;
-  bound(entry);
+  bound(index_of(robot));
   return true;
 }
 
 void Ledger::clear() {
-  for (Entry& entry : entries_) entry = {};
-}
-
-void Ledger::bound(Entry& entry) const {
-  const auto versions = entry.set.versions();
-  if (versions.empty()) return;
-  entry.centre_m = versions.front().trajectory.at_start().position_m;
-  entry.reach_m = 0;
-  for (const Version& version : versions) {
-    const double offset = (version.trajectory.at_start().position_m - entry.centre_m).norm();
-    entry.reach_m = std::max(entry.reach_m, offset + reach_m(version.trajectory));
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    entries_[i].set.clear();
+    bound(i);
   }
 }
 
-std::optional<RobotId> Ledger::blocker_of(const Trajectory& trajectory, RobotId robot) const {
+void Ledger::bound(std::size_t index) {
+  Entry& entry = entries_[index];
+  const auto versions = entry.set.versions();
+  if (versions.empty()) {
+    places_.remove(static_cast<std::uint32_t>(index));
+    return;
+  }
+  for (std::size_t i = 0; i < versions.size(); ++i) entry.discs[i] = disc_of(versions[i].trajectory);
+  Circle all = entry.discs.front();
+  for (std::size_t i = 1; i < versions.size(); ++i) {
+    const double offset = (entry.discs[i].centre_m - all.centre_m).norm();
+    all.radius_m = std::max(all.radius_m, offset + entry.discs[i].radius_m);
+  }
+  places_.set(static_cast<std::uint32_t>(index), all);
+}
+
+std::optional<RobotId> Ledger::blocker_of(const Trajectory& trajectory, RobotId robot) {
   const double keep = rules_.keep_m();
-  const double reach = reach_m(trajectory) + keep + kClearanceTolerance_m;
-  for (std::size_t i = 0; i < roster_.size(); ++i) {
-    const Entry& other = entries_[i];
-    const double far = reach + other.reach_m;
-    if (roster_[i] == robot || (other.centre_m - trajectory.at_start().position_m).squaredNorm() > far * far)
-      continue;
-    for (const Version& version : other.set.versions()) {
-      if (!is_clear(trajectory, version.trajectory, keep)) return roster_[i];
+  Circle around = disc_of(trajectory);
+  around.radius_m += keep + kClearanceTolerance_m;
+  places_.find(around, near_);
+  for (const std::uint32_t index : near_) {
+    if (roster_[index] == robot) continue;
+    const auto versions = entries_[index].set.versions();
+    for (std::size_t i = 0; i < versions.size(); ++i) {
+      if (touch(entries_[index].discs[i], around) && !is_clear(trajectory, versions[i].trajectory, keep))
+        return roster_[index];
     }
   }
   return std::nullopt;

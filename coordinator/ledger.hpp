@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "common/motion/disc_grid.hpp"
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
 
@@ -45,17 +47,19 @@ class Ledger {
  private:
   struct Entry {
     VersionSet set;
-    Vec2 centre_m{0, 0};  // a disc that holds all the robot's versions
-    double reach_m = 0;
+    std::array<Circle, VersionSet::kCapacity> discs;  // that the set's versions never leave
   };
   std::size_t index_of(RobotId robot) const;
-  void bound(Entry& entry) const;
-  std::optional<RobotId> blocker_of(const Trajectory& trajectory, RobotId robot) const;
+  /// Finds the discs of the robot's versions, and of all together, anew.
+  void bound(std::size_t index);
+  std::optional<RobotId> blocker_of(const Trajectory& trajectory, RobotId robot);
 
   FloorRules rules_;
   std::vector<RobotId> roster_;     // ascending
   std::vector<std::size_t> index_;  // by robot
   std::vector<Entry> entries_;      // as roster_
+  DiscGrid places_;                 // of the entries that have versions
+  std::vector<std::uint32_t> near_;
 };
 
 }  // namespace sidestep

@@ -91,8 +91,8 @@ void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
   }
 }
 
-/// Robots all over a square, a square of spacing² for each, in lanes like the fields of a chess board: those
-/// on white fields go along x, those on black ones along y, every other lane the other way.
+/// Robots all over a square, one on each field of a board, two by two along x and along y, every other lane
+/// the other way. Goals lie on fields of the same kind, so none is in another's way.
 void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
   const YAML::Node node = map.find("streams");
   if (!node.IsDefined()) return;
@@ -102,17 +102,16 @@ void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
   for (const char* key : {"count", "spacing_m", "lanes_crossed"}) streams.require(key);
   streams.read("count", {2, static_cast<double>(kMaxRobots)}, count);
   streams.read("spacing_m", {0.01, 100}, spacing_m);
-  streams.read("lanes_crossed", {2, 1000}, lanes_crossed);
-  if (lanes_crossed % 2 != 0) {
-    // An odd way would end on a field of the other colour, perhaps another robot's goal.
-    streams.place_of("lanes_crossed").refuse(fmt::format("expected an even number, got {}", lanes_crossed));
+  streams.read("lanes_crossed", {4, 1000}, lanes_crossed);
+  if (lanes_crossed % 4 != 0) {
+    streams.place_of("lanes_crossed").refuse(fmt::format("expected a multiple of 4, got {}", lanes_crossed));
   }
   streams.finish();
   const int side = static_cast<int>(std::ceil(std::sqrt(count)));
   const int line = streams.place().line;
   for (int i = 0; i < count; ++i) {
     const int column = i % side, row = i / side;
-    const bool along_x = (column + row) % 2 == 0;
+    const bool along_x = (column + 2 * row) % 4 < 2;
     const double sign = (along_x ? row : column) % 2 == 0 ? 1 : -1;
     const Vec2 direction = sign * (along_x ? Vec2(1, 0) : Vec2(0, 1));
     const Vec2 start = spacing_m * Vec2(column - 0.5 * (side - 1), row - 0.5 * (side - 1));

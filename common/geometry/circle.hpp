@@ -10,4 +10,10 @@ struct Circle {
   double radius_m = 0;
 };
 
+/// Whether two discs have a point in common.
+inline bool touch(const Circle& a, const Circle& b) {
+  const double far = a.radius_m + b.radius_m;
+  return (a.centre_m - b.centre_m).squaredNorm() <= far * far;
+}
+
 }  // namespace sidestep

@@ -21,4 +21,7 @@ struct Outline {
 
 Outline outline_of(const Trajectory& trajectory);
 
+/// The outline's disc.
+inline Circle disc_of(const Trajectory& trajectory) { return outline_of(trajectory).disc; }
+
 }  // namespace sidestep
