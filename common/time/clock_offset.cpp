@@ -6,8 +6,8 @@
 namespace sidestep {
 namespace {
 
-// Differences of two such times, and of two such differences, are far from where 64 bits end.
-constexpr std::int64_t kLatest_ns = std::int64_t{1} << 60;
+// The year 2043. Differences of two such times, and of two such differences, are far from where 64 bits end.
+constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;
 // Longer than any interval is of use, and far from where the product below ends.
 constexpr Duration kLongestAge = std::chrono::hours(24);
 
