@@ -128,8 +128,8 @@ void AgentNode::register_if_due() {
 
 void AgentNode::publish_registration() {
   auto registration = agent_.negotiation().registration();
-  clocks_.on_asked(bus_.now());
   publish(registration_writer_, registration);
+  clocks_.on_asked(time_from_ns(registration.head().stamp_ns()));
 }
 
 bool AgentNode::clocks_agree() {
@@ -153,8 +153,8 @@ void AgentNode::negotiate(Time start) {
   if (!query) return;
   auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); });
   if (!proposal) return;
-  clocks_.on_asked(bus_.now());
   publish(proposal_writer_, *proposal);
+  clocks_.on_asked(time_from_ns(proposal->head().stamp_ns()));
 }
 
 void AgentNode::on_verdict(const msg::Verdict& verdict) {
