@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace sidestep {
 namespace {
 
 constexpr double kSamePlace_m = 0.001;
+constexpr int kStepsBetweenSearches = 20;
+constexpr double kPushed_m = 0.02;  // by which contacts may move a robot between two searches
 
 }  // namespace
 
-Opponents::Opponents(std::span<const OpponentSpec> specs, std::size_t robots)
-    : touching_(specs.size() * robots), robots_(robots) {
+Opponents::Opponents(std::span<const OpponentSpec> specs, double robot_radius_m, double robot_speed_limit_mps)
+    : radius_m_(robot_radius_m), speed_limit_mps_(robot_speed_limit_mps) {
   for (const OpponentSpec& spec : specs) {
     Walk walk{.way_m = spec.way_m, .speed_mps = spec.speed_mps, .is_round = false};
     if (walk.way_m.size() > 2 && (walk.way_m.back() - walk.way_m.front()).norm() < kSamePlace_m) {
@@ -35,7 +38,7 @@ void Opponents::head_on(Walk& walk) {
   walk.next = walk.is_going_back ? walk.next - 1 : walk.next + 1;
 }
 
-void Opponents::move(Walk& walk, Vec2& position_m) const {
+void Opponents::move(Walk& walk, Vec2& position_m) {
   walk.velocity_mps.setZero();
   if (walk.way_m.size() == 1) return;
   double left_m = walk.speed_mps * kPhysicsStepSeconds;
@@ -54,30 +57,47 @@ void Opponents::move(Walk& walk, Vec2& position_m) const {
   }
 }
 
-void Opponents::step(std::span<const Body> robots, double robot_radius_m) {
-  for (std::size_t i = 0; i < walks_.size(); ++i) {
-    move(walks_[i], discs_[i].centre_m);
-    const double near = discs_[i].radius_m + robot_radius_m + kApart_m;
-    for (std::size_t robot = 0; robot < robots.size(); ++robot) {
-      const Vec2 apart = robots[robot].position_m() - discs_[i].centre_m;
-      if (apart.squaredNorm() < near * near && robots[robot].is_on_floor()) {
-        look_at(i, robot, robots[robot], robot_radius_m);
-      } else if (touching_[i * robots_ + robot]) {
-        touching_[i * robots_ + robot] = false;
-      }
+void Opponents::step(std::span<const Body> robots) {
+  for (std::size_t i = 0; i < walks_.size(); ++i) move(walks_[i], discs_[i].centre_m);
+  if (steps_to_next_search_ == 0) {
+    find_near(robots);
+    steps_to_next_search_ = kStepsBetweenSearches;
+  }
+  --steps_to_next_search_;
+  for (Pair& pair : near_) look_at(pair, robots[pair.robot]);
+}
+
+void Opponents::find_near(std::span<const Body> robots) {
+  touching_.clear();
+  std::copy_if(near_.begin(), near_.end(), std::back_inserter(touching_),
+               [](const Pair& pair) { return pair.is_touching; });
+  near_.clear();
+  for (std::uint32_t i = 0; i < walks_.size(); ++i) {
+    const double travel =
+        (speed_limit_mps_ + walks_[i].speed_mps) * kStepsBetweenSearches * kPhysicsStepSeconds;
+    const double near = discs_[i].radius_m + radius_m_ + kApart_m + kPushed_m + travel;
+    for (std::uint32_t robot = 0; robot < robots.size(); ++robot) {
+      if ((robots[robot].position_m() - discs_[i].centre_m).squaredNorm() > near * near) continue;
+      if (!robots[robot].is_on_floor()) continue;
+      const bool touches = std::any_of(touching_.begin(), touching_.end(), [&](const Pair& pair) {
+        return pair.opponent == i && pair.robot == robot;
+      });
+      near_.push_back({i, robot, touches});
     }
   }
 }
 
-void Opponents::look_at(std::size_t opponent, std::size_t robot, const Body& body, double robot_radius_m) {
-  const Circle& disc = discs_[opponent];
+void Opponents::look_at(Pair& pair, const Body& body) {
+  const Circle& disc = discs_[pair.opponent];
   const Vec2 apart = body.position_m() - disc.centre_m;
   const double distance = apart.norm();
-  if (distance >= disc.radius_m + robot_radius_m || touching_[opponent * robots_ + robot]) return;
-  touching_[opponent * robots_ + robot] = true;
+  const double clearance = distance - disc.radius_m - radius_m_;
+  if (clearance > kApart_m) pair.is_touching = false;
+  if (clearance >= 0 || pair.is_touching) return;
+  pair.is_touching = true;
   const Vec2 away = distance > 0 ? Vec2(apart / distance) : Vec2(1, 0);
   const double share = std::max(0.0, -body.velocity_mps().dot(away));
-  const double closing = (walks_[opponent].velocity_mps - body.velocity_mps()).dot(away);
+  const double closing = (walks_[pair.opponent].velocity_mps - body.velocity_mps()).dot(away);
   ++totals_.crashes;
   if (body.velocity_mps().norm() > kAtRest_mps) ++totals_.moving_crashes;
   totals_.crash_speed_mps = std::max(totals_.crash_speed_mps, closing);

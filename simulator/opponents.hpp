@@ -19,13 +19,16 @@ struct CrashTotals {
 
 /// Those who move on the floor without asking: each goes its way at its speed, whatever is in it, to and fro,
 /// or round when the way ends where it begins. Counts their touches with robots, and pushes nobody: what
-/// happens after a touch is nobody's promise. A pair counts again only after it was apart by kApart_m.
+/// happens after a touch is nobody's promise. A pair counts again only after it was apart by kApart_m. Pairs
+/// that cannot meet before the next look at all of them are left out.
 class Opponents {
  public:
-  Opponents(std::span<const OpponentSpec> specs, std::size_t robots);
+  Opponents(std::span<const OpponentSpec> specs, double robot_radius_m, double robot_speed_limit_mps);
 
   /// Moves on by kPhysicsStep, and looks who touches whom.
-  void step(std::span<const Body> robots, double robot_radius_m);
+  void step(std::span<const Body> robots);
+  /// Robots have come, gone or been moved: whatever was near whom, it is looked for again.
+  void search_again() { steps_to_next_search_ = 0; }
 
   bool empty() const { return discs_.empty(); }
   /// Where they are.
@@ -44,14 +47,23 @@ class Opponents {
     bool is_going_back = false;
     Vec2 velocity_mps{0, 0};
   };
+  struct Pair {
+    std::uint32_t opponent;
+    std::uint32_t robot;
+    bool is_touching;
+  };
   static void head_on(Walk& walk);
-  void move(Walk& walk, Vec2& position_m) const;
-  void look_at(std::size_t opponent, std::size_t robot, const Body& body, double robot_radius_m);
+  static void move(Walk& walk, Vec2& position_m);
+  void find_near(std::span<const Body> robots);
+  void look_at(Pair& pair, const Body& robot);
 
+  double radius_m_;
+  double speed_limit_mps_;
   std::vector<Walk> walks_;
   std::vector<Circle> discs_;
-  std::vector<bool> touching_;  ///< opponent by opponent, of all robots
-  std::size_t robots_;
+  std::vector<Pair> near_;
+  std::vector<Pair> touching_;
+  int steps_to_next_search_ = 0;
   CrashTotals totals_;
 };
 

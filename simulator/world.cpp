@@ -34,7 +34,7 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
       velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
       time_(begin),
       contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps),
-      opponents_(scenario.opponents, scenario.robots.size()) {
+      opponents_(scenario.opponents, scenario.radius_m, BodySettings{}.speed_mps) {
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
   bodies_.reserve(scenario.robots.size());
@@ -71,7 +71,7 @@ void World::step() {
   time_ += kPhysicsStep;
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].wish);
   contacts_.step(bodies_);
-  if (!opponents_.empty()) opponents_.step(bodies_, radius_m_);
+  if (!opponents_.empty()) opponents_.step(bodies_);
   if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
   if (!effects_.empty()) end_effects();
   for (std::size_t i = 0; i < robots_.size(); ++i) {

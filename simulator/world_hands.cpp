@@ -61,6 +61,7 @@ void World::lift(std::size_t index, Time now) {
   robots_[index].judge.lifted();
   robots_[index].wish = {};
   contacts_.search_again();
+  opponents_.search_again();
   note_news(index);
 }
 
@@ -96,6 +97,7 @@ bool World::put_down(const Effect& wish) {
   robot.last_position_m = bodies_[wish.robot].rolled_to_m();
   robot.last_heading_rad = wish.heading_rad;
   contacts_.search_again();
+  opponents_.search_again();
   note_news(wish.robot);
   return true;
 }

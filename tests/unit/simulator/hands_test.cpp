@@ -309,7 +309,7 @@ TEST_CASE("whatever hands do, the firmware keeps its rules and ends where it say
     what.heading_rad(rng.uniform(-3, 3));
     what.x_m(agents[robot].stand_m.x());
     what.y_m(agents[robot].stand_m.y());
-    what.clock_offset_ns(static_cast<std::int64_t>(rng.below(1'000'000)) - 500'000);
+    what.clock_offset_ns(static_cast<std::int64_t>(rng.below(6'000'000)) - 3'000'000);
     REQUIRE(is_sound(what, scenario.field, scenario.radius_m));
     world.disturb(robot, what, now);
     if (now > kBegin + std::chrono::seconds(5)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/opponents.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -41,9 +42,9 @@ TEST_CASE("an opponent goes its way at its speed, to and fro or round") {
   for (std::uint64_t i = 0; i < 3 + seed % 3; ++i)
     spec.way_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
   if (is_round) spec.way_m.push_back(spec.way_m.front());
-  Opponents opponents(std::vector{spec}, 0);
+  Opponents opponents(std::vector{spec}, 0.09, 2.5);
   for (int step = 1; step <= 20'000; ++step) {
-    opponents.step({}, 0.09);
+    opponents.step({});
     const Vec2 expected = along(spec.way_m, is_round, step * spec.speed_mps * kPhysicsStepSeconds);
     REQUIRE((opponents.discs()[0].centre_m - expected).norm() < 1e-6);
   }
@@ -52,8 +53,8 @@ TEST_CASE("an opponent goes its way at its speed, to and fro or round") {
 TEST_CASE("opponents on a point, or on points that lie on each other, stay where they are") {
   const auto way = GENERATE(std::vector<Vec2>{{1, 2}}, std::vector<Vec2>{{1, 2}, {1, 2}},
                             std::vector<Vec2>{{1, 2}, {1, 2}, {1, 2}});
-  Opponents opponents(std::vector{OpponentSpec{0.1, 1, way}}, 0);
-  for (int step = 0; step < 100; ++step) opponents.step({}, 0.09);
+  Opponents opponents(std::vector{OpponentSpec{0.1, 1, way}}, 0.09, 2.5);
+  for (int step = 0; step < 100; ++step) opponents.step({});
   CHECK((opponents.discs()[0].centre_m - Vec2(1, 2)).norm() < 1e-9);
 }
 
@@ -114,6 +115,57 @@ TEST_CASE("a lifted robot is not in an opponent's way") {
   REQUIRE(world.disturb(0, lift, kBegin));
   world.advance(kBegin + milliseconds(1900));
   CHECK(world.opponents().totals().crashes == 0);
+}
+
+// Many robots about, against a look at every pair at every step.
+TEST_CASE("crashes are counted as by a look at everything") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const double radius_m = 0.09;
+  std::vector<OpponentSpec> specs;
+  for (int i = 0; i < 4; ++i) {
+    OpponentSpec spec{rng.uniform(0.05, 0.4), rng.uniform(0.5, 3), {}};
+    for (int k = 0; k < 3; ++k) spec.way_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+    specs.push_back(spec);
+  }
+  std::vector<Body> robots;
+  for (int i = 0; i < 20; ++i)
+    robots.emplace_back(Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2)), 0, BodySettings{});
+  Opponents opponents(specs, radius_m, BodySettings{}.speed_mps);
+  std::vector<bool> touching(specs.size() * robots.size());
+  std::vector<Vec2> last(specs.size());
+  CrashTotals expected;
+  for (int step = 0; step < 5000; ++step) {
+    for (Body& robot : robots) {
+      const Vec2 home = -robot.position_m() - 0.5 * robot.velocity_mps();
+      robot.step({home + 3 * Vec2(rng.normal(), rng.normal()), 0});
+    }
+    for (std::size_t i = 0; i < specs.size(); ++i) last[i] = opponents.discs()[i].centre_m;
+    opponents.step(robots);
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      const Circle& disc = opponents.discs()[i];
+      for (std::size_t k = 0; k < robots.size(); ++k) {
+        const Vec2 apart = robots[k].position_m() - disc.centre_m;
+        const double clearance = apart.norm() - disc.radius_m - radius_m;
+        if (clearance > Opponents::kApart_m) touching[i * robots.size() + k] = false;
+        if (clearance >= 0 || touching[i * robots.size() + k]) continue;
+        touching[i * robots.size() + k] = true;
+        ++expected.crashes;
+        expected.moving_crashes += robots[k].velocity_mps().norm() > Opponents::kAtRest_mps ? 1 : 0;
+        const double own = -robots[k].velocity_mps().dot(apart.normalized());
+        expected.robot_crash_speed_mps = std::max(expected.robot_crash_speed_mps, own);
+        expected.crash_speed_mps =
+            std::max(expected.crash_speed_mps,
+                     own + (disc.centre_m - last[i]).dot(apart.normalized()) / kPhysicsStepSeconds);
+      }
+    }
+  }
+  CHECK(opponents.totals().crashes == expected.crashes);
+  CHECK(opponents.totals().moving_crashes == expected.moving_crashes);
+  CHECK(opponents.totals().robot_crash_speed_mps == Approx(expected.robot_crash_speed_mps));
+  CHECK(opponents.totals().crash_speed_mps == Approx(expected.crash_speed_mps).epsilon(0.001));
+  CHECK(expected.crashes > 20);
 }
 
 }  // namespace
