@@ -15,9 +15,11 @@ int main(int argc, char** argv) {
     app.add_option("--robot", robot, "the robot's id in the scenario")->required();
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
+  program.fault_target = [&] { return robot; };
   program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     if (!find_robot(scenario, robot)) {
-      throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " + std::to_string(robot));
+      throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
+                                  std::to_string(robot));
     }
     return std::make_shared<AgentNode>(bus, scenario, robot, static_cast<Incarnation>(to_ns(bus.now())));
   };

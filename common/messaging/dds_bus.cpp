@@ -171,6 +171,10 @@ std::string DdsBus::locators() const {
   return impl_->readers.empty() ? std::string() : impl_->readers.front()->locators();
 }
 
+void DdsBus::impair(const LinkQuality& quality, std::uint64_t seed) {
+  impl_->session->participant.impair(quality, seed);
+}
+
 std::uint64_t DdsBus::refused() const {
   std::uint64_t sum = 0;
   for (const auto& reader : impl_->readers) sum += reader->refused();

@@ -13,7 +13,11 @@ struct DdsSettings {
   int domain = 0;                        ///< 0 .. 99
   std::string interface = "127.0.0.1";   ///< address of the one interface to use; "all": every interface
   std::string participant = "sidestep";  ///< name that listeners see
+  bool faults = false;                   ///< what arrives can be disturbed, see DdsBus::impair
+  bool is_operator = false;              ///< no fault touches what this participant sends
 };
+
+struct LinkQuality;
 
 /// The bus over Fast DDS (dds.md): one participant, UDPv4 only. Samples are taken and timers fire in the
 /// thread that calls run(). Throws std::runtime_error when the participant or an endpoint cannot be created,
@@ -39,6 +43,10 @@ class DdsBus : public Bus {
   std::string locators() const;
   /// Messages so far whose payload was not one of the topic's type and was dropped.
   std::uint64_t refused() const;
+
+  /// From now on this happens to all messages that arrive, except an operator's. Precondition:
+  /// DdsSettings::faults.
+  void impair(const LinkQuality& quality, std::uint64_t seed);
 
  protected:
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;

@@ -16,6 +16,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/messaging/fault_transport.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -61,7 +63,8 @@ void check(const DdsSettings& settings) {
   }
 }
 
-DomainParticipantQos participant_qos(const DdsSettings& settings) {
+DomainParticipantQos participant_qos(const DdsSettings& settings,
+                                     const std::shared_ptr<Impairment>& impairment) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -69,7 +72,12 @@ DomainParticipantQos participant_qos(const DdsSettings& settings) {
   udp->receiveBufferSize = kSocketBufferBytes;
   if (settings.interface != "all") udp->interfaceWhiteList.push_back(settings.interface);
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  // Never both: two transports for one kind of locator would each send everything.
+  if (impairment)
+    qos.transport().user_transports.push_back(fault_transport(udp, impairment));
+  else
+    qos.transport().user_transports.push_back(udp);
+  if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
   builtin.discovery_config.leaseDuration = kLease;
@@ -100,11 +108,13 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener) {
   check(settings);
+  if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<DomainId_t>(settings.domain), participant_qos(settings), listener, StatusMask::none());
+      static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_), listener,
+      StatusMask::none());
   if (participant_ == nullptr) {
     throw std::runtime_error(fmt::format("DDS refuses to create a participant in domain {} on interface {}",
                                          settings.domain, settings.interface));
@@ -142,7 +152,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) 
 
 DataWriter* DdsParticipant::create_writer(const std::string& channel, TypeSupport type,
                                           const DataWriterQos& qos, DataWriterListener* listener) {
-  const StatusMask mask = StatusMask::offered_incompatible_qos();
+  const StatusMask mask = StatusMask::publication_matched() << StatusMask::offered_incompatible_qos();
   DataWriter* writer = publisher_->create_datawriter(topic(channel, type), qos, listener, mask);
   if (writer == nullptr) throw failure("writer", channel);
   return writer;

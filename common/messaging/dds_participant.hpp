@@ -8,9 +8,11 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <memory>
 #include <string>
 
 #include "common/messaging/dds_bus.hpp"
+#include "common/messaging/impairment.hpp"
 
 namespace sidestep {
 
@@ -37,10 +39,13 @@ class DdsParticipant {
                                                     eprosima::fastdds::dds::DataReaderListener* listener);
   void delete_writer(eprosima::fastdds::dds::DataWriter* writer);
   void delete_reader(eprosima::fastdds::dds::DataReader* reader);
+  /// As DdsBus::impair.
+  void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
 
  private:
   eprosima::fastdds::dds::Topic* topic(const std::string& channel, eprosima::fastdds::dds::TypeSupport type);
 
+  std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

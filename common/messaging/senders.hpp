@@ -13,4 +13,7 @@ enum class Sender : std::uint32_t {
   kOperator = 40000,
 };
 
+/// NetworkFault.target of an order to every process.
+inline constexpr std::uint32_t kEveryProcess = 4294967295;
+
 }  // namespace sidestep

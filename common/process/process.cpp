@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/process/network_faults.hpp"
 #include "common/process/stop_signals.hpp"
 
 namespace sidestep {
@@ -34,6 +35,7 @@ int run_process(int argc, char** argv, const Program& program) {
   DdsSettings dds;
   app.add_option("--scenario", scenario_file, "scenario file")->required();
   add_dds_options(app, dds);
+  app.add_flag("--faults", dds.faults, "let `sidestep fault network` disturb what arrives; for tests");
   if (program.add_options) program.add_options(app);
   const int exit_code = parse_options(app, argc, argv);
   if (exit_code >= 0) return exit_code;
@@ -44,6 +46,7 @@ int run_process(int argc, char** argv, const Program& program) {
     DdsBus bus(dds);
     const StopSignals stop_signals([&bus] { bus.stop(); });
     const std::shared_ptr<void> nodes = program.start(bus, scenario);
+    if (dds.faults) take_network_faults(bus, program.fault_target(), dds.participant);
     fmt::print(stderr, "{}: domain {}, listens on {}\n", dds.participant, dds.domain, bus.locators());
     bus.run();
     return 0;

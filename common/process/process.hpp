@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,6 +28,8 @@ struct Program {
   std::function<void(CLI::App&)> add_options;
   /// The name that listeners see, called once the options are parsed, e.g. agent-3. Empty: `name`.
   std::function<std::string()> participant;
+  /// Who `sidestep fault network` reaches it as (common/messaging/senders.hpp), once the options are parsed.
+  std::function<std::uint32_t()> fault_target;
   /// Makes the nodes on the bus. What it returns lives until the bus has stopped. May throw;
   /// std::invalid_argument for an option that does not fit the scenario.
   std::function<std::shared_ptr<void>(Bus&, const Scenario&)> start;
