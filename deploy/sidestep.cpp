@@ -26,6 +26,8 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
   command->add_option("--seconds", options.seconds, "time limit instead of the scenario's")
       ->check(CLI::PositiveNumber);
   add_dds_options(*command, options.dds);
+  command->add_flag("--faults", options.faults,
+                    "let `sidestep fault network` disturb what arrives; for tests");
   command->add_option("--hosts", options.hosts_file, "hosts file, see deploy/hosts/README.md")
       ->excludes(command->get_option("--interface"));
   command->callback([&] { action = [&options] { return run(options); }; });

@@ -13,6 +13,10 @@ Placement::Placement(const Hosts& hosts, const Scenario& scenario) : hosts_(host
   place_single("vision", &HostSpec::vision);
   place_single("coordinator", &HostSpec::coordinator);
   std::map<std::uint32_t, std::string> names;
+  for (int i = 1; i < scenario.coordinators; ++i)
+    names[static_cast<std::uint32_t>(i)] = coordinator_process(i);
+  place_numbered(names, &HostSpec::standbys, "standbys");
+  names.clear();
   for (const RobotSpec& robot : scenario.robots) names[robot.id] = agent_process(robot.id);
   place_numbered(names, &HostSpec::agents, "agents");
 }

@@ -10,12 +10,6 @@ using namespace sidestep;
 
 namespace {
 
-void require_untouched(const nlohmann::json& report) {
-  REQUIRE(report.is_object());
-  CHECK(report["contacts"] == 0);
-  CHECK(report["firmware_violations"] == 0);
-}
-
 bool is_any_namespace_of(pid_t launcher) {
   const auto all = run_namespaces();
   return std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.launcher == launcher; });
@@ -43,4 +37,60 @@ TEST_CASE("22 robots spread over three hosts that lose one packet in twenty all 
   for (const char* host : {"floor", "east", "west"}) CHECK(run->robots_on(host).size() >= 7);
   CHECK_FALSE(is_any_namespace_of(run->pid()));
   WARN("22 robots, three hosts, 5 % loss: " << figures(report));
+}
+
+TEST_CASE("the robots of a host cut off for five seconds rest, the others go on, all arrive") {
+  SIDESTEP_NEEDS_ROOT();
+  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("two-teams-22"));
+  REQUIRE(run->until([&] { return run->fastest_mps() > 0.5; }));
+  const auto cut_off = run->robots_on("west");
+  std::vector<RobotId> others = run->robots_on("floor");
+  const auto east = run->robots_on("east");
+  others.insert(others.end(), east.begin(), east.end());
+  REQUIRE(cut_off.size() >= 7);
+  REQUIRE(run->until([&] { return run->fastest_mps(cut_off) > 0.5; }));
+
+  const std::string west = "sidestep-" + std::to_string(run->pid()) + "-west";
+  run->start("partition", "sidestep", {"fault", "partition", west, "--seconds", "5"});
+  REQUIRE(run->until([&] { return run->printed("drops 100 %"); }));
+  REQUIRE(run->until([&] { return run->fastest_mps(cut_off) < 0.02; }));
+  // At rest they stay as long as it lasts, while somebody else moves.
+  double fastest_of_cut_off_mps = 0, fastest_of_others_mps = 0;
+  REQUIRE(run->until([&] {
+    if (run->printed(west + ": healed")) return true;
+    fastest_of_cut_off_mps = std::max(fastest_of_cut_off_mps, run->fastest_mps(cut_off));
+    fastest_of_others_mps = std::max(fastest_of_others_mps, run->fastest_mps(others));
+    return false;
+  }));
+  CHECK(fastest_of_cut_off_mps < 0.05);
+  CHECK(fastest_of_others_mps > 0.3);
+  CHECK(run->wait_for_end() == "exit code 0");
+  INFO(run->output());
+  require_untouched(run->report());
+  CHECK(run->report()["arrived"] == 22);
+  WARN("one of three hosts cut off for 5 s: " << figures(run->report()));
+}
+
+TEST_CASE("the next run removes the network of a launcher that was killed") {
+  SIDESTEP_NEEDS_ROOT();
+  const auto killed = LaunchedRun::on_three_hosts(shipped_scenario("crossing"));
+  REQUIRE(killed->until([&] { return killed->children().size() == 11; }));
+  REQUIRE(is_any_namespace_of(killed->pid()));
+  REQUIRE(kill(killed->pid(), SIGKILL) == 0);
+  (void)killed->wait_for_end();
+  CHECK(is_any_namespace_of(killed->pid()));
+  LaunchedRun next(shipped_scenario("crossing"), {"--hosts", three_hosts_file(), "--seconds", "0.1"});
+  REQUIRE(next.wait_for_end() == "exit code 1");
+  CHECK_FALSE(is_any_namespace_of(killed->pid()));
+  CHECK_FALSE(is_any_namespace_of(next.pid()));
+}
+
+TEST_CASE("packets are only filtered where a run plays hosts, and the refusal says so") {
+  SIDESTEP_NEEDS_ROOT();
+  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("crossing"));
+  CHECK(run->command({"fault", "partition", "sidestep-" + std::to_string(run->pid()) + "-south"}) ==
+        "exit code 1");
+  CHECK(run->printed("there is no host"));
+  CHECK(run->command({"fault", "link", "west"}) == "exit code 2");
+  CHECK(run->printed("--loss is required"));
 }

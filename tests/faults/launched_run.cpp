@@ -2,10 +2,13 @@
 #include "tests/faults/launched_run.hpp"
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <sstream>
 
+#include "common/geometry/vec2.hpp"
 #include "common/messaging/event_loop.hpp"
 #include "deploy/hosts/hosts_file.hpp"
 
@@ -34,10 +37,10 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
 
 std::unique_ptr<LaunchedRun> LaunchedRun::on_three_hosts(const std::string& scenario,
                                                          const std::vector<std::string>& more_arguments) {
-  const std::string file = std::string(SIDESTEP_SOURCE_DIR) + "/deploy/hosts/three-namespaces.yaml";
-  std::vector<std::string> arguments{"--hosts", file};
+  std::vector<std::string> arguments{"--hosts", three_hosts_file()};
   arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
-  std::unique_ptr<LaunchedRun> run(new LaunchedRun(scenario, arguments, load_hosts(file).interface));
+  std::unique_ptr<LaunchedRun> run(
+      new LaunchedRun(scenario, arguments, load_hosts(three_hosts_file()).interface));
   const Time deadline = EventLoop::now() + std::chrono::minutes(1);
   while (!run->printed("started simulator") && !run->exit_ && EventLoop::now() < deadline) {
     for (const ChildEvent& event : run->group_.poll(std::chrono::milliseconds(20))) run->exit_ = event.reason;
@@ -122,6 +125,10 @@ bool LaunchedRun::printed(const std::string& words) const {
   return output().find(words) != std::string::npos;
 }
 
+bool LaunchedRun::logged(const std::string& words) const {
+  return text_of(folder_ / "report.log").find(words) != std::string::npos;
+}
+
 std::map<std::string, pid_t> LaunchedRun::children() const {
   // Lines such as "run: started agent 3 again as pid 1234".
   const std::string started = "started ", as_pid = " as pid ", again = " again";
@@ -168,8 +175,18 @@ double LaunchedRun::fastest_mps() const {
   return fastest;
 }
 
+double LaunchedRun::fastest_mps(const std::vector<RobotId>& robots) const {
+  double fastest = 0;
+  for (const RobotId robot : robots) fastest = std::max(fastest, speed_mps(robot));
+  return fastest;
+}
+
 nlohmann::json LaunchedRun::report() const {
   return nlohmann::json::parse(text_of(folder_ / "report.json"), nullptr, false);
+}
+
+std::string three_hosts_file() {
+  return std::string(SIDESTEP_SOURCE_DIR) + "/deploy/hosts/three-namespaces.yaml";
 }
 
 std::string shipped(const std::string& file) {
@@ -177,6 +194,32 @@ std::string shipped(const std::string& file) {
 }
 
 std::string shipped_scenario(const std::string& name) { return shipped("scenarios/" + name + ".yaml"); }
+
+std::string shuttles(int times, const std::string& more) {
+  std::string text =
+      "name: shuttles\nfield: {length_m: 9, width_m: 6}\ntime_limit_s: 100\n" + more + "robots:\n";
+  const auto add = [&](int id, const Vec2& start_m, const Vec2& goal_m) {
+    text += fmt::format("  - {{id: {}, start_m: [{}, {}], goals_m: [", id, start_m.x(), start_m.y());
+    for (int i = 0; i < times; ++i) {
+      const Vec2& next = i % 2 == 0 ? goal_m : start_m;
+      text += fmt::format("{}[{}, {}]", i == 0 ? "" : ", ", next.x(), next.y());
+    }
+    text += "]}\n";
+  };
+  for (int lane = 0; lane < 6; ++lane) {
+    const double side = lane % 2 == 0 ? -1 : 1, y_m = 0.6 * (lane - 2.5);
+    add(lane, {side * 2.5, y_m}, {-side * 2.5, y_m});
+  }
+  add(6, {-0.8, -2.5}, {-0.8, 2.5});
+  add(7, {0.8, 2.5}, {0.8, -2.5});
+  return text;
+}
+
+void require_untouched(const nlohmann::json& report) {
+  REQUIRE(report.is_object());
+  CHECK(report["contacts"] == 0);
+  CHECK(report["firmware_violations"] == 0);
+}
 
 bool is_running(pid_t pid) {
   const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");

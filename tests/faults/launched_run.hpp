@@ -61,12 +61,15 @@ class LaunchedRun {
   /// The robots whose agents were started on the host.
   std::vector<RobotId> robots_on(const std::string& host) const;
   bool printed(const std::string& words) const;
+  /// Whether a process of the run has said so.
+  bool logged(const std::string& words) const;
   std::string output() const;
 
   DdsBus& bus() { return *bus_; }
   const msg::GroundTruth& truth() const { return truth_; }
   double speed_mps(RobotId robot) const;
   double fastest_mps() const;
+  double fastest_mps(const std::vector<RobotId>& robots) const;
   /// What the run has left behind; a null value when there is no report.
   nlohmann::json report() const;
 
@@ -88,10 +91,17 @@ class LaunchedRun {
   pid_t pid_ = 0;
 };
 
+/// The path of the shipped hosts file.
+std::string three_hosts_file();
 /// A shipped file's text, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
 /// A shipped scenario's text.
 std::string shipped_scenario(const std::string& name);
+/// Six robots that shuttle along lanes of their own and two that cross all lanes, each so many times; `more`
+/// are further keys of the scenario.
+std::string shuttles(int times, const std::string& more);
+/// Fails the test unless the report is there and says that nobody touched and no firmware rule was broken.
+void require_untouched(const nlohmann::json& report);
 /// Whether a process of this id exists (a zombie does not count).
 bool is_running(pid_t pid);
 

@@ -6,16 +6,6 @@
 
 using namespace sidestep;
 
-namespace {
-
-void require_untouched(const nlohmann::json& report) {
-  REQUIRE(report.is_object());
-  CHECK(report["contacts"] == 0);
-  CHECK(report["firmware_violations"] == 0);
-}
-
-}  // namespace
-
 TEST_CASE("robots as processes cross the floor over DDS and arrive without a contact") {
   LaunchedRun run(shipped_scenario("crossing"));
   CHECK(run.wait_for_end() == "exit code 0");

@@ -120,6 +120,19 @@ TEST_CASE("a file whose network the launcher makes needs different addresses and
   check_refused(with(good, "{namespace: b}", "{namespace: hub}"), "hosts.yaml:9: ", "the launcher's own");
 }
 
+TEST_CASE("coordinators that stand by are placed like agents") {
+  const Scenario scenario =
+      parse_scenario("coordinators: 3\ncircle: {count: 8, spacing_m: 0.5}", "eight.yaml");
+  const Hosts nobody = parse_hosts(kTwoHosts, "hosts.yaml");
+  CHECK_THROWS_WITH(Placement(nobody, scenario),
+                    Catch::StartsWith("hosts.yaml:1: no host runs coordinator 1"));
+  const Hosts both =
+      parse_hosts(with(kTwoHosts, "agents: rest", "agents: rest\n    standbys: [1-2]"), "hosts.yaml");
+  const Placement placement(both, scenario);
+  CHECK(placement.host_of("coordinator").name == "floor");
+  CHECK(placement.host_of("coordinator 2").name == "far");
+}
+
 TEST_CASE("each process has exactly one host, and hosts name only robots that there are") {
   CHECK(refusal_to_place(kTwoHosts).empty());
   CHECK_THAT(refusal_to_place(with(kTwoHosts, "vision, ", "")),

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+
+#include "tests/faults/launched_run.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+std::vector<std::string> fault(const LaunchedRun& run, std::vector<std::string> words) {
+  words.insert(words.begin(), "fault");
+  const auto where = run.dds_arguments();
+  words.insert(words.end(), where.begin(), where.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("all arrive though messages are lost in bursts, late, doubled and overtaken") {
+  LaunchedRun run(shuttles(3, ""), {"--faults"});
+  REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+  REQUIRE(run.command(fault(run, {"network", "--target", "all", "--loss", "0.1", "--burst", "3", "--delay-ms",
+                                  "0,5,50", "--duplicate", "0.2"})) == "exit code 0");
+  for (const char* process :
+       {"agent-0", "agent-7", "sidestep-coordinator", "sidestep-vision", "sidestep-simulator"}) {
+    INFO(process);
+    const std::string words = std::string(process) + ": network fault: 10 % lost in bursts of 3";
+    CHECK(run.until([&] { return run.logged(words); }));
+  }
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  const auto report = run.report();
+  require_untouched(report);
+  CHECK(report["arrived"] == 8);
+  WARN("10 % lost in bursts, 0 to 50 ms late, 20 % doubled: " << report["missed_cycles"] << " of "
+                                                              << report["cycles"] << " cycles missed");
+}
+
+TEST_CASE("a coordinator that hears nothing stops everybody, and one order sets it free again") {
+  LaunchedRun run(shuttles(4, ""), {"--faults"});
+  REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+  REQUIRE(run.command(fault(run, {"network", "--target", "coordinator", "--cut"})) == "exit code 0");
+  REQUIRE(run.until([&] { return run.fastest_mps() < 0.03; }));
+  REQUIRE(run.command(fault(run, {"network", "--target", "coordinator", "--clear"})) == "exit code 0");
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}
+
+TEST_CASE("fault orders that cannot be carried out are refused with the reason") {
+  LaunchedRun run(shuttles(20, ""));
+  REQUIRE(run.until([&] { return run.fastest_mps() > 0.5; }));
+  CHECK(run.command(fault(run, {"network", "--target", "all", "--cut"})) == "exit code 1");
+  CHECK(run.printed("nobody takes such orders"));
+  CHECK(run.command(fault(run, {"network", "--target", "agent x", "--cut"})) == "exit code 2");
+  CHECK(run.printed("got 'agent x'"));
+  CHECK(run.command(fault(run, {"network", "--target", "all"})) == "exit code 2");
+  CHECK(run.command(fault(run, {"network", "--target", "all", "--cut", "--clear"})) == "exit code 2");
+  CHECK(run.command(fault(run, {"network", "--target", "all", "--delay-ms", "5,2,1"})) == "exit code 2");
+  CHECK(run.command(fault(run, {"push", "77", "--velocity", "0.1,0"})) == "exit code 1");
+  CHECK(run.printed("there is no robot 77 on this floor"));
+  CHECK(run.command(fault(run, {"push", "3"})) == "exit code 2");
+  CHECK(run.fastest_mps() > 0);
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <set>
+
+#include "tests/faults/launched_run.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+/// SIGSTOP for so long of the floor's time.
+void pause(LaunchedRun& run, const std::string& process, double seconds) {
+  INFO(process);
+  const pid_t pid = run.pid_of(process);
+  REQUIRE(pid != 0);
+  const Time until = run.bus().now() + from_seconds(seconds);
+  REQUIRE(kill(pid, SIGSTOP) == 0);
+  CHECK(run.until([&] { return run.bus().now() >= until; }));
+  REQUIRE(kill(pid, SIGCONT) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("nobody touches and all arrive though each kind of process sleeps for two seconds") {
+  LaunchedRun run(shuttles(7, "coordinators: 2\n"));
+  for (const char* process : {"agent 2", "vision", "coordinator", "coordinator 1", "simulator"}) {
+    INFO(process << "\n" << run.output());
+    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    pause(run, process, 2);
+  }
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}
+
+TEST_CASE("kill -9 of both coordinators in turn and of an agent: all arrive") {
+  LaunchedRun run(shuttles(5, "coordinators: 2\nrestart: [agents, coordinator]\n"));
+  for (const char* process : {"coordinator 1", "agent 6", "coordinator"}) {
+    INFO(process << "\n" << run.output());
+    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    const pid_t before = run.pid_of(process);
+    REQUIRE(before > 0);
+    REQUIRE(kill(before, SIGKILL) == 0);
+    REQUIRE(run.until([&] { return run.pid_of(process) != before; }));
+  }
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+  CHECK(run.report()["deaths"].size() == 3);
+}
+
+TEST_CASE("kill -9 of the simulator: the floor is gone, and the run ends saying so") {
+  LaunchedRun run(shuttles(8, ""));
+  REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+  REQUIRE(kill(run.pid_of("simulator"), SIGKILL) == 0);
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  CHECK(run.printed("failed: simulator died"));
+  require_untouched(run.report());
+}
+
+TEST_CASE("the later one of two agents alive for one robot drives it, and nobody touches") {
+  LaunchedRun run(shuttles(5, ""));
+  REQUIRE(run.until([&] { return run.speed_mps(3) > 0.8; }));
+  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--robot", "3"};
+  for (const std::string& word : run.dds_arguments()) arguments.push_back(word);
+  const pid_t twin = run.start("twin", "sidestep-agent", arguments);
+  std::set<std::uint64_t> obeyed;
+  run.bus().subscribe(topics::kFeedback, 3, std::function([&](const msg::Feedback& feedback) {
+                        obeyed.insert(feedback.obeyed_incarnation());
+                      }));
+  CHECK(run.until([&] { return obeyed.size() == 2; }));
+  CHECK(is_running(run.pid_of("agent 3")));
+  CHECK(is_running(twin));
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  CHECK_FALSE(run.exit_of("twin"));
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}
