@@ -186,21 +186,4 @@ msg::CoordinatorState Coordinator::state() const {
   return state;
 }
 
-std::size_t Coordinator::page_count() const {
-  return (ledger_.roster().size() + kRobotsPerPage - 1) / kRobotsPerPage;
-}
-
-msg::LedgerPage Coordinator::page(std::size_t index) const {
-  msg::LedgerPage page;
-  page.page_index(static_cast<std::uint32_t>(index));
-  page.page_count(static_cast<std::uint32_t>(page_count()));
-  page.epoch(epoch_);
-  const std::size_t end = std::min(ledger_.roster().size(), (index + 1) * kRobotsPerPage);
-  for (std::size_t i = index * kRobotsPerPage; i < end; ++i) {
-    for (const Version& version : ledger_.versions(ledger_.roster()[i]))
-      page.versions().push_back(encode(version));
-  }
-  return page;
-}
-
 }  // namespace sidestep

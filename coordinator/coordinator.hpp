@@ -37,10 +37,6 @@ class Coordinator {
   const Ledger& ledger() const { return ledger_; }
 
   msg::CoordinatorState state() const;
-  /// The ledger in pages of kRobotsPerPage robots of the roster.
-  static constexpr std::size_t kRobotsPerPage = 32;
-  std::size_t page_count() const;
-  msg::LedgerPage page(std::size_t index) const;
 
  private:
   static constexpr std::size_t kRememberedVerdicts = 8;

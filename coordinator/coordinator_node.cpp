@@ -2,6 +2,7 @@
 #include "coordinator/coordinator_node.hpp"
 
 #include "common/messaging/senders.hpp"
+#include "coordinator/ledger_pages.hpp"
 
 namespace sidestep {
 namespace {
@@ -106,10 +107,8 @@ void CoordinatorNode::publish_state_periodically() {
 void CoordinatorNode::publish_ledger() {
   bus_.at(bus_.now() + cycle_, [this] { publish_ledger(); });
   if (!coordinator_.is_granting()) return;
-  for (std::size_t i = 0; i < coordinator_.page_count(); ++i) {
-    auto page = coordinator_.page(i);
+  for (msg::LedgerPage& page : ledger_pages(coordinator_.ledger(), coordinator_.epoch()))
     publish(ledger_writer_, page);
-  }
 }
 
 }  // namespace sidestep

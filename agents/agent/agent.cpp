@@ -122,22 +122,28 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
 
 void Agent::on_world(const msg::WorldState& world, Time now) {
   obstacles_.on_world(world, now);
-  for (const msg::TrackedRobot& seen : world.robots()) {
-    if (seen.robot() != robot_.id || seen.seen_at_ns() <= last_fix_ns_) continue;
-    const bool is_sound = std::isfinite(seen.seen_x_m()) && std::isfinite(seen.seen_y_m()) &&
-                          std::isfinite(seen.seen_heading_rad()) &&
-                          seen.seen_at_ns() <= to_ns(now + clocks_differ_);
-    if (!is_sound) {
-      ++invalid_;
-      continue;
-    }
-    last_fix_ns_ = seen.seen_at_ns();
-    fix_.emplace();
-    fix_->captured_at_ns(seen.seen_at_ns());
-    fix_->x_m(seen.seen_x_m());
-    fix_->y_m(seen.seen_y_m());
-    fix_->heading_rad(seen.seen_heading_rad());
+  const auto& robots = world.robots();
+  // Usually where it was in the last message.
+  if (in_world_ >= robots.size() || robots[in_world_].robot() != robot_.id) {
+    const auto found = std::ranges::find_if(robots, [&](const auto& r) { return r.robot() == robot_.id; });
+    in_world_ = static_cast<std::size_t>(found - robots.begin());
+    if (found == robots.end()) return;
   }
+  const msg::TrackedRobot& seen = robots[in_world_];
+  if (seen.seen_at_ns() <= last_fix_ns_) return;
+  const bool is_sound = std::isfinite(seen.seen_x_m()) && std::isfinite(seen.seen_y_m()) &&
+                        std::isfinite(seen.seen_heading_rad()) &&
+                        seen.seen_at_ns() <= to_ns(now + clocks_differ_);
+  if (!is_sound) {
+    ++invalid_;
+    return;
+  }
+  last_fix_ns_ = seen.seen_at_ns();
+  fix_.emplace();
+  fix_->captured_at_ns(seen.seen_at_ns());
+  fix_->x_m(seen.seen_x_m());
+  fix_->y_m(seen.seen_y_m());
+  fix_->heading_rad(seen.seen_heading_rad());
 }
 
 void Agent::on_ledger(const msg::LedgerPage& page) {

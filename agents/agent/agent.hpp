@@ -76,6 +76,7 @@ class Agent {
   State estimate_;                   // the robot's own
   std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
+  std::size_t in_world_ = 0;  // the robot's place in the last world that it was in
   std::optional<Version> forwarded_;
   std::uint64_t invalid_ = 0;        // sights that made no sense
   std::uint64_t off_reference_ = 0;  // times the robot made a stop of its own,

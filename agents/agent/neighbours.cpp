@@ -2,10 +2,21 @@
 #include "agents/agent/neighbours.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
+namespace {
+
+/// Whether everything on the page begins farther away than the horizon, as far as it says. The coordinator
+/// has the last word, so a page that does not tell the truth costs no more than a denial.
+bool is_far(const msg::LedgerPage& page, const Vec2& here, double horizon) {
+  return page.low_x_m() - here.x() > horizon || here.x() - page.high_x_m() > horizon ||
+         page.low_y_m() - here.y() > horizon || here.y() - page.high_y_m() > horizon;
+}
+
+}  // namespace
 
 void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, double horizon) {
   if (message.page_index() >= kMaxRobots || message.epoch() > kHighestEpoch) {
@@ -19,8 +30,8 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
   if (older) return;
   page.epoch = message.epoch();
   page.number = message.head().message_number();
-  if (!page.versions.empty()) is_gathered_ = false;
   page.versions.clear();
+  if (is_far(message, here, horizon)) return;
   for (const msg::Version& entry : message.versions()) {
     const Vec2 offset(entry.x_m() - here.x(), entry.y_m() - here.y());
     if (entry.robot() == self_ || offset.squaredNorm() > horizon * horizon) continue;
@@ -30,16 +41,6 @@ void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, doubl
       ++invalid_;
     }
   }
-  if (!page.versions.empty()) is_gathered_ = false;
-}
-
-std::span<const Version> Neighbours::versions() {
-  if (!is_gathered_) {
-    versions_.clear();
-    for (const Page& p : pages_) versions_.insert(versions_.end(), p.versions.begin(), p.versions.end());
-    is_gathered_ = true;
-  }
-  return versions_;
 }
 
 Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
@@ -53,24 +54,29 @@ Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
   return crowd_;
 }
 
-std::vector<Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
-  std::vector<const Version*> found;
-  for (const Version& version : versions()) {
-    if (version.trajectory.end() > since) continue;
-    const auto moves = [&](const Version& other) {
-      return other.robot == version.robot && other.trajectory.end() > since;
-    };
-    if (std::ranges::none_of(versions(), moves)) found.push_back(&version);
+std::span<const Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
+  standing_.clear();
+  for (const Page& page : pages_) {
+    for (const Version& version : page.versions) {
+      if (version.trajectory.end() > since || moves(version.robot, since)) continue;
+      const Vec2 place = version.trajectory.rest_position_m();
+      standing_.push_back({version.robot, place, (place - here).squaredNorm()});
+    }
   }
-  const auto distance = [&](const Version* v) {
-    return (v->trajectory.rest_position_m() - here).squaredNorm();
-  };
-  std::ranges::sort(found, {}, distance);
-  if (found.size() > most) found.resize(most);
-  std::ranges::sort(found, {}, &Version::robot);
-  std::vector<Vec2> places;
-  for (const Version* version : found) places.push_back(version->trajectory.rest_position_m());
-  return places;
+  std::ranges::sort(standing_, {}, [](const Stand& s) { return std::pair(s.distance2, s.robot); });
+  if (standing_.size() > most) standing_.resize(most);
+  std::ranges::sort(standing_, {}, [](const Stand& s) { return std::pair(s.robot, s.distance2); });
+  places_.clear();
+  for (const Stand& stand : standing_) places_.push_back(stand.place_m);
+  return places_;
+}
+
+bool Neighbours::moves(RobotId robot, Time since) const {
+  return std::ranges::any_of(pages_, [=](const Page& page) {
+    return std::ranges::any_of(page.versions, [=](const Version& version) {
+      return version.robot == robot && version.trajectory.end() > since;
+    });
+  });
 }
 
 }  // namespace sidestep

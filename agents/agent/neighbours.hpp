@@ -19,13 +19,11 @@ class Neighbours {
   /// farther than `horizon_m` from `here` are left out.
   void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
 
-  /// All of them, page by page.
-  std::span<const Version> versions();
   /// Those that begin within `horizon_m` of `here`, to be found by place.
   Crowd& crowd(const Vec2& here_m, double horizon_m);
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at
-  /// rest since `since`, at most `most` of them, in the order of their ids.
-  std::vector<Vec2> standing(Time since, const Vec2& here_m, std::size_t most);
+  /// rest since `since`, at most `most` of them, in the order of their ids. Valid until the next call.
+  std::span<const Vec2> standing(Time since, const Vec2& here_m, std::size_t most);
   std::uint64_t invalid() const { return invalid_; }
 
  private:
@@ -34,11 +32,19 @@ class Neighbours {
     std::uint64_t number = 0;
     std::vector<Version> versions;
   };
+  struct Stand {
+    RobotId robot;
+    Vec2 place_m;
+    double distance2;
+  };
+  /// Whether any of the robot's versions ends after `since`.
+  bool moves(RobotId robot, Time since) const;
+
   RobotId self_;
   std::vector<Page> pages_;
-  bool is_gathered_ = true;
-  std::vector<Version> versions_;  // of all pages, when gathered
   Crowd crowd_;
+  std::vector<Stand> standing_;
+  std::vector<Vec2> places_;
   std::uint64_t invalid_ = 0;
 };
 

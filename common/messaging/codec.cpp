@@ -17,31 +17,33 @@ constexpr std::int64_t kLatestStart_ns = std::int64_t{1} << 62;
 // Written so that a NaN fails it.
 bool within(double value, double bound) { return std::abs(value) <= bound; }
 
-bool is_sound(const msg::Phase& phase) {
-  return phase.duration_ns() >= 0 && phase.duration_ns() <= kLongestPhase.count() &&
-         within(phase.ax_mps2(), kLargestAcceleration_mps2) &&
-         within(phase.ay_mps2(), kLargestAcceleration_mps2);
-}
-
 }  // namespace
 
+// Each field is read once: their accessors are calls, and every agent reads many versions in every cycle.
 std::optional<Version> decode(const msg::Version& message) {
-  const bool sound = message.robot() < kMaxRobots && message.phase_count() <= Trajectory::kMaxPhases &&
-                     message.start_ns() >= 0 && message.start_ns() <= kLatestStart_ns &&
-                     within(message.x_m(), kLargestPosition_m) && within(message.y_m(), kLargestPosition_m) &&
-                     within(message.vx_mps(), kLargestSpeed_mps) &&
-                     within(message.vy_mps(), kLargestSpeed_mps) && message.grown_m() >= 0 &&
-                     message.grown_m() <= kLargestGrowth_m;
+  const double x = message.x_m(), y = message.y_m(), vx = message.vx_mps(), vy = message.vy_mps();
+  const double grown = message.grown_m();
+  const std::int64_t start = message.start_ns();
+  const int phases = message.phase_count();
+  const RobotId robot = message.robot();
+  const bool sound = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
+                     start <= kLatestStart_ns && within(x, kLargestPosition_m) &&
+                     within(y, kLargestPosition_m) && within(vx, kLargestSpeed_mps) &&
+                     within(vy, kLargestSpeed_mps) && grown >= 0 && grown <= kLargestGrowth_m;
   if (!sound) return std::nullopt;
-  Trajectory trajectory(time_from_ns(message.start_ns()),
-                        {{message.x_m(), message.y_m()}, {message.vx_mps(), message.vy_mps()}});
-  for (int i = 0; i < message.phase_count(); ++i) {
-    const msg::Phase& phase = message.phases()[static_cast<std::size_t>(i)];
-    if (!is_sound(phase)) return std::nullopt;
-    trajectory.append(Duration{phase.duration_ns()}, {phase.ax_mps2(), phase.ay_mps2()});
+  std::optional<Version> version(Version{robot, message.incarnation(), message.version_number(),
+                                         message.base(), Trajectory(time_from_ns(start), {{x, y}, {vx, vy}}),
+                                         grown});
+  const auto* phase = message.phases().data();
+  for (int i = 0; i < phases; ++i, ++phase) {
+    const std::int64_t duration = phase->duration_ns();
+    const double ax = phase->ax_mps2(), ay = phase->ay_mps2();
+    const bool is_sound = duration >= 0 && duration <= kLongestPhase.count() &&
+                          within(ax, kLargestAcceleration_mps2) && within(ay, kLargestAcceleration_mps2);
+    if (!is_sound) return std::nullopt;
+    version->trajectory.append(Duration{duration}, {ax, ay});
   }
-  return Version{message.robot(), message.incarnation(), message.version_number(), message.base(),
-                 trajectory,      message.grown_m()};
+  return version;
 }
 
 msg::Version encode(const Version& version) {

@@ -6,15 +6,6 @@
 
 namespace sidestep {
 
-/// What the network has to know of one life of a process.
-struct SimLife {
-  ProcessId process;
-  bool is_alive = true;
-  bool is_aside = false;
-  Time paused_until = Time::min();
-  std::size_t waiting = 0, most_waiting = 0;
-};
-
 class SimNetwork::Writer : public RawWriter {
  public:
   Writer(SimNetwork& network, ProcessId from, const TopicInfo& topic, Channel& channel)
@@ -31,21 +22,22 @@ class SimNetwork::Writer : public RawWriter {
 SimBus::SimBus(SimNetwork& network) : SimBus(network, {network.new_process()}) {}
 
 SimBus::SimBus(SimNetwork& network, const SimPlace& place)
-    : network_(network),
-      clock_offset_(place.clock_offset),
-      life_(std::make_shared<SimLife>(SimLife{place.process})) {}
+    : network_(network), clock_offset_(place.clock_offset), life_(&network.lives_.emplace_back()) {
+  life_->process = place.process;
+}
 
 SimBus::~SimBus() {
   life_->is_alive = false;
   for (auto& [name, channel] : network_.channels_) {
-    std::erase_if(channel->readers, [&](const auto& reader) { return reader->life == life_; });
+    std::erase_if(channel->readers, [&](const auto* reader) { return reader->life == life_; });
   }
 }
 
 Time SimBus::now() const { return network_.now() + clock_offset_; }
 
 void SimBus::at(Time when, std::function<void()> callback) {
-  network_.schedule(std::max(when - clock_offset_, network_.now()), life_, std::move(callback));
+  network_.events_.put(std::max(when - clock_offset_, network_.now()),
+                       {life_, nullptr, network_.timers_.put(std::move(callback)), false});
 }
 
 void SimBus::listen_aside() { life_->is_aside = true; }
@@ -66,42 +58,58 @@ void SimBus::make_reader(const TopicInfo&, const std::string& channel,
                          std::function<void(const void*)> callback) {
   auto& slot = network_.channels_[channel];
   if (!slot) slot = std::make_unique<SimNetwork::Channel>();
-  slot->readers.push_back(
-      std::make_shared<SimNetwork::Reader>(SimNetwork::Reader{life_, std::move(callback), Time{}}));
+  slot->readers.push_back(&network_.readers_.emplace_back(SimNetwork::Reader{life_, std::move(callback)}));
 }
 
 SimNetwork::SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network)
     : rng_(seed), now_(begin), spec_(network) {}
 
 bool SimNetwork::step(Time limit) {
-  if (events_.empty() || events_.top().when > limit) {
+  if (events_.is_empty() || events_.next_time() > limit) {
     now_ = std::max(now_, limit);
     return false;
   }
-  // The queue is left consistent before the event runs, because the event schedules others.
-  Event event = std::move(const_cast<Event&>(events_.top()));
-  events_.pop();
-  now_ = event.when;
-  if (!event.life->is_alive) return true;
-  if (event.life->paused_until > now_) {
-    hold_back(std::move(event));
-    return true;
+  now_ = events_.next_time();
+  const Event event = events_.take();
+  if (!event.life->is_alive) {
+    drop(event);
+  } else if (event.life->paused_until > now_) {
+    hold_back(event);
+  } else {
+    run(event);
   }
-  event.run();
   return true;
 }
 
-void SimNetwork::hold_back(Event event) {
-  SimLife& life = *event.life;
-  if (event.may_be_lost && life.waiting++ >= life.most_waiting) return;
-  event.when = life.paused_until;
-  event.order = order_++;
-  events_.push(std::move(event));
+// A timer is taken out first, and a message stays where it is, because what runs puts others in.
+void SimNetwork::run(const Event& event) {
+  if (!event.reader) {
+    timers_.take(event.content)();
+    return;
+  }
+  const void* message = sent_[event.content].message.get();
+  event.reader->callback(message);
+  release(event.content);
 }
 
-void SimNetwork::schedule(Time when, const std::shared_ptr<SimLife>& life, std::function<void()> run,
-                          bool may_be_lost) {
-  events_.push({when, order_++, life, std::move(run), may_be_lost});
+void SimNetwork::drop(const Event& event) {
+  if (event.reader)
+    release(event.content);
+  else
+    timers_.take(event.content);
+}
+
+void SimNetwork::release(std::uint32_t sent) {
+  if (--sent_[sent].under_way == 0) sent_.take(sent);
+}
+
+void SimNetwork::hold_back(const Event& event) {
+  SimLife& life = *event.life;
+  if (event.may_be_lost && life.waiting++ >= life.most_waiting) {
+    drop(event);
+    return;
+  }
+  events_.put(life.paused_until, event);
 }
 
 Duration SimNetwork::draw_delay() {
@@ -111,35 +119,34 @@ Duration SimNetwork::draw_delay() {
 
 void SimNetwork::send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message) {
   if (channel.readers.empty()) return;
-  const std::shared_ptr<const void> copy = topic.type.copy(message);
-  for (const auto& reader : channel.readers) {
+  const std::uint32_t copy = sent_.put({topic.type.copy(message), 1});
+  for (Reader* reader : channel.readers) {
     const ProcessId to = reader->life->process;
     if (reader->life->is_aside) {
-      deliver(reader, now_, copy, false);
+      deliver(*reader, now_, copy, false);
     } else if (topic.qos == Qos::kEvent) {
-      send_event(from, reader, copy);
+      send_event(from, *reader, copy);
     } else if (links_.any() && links_.find(from, to)) {
       const Copies copies = links_.send(from, to, rng_);
-      for (std::size_t i = 0; i < copies.count; ++i) deliver(reader, now_ + copies.delays[i], copy, true);
+      for (std::size_t i = 0; i < copies.count; ++i) deliver(*reader, now_ + copies.delays[i], copy, true);
     } else if (!rng_.chance(spec_.loss)) {
-      deliver(reader, now_ + draw_delay(), copy, true);
-      if (rng_.chance(spec_.duplicate)) deliver(reader, now_ + draw_delay(), copy, true);
+      deliver(*reader, now_ + draw_delay(), copy, true);
+      if (rng_.chance(spec_.duplicate)) deliver(*reader, now_ + draw_delay(), copy, true);
     }
   }
+  release(copy);
 }
 
-void SimNetwork::send_event(ProcessId from, const std::shared_ptr<Reader>& reader,
-                            const std::shared_ptr<const void>& message) {
-  const ProcessId to = reader->life->process;
+void SimNetwork::send_event(ProcessId from, Reader& reader, std::uint32_t sent) {
+  const ProcessId to = reader.life->process;
   const Duration delay = links_.find(from, to) ? links_.delay(from, to, rng_) : draw_delay();
-  reader->last_event = std::max(reader->last_event, now_ + delay);
-  deliver(reader, reader->last_event, message, false);
+  reader.last_event = std::max(reader.last_event, now_ + delay);
+  deliver(reader, reader.last_event, sent, false);
 }
 
-void SimNetwork::deliver(const std::shared_ptr<Reader>& reader, Time when,
-                         const std::shared_ptr<const void>& message, bool may_be_lost) {
-  schedule(
-      when, reader->life, [reader, message] { reader->callback(message.get()); }, may_be_lost);
+void SimNetwork::deliver(Reader& reader, Time when, std::uint32_t sent, bool may_be_lost) {
+  ++sent_[sent].under_way;
+  events_.put(when, {reader.life, &reader, sent, may_be_lost});
 }
 
 }  // namespace sidestep

@@ -2,21 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
-#include <queue>
 #include <string>
 #include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/event_queue.hpp"
 #include "common/messaging/sim_links.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
 class SimNetwork;
-struct SimLife;
+
+/// What the network has to know of one life of a process.
+struct SimLife {
+  ProcessId process = 0;
+  bool is_alive = true;
+  bool is_aside = false;
+  Time paused_until = Time::min();
+  std::size_t waiting = 0, most_waiting = 0;
+};
 
 /// Where a simulated process runs.
 struct SimPlace {
@@ -53,7 +62,7 @@ class SimBus : public Bus {
  private:
   SimNetwork& network_;
   Duration clock_offset_;
-  std::shared_ptr<SimLife> life_;
+  SimLife* life_;  // the network's, which keeps it when it has ended
 };
 
 /// Many processes in one thread under virtual time: an event queue ordered by (time, order of scheduling),
@@ -82,34 +91,32 @@ class SimNetwork {
   friend class SimBus;
   class Writer;
   struct Reader {
-    std::shared_ptr<SimLife> life;
+    SimLife* life;
     std::function<void(const void*)> callback;
     Time last_event{};  ///< arrival of the last event, to keep events in order
   };
-  struct Event {
-    Time when;
-    std::uint64_t order;
-    std::shared_ptr<SimLife> life;
-    std::function<void()> run;
-    bool may_be_lost = false;  ///< where a paused process's messages pile up
+  struct Sent {
+    std::shared_ptr<const void> message;
+    std::uint32_t under_way = 0;  ///< to so many readers, and one more while it is being sent
   };
-  struct Later {
-    bool operator()(const Event& a, const Event& b) const {
-      return a.when != b.when ? a.when > b.when : a.order > b.order;
-    }
+  struct Event {
+    SimLife* life;
+    Reader* reader;         ///< nullptr: a timer
+    std::uint32_t content;  ///< in sent_ or timers_
+    bool may_be_lost;       ///< where a paused process's messages pile up
   };
   struct Channel {
-    std::vector<std::shared_ptr<Reader>> readers;
+    std::vector<Reader*> readers;
   };
 
-  void schedule(Time when, const std::shared_ptr<SimLife>& life, std::function<void()> run,
-                bool may_be_lost = false);
-  void hold_back(Event event);
+  void run(const Event& event);
+  /// What the event was to bring is of no use any more.
+  void drop(const Event& event);
+  void release(std::uint32_t sent);
+  void hold_back(const Event& event);
   void send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message);
-  void send_event(ProcessId from, const std::shared_ptr<Reader>& reader,
-                  const std::shared_ptr<const void>& message);
-  void deliver(const std::shared_ptr<Reader>& reader, Time when, const std::shared_ptr<const void>& message,
-               bool may_be_lost);
+  void send_event(ProcessId from, Reader& reader, std::uint32_t sent);
+  void deliver(Reader& reader, Time when, std::uint32_t sent, bool may_be_lost);
   Duration draw_delay();
 
   Rng rng_;
@@ -117,8 +124,11 @@ class SimNetwork {
   NetworkSpec spec_;
   SimLinks links_;
   ProcessId next_process_ = 0;
-  std::uint64_t order_ = 0;
-  std::priority_queue<Event, std::vector<Event>, Later> events_;
+  EventQueue<Event> events_;
+  Pool<std::function<void()>> timers_;
+  Pool<Sent> sent_;
+  std::deque<SimLife> lives_;
+  std::deque<Reader> readers_;
   std::map<std::string, std::unique_ptr<Channel>> channels_;
 };
 

@@ -213,11 +213,10 @@ Json describe(const msg::Verdict& m) {
 }
 
 Json describe(const msg::LedgerPage& m) {
-  return {{"page_index", m.page_index()},
-          {"head", head(m.head())},
-          {"epoch", m.epoch()},
-          {"page_count", m.page_count()},
-          {"versions", list(m.versions(), version)}};
+  return {
+      {"page_index", m.page_index()}, {"head", head(m.head())},   {"epoch", m.epoch()},
+      {"page_count", m.page_count()}, {"low_x_m", m.low_x_m()},   {"low_y_m", m.low_y_m()},
+      {"high_x_m", m.high_x_m()},     {"high_y_m", m.high_y_m()}, {"versions", list(m.versions(), version)}};
 }
 
 Json describe(const msg::CoordinatorState& m) {

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "agents/safety/safety_search.hpp"
+#include "common/motion/robot_model.hpp"
 #include "coordinator/ledger.hpp"
 #include "tests/bench/streams.hpp"
 
@@ -9,8 +10,8 @@ using namespace sidestep;
 
 namespace {
 
-/// One grant and the fact that frees it, to each robot in turn, among so many in crossing streams. Every
-/// robot goes on as it does or brakes, whichever is granted.
+/// One grant and the fact that frees it, to each robot in turn, among so many of those in crossing
+/// streams; what is asked for is drawn from what the robot can do.
 void grant_of_one_version(benchmark::State& state) {
   const auto& snapshot = bench::crossing_streams();
   const auto robots = static_cast<std::size_t>(state.range(0));
@@ -22,18 +23,20 @@ void grant_of_one_version(benchmark::State& state) {
   }
   Ledger ledger(floor_rules(snapshot.scenario), roster);
   for (std::size_t i = 0; i < robots; ++i) (void)ledger.enter(newest[i].robot, {&newest[i], 1});
-  std::size_t i = 0, granted = 0, cycle = 1;
+  const MotionLimits& limits = snapshot.scenario.limits;
+  const Duration cycle = snapshot.scenario.cycle;
+  Rng rng(3);
+  std::size_t i = 0, granted = 0;
   for (auto _ : state) {
     Version& last = newest[i];
-    const Time start = last.trajectory.start() + snapshot.scenario.cycle;
+    const Time start = last.trajectory.start() + cycle;
     const State there = last.trajectory.state_at(start);
-    const Vec2 ahead = cycle % 64 < 32 ? there.velocity_mps : Vec2(-there.velocity_mps);
+    const Vec2 drawn = limited(sample(there.velocity_mps, limits, rng), there.velocity_mps, limits, cycle);
     const Version next{last.robot,
                        last.incarnation,
                        last.number + 1,
                        last.number,
-                       accelerate_then_stop(start, there, 0.1 * ahead, snapshot.scenario.cycle,
-                                            snapshot.scenario.limits.deceleration_mps2),
+                       accelerate_then_stop(start, there, drawn, cycle, limits.deceleration_mps2),
                        0};
     if (ledger.grant(next).granted()) {
       ++granted;
@@ -41,7 +44,6 @@ void grant_of_one_version(benchmark::State& state) {
       last = next;
     }
     i = (i + 1) % robots;
-    cycle += i == 0 ? 1 : 0;
   }
   state.counters["granted"] = static_cast<double>(granted) / static_cast<double>(state.iterations());
 }

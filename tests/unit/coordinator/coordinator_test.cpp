@@ -265,20 +265,3 @@ TEST_CASE("random messages of every kind never break the coordinator") {
     REQUIRE_FALSE(floor.coordinator.ledger().versions(2).empty());
   }
 }
-
-TEST_CASE("the ledger's pages hold every version of every robot once") {
-  std::vector<RobotId> roster;
-  for (RobotId robot = 0; robot < 70; ++robot) roster.push_back(robot);
-  Coordinator coordinator(floor_for_tests(), roster, kEpoch);
-  for (const RobotId robot : roster) {
-    coordinator.on_registration(registration_of(standing(robot, {0.2 * robot - 8, 0}), kEpoch));
-  }
-  REQUIRE(coordinator.page_count() == 3);
-  std::vector<RobotId> seen;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto page = coordinator.page(i);
-    CHECK(page.page_count() == 3);
-    for (const auto& version : page.versions()) seen.push_back(version.robot());
-  }
-  CHECK(seen == roster);
-}
