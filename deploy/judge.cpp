@@ -162,6 +162,8 @@ void Judge::on_coordinator(const msg::CoordinatorState& state) {
   if (state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_STANDBY) return;
   if (active_ && state.epoch() < active_->epoch()) return;
   active_ = state;
+  if (state.conflicts() > 0 && find(state.conflict_first()) && find(state.conflict_second()))
+    conflicts_.emplace(state.conflict_first(), state.conflict_second());
   if (!granting_since_ && state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_GRANTING) {
     granting_since_ = time_from_ns(state.head().stamp_ns());
   }
@@ -266,6 +268,7 @@ Report Judge::report() const {
   if (granting_since_ && truth_at_)
     report.robot_time_s = std::max(0.0, to_seconds(*truth_at_ - *granting_since_));
   report.deaths = deaths_;
+  report.conflicts = conflicts_;
   return report;
 }
 

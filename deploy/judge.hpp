@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ class Judge {
   std::vector<RobotId> silent_agents() const;
   bool truth_seen() const { return truth_at_.has_value(); }
   bool coordinator_seen() const { return active_.has_value(); }
+  /// Pairs of robots that may come too near to each other, as the coordinator last said.
+  std::uint32_t conflicts() const { return active_ ? active_->conflicts() : 0; }
   /// Robots that the coordinator misses, as it last said.
   std::vector<RobotId> unregistered() const;
   /// When a coordinator first granted.
@@ -83,6 +86,7 @@ class Judge {
   };
   std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife> coordinators_;  ///< by number and life
   std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
+  std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::optional<Time> granting_since_;
   std::optional<Time> truth_at_;
   double max_reference_error_m_ = 0;

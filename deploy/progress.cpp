@@ -52,11 +52,12 @@ std::string progress_line(const Judge& judge, Time now) {
                                                 static_cast<double>(report.cycles)
                                           : 0;
   return fmt::format(
-      "{}  {} of {} arrived  {} contacts  clearance {}  {} grants  {} denials  {:.2f} % missed  "
+      "{}  {} of {} arrived  {} contacts{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
       "negotiation {:.2f} / {:.2f} ms",
       since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
-      report.contacts, report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?",
-      report.grants, report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
+      report.contacts, judge.conflicts() > 0 ? fmt::format("  {} in conflict", judge.conflicts()) : "",
+      report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
+      report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
       milliseconds(report.negotiation.quantile(0.99)));
 }
 

@@ -80,6 +80,7 @@ std::string to_json(const Report& r) {
   json["missed_cycles"] = r.missed_cycles;
   json["invalid_messages"] = r.invalid_messages;
   json["firmware_violations"] = r.firmware_violations;
+  json["conflicts"] = r.conflicts;
   json["max_reference_error_m"] = rounded(r.max_reference_error_m);
   json["negotiation_us"] = quantiles(r.negotiation, true);
   json["robot_time_s"] = rounded(r.robot_time_s);
@@ -118,6 +119,8 @@ std::string summary(const Report& r) {
         "{} crashes with opponents, {} of them moving; fastest {:.2f} m/s, of which the robot {:.2f} m/s\n",
         r.crashes, r.moving_crashes, r.crash_speed_mps, r.robot_crash_speed_mps);
   }
+  for (const auto& [first, second] : r.conflicts)
+    text += fmt::format("robots {} and {} were brought too near to each other\n", first, second);
   for (const Death& death : r.deaths) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ struct Report {
   std::uint64_t missed_cycles = 0;
   std::uint64_t invalid_messages = 0;
   std::uint64_t firmware_violations = 0;
+  std::set<std::pair<RobotId, RobotId>> conflicts;  ///< pairs that something outside brought too near
   double max_reference_error_m = 0;
   double robot_time_s = 0;  ///< from the first grant to the latest ground truth
   DurationHistogram negotiation;

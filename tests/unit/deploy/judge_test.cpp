@@ -230,6 +230,25 @@ TEST_CASE("of several coordinators the one with the highest epoch speaks, and th
   CHECK(judge.dropped() == 0);
 }
 
+TEST_CASE("pairs of robots that the coordinator names as in conflict are remembered") {
+  Judge judge(kTwo);
+  auto message = state(1, 1, kGranting);
+  message.conflicts(1);
+  message.conflict_first(3);
+  message.conflict_second(7);
+  judge.on_coordinator(message);
+  CHECK(judge.conflicts() == 1);
+  message = state(2, 2, kGranting);
+  judge.on_coordinator(message);
+  CHECK(judge.conflicts() == 0);
+  message = state(3, 3, kGranting);
+  message.conflicts(1);
+  message.conflict_first(3);
+  message.conflict_second(99);  // nobody
+  judge.on_coordinator(message);
+  CHECK(judge.report().conflicts == std::set<std::pair<RobotId, RobotId>>{{3, 7}});
+}
+
 TEST_CASE("old and repeated ground truth does not move robots back") {
   Judge judge(kTwo);
   judge.on_truth(truth(5, 5, {body(3, 1, 0)}));

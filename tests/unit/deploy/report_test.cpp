@@ -26,6 +26,7 @@ Report example() {
   report.duration_s = 2;
   for (int i = 1; i <= 100; ++i) report.negotiation.add(std::chrono::microseconds(100 * i));
   report.deaths.push_back({"agent 7", "exit code 1", 0.5, false});
+  report.conflicts = {{3, 7}};
   return report;
 }
 
@@ -61,6 +62,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "missed_cycles",
                                          "invalid_messages",
                                          "firmware_violations",
+                                         "conflicts",
                                          "max_reference_error_m",
                                          "negotiation_us",
                                          "robot_time_s",
@@ -76,6 +78,8 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK(json["negotiation_us"]["max"] == 10000.0);
   CHECK(json["negotiation_us"]["p50"] >= 5000.0);
   CHECK(json["negotiation_us"]["p50"] < 5700.0);
+  CHECK(json["conflicts"].dump() == "[[3,7]]");
+  CHECK_THAT(summary(example()), Catch::Contains("robots 3 and 7 were brought too near"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
 }
