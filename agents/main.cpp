@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
@@ -21,7 +22,13 @@ int main(int argc, char** argv) {
       throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
                                   std::to_string(robot));
     }
-    return std::make_shared<AgentNode>(bus, scenario, robot, static_cast<Incarnation>(to_ns(bus.now())));
+    auto node = std::make_shared<AgentNode>(bus, scenario, robot, static_cast<Incarnation>(to_ns(bus.now())));
+    // It does not end: a supervisor would start it again, and it would take the robot from the later one.
+    node->on_superseded([robot] {
+      fmt::print(stderr, "agent-{}: superseded, a later agent drives this robot; it is quiet from now on\n",
+                 robot);
+    });
+    return node;
   };
   return run_process(argc, argv, program);
 }

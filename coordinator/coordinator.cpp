@@ -11,16 +11,18 @@ namespace {
 // A registered version has to end at rest, but for rounding.
 constexpr double kAtRest_mps = 1e-6;
 
+bool ends_at_rest(const Version& version) { return version.trajectory.residual_speed_mps() <= kAtRest_mps; }
+
 /// What a registration says, or nullopt where it makes no sense.
 std::optional<std::vector<Version>> versions_of(const msg::Registration& registration) {
-  if (registration.version_count() == 0 || registration.version_count() > VersionSet::kCapacity)
-    return std::nullopt;
+  if (registration.is_absent() != (registration.version_count() == 0)) return std::nullopt;
+  if (registration.version_count() > VersionSet::kCapacity) return std::nullopt;
   std::vector<Version> versions;
   for (std::size_t i = 0; i < registration.version_count(); ++i) {
     const auto version = decode(registration.versions()[i]);
     const auto is_same = [&](const Version& other) { return other.number == version->number; };
-    if (!version || version->robot != registration.robot() ||
-        version->trajectory.residual_speed_mps() > kAtRest_mps || std::ranges::any_of(versions, is_same)) {
+    if (!version || version->robot != registration.robot() || !ends_at_rest(*version) ||
+        std::ranges::any_of(versions, is_same)) {
       return std::nullopt;
     }
     versions.push_back(*version);
@@ -38,6 +40,7 @@ Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, E
 
 void Coordinator::begin_epoch(Epoch epoch) {
   epoch_ = epoch;
+  contradicted_ = false;
   ledger_.clear();
   for (Record& record : records_) record = {};
   missing_ = ledger_.roster().size();
@@ -89,12 +92,19 @@ msg::Reason Coordinator::enter(const msg::Registration& registration) {
 void Coordinator::on_feedback(const msg::Feedback& feedback) {
   const RobotId robot = feedback.robot();
   if (!is_active()) return;
-  if (!ledger_.knows(robot) || feedback.head().sender() != robot || feedback.executing().robot() != robot) {
+  const auto executing = decode(feedback.executing());
+  const bool is_sound = ledger_.knows(robot) && feedback.head().sender() == robot && executing &&
+                        executing->robot == robot && ends_at_rest(*executing);
+  if (!is_sound) {
     ++invalid_;
     return;
   }
-  if (record_of(robot).registered) {
-    ledger_.forget(robot, feedback.executing().version_number(), time_from_ns(feedback.at_ns()));
+  if (!record_of(robot).registered) return;
+  const Time at = time_from_ns(feedback.at_ns());
+  if (feedback.is_lifted() && executing->number == 0) {
+    ledger_.on_lifted(robot, at);
+  } else if (ledger_.on_executing(*executing, at, feedback.is_off_reference()) == FactUse::kContradiction) {
+    contradicted_ = true;
   }
 }
 
@@ -180,8 +190,19 @@ msg::CoordinatorState Coordinator::state() const {
   state.grants(grants_);
   state.denials(denials_);
   state.invalid(invalid_);
+  const auto conflicts = ledger_.conflicts();
+  state.conflicts(static_cast<std::uint32_t>(conflicts.size()));
+  if (!conflicts.empty()) {
+    state.conflict_first(conflicts.front().first);
+    state.conflict_second(conflicts.front().second);
+  }
   for (const RobotId robot : ledger_.roster()) {
-    if (is_active() && !records_[robot].registered) state.missing().push_back(robot);
+    if (!is_active()) continue;
+    if (!records_[robot].registered) {
+      state.missing().push_back(robot);
+    } else if (ledger_.versions(robot).empty()) {
+      state.absent(state.absent() + 1);
+    }
   }
   return state;
 }

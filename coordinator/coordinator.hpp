@@ -29,10 +29,13 @@ class Coordinator {
   std::optional<msg::Verdict> on_registration(const msg::Registration& registration);
   /// A fact from a robot.
   void on_feedback(const msg::Feedback& feedback);
+  /// A robot has told a fact that cannot be true if the ledger is. Nothing is granted any more: a new epoch
+  /// has to begin.
+  bool is_contradicted() const { return contradicted_; }
 
   bool is_active() const { return epoch_ != 0; }
-  /// False until every robot of the roster has registered.
-  bool is_granting() const { return is_active() && missing_ == 0; }
+  /// False until every robot of the roster has registered, and once the ledger was contradicted.
+  bool is_granting() const { return is_active() && missing_ == 0 && !contradicted_; }
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
 
@@ -58,6 +61,7 @@ class Coordinator {
 
   Ledger ledger_;
   Epoch epoch_;
+  bool contradicted_ = false;
   std::size_t missing_;
   std::vector<Record> records_;  // by robot
   std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;

@@ -72,6 +72,9 @@ void CoordinatorNode::on_registration(const msg::Registration& registration) {
 void CoordinatorNode::on_feedback(const msg::Feedback& feedback) {
   note_epoch(feedback, feedback.obeyed_epoch());
   coordinator_.on_feedback(feedback);
+  if (!coordinator_.is_contradicted()) return;
+  succession_.begin_epoch(bus_.now());
+  follow_succession();
 }
 
 void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {

@@ -4,9 +4,38 @@
 #include <algorithm>
 
 #include "common/motion/clearance.hpp"
+#include "common/motion/escape.hpp"
 #include "common/motion/outline.hpp"
 
 namespace sidestep {
+namespace {
+
+// A stand lies still, but for rounding.
+constexpr double kAtRest_mps = 1e-6;
+
+bool is_stand(const Version& version) {
+  return version.base == 0 && version.trajectory.phases().empty() &&
+         version.trajectory.residual_speed_mps() == 0;
+}
+
+/// Growth ends where a robot rests, and changes nowhere else.
+bool may_have_growth(const Version& candidate, const Version& base) {
+  if (candidate.grown_m == base.grown_m) return true;
+  return candidate.grown_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;
+}
+
+/// Whether two versions of one number are one version.
+bool is_same(const Version& a, const Version& b) {
+  const State &from = a.trajectory.at_start(), &other = b.trajectory.at_start();
+  return a.base == b.base && a.trajectory.start() == b.trajectory.start() &&
+         from.position_m == other.position_m && from.velocity_mps == other.velocity_mps &&
+         a.grown_m == b.grown_m &&
+         std::ranges::equal(a.trajectory.phases(), b.trajectory.phases(), [](const Phase& p, const Phase& q) {
+           return p.duration == q.duration && p.acceleration_mps2 == q.acceleration_mps2;
+         });
+}
+
+}  // namespace
 
 Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster)
     : rules_(rules),
@@ -26,46 +55,73 @@ std::span<const Version> Ledger::versions(RobotId robot) const {
   return knows(robot) ? entries_[index_of(robot)].set.versions() : std::span<const Version>{};
 }
 
-std::optional<RobotId> Ledger::enter(RobotId robot, std::span<const Version> versions) {
-  Entry& entry = entries_[index_of(robot)];
-  std::optional<RobotId> blocker;
-  for (const Version& version : versions) {
-    if (!blocker) blocker = blocker_of(version.trajectory, robot);
-    entry.set.add(version);
-  }
+void Ledger::enter(RobotId robot, std::span<const Version> versions) {
+  Entry& entry = entry_of(robot);
+  for (const Version& version : versions) entry.set.add(version);
   bound(index_of(robot));
-  return blocker;
+  find_conflicts(robot);
 }
 
 Ruling Ledger::grant(const Version& candidate) {
-  Entry& entry = entries_[index_of(candidate.robot)];
+  Entry& entry = entry_of(candidate.robot);
   const Version* base = entry.set.find(candidate.base);
-  if (!base) return {msg::REASON_BASE_UNKNOWN};
-  if (candidate.number <= base->number) return {msg::REASON_OLD_VERSION};
+  const bool is_absent = entry.set.versions().empty();
+  if (is_absent && !is_stand(candidate)) return {msg::REASON_ABSENT};
+  if (!is_absent && !base) return {msg::REASON_BASE_UNKNOWN};
   if (entry.set.is_full()) return {msg::REASON_LEDGER_FULL};
-  const Trajectory& trajectory = candidate.trajectory;
-  if (!continues(trajectory, base->trajectory)) return {msg::REASON_NOT_CONTINUOUS};
-  if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED)
-    return {reason};
-  if (const auto reason = check_place(trajectory, rules_); reason != msg::REASON_GRANTED) return {reason};
-  if (const auto blocker = blocker_of(trajectory, candidate.robot)) return {msg::REASON_CONFLICT, *blocker};
+  if (const auto refusal = refusal_of(candidate, base); refusal != msg::REASON_GRANTED) return {refusal};
+  if (const auto blocker = blocker_of(candidate, base)) return {msg::REASON_CONFLICT, *blocker};
   entry.set.add(candidate);
   bound(index_of(candidate.robot));
   return {};
 }
 
-bool Ledger::forget(RobotId robot, VersionNumber executing, Time at) {
-  Entry& entry = entries_[index_of(robot)];
-  if (!entry.set.forget(executing, at)) return false;
+msg::Reason Ledger::refusal_of(const Version& candidate, const Version* base) const {
+  const Trajectory& trajectory = candidate.trajectory;
+  if (!base) return candidate.grown_m == 0 ? check_place(trajectory, rules_) : msg::REASON_NOT_CONTINUOUS;
+  if (candidate.number <= base->number) return msg::REASON_OLD_VERSION;
+  if (!continues(trajectory, base->trajectory) || !may_have_growth(candidate, *base))
+    return msg::REASON_NOT_CONTINUOUS;
+  if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED)
+    return reason;
+  return check_place_after(candidate, base->trajectory, rules_);
+}
+
+FactUse Ledger::on_executing(const Version& executing, Time at, bool is_off_reference) {
+  Entry& entry = entry_of(executing.robot);
+  const auto versions = entry.set.versions();
+  const auto is_older = [&](const Version& held) { return held.number < executing.number; };
+  if (at <= entry.lifted_at) return FactUse::kLate;
+  if (const Version* held = entry.set.find(executing.number)) {
+    if (!is_same(*held, executing)) return FactUse::kContradiction;
+    entry.set.forget(executing.number, at);
+    bound(index_of(executing.robot));
+    end_conflicts(executing.robot);
+    return FactUse::kUsed;
+  }
+  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactUse::kLate;
+  if (!is_off_reference || !std::ranges::all_of(versions, is_older)) return FactUse::kContradiction;
+  entry.set.clear();
+  entry.set.add(executing);
+  bound(index_of(executing.robot));
+  find_conflicts(executing.robot);
+  return FactUse::kUsed;
+}
+
+void Ledger::on_lifted(RobotId robot, Time at) {
+  Entry& entry = entry_of(robot);
+  entry.lifted_at = std::max(entry.lifted_at, at);
+  entry.set.forget_started(at);
   bound(index_of(robot));
-  return true;
+  end_conflicts(robot);
 }
 
 void Ledger::clear() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    entries_[i].set.clear();
+    entries_[i] = {};
     bound(i);
   }
+  conflicts_.clear();
 }
 
 void Ledger::bound(std::size_t index) {
@@ -75,7 +131,10 @@ void Ledger::bound(std::size_t index) {
     places_.remove(static_cast<std::uint32_t>(index));
     return;
   }
-  for (std::size_t i = 0; i < versions.size(); ++i) entry.discs[i] = disc_of(versions[i].trajectory);
+  for (std::size_t i = 0; i < versions.size(); ++i) {
+    entry.discs[i] = disc_of(versions[i].trajectory);
+    entry.discs[i].radius_m += versions[i].grown_m;
+  }
   Circle all = entry.discs.front();
   for (std::size_t i = 1; i < versions.size(); ++i) {
     const double offset = (entry.discs[i].centre_m - all.centre_m).norm();
@@ -84,20 +143,54 @@ void Ledger::bound(std::size_t index) {
   places_.set(static_cast<std::uint32_t>(index), all);
 }
 
-std::optional<RobotId> Ledger::blocker_of(const Trajectory& trajectory, RobotId robot) {
-  const double keep = rules_.keep_m();
-  Circle around = disc_of(trajectory);
-  around.radius_m += keep + kClearanceTolerance_m;
+bool Ledger::may_both(const Version& candidate, const Version* base, const Version& other) const {
+  const double keep = rules_.keep_m() + candidate.grown_m + other.grown_m;
+  if (is_clear(candidate.trajectory, other.trajectory, keep)) return true;
+  if (!base) return false;
+  const double kept = kept_distance_m(base->trajectory, candidate.trajectory.start(), other.trajectory, keep);
+  return kept < keep && is_clear(candidate.trajectory, other.trajectory, kept);
+}
+
+std::optional<RobotId> Ledger::blocker_of(const Version& candidate, const Version* base) {
+  Circle around = disc_of(candidate.trajectory);
+  around.radius_m += candidate.grown_m + rules_.keep_m() + kClearanceTolerance_m;
   places_.find(around, near_);
   for (const std::uint32_t index : near_) {
-    if (roster_[index] == robot) continue;
+    if (roster_[index] == candidate.robot) continue;
     const auto versions = entries_[index].set.versions();
     for (std::size_t i = 0; i < versions.size(); ++i) {
-      if (touch(entries_[index].discs[i], around) && !is_clear(trajectory, versions[i].trajectory, keep))
+      if (touch(entries_[index].discs[i], around) && !may_both(candidate, base, versions[i]))
         return roster_[index];
     }
   }
   return std::nullopt;
+}
+
+bool Ledger::are_in_conflict(const Entry& a, const Entry& b) const {
+  return std::ranges::any_of(a.set.versions(), [&](const Version& v) {
+    return std::ranges::any_of(b.set.versions(), [&](const Version& w) { return !may_both(v, nullptr, w); });
+  });
+}
+
+void Ledger::find_conflicts(RobotId robot) {
+  std::erase_if(conflicts_, [=](const Conflict& c) { return c.first == robot || c.second == robot; });
+  const Entry& entry = entry_of(robot);
+  for (std::size_t i = 0; i < entry.set.versions().size(); ++i) {
+    Circle around = entry.discs[i];
+    around.radius_m += rules_.keep_m() + kClearanceTolerance_m;
+    places_.find(around, near_);
+    for (const std::uint32_t index : near_) {
+      const Conflict pair{std::min(robot, roster_[index]), std::max(robot, roster_[index])};
+      if (roster_[index] == robot || std::ranges::count(conflicts_, pair) > 0) continue;
+      if (are_in_conflict(entry, entries_[index])) conflicts_.push_back(pair);
+    }
+  }
+}
+
+void Ledger::end_conflicts(RobotId robot) {
+  std::erase_if(conflicts_, [&](const Conflict& c) {
+    return (c.first == robot || c.second == robot) && !are_in_conflict(entry_of(c.first), entry_of(c.second));
+  });
 }
 
 }  // namespace sidestep

@@ -110,6 +110,11 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   off_reference_ += stop > last_stop_;
   last_stop_ = std::max(last_stop_, stop);
   if (!negotiation_.is_fenced()) return;
+  if (negotiation_.is_absent()) {
+    arrived_ = false;
+    return;
+  }
+  if (!feedback.is_lifted()) place_m_.reset();  // it has been put down
   const Trajectory& executing = negotiation_.executing().trajectory;
   const bool at_rest = time_from_ns(feedback.at_ns()) >= executing.end();
   arrived_ = at_rest && (executing.rest_position_m() - goal().position_m).norm() < goal_tolerance_m_;
@@ -151,6 +156,25 @@ void Agent::on_ledger(const msg::LedgerPage& page) {
   neighbours_.on_page(page, estimate_.position_m, horizon);
 }
 
+void Agent::on_disturbance(const msg::Disturbance& disturbance) {
+  if (disturbance.robot() != robot_.id || disturbance.disturbance_kind() != msg::DISTURBANCE_PLACE) return;
+  const Vec2 place(disturbance.x_m(), disturbance.y_m());
+  if (place.allFinite()) {
+    place_m_ = place;
+  } else {
+    ++invalid_;
+  }
+}
+
+bool Agent::wants_stand(Time now) const {
+  return place_m_ && negotiation_.is_absent() && negotiation_.may_propose(now);
+}
+
+msg::Proposal Agent::propose_stand(Time now, Time start) {
+  const Trajectory stand = Trajectory::resting(start, *place_m_);
+  return negotiation_.propose({&stand, 1}, 0, now);
+}
+
 void Agent::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
   negotiation_.on_coordinator_state(state, now);
 }
@@ -159,11 +183,12 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Duration unseen = now - time_from_ns(last_fix_ns_);
   // Farther in the future than it can be unknown what the robot's clock shows, somebody has set a clock.
   const bool is_lost = unseen > kLostAfter || unseen < -kLostAfter;
-  if (!negotiation_.may_propose(now) || is_lost) return std::nullopt;
+  if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
-  if ((rest - goal().position_m).norm() < kCloseEnough_m || start <= base.trajectory.start())
-    return std::nullopt;
+  const double grown_m = growth_from(base, start);
+  const bool is_there = (rest - goal().position_m).norm() < kCloseEnough_m && grown_m == base.grown_m;
+  if (is_there || start <= base.trajectory.start()) return std::nullopt;
   base_ = base.number;
   const State there = base.trajectory.state_at(start);
   update_ways(now);
@@ -172,7 +197,13 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Vec2 direction = direction_beside(there.position_m, route);
   const MotionWish wish = wished_motion(route.length_m * direction, there.velocity_mps, rules_.limits, cycle_,
                                         cycle_ * negotiation_.lead());
-  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, base.grown_m, obstacles_.recent(now)};
+  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, grown_m, obstacles_.recent(now)};
+}
+
+double Agent::growth_from(const Version& base, Time start) const {
+  const bool is_at_rest = start >= base.trajectory.end();
+  const bool was_seen_there = last_fix_ns_ > to_ns(base.trajectory.end());
+  return is_at_rest && was_seen_there ? 0 : base.grown_m;
 }
 
 Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
@@ -188,10 +219,12 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
   Crowd& others = neighbours_.crowd(query.at_start.position_m, search_horizon_m(rules_));
-  const SearchResult result = safety_search_.search(query, others, rng_);
+  SearchResult result = safety_search_.search(query, others, rng_);
+  if (result.count == 0)
+    result = search_escape(query, negotiation_.base_at(query.start), others.versions(), rules_);
   passing_.update(result.wish_is_clear, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
-  return negotiation_.propose({result.candidates.data(), result.count}, base_, now);
+  return negotiation_.propose({result.candidates.data(), result.count}, base_, now, query.grown_m);
 }
 
 std::optional<msg::Command> Agent::on_verdict(const msg::Verdict& verdict, Time now) {
@@ -221,6 +254,7 @@ msg::AgentStatus Agent::status(Time now) const {
   const Negotiation& n = negotiation_;
   status.agent_phase(!n.is_fenced()           ? msg::AGENT_FENCING
                      : n.needs_registration() ? msg::AGENT_REGISTERING
+                     : n.is_absent()          ? msg::AGENT_ABSENT
                      : arrived_               ? msg::AGENT_ARRIVED
                      : n.may_propose(now)     ? msg::AGENT_DRIVING
                                               : msg::AGENT_WAITING);

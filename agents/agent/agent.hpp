@@ -9,8 +9,10 @@
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/passing.hpp"
 #include "agents/planning/visibility_graph.hpp"
+#include "agents/safety/escape_search.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/config/scenario.hpp"
+#include "idl/disturbance.h"
 #include "idl/monitor.h"
 #include "idl/vision.h"
 
@@ -27,6 +29,8 @@ class Agent {
   /// `now`: the latest that it can be by the robot's clock.
   void on_world(const msg::WorldState& world, Time now);
   void on_ledger(const msg::LedgerPage& page);
+  /// Somebody's hand: hears where a robot that was lifted shall be put down.
+  void on_disturbance(const msg::Disturbance& disturbance);
   void on_coordinator_state(const msg::CoordinatorState& state, Time now);
   /// The command that forwards a granted version.
   std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
@@ -37,6 +41,11 @@ class Agent {
   /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot
   /// brakes).
   std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
+
+  /// Whether the robot is not on the floor, and may ask for the place where it shall be put down.
+  bool wants_stand(Time now) const;
+  /// The proposal to stand there. Precondition: wants_stand().
+  msg::Proposal propose_stand(Time now, Time start);
 
   /// Fences the robot, forwards what vision saw of it, and once more a granted version whose start is still
   /// to come.
@@ -55,6 +64,9 @@ class Agent {
   std::vector<Circle> moving_in_the_way(Time now);
   /// How far from the edge of what is in the way a robot's centre stays where it plans.
   double planning_keep_m() const;
+  /// What a version on this base has to be taken for larger: as the base, until vision has seen the robot at
+  /// rest.
+  double growth_from(const Version& base, Time start) const;
   /// The way's direction, turned right by the preference for that side as far as obstacles allow.
   Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
@@ -78,6 +90,7 @@ class Agent {
   std::int64_t last_fix_ns_ = 0;
   std::size_t in_world_ = 0;  // the robot's place in the last world that it was in
   std::optional<Version> forwarded_;
+  std::optional<Vec2> place_m_;      // where the robot shall be put down
   std::uint64_t invalid_ = 0;        // sights that made no sense
   std::uint64_t off_reference_ = 0;  // times the robot made a stop of its own,
   VersionNumber last_stop_ = 0;      // and the newest

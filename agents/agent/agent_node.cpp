@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -48,6 +49,8 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
   bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) {
                    agent_.on_world(w, bus_.now() + clocks_.robot_ahead_at_most(bus_.now()));
                  }));
+  bus_.subscribe(topics::kDisturbance,
+                 std::function([this](const msg::Disturbance& hand) { agent_.on_disturbance(hand); }));
   bus_.subscribe(topics::kLedger,
                  std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
   bus_.subscribe(topics::kCoordinator,
@@ -65,7 +68,10 @@ void AgentNode::begin_cycle() {
   next_cycle_ = cycle_after(now);
   begin_next_cycle_later();
   agent_.negotiation().close_cycle(now);
-  if (agent_.negotiation().is_superseded()) return;
+  if (agent_.negotiation().is_superseded()) {
+    if (const auto callback = std::exchange(on_superseded_, nullptr)) callback();
+    return;
+  }
   if (!commanded_) {
     auto command = agent_.command(now);
     publish(command_writer_, command);
@@ -149,12 +155,15 @@ Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation
 
 void AgentNode::negotiate(Time start) {
   if (!agent_.negotiation().may_propose(robot_now()) || !clocks_agree()) return;
+  if (agent_.wants_stand(robot_now())) return ask(agent_.propose_stand(robot_now(), start));
   const auto query = timed(plan_, [&] { return agent_.plan(robot_now(), start); });
   if (!query) return;
-  auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); });
-  if (!proposal) return;
-  publish(proposal_writer_, *proposal);
-  clocks_.on_asked(time_from_ns(proposal->head().stamp_ns()));
+  if (auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); })) ask(*proposal);
+}
+
+void AgentNode::ask(msg::Proposal proposal) {
+  publish(proposal_writer_, proposal);
+  clocks_.on_asked(time_from_ns(proposal.head().stamp_ns()));
 }
 
 void AgentNode::on_verdict(const msg::Verdict& verdict) {
@@ -172,6 +181,7 @@ void AgentNode::on_verdict(const msg::Verdict& verdict) {
 
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
+  if (agent_.negotiation().is_superseded()) return;
   auto status = agent_.status(robot_now());
   clocks_.fill(status, bus_.now());
   negotiation_.to_message(status.negotiation());

@@ -17,6 +17,9 @@ class AgentNode {
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 
+  /// Calls back once when a later agent of the robot is found to drive it: from then on this one is quiet.
+  void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
+
  private:
   void begin_cycle();
   void on_coordinator_state(const msg::CoordinatorState& state);
@@ -33,6 +36,7 @@ class AgentNode {
   void negotiate_if_time();
   /// Proposes what to do from a time on.
   void negotiate(Time start);
+  void ask(msg::Proposal proposal);
   /// The begin of the next cycle, or of a later one where the network is slow.
   Time next_start();
   void on_verdict(const msg::Verdict& verdict);
@@ -45,6 +49,7 @@ class AgentNode {
   Duration cycle_;
   Agent agent_;
   ClockWatch clocks_;
+  std::function<void()> on_superseded_;
   Time next_cycle_;            // by the robot's clock, as all times that the agent gets
   bool commanded_ = false;     // in this cycle
   int registration_wait_ = 0;  // cycles until it registers again

@@ -40,23 +40,48 @@ void Negotiation::on_feedback(const msg::Feedback& feedback) {
     adopt(feedback, *executing);
     return;
   }
+  use_fact(feedback, *executing);
+}
+
+void Negotiation::use_fact(const msg::Feedback& feedback, const Version& executing) {
+  const Time at = time_from_ns(feedback.at_ns());
   const std::size_t before = held_.versions().size();
-  const bool moved_on = executing->number != executing_;
-  if (!held_.forget(executing->number, time_from_ns(feedback.at_ns()))) return;  // late
-  executing_ = executing->number;
-  if (moved_on) pace_.on_taken();
+  const bool moved_on = executing.number != executing_;
+  if (feedback.is_lifted() && executing.number == 0) {
+    if (at < latest_fact_) return;
+    held_.forget_started(at);
+    executing_ = 0;
+  } else if (held_.forget(executing.number, at)) {
+    executing_ = executing.number;
+    if (moved_on) pace_.on_taken();
+  } else {
+    const auto is_older = [&](const Version& held) { return held.number < executing.number; };
+    if (!std::ranges::any_of(held_.versions(), is_older)) return;  // late
+    return rebase(executing);
+  }
+  latest_fact_ = std::max(latest_fact_, at);
   // What went away is what was executed before, if the robot has moved on, and what the robot can never take.
-  for (std::size_t gone = before - held_.versions().size() - (moved_on ? 1 : 0); gone > 0; --gone) {
+  for (std::size_t gone = before - held_.versions().size(); gone > (moved_on ? 1 : 0); --gone) {
     ++counts_.lost;
     pace_.on_late();
   }
   check_assumptions();
 }
 
+void Negotiation::rebase(const Version& executing) {
+  held_.clear();
+  held_.add(executing);
+  executing_ = executing.number;
+  next_number_ = std::max(next_number_, executing.number + 1);
+  close_all();
+  contradicted_ = true;
+}
+
 void Negotiation::adopt(const msg::Feedback& feedback, const Version& executing) {
   fenced_ = true;
   held_.clear();
-  held_.add(executing);
+  const bool is_absent = feedback.is_lifted() && executing.number == 0;
+  if (!is_absent) held_.add(executing);
   executing_ = executing.number;
   next_number_ = std::max({next_number_, feedback.obeyed_incarnation(), executing.number + 1});
 }
@@ -74,14 +99,18 @@ void Negotiation::close_all() {
   for (Asked& asked : asked_) asked.open = false;
 }
 
+bool Negotiation::rests_on(const Version& version) const {
+  return held_.find(version.base) || (is_absent() && version.base == 0);
+}
+
 void Negotiation::check_assumptions() {
   for (Asked& asked : asked_) {
-    if (!asked.open || held_.find(asked.candidates.front().base)) continue;
+    if (!asked.open || rests_on(asked.candidates.front())) continue;
     asked.open = false;
     contradicted_ = true;
   }
   for (const Version& version : held_.versions()) {
-    if (version.number != executing_ && !held_.find(version.base)) contradicted_ = true;
+    if (version.number != executing_ && !rests_on(version)) contradicted_ = true;
   }
 }
 
@@ -110,14 +139,16 @@ bool Negotiation::may_propose(Time now) const {
 
 bool Negotiation::is_settled_after(Time now) const {
   const auto decides = [&](const Asked& asked) { return asked.open && asked.start() > now; };
-  return std::ranges::any_of(asked_, decides) || base_at(Time::max()).trajectory.start() > now;
+  return std::ranges::any_of(asked_, decides) || last_start() > now;
+}
+
+Time Negotiation::last_start() const {
+  if (!is_absent()) return base_at(Time::max()).trajectory.start();
+  return held_.versions().empty() ? Time::min() : held_.versions().back().trajectory.start();
 }
 
 std::optional<Time> Negotiation::unanswered_start(Time now) const {
-  if (asked_count_ == 0 || asked_for_start_ >= kMostAskedForStart ||
-      base_at(Time::max()).trajectory.start() > now) {
-    return std::nullopt;
-  }
+  if (asked_count_ == 0 || asked_for_start_ >= kMostAskedForStart || last_start() > now) return std::nullopt;
   const Asked& last = newest();
   const bool is_due = last.open && now - last.proposed_at >= pace_.patience() && last.start() - now > cycle_;
   return is_due ? std::optional(last.start()) : std::nullopt;
@@ -128,6 +159,7 @@ msg::Registration Negotiation::registration() {
   msg::Registration registration;
   registration.robot(robot_);
   registration.epoch(epoch_);
+  registration.is_absent(held_.versions().empty());
   registration.version_count(static_cast<std::uint8_t>(held_.versions().size()));
   std::ranges::transform(held_.versions(), registration.versions().begin(), encode);
   return registration;
@@ -145,7 +177,8 @@ const Version& Negotiation::base_at(Time start) const {
   }
 }
 
-msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now) {
+msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
+                                   double grown_m) {
   contradicted_ = false;
   const bool is_again = asked_count_ > 0 && newest().start() == candidates.front().start();
   asked_for_start_ = is_again ? asked_for_start_ + 1 : 1;
@@ -164,7 +197,7 @@ msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, Versi
   proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
   for (const Trajectory& trajectory : candidates) {
     Version& version = asked.candidates[asked.count];
-    version = {robot_, incarnation_, next_number_++, base, trajectory};
+    version = {robot_, incarnation_, next_number_++, base, trajectory, grown_m};
     proposal.candidates()[asked.count++] = encode(version);
   }
   return proposal;

@@ -31,6 +31,8 @@ class Negotiation {
   Epoch epoch() const { return epoch_; }
 
   bool is_fenced() const { return fenced_; }
+  /// The robot is not on the floor and executes nothing, whatever stand it may still take.
+  bool is_absent() const { return fenced_ && !held_.find(executing_); }
   /// A later agent drives the robot: this one has nothing to say any more.
   bool is_superseded() const { return superseded_; }
   /// Registers only once the robot has acknowledged the epoch, so that no agent that it does not obey any
@@ -50,12 +52,16 @@ class Negotiation {
   bool is_contradicted() const { return contradicted_; }
 
   msg::Registration registration();
-  /// The version that the robot will be executing at a time, as far as is known. Precondition: is_fenced().
+  /// The version that the robot will be executing at a time, as far as is known. Precondition: is_fenced()
+  /// and not is_absent().
   const Version& base_at(Time start) const;
-  /// The version that the robot was executing by its latest fact. Precondition: is_fenced().
+  /// The version that the robot was executing by its latest fact. Precondition: is_fenced() and not
+  /// is_absent().
   const Version& executing() const { return *held_.find(executing_); }
-  /// Precondition: 1 to MAX_CANDIDATES candidates that continue `base` at one start time.
-  msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now);
+  /// Precondition: 1 to MAX_CANDIDATES candidates that continue `base` at one start time; or a stand on base
+  /// 0 for a robot that is absent. `grown_m` is the base's, or 0 from rest.
+  msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
+                        double grown_m = 0);
 
   /// Closes the cycle that ends now: what was proposed for it and has no verdict is given up, and counted.
   void close_cycle(Time now);
@@ -85,8 +91,14 @@ class Negotiation {
     Time start() const { return candidates.front().trajectory.start(); }
   };
   void adopt(const msg::Feedback& feedback, const Version& executing);
+  void use_fact(const msg::Feedback& feedback, const Version& executing);
+  /// The robot executes what this agent knows nothing of, and nothing else any more.
+  void rebase(const Version& executing);
+  bool rests_on(const Version& version) const;
   void adopt_epoch(Epoch epoch);
   void check_assumptions();
+  /// When the last version begins that the robot will take, as far as is known.
+  Time last_start() const;
   void close_all();
   const Asked& newest() const { return asked_[(asked_count_ - 1) % asked_.size()]; }
 
@@ -100,6 +112,7 @@ class Negotiation {
   Time heard_{};                             // and when it did
   VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
+  Time latest_fact_{};  // by the robot's clock
   VersionNumber next_number_;
   std::array<Asked, 8> asked_;
   std::size_t asked_count_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/motion/version_set.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace sidestep {
@@ -16,6 +17,12 @@ const Version* VersionSet::find(VersionNumber number) const {
     if (version.number == number) return &version;
   }
   return nullptr;
+}
+
+void VersionSet::forget_started(Time at) {
+  const auto kept = std::remove_if(versions_.begin(), versions_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                   [at](const Version& version) { return version.trajectory.start() <= at; });
+  count_ = static_cast<std::size_t>(kept - versions_.begin());
 }
 
 bool VersionSet::forget(VersionNumber executing, Time at) {

@@ -23,6 +23,8 @@ class VersionSet {
   /// t, because the firmware can never take it any more. A fact about a version that is not in the set is
   /// left alone (late, or false): returns false.
   bool forget(VersionNumber executing, Time at);
+  /// "Executing nothing at time t": drops every version whose start is not after t.
+  void forget_started(Time at);
   void clear() { count_ = 0; }
 
   std::span<const Version> versions() const { return {versions_.data(), count_}; }

@@ -22,7 +22,7 @@ void grant_of_one_version(benchmark::State& state) {
     roster.push_back(newest.back().robot);
   }
   Ledger ledger(floor_rules(snapshot.scenario), roster);
-  for (std::size_t i = 0; i < robots; ++i) (void)ledger.enter(newest[i].robot, {&newest[i], 1});
+  for (std::size_t i = 0; i < robots; ++i) ledger.enter(newest[i].robot, {&newest[i], 1});
   const MotionLimits& limits = snapshot.scenario.limits;
   const Duration cycle = snapshot.scenario.cycle;
   Rng rng(3);
@@ -40,7 +40,7 @@ void grant_of_one_version(benchmark::State& state) {
                        0};
     if (ledger.grant(next).granted()) {
       ++granted;
-      (void)ledger.forget(next.robot, next.number, start);
+      (void)ledger.on_executing(next, start, false);
       last = next;
     }
     i = (i + 1) % robots;

@@ -15,7 +15,7 @@ IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed)
     : scenario(s),
       network(seed, kBegin, s.network),
       robots(robots_bus, scenario),
-      watch(robots_bus, scenario),
+      watch(network, scenario),
       rng_(seed) {
   for (int number = 0; number < scenario.coordinators; ++number)
     start_coordinator(static_cast<CoordinatorNumber>(number));
@@ -62,8 +62,28 @@ double IdealFloor::run(double seconds) {
   while (network.now() < end) {
     network.run_until(std::min(end, network.now() + kLook));
     smallest = std::min(smallest, robots.clearance_m(network.now()));
+    compare_with_ledger();
   }
   return smallest;
+}
+
+void IdealFloor::compare_with_ledger() {
+  const Coordinator* in_charge = nullptr;
+  for (const auto& [number, process] : coordinators_) {
+    const Coordinator& coordinator = process.node->coordinator();
+    if (coordinator.is_granting() && (!in_charge || coordinator.epoch() > in_charge->epoch()))
+      in_charge = &coordinator;
+  }
+  if (!in_charge) return;
+  for (const RobotSpec& robot : scenario.robots) {
+    if (!robots.is_on_floor(robot.id)) continue;
+    const Version& executing = robots.executing(robot.id, network.now());
+    const auto held = in_charge->ledger().versions(robot.id);
+    const auto is_it = [&](const Version& version) { return version.number == executing.number; };
+    const auto is_older = [&](const Version& version) { return version.number < executing.number; };
+    const bool is_not_heard_of = robots.is_off_reference(robot.id) && std::ranges::all_of(held, is_older);
+    unknown_ += std::ranges::none_of(held, is_it) && !is_not_heard_of;
+  }
 }
 
 int IdealFloor::arrived() {

@@ -36,6 +36,9 @@ class IdealFloor {
 
   /// Runs for so many seconds; the smallest clearance of any two robots meanwhile.
   double run(double seconds);
+  /// How often a robot executed what the coordinator in charge did not know of. Not counted: what a robot
+  /// made itself, off its reference, until the coordinator hears of it.
+  int unknown_versions() const { return unknown_; }
   int arrived();
   /// Runs until all have arrived, at most for so long; the smallest clearance meanwhile.
   double run_until_arrived(double most_seconds);
@@ -58,6 +61,9 @@ class IdealFloor {
     std::unique_ptr<Node> node;
   };
 
+  void compare_with_ledger();
+
+  int unknown_ = 0;
   Rng rng_;
   Incarnation last_incarnation_ = 0;
   std::map<CoordinatorNumber, Process<CoordinatorNode>> coordinators_;

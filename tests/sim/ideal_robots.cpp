@@ -7,20 +7,66 @@
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
+namespace {
+
+// Agents count their versions upwards from their incarnations: none gets that far in a year.
+constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
+
+}  // namespace
 
 IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
-    : bus_(bus), radius_m_(scenario.radius_m), cycle_(scenario.cycle) {
+    : bus_(bus),
+      radius_m_(scenario.radius_m),
+      deceleration_mps2_(scenario.limits.deceleration_mps2),
+      cycle_(scenario.cycle) {
   for (const RobotSpec& spec : scenario.robots) {
     Robot& robot = robots_[spec.id];
     robot.id = spec.id;
     robot.executing = {spec.id, 0, 0, 0, Trajectory::resting(time_from_ns(0), spec.start_m)};
+    robot.is_lifted = spec.is_absent;
     robot.writer = bus.advertise(topics::kFeedback, spec.id);
     bus.subscribe(topics::kCommand, spec.id,
                   std::function([this, &robot](const msg::Command& command) { on_command(robot, command); }));
     report_periodically(robot);
   }
   world_writer_ = bus.advertise(topics::kWorld);
+  hand_ = bus.advertise(topics::kDisturbance);
   publish_world();
+}
+
+void IdealRobots::push(RobotId id, const Vec2& shift, const Vec2& velocity, double grown_m) {
+  const Time now = bus_.now();
+  Robot& robot = robots_.at(id);
+  advance(robot, now);
+  if (robot.is_lifted) return;
+  robot.highest += kOwnNumberGap;
+  Trajectory stop(now, {robot.executing.trajectory.state_at(now).position_m + shift, velocity});
+  append_stop(stop, deceleration_mps2_);
+  robot.executing = {id, robot.obeyed, robot.highest, robot.executing.number, stop, grown_m};
+  robot.pending.clear();
+  robot.is_off_reference = true;
+  report(robot);
+}
+
+void IdealRobots::lift(RobotId id) {
+  const Time now = bus_.now();
+  Robot& robot = robots_.at(id);
+  advance(robot, now);
+  robot.executing = {id, 0, 0, 0,
+                     Trajectory::resting(now, robot.executing.trajectory.state_at(now).position_m)};
+  robot.pending.clear();
+  robot.is_lifted = true;
+  robot.is_off_reference = false;
+  report(robot);
+}
+
+void IdealRobots::place(RobotId id, const Vec2& place) {
+  msg::Disturbance hand;
+  hand.robot(id);
+  hand.disturbance_kind(msg::DISTURBANCE_PLACE);
+  hand.x_m(place.x());
+  hand.y_m(place.y());
+  hand_.publish(hand, bus_.now());
 }
 
 void IdealRobots::publish_world() {
@@ -29,6 +75,7 @@ void IdealRobots::publish_world() {
   msg::WorldState world;
   world.valid_at_ns(to_ns(now));
   for (const auto& [id, robot] : robots_) {
+    if (robot.is_lifted) continue;
     const Vec2 position = position_m(id, now);
     msg::TrackedRobot& seen = world.robots().emplace_back();
     seen.robot(id);
@@ -45,6 +92,7 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
   if (command.head().incarnation() < robot.obeyed) return;
   robot.heard_stamp_ns = command.head().stamp_ns();
   robot.heard_at = now;
+  robot.highest = std::max<VersionNumber>(robot.highest, command.head().incarnation());
   const bool is_news = command.head().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
   if (command.head().incarnation() > robot.obeyed) {
     robot.obeyed = command.head().incarnation();
@@ -55,6 +103,7 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
   if (is_news) report(robot);
   if (!command.has_version() || is_old_epoch) return;
   const auto version = decode(command.granted());
+  if (version) robot.highest = std::max(robot.highest, version->number);
   const auto knows = [&](const Version& held) { return held.number == version->number; };
   if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, knows)) return;
   robot.pending.push_back(*version);
@@ -65,8 +114,12 @@ void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
 void IdealRobots::advance(Robot& robot, Time now) {
   while (!robot.pending.empty() && robot.pending.front().trajectory.start() <= now) {
     const Version& due = robot.pending.front();
-    if (due.base == robot.executing.number && due.number > robot.executing.number)
+    const bool is_stand = due.base == 0 && due.trajectory.phases().empty();
+    if (due.base == robot.executing.number && due.number > robot.executing.number &&
+        (!robot.is_lifted || is_stand)) {
       robot.executing = robot.pending.front();
+      robot.is_off_reference = robot.is_lifted = false;  // the hand has waited for it
+    }
     robot.pending.erase(robot.pending.begin());
   }
 }
@@ -84,6 +137,8 @@ void IdealRobots::report(Robot& robot) {
   feedback.heard_stamp_ns(robot.heard_stamp_ns);
   feedback.heard_at_ns(to_ns(robot.heard_at));
   feedback.executing(encode(robot.executing));
+  feedback.is_off_reference(robot.is_off_reference);
+  feedback.is_lifted(robot.is_lifted);
   feedback.x_m(state.position_m.x());
   feedback.y_m(state.position_m.y());
   feedback.vx_mps(state.velocity_mps.x());
@@ -102,9 +157,17 @@ State IdealRobots::state_at(RobotId id, Time t) {
   return robot.executing.trajectory.state_at(t + robot.clock_ahead);
 }
 
+const Version& IdealRobots::executing(RobotId id, Time t) {
+  Robot& robot = robots_.at(id);
+  advance(robot, t);
+  return robot.executing;
+}
+
 double IdealRobots::clearance_m(Time t) {
   std::vector<Vec2> positions;
-  for (const auto& [id, robot] : robots_) positions.push_back(position_m(id, t));
+  for (const auto& [id, robot] : robots_) {
+    if (!robot.is_lifted) positions.push_back(position_m(id, t));
+  }
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, (positions[i] - positions[j]).norm());

@@ -23,6 +23,18 @@ class IdealRobots {
   /// From now on the robot's clock is ahead of the bus's by so much.
   void set_clock_ahead(RobotId robot, Duration ahead) { robots_.at(robot).clock_ahead = ahead; }
   double radius_m() const { return radius_m_; }
+  /// What a robot executes at a time.
+  const Version& executing(RobotId robot, Time t);
+  bool is_off_reference(RobotId robot) const { return robots_.at(robot).is_off_reference; }
+  bool is_on_floor(RobotId robot) const { return !robots_.at(robot).is_lifted; }
+
+  /// Something moves a robot and gives it another velocity; it notices, and brakes.
+  void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double grown_m = 0);
+  /// Its firmware starts again: it keeps what it has obeyed, and nothing else.
+  void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
+  void lift(RobotId robot);
+  /// Wants to put a lifted robot down: as soon as it has taken a stand it stands there.
+  void place(RobotId robot, const Vec2& place_m);
 
  private:
   struct Robot {
@@ -33,6 +45,8 @@ class IdealRobots {
     std::int64_t heard_stamp_ns = 0;  // of the obeyed agent's last command,
     Time heard_at{};                  // which came then
     Version executing;
+    VersionNumber highest = 0;  // of all numbers and incarnations that came
+    bool is_off_reference = false, is_lifted = false;
     std::vector<Version> pending;  // by start
     Writer<msg::Feedback> writer;
   };
@@ -44,10 +58,11 @@ class IdealRobots {
   void publish_world();
 
   Bus& bus_;
-  double radius_m_;
+  double radius_m_, deceleration_mps2_;
   Duration cycle_;
   std::map<RobotId, Robot> robots_;
   Writer<msg::WorldState> world_writer_;
+  Writer<msg::Disturbance> hand_;
 };
 
 }  // namespace sidestep

@@ -30,6 +30,7 @@ struct Watched {
     const Report report = system.judge().report();
     REQUIRE(report.contacts == 0);
     REQUIRE(report.firmware_violations == 0);
+    INFO(watch.first());
     REQUIRE(watch.violations() == 0);
     REQUIRE(watch.pages() > 0);
   }

@@ -50,6 +50,7 @@ TEST_CASE("the standby takes over when the active coordinator dies, and robots m
     REQUIRE(floor.run_until_arrived(20) >= floor.scenario.margin_m);
     REQUIRE(floor.arrived() == 12);
     REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.unknown_versions() == 0);
   }
   std::ranges::sort(seconds);
   CAPTURE(seconds);
@@ -74,6 +75,7 @@ TEST_CASE("coordinators that die and come back again and again only interrupt th
     clearance = std::min(clearance, floor.run_until_arrived(20));
     REQUIRE(clearance >= floor.scenario.margin_m);
     REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }
 }
@@ -101,6 +103,7 @@ TEST_CASE("a coordinator that is stopped and wakes up again does no harm, and st
     clearance = std::min(clearance, floor.run_until_arrived(20));
     REQUIRE(clearance >= floor.scenario.margin_m);
     REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 12);
   }
 }
@@ -116,6 +119,7 @@ TEST_CASE("coordinators that do not hear each other do not keep the robots from 
     const double clearance = floor.run_until_arrived(30);
     REQUIRE(clearance >= floor.scenario.margin_m);
     REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }
 }
@@ -147,6 +151,7 @@ TEST_CASE("one-way partitions of agents and coordinators cost motion, never clea
     clearance = std::min(clearance, floor.run_until_arrived(30));
     REQUIRE(clearance >= floor.scenario.margin_m);
     REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }
 }

@@ -216,6 +216,7 @@ TEST_CASE("hostile proposals get a verdict with a reason, or none, and change no
 }
 
 TEST_CASE("random messages of every kind never break the coordinator") {
+  int contradictions = 0;
   const std::uint64_t seed = 7;
   CAPTURE(seed);
   Rng rng(seed);
@@ -260,8 +261,77 @@ TEST_CASE("random messages of every kind never break the coordinator") {
     auto feedback = fact(floor.a, 1);
     noise(feedback.executing());
     feedback.at_ns(static_cast<std::int64_t>(rng.bits()));
+    feedback.is_off_reference(rng.chance(0.5));
     floor.coordinator.on_feedback(feedback);
+    contradictions += floor.coordinator.is_contradicted();
+    if (floor.coordinator.is_contradicted()) {
+      floor.coordinator.begin_epoch(kEpoch);
+      floor.register_both();
+    }
     REQUIRE_FALSE(floor.coordinator.ledger().versions(1).empty());
     REQUIRE_FALSE(floor.coordinator.ledger().versions(2).empty());
   }
+  CHECK(contradictions > 300);
+  CHECK(floor.coordinator.state().grants() > 300);
+}
+
+TEST_CASE(
+    "a fact that contradicts the ledger ends all granting until a new epoch begins with registrations") {
+  Floor floor;
+  floor.register_both();
+  const Version unknown = continued(floor.a, 10, 1, {0, 3});
+  floor.coordinator.on_feedback(fact(unknown, 1.5));
+  CHECK(floor.coordinator.is_contradicted());
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted() == 0);
+  floor.coordinator.begin_epoch(kEpoch + 1);
+  CHECK_FALSE(floor.coordinator.is_contradicted());
+  CHECK_FALSE(floor.coordinator.is_granting());
+  CHECK(floor.coordinator.state().missing().size() == 2);
+}
+
+TEST_CASE("a robot that lost its reference is where it says, and who that is in conflict with is named") {
+  Floor floor;
+  floor.register_both();
+  Version stop = standing(1, {0.85, 0}, 1'000'000);
+  stop.grown_m = 0.01;
+  auto feedback = fact(stop, 1);
+  floor.coordinator.on_feedback(feedback);
+  CHECK(floor.coordinator.is_contradicted());  // it does not say that it lost its reference
+  floor.coordinator.begin_epoch(kEpoch);
+  floor.register_both();
+  feedback.is_off_reference(true);
+  floor.coordinator.on_feedback(feedback);
+  CHECK(floor.coordinator.is_granting());
+  REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
+  CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
+  const auto state = floor.coordinator.state();
+  CHECK(state.conflicts() == 1);
+  CHECK(state.conflict_first() == 1);
+  CHECK(state.conflict_second() == 2);
+  // Off its reference or not, what does not end at rest is no version.
+  feedback.executing().vx_mps(1);
+  feedback.executing().version_number(2'000'000);
+  floor.coordinator.on_feedback(feedback);
+  CHECK(floor.coordinator.state().invalid() == 1);
+  CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
+}
+
+TEST_CASE("a robot that is not on the floor registers without versions and is granted nothing but a stand") {
+  Floor floor;
+  auto absent = registration_of(floor.a, kEpoch);
+  absent.is_absent(true);
+  CHECK(floor.coordinator.on_registration(absent)->reasons()[0] == msg::REASON_MALFORMED);
+  absent.version_count(0);
+  CHECK(floor.coordinator.on_registration(absent)->reasons()[0] == msg::REASON_GRANTED);
+  floor.coordinator.on_registration(registration_of(floor.b, kEpoch));
+  REQUIRE(floor.coordinator.is_granting());
+  CHECK(floor.coordinator.state().absent() == 1);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons()[0] ==
+        msg::REASON_ABSENT);
+  Version near = standing(1, {0.85, 0}, 11), there = standing(1, {0.5, 0.5}, 12);
+  near.incarnation = there.incarnation = 1;
+  const auto verdict = floor.ask(proposal_of({near, there}, kEpoch));
+  CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.granted() == 12);
+  CHECK(floor.coordinator.state().absent() == 0);
 }

@@ -16,8 +16,12 @@ struct Two {
   Ledger ledger{floor_for_tests(), {1, 2}};
   Version a = standing(1, {0, 0}), b;
   explicit Two(double apart) : b(standing(2, {apart, 0})) {
-    REQUIRE_FALSE(ledger.enter(1, {&a, 1}));
-    REQUIRE_FALSE(ledger.enter(2, {&b, 1}));
+    ledger.enter(1, {&a, 1});
+    ledger.enter(2, {&b, 1});
+    REQUIRE(ledger.conflicts().empty());
+  }
+  FactUse fact(const Version& executing, double at) {
+    return ledger.on_executing(executing, at_s(at), false);
   }
 };
 
@@ -52,7 +56,7 @@ TEST_CASE(
   CHECK(is_clear(towards.trajectory, away.trajectory, 0.19));
   CHECK(two.ledger.grant(towards).reason == msg::REASON_CONFLICT);
   // As soon as it is known to be on its way, the place is free.
-  REQUIRE(two.ledger.forget(2, 10, at_s(1.01)));
+  REQUIRE(two.fact(away, 1.01) == FactUse::kUsed);
   CHECK(two.ledger.grant(towards).granted());
 }
 
@@ -84,11 +88,11 @@ TEST_CASE("a fact removes older versions, and newer ones whose start is not afte
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
   for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).granted());
-  REQUIRE(two.ledger.forget(1, 0, at_s(0.9)));
+  REQUIRE(two.fact(two.a, 0.9) == FactUse::kUsed);
   CHECK(two.ledger.versions(1).size() == 4);
-  REQUIRE(two.ledger.forget(1, 0, at_s(1.0)));  // 10 was not taken at its start
+  REQUIRE(two.fact(two.a, 1.0) == FactUse::kUsed);  // 10 was not taken at its start
   REQUIRE(two.ledger.versions(1).size() == 3);
-  REQUIRE(two.ledger.forget(1, 11, at_s(2.5)));
+  REQUIRE(two.fact(q, 2.5) == FactUse::kUsed);
   REQUIRE(two.ledger.versions(1).size() == 2);
   CHECK(two.ledger.versions(1)[0].number == 11);
   CHECK(two.ledger.versions(1)[1].number == 12);
@@ -99,20 +103,34 @@ TEST_CASE("facts may come late, twice and in any order") {
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 11, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).granted());
   REQUIRE(two.ledger.grant(q).granted());
-  REQUIRE(two.ledger.forget(1, 11, at_s(1.2)));
+  REQUIRE(two.fact(q, 1.2) == FactUse::kUsed);
   for (int i = 0; i < 2; ++i) {
-    CHECK_FALSE(two.ledger.forget(1, 10, at_s(1.05)));
-    CHECK_FALSE(two.ledger.forget(1, 0, at_s(0.5)));
-    CHECK(two.ledger.forget(1, 11, at_s(1.15)));
+    CHECK(two.fact(p, 1.05) == FactUse::kLate);
+    CHECK(two.fact(two.a, 0.5) == FactUse::kLate);
+    CHECK(two.fact(q, 1.15) == FactUse::kUsed);
   }
   REQUIRE(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.versions(1)[0].number == 11);
 }
 
-TEST_CASE("a fact about a version that nobody granted never empties the ledger") {
+TEST_CASE("a fact that cannot be true if the ledger is says so, and changes nothing") {
   Two two(5);
-  CHECK_FALSE(two.ledger.forget(1, 999, at_s(100)));
-  CHECK(two.ledger.versions(1).size() == 1);
+  const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
+  REQUIRE(two.ledger.grant(p).granted());
+  REQUIRE(two.ledger.grant(q).granted());
+  Version unknown = p, other = p;
+  unknown.number = 11;
+  CHECK(two.fact(unknown, 100) == FactUse::kContradiction);
+  unknown.number = 999;
+  CHECK(two.fact(unknown, 100) == FactUse::kContradiction);
+  // One number, two versions.
+  other.trajectory = continued(two.a, 10, 1, {2.9, 0}).trajectory;
+  CHECK(two.fact(other, 100) == FactUse::kContradiction);
+  CHECK(two.ledger.versions(1).size() == 3);
+  // What is older than everything it holds may be late.
+  REQUIRE(two.fact(q, 1.2) == FactUse::kUsed);
+  CHECK(two.fact(unknown, 1.3) == FactUse::kContradiction);
+  CHECK(two.fact(p, 1.3) == FactUse::kLate);
 }
 
 TEST_CASE("without facts the ledger fills up and then grants no more") {
@@ -128,14 +146,6 @@ TEST_CASE("without facts the ledger fills up and then grants no more") {
   CHECK(two.ledger.versions(1).size() == VersionSet::kCapacity);
 }
 
-TEST_CASE("robots that begin too near are reported and not moved towards each other") {
-  Ledger ledger(floor_for_tests(), {1, 2});
-  const Version a = standing(1, {0, 0}), b = standing(2, {0.1, 0});
-  CHECK_FALSE(ledger.enter(1, {&a, 1}));
-  CHECK(ledger.enter(2, {&b, 1}) == RobotId{1});
-  CHECK(ledger.grant(continued(a, 10, 1, {3, 0})).reason == msg::REASON_CONFLICT);
-}
-
 TEST_CASE("whatever is granted, lost and reported, all versions of different robots stay clear") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
@@ -146,8 +156,9 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
   std::map<RobotId, Version> executing;
   for (const RobotId robot : roster) {
     executing[robot] = standing(robot, 0.3 * rotated({1, 0}, robot * 0.785398));
-    REQUIRE_FALSE(ledger.enter(robot, {&executing[robot], 1}));
+    ledger.enter(robot, {&executing[robot], 1});
   }
+  REQUIRE(ledger.conflicts().empty());
   std::uint64_t grants = 0, conflicts = 0;
   double now = 1;
   for (VersionNumber number = 1; number < 6000; ++number) {
@@ -174,7 +185,7 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
         }
       }
       // Only a true fact: whatever could still have been taken with a start before now was not.
-      REQUIRE(ledger.forget(robot, current.number, at_s(now)));
+      REQUIRE(ledger.on_executing(current, at_s(now), false) == FactUse::kUsed);
     }
     if (number % 100 != 0) continue;
     for (const RobotId i : roster) {
