@@ -15,7 +15,9 @@ using Words = std::vector<std::string>;
 
 /// What ssh has a shell run there: its stdin brings the scenario, and whatever ends the connection ends
 /// stdin. The shell gives a process in the background another stdin unless told; hence descriptor 3.
-constexpr const char* kRemoteScript = R"(exec 3<&0
+/// What it says once the connection has gone reaches nobody, and must not end it before it has tidied up.
+constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
+exec 3<&0
 umask 077
 size=$1 name=$2 program=$3
 shift 3
