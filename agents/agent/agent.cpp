@@ -38,6 +38,11 @@ double search_horizon_m(const FloorRules& rules) {
   return 2 * speed * (kAhead_s + speed / (2 * rules.limits.deceleration_mps2)) + rules.keep_m();
 }
 
+/// Of the others who begin farther away than this, an agent need not know.
+double page_horizon_m(const FloorRules& rules) {
+  return search_horizon_m(rules) + 2 * rules.limits.speed_mps * kPageAge_s;
+}
+
 const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find_robot(scenario, robot); }
 
 }  // namespace
@@ -53,7 +58,9 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       obstacles_(scenario.opponent_speed_mps, clocks_differ_),
       safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
-      estimate_{robot_.start_m, Vec2::Zero()} {}
+      estimate_{robot_.start_m, Vec2::Zero()} {
+  neighbours_.look_about(robot_.start_m, page_horizon_m(rules_));
+}
 
 double Agent::planning_keep_m() const { return rules_.radius_m + rules_.margin_m + kPlanningRoom_m; }
 
@@ -106,6 +113,7 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   const Vec2 position(feedback.x_m(), feedback.y_m()), velocity(feedback.vx_mps(), feedback.vy_mps());
   if (feedback.robot() != robot_.id || !position.allFinite() || !velocity.allFinite()) return;
   estimate_ = {position, velocity};
+  neighbours_.look_about(position, page_horizon_m(rules_));
   const VersionNumber stop = feedback.is_off_reference() ? feedback.executing().version_number() : 0;
   off_reference_ += stop > last_stop_;
   last_stop_ = std::max(last_stop_, stop);
@@ -151,10 +159,7 @@ void Agent::on_world(const msg::WorldState& world, Time now) {
   fix_->heading_rad(seen.seen_heading_rad());
 }
 
-void Agent::on_ledger(const msg::LedgerPage& page) {
-  const double horizon = search_horizon_m(rules_) + 2 * rules_.limits.speed_mps * kPageAge_s;
-  neighbours_.on_page(page, estimate_.position_m, horizon);
-}
+void Agent::on_ledger(const msg::LedgerPage& page) { neighbours_.on_page(page); }
 
 void Agent::on_disturbance(const msg::Disturbance& disturbance) {
   if (disturbance.robot() != robot_.id || disturbance.disturbance_kind() != msg::DISTURBANCE_PLACE) return;

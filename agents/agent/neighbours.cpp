@@ -9,6 +9,8 @@
 namespace sidestep {
 namespace {
 
+constexpr std::uint32_t kCounted = 64;  // pages in in_use_
+
 /// Whether everything on the page begins farther away than the horizon, as far as it says. The coordinator
 /// has the last word, so a page that does not tell the truth costs no more than a denial.
 bool is_far(const msg::LedgerPage& page, const Vec2& here, double horizon) {
@@ -18,23 +20,42 @@ bool is_far(const msg::LedgerPage& page, const Vec2& here, double horizon) {
 
 }  // namespace
 
-void Neighbours::on_page(const msg::LedgerPage& message, const Vec2& here, double horizon) {
-  if (message.page_index() >= kMaxRobots || message.epoch() > kHighestEpoch) {
+void Neighbours::look_about(const Vec2& here, double horizon) {
+  here_m_ = here;
+  horizon_m_ = horizon;
+}
+
+bool Neighbours::is_of_no_concern(const msg::LedgerPage& page) const {
+  const std::uint32_t index = page.page_index();
+  return index < kCounted && (in_use_ >> index & 1) == 0 && is_far(page, here_m_, horizon_m_);
+}
+
+void Neighbours::on_page(const msg::LedgerPage& message) {
+  if (is_of_no_concern(message)) return;
+  const std::uint32_t index = message.page_index();
+  if (index >= kMaxRobots || message.epoch() > kHighestEpoch) {
     ++invalid_;
     return;
   }
-  if (pages_.size() <= message.page_index()) pages_.resize(message.page_index() + 1);
-  Page& page = pages_[message.page_index()];
+  if (pages_.size() <= index) pages_.resize(index + 1);
+  Page& page = pages_[index];
   const bool older = message.epoch() < page.epoch ||
                      (message.epoch() == page.epoch && message.head().message_number() <= page.number);
   if (older) return;
   page.epoch = message.epoch();
   page.number = message.head().message_number();
+  take(message, page);
+  if (index >= kCounted) return;
+  const std::uint64_t bit = std::uint64_t{1} << index;
+  in_use_ = page.versions.empty() ? in_use_ & ~bit : in_use_ | bit;
+}
+
+void Neighbours::take(const msg::LedgerPage& message, Page& page) {
   page.versions.clear();
-  if (is_far(message, here, horizon)) return;
+  if (is_far(message, here_m_, horizon_m_)) return;
   for (const msg::Version& entry : message.versions()) {
-    const Vec2 offset(entry.x_m() - here.x(), entry.y_m() - here.y());
-    if (entry.robot() == self_ || offset.squaredNorm() > horizon * horizon) continue;
+    const Vec2 offset(entry.x_m() - here_m_.x(), entry.y_m() - here_m_.y());
+    if (entry.robot() == self_ || offset.squaredNorm() > horizon_m_ * horizon_m_) continue;
     if (const auto version = decode(entry)) {
       page.versions.push_back(*version);
     } else {

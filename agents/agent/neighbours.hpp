@@ -15,9 +15,10 @@ class Neighbours {
  public:
   explicit Neighbours(RobotId self) : self_(self) {}
 
-  /// Takes over a page of the ledger, unless it is older than what is known of that page. Versions that begin
-  /// farther than `horizon_m` from `here` are left out.
-  void on_page(const msg::LedgerPage& page, const Vec2& here_m, double horizon_m);
+  /// From now on versions that begin farther than `horizon_m` from `here` are left out.
+  void look_about(const Vec2& here_m, double horizon_m);
+  /// Takes over a page of the ledger, unless it is older than what is known of that page.
+  void on_page(const msg::LedgerPage& page);
 
   /// Those that begin within `horizon_m` of `here`, to be found by place.
   Crowd& crowd(const Vec2& here_m, double horizon_m);
@@ -32,6 +33,7 @@ class Neighbours {
     std::uint64_t number = 0;
     std::vector<Version> versions;
   };
+  void take(const msg::LedgerPage& message, Page& page);
   struct Stand {
     RobotId robot;
     Vec2 place_m;
@@ -40,6 +42,13 @@ class Neighbours {
   /// Whether any of the robot's versions ends after `since`.
   bool moves(RobotId robot, Time since) const;
 
+  /// Nothing is held of the page, nor will be.
+  bool is_of_no_concern(const msg::LedgerPage& page) const;
+
+  // Most pages are about places far away: what tells that is together, first in memory.
+  Vec2 here_m_{0, 0};
+  double horizon_m_ = 0;
+  std::uint64_t in_use_ = 0;  // bit k: of page k something is held
   RobotId self_;
   std::vector<Page> pages_;
   Crowd crowd_;

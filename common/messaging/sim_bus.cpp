@@ -22,7 +22,10 @@ class SimNetwork::Writer : public RawWriter {
 SimBus::SimBus(SimNetwork& network) : SimBus(network, {network.new_process()}) {}
 
 SimBus::SimBus(SimNetwork& network, const SimPlace& place)
-    : network_(network), clock_offset_(place.clock_offset), life_(&network.lives_.emplace_back()) {
+    : network_(network),
+      clock_offset_(place.clock_offset),
+      life_(&network.lives_.emplace_back()),
+      timers_(&network.readers_.emplace_back(SimReader{life_, nullptr})) {
   life_->process = place.process;
 }
 
@@ -37,7 +40,7 @@ Time SimBus::now() const { return network_.now() + clock_offset_; }
 
 void SimBus::at(Time when, std::function<void()> callback) {
   network_.events_.put(std::max(when - clock_offset_, network_.now()),
-                       {life_, nullptr, network_.timers_.put(std::move(callback)), false});
+                       {timers_, network_.timers_.put(std::move(callback)), true, false});
 }
 
 void SimBus::listen_aside() { life_->is_aside = true; }
@@ -58,7 +61,7 @@ void SimBus::make_reader(const TopicInfo&, const std::string& channel,
                          std::function<void(const void*)> callback) {
   auto& slot = network_.channels_[channel];
   if (!slot) slot = std::make_unique<SimNetwork::Channel>();
-  slot->readers.push_back(&network_.readers_.emplace_back(SimNetwork::Reader{life_, std::move(callback)}));
+  slot->readers.push_back(&network_.readers_.emplace_back(SimReader{life_, std::move(callback)}));
 }
 
 SimNetwork::SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network)
@@ -71,9 +74,12 @@ bool SimNetwork::step(Time limit) {
   }
   now_ = events_.next_time();
   const Event event = events_.take();
-  if (!event.life->is_alive) {
+  constexpr std::size_t kFetchAhead = 4;
+  if (const Event* coming = events_.ahead(kFetchAhead)) __builtin_prefetch(coming->reader);
+  const SimLife& life = *event.reader->life;
+  if (!life.is_alive) {
     drop(event);
-  } else if (event.life->paused_until > now_) {
+  } else if (life.paused_until > now_) {
     hold_back(event);
   } else {
     run(event);
@@ -83,7 +89,7 @@ bool SimNetwork::step(Time limit) {
 
 // A timer is taken out first, and a message stays where it is, because what runs puts others in.
 void SimNetwork::run(const Event& event) {
-  if (!event.reader) {
+  if (event.is_timer) {
     timers_.take(event.content)();
     return;
   }
@@ -93,10 +99,10 @@ void SimNetwork::run(const Event& event) {
 }
 
 void SimNetwork::drop(const Event& event) {
-  if (event.reader)
-    release(event.content);
-  else
+  if (event.is_timer)
     timers_.take(event.content);
+  else
+    release(event.content);
 }
 
 void SimNetwork::release(std::uint32_t sent) {
@@ -104,7 +110,7 @@ void SimNetwork::release(std::uint32_t sent) {
 }
 
 void SimNetwork::hold_back(const Event& event) {
-  SimLife& life = *event.life;
+  SimLife& life = *event.reader->life;
   if (event.may_be_lost && life.waiting++ >= life.most_waiting) {
     drop(event);
     return;
@@ -146,7 +152,7 @@ void SimNetwork::send_event(ProcessId from, Reader& reader, std::uint32_t sent) 
 
 void SimNetwork::deliver(Reader& reader, Time when, std::uint32_t sent, bool may_be_lost) {
   ++sent_[sent].under_way;
-  events_.put(when, {reader.life, &reader, sent, may_be_lost});
+  events_.put(when, {&reader, sent, false, may_be_lost});
 }
 
 }  // namespace sidestep

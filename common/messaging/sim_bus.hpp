@@ -11,6 +11,7 @@
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/event_queue.hpp"
+#include "common/messaging/pool.hpp"
 #include "common/messaging/sim_links.hpp"
 #include "common/random/rng.hpp"
 
@@ -25,6 +26,13 @@ struct SimLife {
   bool is_aside = false;
   Time paused_until = Time::min();
   std::size_t waiting = 0, most_waiting = 0;
+};
+
+/// One subscription of one life.
+struct SimReader {
+  SimLife* life;
+  std::function<void(const void*)> callback;
+  Time last_event{};  ///< arrival of the last event, to keep events in order
 };
 
 /// Where a simulated process runs.
@@ -63,6 +71,7 @@ class SimBus : public Bus {
   SimNetwork& network_;
   Duration clock_offset_;
   SimLife* life_;  // the network's, which keeps it when it has ended
+  SimReader* timers_;
 };
 
 /// Many processes in one thread under virtual time: an event queue ordered by (time, order of scheduling),
@@ -90,19 +99,15 @@ class SimNetwork {
  private:
   friend class SimBus;
   class Writer;
-  struct Reader {
-    SimLife* life;
-    std::function<void(const void*)> callback;
-    Time last_event{};  ///< arrival of the last event, to keep events in order
-  };
+  using Reader = SimReader;
   struct Sent {
     std::shared_ptr<const void> message;
     std::uint32_t under_way = 0;  ///< to so many readers, and one more while it is being sent
   };
   struct Event {
-    SimLife* life;
-    Reader* reader;         ///< nullptr: a timer
-    std::uint32_t content;  ///< in sent_ or timers_
+    Reader* reader;
+    std::uint32_t content;  ///< in timers_ or sent_
+    bool is_timer;          ///< then the reader only says whose it is
     bool may_be_lost;       ///< where a paused process's messages pile up
   };
   struct Channel {

@@ -100,6 +100,7 @@ TEST_CASE("a batch allocates nothing once warm") {
 TEST_CASE("what the neighbours may be executing is kept without allocations once warm") {
   Rng rng(3);
   Neighbours neighbours(0);
+  neighbours.look_about({0, 0}, 2.5);
   std::vector<msg::LedgerPage> pages(40);
   for (std::size_t k = 0; k < pages.size(); ++k) {
     pages[k].page_index(static_cast<std::uint32_t>(k % 2));
@@ -120,7 +121,7 @@ TEST_CASE("what the neighbours may be executing is kept without allocations once
   CHECK(allocations_once_warm([&] {
           msg::LedgerPage& page = pages[number % pages.size()];
           page.head().message_number(++number);
-          neighbours.on_page(page, {0, 0}, 2.5);
+          neighbours.on_page(page);
           seen += neighbours.crowd({0, 0}, 1.6).versions().size();
           seen += neighbours.standing(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
         }) == 0);
