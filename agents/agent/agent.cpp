@@ -13,7 +13,7 @@ namespace {
 // For so long a robot may go on as fast as it may before it stops: a few cycles of what is granted ahead.
 constexpr double kAhead_s = 0.15;
 // By so much a page of the ledger may be older than the search that it is for.
-constexpr double kPageAge_s = 0.225;
+constexpr double kPageAge_s = 0.1;
 // Robots keep this much more from obstacles where they plan than where they must.
 constexpr double kPlanningRoom_m = 0.03;
 // A robot passes on the right only where nothing stands for so far.

@@ -52,12 +52,14 @@ void Neighbours::on_page(const msg::LedgerPage& message) {
 
 void Neighbours::take(const msg::LedgerPage& message, Page& page) {
   page.versions.clear();
+  page.ends.clear();
   if (is_far(message, here_m_, horizon_m_)) return;
   for (const msg::Version& entry : message.versions()) {
     const Vec2 offset(entry.x_m() - here_m_.x(), entry.y_m() - here_m_.y());
     if (entry.robot() == self_ || offset.squaredNorm() > horizon_m_ * horizon_m_) continue;
     if (const auto version = decode(entry)) {
       page.versions.push_back(*version);
+      page.ends.push_back(version->trajectory.end());
     } else {
       ++invalid_;
     }
@@ -78,8 +80,9 @@ Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
 std::span<const Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
   standing_.clear();
   for (const Page& page : pages_) {
-    for (const Version& version : page.versions) {
-      if (version.trajectory.end() > since || moves(version.robot, since)) continue;
+    for (std::size_t i = 0; i < page.ends.size(); ++i) {
+      const Version& version = page.versions[i];
+      if (page.ends[i] > since || moves(version.robot, since)) continue;
       const Vec2 place = version.trajectory.rest_position_m();
       standing_.push_back({version.robot, place, (place - here).squaredNorm()});
     }

@@ -32,6 +32,7 @@ class Neighbours {
     Epoch epoch = 0;
     std::uint64_t number = 0;
     std::vector<Version> versions;
+    std::vector<Time> ends;  // of their trajectories
   };
   void take(const msg::LedgerPage& message, Page& page);
   struct Stand {

@@ -91,7 +91,7 @@ void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd
   found_.clear();
   others.find({disc.centre_m, disc.radius_m + keep + kRoom_m}, found_);
   for (const std::uint32_t index : found_) {
-    const Version& version = others.versions()[index];
+    const Version& version = others.version(index);
     if (query.robot == version.robot) continue;
     lanes_.add(others.outline(index), keep + version.grown_m);
     others_.push_back({&version.trajectory, Vec2(0, 0), keep + version.grown_m});

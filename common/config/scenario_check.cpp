@@ -49,13 +49,15 @@ struct Checker {
     }
   }
 
-  void apart(const Vec2& a, const Vec2& b, int line, const std::string& what) const {
+  /// `what` is asked only when it has to be said.
+  template <typename What>
+  void apart(const Vec2& a, const Vec2& b, int line, What what) const {
     const double least = 2 * scenario.radius_m + scenario.margin_m;
     const double distance = (a - b).norm();
     if (distance >= least - kRounding_m) return;
     throw ScenarioError(file, line,
                         fmt::format("{}: distance {:.4f} m, expected at least {:.4f} (2 radii + margin)",
-                                    what, distance, least));
+                                    what(), distance, least));
   }
 };
 
@@ -83,11 +85,13 @@ void check_placement(const Scenario& scenario, const std::vector<RobotLines>& li
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (!robots[i].is_absent && !robots[j].is_absent) {
-        check.apart(robots[i].start_m, robots[j].start_m, lines[i].start,
-                    fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id));
+        check.apart(robots[i].start_m, robots[j].start_m, lines[i].start, [&] {
+          return fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id);
+        });
       }
-      check.apart(robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
-                  fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id));
+      check.apart(
+          robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
+          [&] { return fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id); });
     }
   }
 }

@@ -22,7 +22,7 @@ void Crowd::clear() {
 }
 
 void Crowd::add(const Version& version) {
-  versions_.push_back(version);
+  versions_.push_back(&version);
   outlines_.push_back(outline_of(version.trajectory));
   outlines_.back().disc.radius_m += version.grown_m;
   is_built_ = false;

@@ -18,10 +18,12 @@ class Crowd {
   explicit Crowd(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
 
   void clear();
+  /// The version is read until clear() or assign().
   void add(const Version& version);
   void assign(std::span<const Version> versions);
 
-  std::span<const Version> versions() const { return versions_; }
+  std::size_t size() const { return versions_.size(); }
+  const Version& version(std::size_t index) const { return *versions_[index]; }
   const Outline& outline(std::size_t index) const { return outlines_[index]; }
 
   /// Adds the indices of the versions whose discs, grown_m larger, touch the circle. In no particular order,
@@ -36,7 +38,7 @@ class Crowd {
                     std::vector<std::uint32_t>& found);
 
   const batch::Kernels* kernels_;
-  std::vector<Version> versions_;
+  std::vector<const Version*> versions_;
   std::vector<Outline> outlines_;
   bool is_built_ = true;
   Vec2 low_m_{0, 0};

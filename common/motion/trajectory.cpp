@@ -2,25 +2,8 @@
 #include "common/motion/trajectory.hpp"
 
 #include <algorithm>
-#include <cassert>
 
 namespace sidestep {
-
-State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s) {
-  return {from.position_m + elapsed_s * (from.velocity_mps + (0.5 * elapsed_s) * acceleration_mps2),
-          from.velocity_mps + elapsed_s * acceleration_mps2};
-}
-
-void Trajectory::append(Duration duration, const Vec2& acceleration_mps2) {
-  assert(count_ < kMaxPhases);
-  phases_[count_++] = {duration, acceleration_mps2};
-}
-
-Time Trajectory::end() const {
-  Time t = start_;
-  for (const Phase& phase : phases()) t += phase.duration;
-  return t;
-}
 
 State Trajectory::state_at(Time t) const {
   State state = at_start_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -21,7 +22,10 @@ struct Phase {
 };
 
 /// The state after a time in a phase that began in `from`.
-State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s);
+inline State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s) {
+  return {from.position_m + elapsed_s * (from.velocity_mps + (0.5 * elapsed_s) * acceleration_mps2),
+          from.velocity_mps + elapsed_s * acceleration_mps2};
+}
 
 /// A robot's reference motion over absolute time: from its start on a few phases of constant acceleration,
 /// then at rest for ever. It says nothing about the time before its start.
@@ -38,10 +42,17 @@ class Trajectory {
   }
 
   /// Appends a phase; the caller keeps to kMaxPhases.
-  void append(Duration duration, const Vec2& acceleration_mps2);
+  void append(Duration duration, const Vec2& acceleration_mps2) {
+    assert(count_ < kMaxPhases);
+    phases_[count_++] = {duration, acceleration_mps2};
+  }
 
   Time start() const { return start_; }
-  Time end() const;
+  Time end() const {
+    Time t = start_;
+    for (const Phase& phase : phases()) t += phase.duration;
+    return t;
+  }
   const State& at_start() const { return at_start_; }
   std::span<const Phase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
 

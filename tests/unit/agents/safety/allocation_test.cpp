@@ -122,7 +122,7 @@ TEST_CASE("what the neighbours may be executing is kept without allocations once
           msg::LedgerPage& page = pages[number % pages.size()];
           page.head().message_number(++number);
           neighbours.on_page(page);
-          seen += neighbours.crowd({0, 0}, 1.6).versions().size();
+          seen += neighbours.crowd({0, 0}, 1.6).size();
           seen += neighbours.standing(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
         }) == 0);
   CHECK(seen > 0);
