@@ -9,6 +9,7 @@
 #include "deploy/run.hpp"
 #include "deploy/search/seed_search.hpp"
 #include "deploy/simulate.hpp"
+#include "deploy/study/study_command.hpp"
 #include "deploy/topic/topic_command.hpp"
 
 namespace sidestep {
@@ -114,6 +115,7 @@ int main(int argc, char** argv) {
   add_simulate_command(app, action, simulate_options, search_options);
   add_topic_command(app, action);
   add_fault_command(app, action);
+  add_study_command(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {
     return action();

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/geometry/vec2.hpp"
+
+namespace sidestep {
+
+/// Measures how deep and how long discs of one size are in one place (Bruce, ch. 5).
+class Interpenetration {
+ public:
+  Interpenetration(std::size_t robots, double radius_m)
+      : radius_m_(radius_m), is_touching_(robots * robots) {}
+
+  /// Where the robots are, for so long.
+  void add(std::span<const Vec2> positions_m, double seconds);
+
+  double depth_time_m_s() const { return depth_time_m_s_; }
+  std::uint64_t contacts() const { return contacts_; }  ///< pairs that began to touch
+  double min_clearance_m() const { return min_clearance_m_; }
+
+ private:
+  double radius_m_;
+  std::vector<bool> is_touching_;  // by pair
+  double depth_time_m_s_ = 0;
+  std::uint64_t contacts_ = 0;
+  double min_clearance_m_ = 1;
+};
+
+}  // namespace sidestep
