@@ -87,3 +87,103 @@ TEST_CASE("among opponents every robot arrives, and whoever is touched is at res
   }
   CHECK(crashes > 0);  // else nothing was tried
 }
+
+namespace {
+
+/// A system with a hand in it.
+struct Disturbed {
+  Disturbed(const Scenario& s, std::uint64_t seed)
+      : scenario(s),
+        system(scenario, seed),
+        bus(system.network()),
+        hand(bus.advertise(topics::kDisturbance)) {}
+
+  msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) const {
+    msg::Disturbance what;
+    what.robot(robot);
+    what.disturbance_kind(kind);
+    return what;
+  }
+  void send(msg::Disturbance what) { hand.publish(what, system.now()); }
+  bool arrive_within(double seconds) {
+    return system.run_until_arrived(system.now() + from_seconds(seconds));
+  }
+
+  Scenario scenario;
+  SimSystem system;
+  SimBus bus;
+  Writer<msg::Disturbance> hand;
+};
+
+}  // namespace
+
+TEST_CASE("robots that are pushed, or start again, go on to their goals, and nobody touches") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Disturbed run(shipped("crossing"), seed);
+    OffReference watch(run.system, run.scenario);
+    run.system.run_for(std::chrono::milliseconds(1500));
+    for (int i = 0; i < 6; ++i) {
+      const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_PUSH : msg::DISTURBANCE_REBOOT;
+      msg::Disturbance what = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      // It slides for less than the margin.
+      const Vec2 change = rotated(Vec2(0.3, 0), rng.uniform(-3.14, 3.14));
+      what.vx_mps(change.x());
+      what.vy_mps(change.y());
+      run.send(what);
+      run.system.run_for(from_seconds(rng.uniform(0.05, 0.5)));
+    }
+    CHECK(watch.count > 0);
+    CHECK(run.arrive_within(30));
+    const Report report = run.system.judge().report();
+    CHECK(report.contacts == 0);
+    CHECK(report.firmware_violations == 0);
+  }
+}
+
+TEST_CASE("robots that slip, or whose wheel is blocked, go on to their goals afterwards") {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Disturbed run(shipped("crossing"), seed);
+    run.system.run_for(std::chrono::milliseconds(1500));
+    for (int i = 0; i < 4; ++i) {
+      const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_SLIP : msg::DISTURBANCE_BLOCK;
+      msg::Disturbance what = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      what.grip(rng.uniform(0.2, 0.8));
+      what.heading_rad(rng.uniform(-3, 3));
+      what.duration_ns(static_cast<std::int64_t>(rng.below(300'000'000)));
+      run.send(what);
+      run.system.run_for(from_seconds(rng.uniform(0.05, 0.5)));
+    }
+    CHECK(run.arrive_within(30));
+    CHECK(run.system.judge().report().firmware_violations == 0);
+  }
+}
+
+TEST_CASE("a robot is taken off the floor and put down elsewhere while the others drive on") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const bool begins_absent = GENERATE(false, true);
+  CAPTURE(seed, begins_absent);
+  Scenario scenario = shipped("crossing");
+  scenario.robots[3].is_absent = begins_absent;
+  Disturbed run(scenario, seed);
+  std::size_t seen = 0;
+  run.system.on_truth([&](const msg::GroundTruth& truth) { seen = truth.robots().size(); });
+  run.system.run_for(std::chrono::milliseconds(1500));
+  CHECK(seen == (begins_absent ? 7 : 8));
+  if (!begins_absent) run.send(run.disturbance(3, msg::DISTURBANCE_LIFT));
+  run.system.run_for(std::chrono::milliseconds(1500));
+  CHECK(seen == 7);
+  msg::Disturbance place = run.disturbance(3, msg::DISTURBANCE_PLACE);
+  place.x_m(-1.8);
+  place.y_m(1.3);
+  run.send(place);
+  CHECK(run.arrive_within(30));
+  CHECK(seen == 8);
+  const Report report = run.system.judge().report();
+  CHECK(report.arrived == 8);
+  CHECK(report.contacts == 0);
+  CHECK(report.firmware_violations == 0);
+}
