@@ -136,7 +136,8 @@ TEST_CASE("an epoch that agents obey is begun above, or yielded to by one that g
   CHECK(risen > own + 1000);
   active.on_obeyed_epoch(risen + 1000, true, kBegin);
   CHECK_FALSE(active.is_active());
-  Duration last = active.lapse();
+  const Duration first = active.lapse();
+  Duration last = first;
   // It yields for longer each time that it does not hear who it yields to, but not for ever.
   Time now = kBegin;
   for (int i = 0; i < 10; ++i) {
@@ -147,6 +148,7 @@ TEST_CASE("an epoch that agents obey is begun above, or yielded to by one that g
     CHECK(active.lapse() >= last);
     last = active.lapse();
   }
+  CHECK(last >= 16 * first);
   CHECK(last < std::chrono::seconds(6));
   active.on_coordinator_state(sign(active.epoch() + kEpoch + 100'000'000'000, 1), now);
   CHECK(active.lapse() < std::chrono::milliseconds(300));
