@@ -225,8 +225,7 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
   Crowd& others = neighbours_.crowd(query.at_start.position_m, search_horizon_m(rules_));
   SearchResult result = safety_search_.search(query, others, rng_);
-  if (result.count == 0)
-    result = search_escape(query, negotiation_.base_at(query.start), others.versions(), rules_);
+  if (result.count == 0) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
   passing_.update(result.wish_is_clear, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
   return negotiation_.propose({result.candidates.data(), result.count}, base_, now, query.grown_m);

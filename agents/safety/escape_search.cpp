@@ -24,14 +24,15 @@ struct Surroundings {
   Vec2 away{0, 0};  // from those that are
 };
 
-Surroundings surroundings_of(const SearchQuery& query, const Version& base, std::span<const Version> others,
+Surroundings surroundings_of(const SearchQuery& query, const Version& base, const Crowd& others,
                              const FloorRules& rules) {
   Surroundings found;
   const Vec2& here = query.at_start.position_m;
   const double reach = reach_m(accelerate_then_stop(query.start, query.at_start, Vec2::Zero(), query.phase,
                                                     rules.limits.deceleration_mps2)) +
                        rules.limits.speed_mps * to_seconds(query.phase);
-  for (const Version& other : others) {
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const Version& other = others.version(i);
     const double keep = rules.keep_m() + query.grown_m + other.grown_m;
     const double far = reach + keep + reach_m(other.trajectory);
     if ((other.trajectory.at_start().position_m - here).squaredNorm() > far * far) continue;
@@ -55,7 +56,7 @@ Surroundings surroundings_of(const SearchQuery& query, const Version& base, std:
 
 }  // namespace
 
-SearchResult search_escape(const SearchQuery& query, const Version& base, std::span<const Version> others,
+SearchResult search_escape(const SearchQuery& query, const Version& base, const Crowd& others,
                            const FloorRules& rules) {
   SearchResult result;
   const Surroundings around = surroundings_of(query, base, others, rules);

@@ -43,20 +43,26 @@ SearchQuery query_on(const Version& base, Vec2 wish) {
   return query;
 }
 
+Crowd crowd_of(std::span<const Version> versions) {
+  Crowd crowd;
+  crowd.assign(versions);
+  return crowd;
+}
+
 }  // namespace
 
 TEST_CASE("where the base is clear of everybody there is nothing to escape from") {
   const Version base = braking(1, {0, 0}, {0.5, 0}), other = braking(2, {0.5, 0}, {0, 0});
-  CHECK(search_escape(query_on(base, {3, 0}), base, {&other, 1}, rules_here()).count == 0);
+  CHECK(search_escape(query_on(base, {3, 0}), base, crowd_of({&other, 1}), rules_here()).count == 0);
 }
 
 TEST_CASE("ways out lead away from who is too near, and the wish comes first where it does too") {
   const Version base = braking(1, {0, 0}, {0, 0}), other = braking(2, {0.15, 0}, {0, 0});
-  const auto towards = search_escape(query_on(base, {3, 0}), base, {&other, 1}, rules_here());
+  const auto towards = search_escape(query_on(base, {3, 0}), base, crowd_of({&other, 1}), rules_here());
   REQUIRE(towards.count == SearchResult::kMaxCandidates);
   CHECK_FALSE(towards.wish_is_clear);
   CHECK(towards.candidates[0].rest_position_m().x() < -0.001);
-  const auto away = search_escape(query_on(base, {-2, 0.5}), base, {&other, 1}, rules_here());
+  const auto away = search_escape(query_on(base, {-2, 0.5}), base, crowd_of({&other, 1}), rules_here());
   CHECK(away.wish_is_clear);
   CHECK(away.candidates[0].rest_position_m().y() > 0);
 }
@@ -65,7 +71,7 @@ TEST_CASE("robots that were pushed into an obstacle's room or off the field find
   for (const Vec2& place : {Vec2(1, 0.65), Vec2(0.7, 1.2), Vec2(1.98, 0), Vec2(-0.3, -2.1), Vec2(2.2, 2.2)}) {
     CAPTURE(place.x(), place.y());
     const Version base = braking(1, place, {0, 0});
-    CHECK(search_escape(query_on(base, {0, 0}), base, {}, rules_here()).count > 0);
+    CHECK(search_escape(query_on(base, {0, 0}), base, Crowd(), rules_here()).count > 0);
   }
 }
 
@@ -82,7 +88,7 @@ TEST_CASE("no way out comes nearer to anybody than the base does, or than it sho
     const Version base = braking(1, drawn(0.5), drawn(1.5), rng.chance(0.3) ? 0.02 : 0);
     std::vector<Version> others;
     for (RobotId robot = 2; robot < 6; ++robot) others.push_back(braking(robot, drawn(0.7), drawn(1.5)));
-    const auto result = search_escape(query_on(base, drawn(3)), base, others, rules);
+    const auto result = search_escape(query_on(base, drawn(3)), base, crowd_of(others), rules);
     for (std::size_t k = 0; k < result.count; ++k) {
       ++found;
       for (const Version& other : others) {
