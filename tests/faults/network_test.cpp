@@ -63,3 +63,18 @@ TEST_CASE("fault orders that cannot be carried out are refused with the reason")
   CHECK(run.command(fault(run, {"push", "3"})) == "exit code 2");
   CHECK(run.fastest_mps() > 0);
 }
+
+TEST_CASE("a robot that an operator pushes says that it is off its reference, drives on and arrives") {
+  LaunchedRun run(shuttles(3, ""));
+  REQUIRE(run.until([&] { return run.speed_mps(2) > 0.8; }));
+  bool is_off_reference = false;
+  run.bus().subscribe(topics::kFeedback, 2, std::function([&](const msg::Feedback& feedback) {
+                        is_off_reference = is_off_reference || feedback.is_off_reference();
+                      }));
+  REQUIRE(run.command(fault(run, {"push", "2", "--velocity", "0,0.4"})) == "exit code 0");
+  CHECK(run.until([&] { return is_off_reference; }));
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}

@@ -68,7 +68,7 @@ TEST_CASE("a cut lets nothing through but an operator's orders, until it is ende
 
   DdsOrders orders(test_settings("operator"), topics::kNetworkFault);
   REQUIRE(run_until([&] { return orders.takers() == std::vector<std::string>{"disturbed"}; }, talk.there));
-  CHECK(orders.is_written(channel_name(topics::kVerdict, kRobot)));
+  CHECK(run_until([&] { return orders.is_written(channel_name(topics::kVerdict, kRobot)); }, talk.there));
   CHECK_FALSE(orders.is_written("verdict/99"));
   msg::NetworkFault order = cut_order();
   orders.writer().write(&order);
