@@ -265,6 +265,16 @@ Report Judge::report() const {
   if (report.arrived == report.robots && granting_since_) report.makespan_s = latest_s;
   if (with_ratio > 0) report.arrival_over_straight = ratio / with_ratio;
   report.max_reference_error_m = max_reference_error_m_;
+  for (const Watched& robot : robots_) {
+    if (robot.lives.empty()) continue;
+    const msg::AgentStatus& status = robot.lives.back();
+    const double offset_s = std::abs(status.clock_offset_s());
+    // A NaN fails both.
+    if (!(status.clock_uncertainty_s() >= 0) || !(offset_s >= report.clock_offset_max_s.value_or(0)))
+      continue;
+    report.clock_offset_max_s = offset_s;
+    report.clock_uncertainty_s = status.clock_uncertainty_s();
+  }
   if (granting_since_ && truth_at_)
     report.robot_time_s = std::max(0.0, to_seconds(*truth_at_ - *granting_since_));
   report.deaths = deaths_;

@@ -36,6 +36,12 @@ const char* name_of(const RobotProgress& row) {
   return "?";
 }
 
+std::string clocks_of(const Report& report) {
+  if (!report.clock_offset_max_s) return "";
+  return fmt::format("  clocks {:.2f} +- {:.2f} ms", *report.clock_offset_max_s * 1e3,
+                     report.clock_uncertainty_s.value_or(0) * 1e3);
+}
+
 double milliseconds(Duration duration) { return to_seconds(duration) * 1e3; }
 
 int terminal_rows() {
@@ -53,12 +59,12 @@ std::string progress_line(const Judge& judge, Time now) {
                                           : 0;
   return fmt::format(
       "{}  {} of {} arrived  {} contacts{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
-      "negotiation {:.2f} / {:.2f} ms",
+      "negotiation {:.2f} / {:.2f} ms{}",
       since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
       report.contacts, judge.conflicts() > 0 ? fmt::format("  {} in conflict", judge.conflicts()) : "",
       report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
       report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
-      milliseconds(report.negotiation.quantile(0.99)));
+      milliseconds(report.negotiation.quantile(0.99)), clocks_of(report));
 }
 
 std::string progress_table(const Judge& judge, Time now, int max_rows) {

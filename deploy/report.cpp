@@ -82,6 +82,8 @@ std::string to_json(const Report& r) {
   json["firmware_violations"] = r.firmware_violations;
   json["conflicts"] = r.conflicts;
   json["max_reference_error_m"] = rounded(r.max_reference_error_m);
+  json["clock_offset_max_s"] = rounded(r.clock_offset_max_s);
+  json["clock_uncertainty_s"] = rounded(r.clock_uncertainty_s);
   json["negotiation_us"] = quantiles(r.negotiation, true);
   json["robot_time_s"] = rounded(r.robot_time_s);
   json["deaths"] = Json::array();

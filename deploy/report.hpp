@@ -50,6 +50,10 @@ struct Report {
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>> conflicts;  ///< pairs that something outside brought too near
   double max_reference_error_m = 0;
+  /// The largest offset of a robot's clock against the coordinator's, as last measured, and give or take
+  /// what; none: none has been measured.
+  std::optional<double> clock_offset_max_s;
+  std::optional<double> clock_uncertainty_s;
   double robot_time_s = 0;  ///< from the first grant to the latest ground truth
   DurationHistogram negotiation;
   DurationHistogram plan;

@@ -216,6 +216,7 @@ class Launcher {
 int run(const RunOptions& given) {
   RunOptions options = given;
   const Scenario scenario = load_scenario(options.scenario_file);
+  fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
   const Hosts hosts =
       options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file);
   const Placement placement(hosts, scenario);

@@ -95,6 +95,7 @@ int simulate_trial(const SimulateOptions& options) {
 
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
+  fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
   Picture picture(scenario);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 namespace sidestep {
 
 /// What a margin between two robots has to make up for (safety-protocol.md, "What it assumes"; derived in
@@ -16,5 +18,8 @@ struct SafetyBudget {
     return 2 * tracking_bound_m + 2 * clock_bound_s * 2 * speed_mps;
   }
 };
+
+/// One line for people, what the margin is made of; programs print it when they begin to run a scenario.
+std::string budget_line(const SafetyBudget& budget, double margin_m);
 
 }  // namespace sidestep

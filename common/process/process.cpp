@@ -48,6 +48,7 @@ int run_process(int argc, char** argv, const Program& program) {
     const std::shared_ptr<void> nodes = program.start(bus, scenario);
     if (dds.faults) take_network_faults(bus, program.fault_target(), dds.participant);
     fmt::print(stderr, "{}: domain {}, listens on {}\n", dds.participant, dds.domain, bus.locators());
+    fmt::print(stderr, "{}: {}\n", dds.participant, budget_line(budget_of(scenario), scenario.margin_m));
     bus.run();
     return 0;
   } catch (const ScenarioError& error) {

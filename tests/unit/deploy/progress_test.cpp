@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "common/config/scenario_loader.hpp"
 
@@ -25,6 +26,31 @@ TEST_CASE("a progress line says that the run is starting, then the time since th
   const std::string line = progress_line(judge, time_from_ns(5'500'000'000));
   CHECK_THAT(line, Catch::StartsWith("  3.5 s  0 of 5 arrived"));
   CHECK(line.find('\x1b') == std::string::npos);
+  CHECK(line.find("clocks") == std::string::npos);
+}
+
+TEST_CASE("a progress line shows the largest offset between clocks that was measured") {
+  Judge judge(kFive);
+  const auto say = [&](std::uint32_t robot, std::uint64_t number, double offset_s, double uncertainty_s) {
+    msg::AgentStatus status;
+    status.robot(robot);
+    status.head().incarnation(1);
+    status.head().message_number(number);
+    status.clock_offset_s(offset_s);
+    status.clock_uncertainty_s(uncertainty_s);
+    judge.on_status(status);
+  };
+  say(0, 1, 0, -1);
+  CHECK_FALSE(judge.report().clock_offset_max_s);
+  say(1, 1, 0.0001, 0.0003);
+  say(2, 1, -0.0004, 0.0002);
+  say(3, 1, 0.7, -1);
+  say(4, 1, std::numeric_limits<double>::quiet_NaN(), 0.1);
+  CHECK(judge.report().clock_offset_max_s == 0.0004);
+  CHECK(judge.report().clock_uncertainty_s == 0.0002);
+  CHECK_THAT(progress_line(judge, time_from_ns(0)), Catch::Contains("clocks 0.40 +- 0.20 ms"));
+  say(2, 2, 0, 0.0001);
+  CHECK(judge.report().clock_offset_max_s == 0.0001);
 }
 
 TEST_CASE("a progress table has a line for each robot, and says how many do not fit") {

@@ -64,6 +64,8 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "firmware_violations",
                                          "conflicts",
                                          "max_reference_error_m",
+                                         "clock_offset_max_s",
+                                         "clock_uncertainty_s",
                                          "negotiation_us",
                                          "robot_time_s",
                                          "deaths",

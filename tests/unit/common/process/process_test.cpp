@@ -59,6 +59,20 @@ TEST_CASE("wrong usage and a wrong scenario exit with 2, help with 0, and nothin
   CHECK_FALSE(started);
 }
 
+TEST_CASE("a program that starts says what the margin is made of") {
+  Program program = test_program();
+  program.start = [](Bus& bus, const Scenario&) {
+    static_cast<DdsBus&>(bus).stop();
+    return nullptr;
+  };
+  const Outcome outcome = run(program, good_arguments());
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(
+      outcome.err,
+      Contains("sidestep-test: safety budget: margin 10.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks "
+               "within 0.5 ms at 2 m/s\n"));
+}
+
 TEST_CASE("what is thrown at the start is said on stderr and exits with 1") {
   Program program = test_program();
   program.start = [](Bus&, const Scenario&) -> std::shared_ptr<void> {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/motion/safety_budget.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "common/motion/clearance.hpp"
+#include "tests/unit/common/motion/random_trajectory.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("the budget's line names what the margin is made of, and what is left of it") {
+  CHECK(budget_line({}, 0.01) ==
+        "safety budget: margin 10.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
+  CHECK(
+      budget_line({0.003, 0.0005, 2}, 0.025) ==
+      "safety budget: margin 25.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s + 15.0 "
+      "mm to spare");
+}
+
+TEST_CASE("bodies off their references and clocks off each other within the budget leave robots apart") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  double for_clocks = 0;
+  for (int pair = 0; pair < 20'000; ++pair) {
+    const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
+    SafetyBudget budget{0.003, 0.002, 0};
+    for (const Trajectory* trajectory : {&a, &b}) {
+      State state = trajectory->at_start();
+      budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
+      for (const Phase& phase : trajectory->phases()) {
+        state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
+        budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
+      }
+    }
+    // The margin is all that is kept: discs without a radius.
+    const double margin = clearance_m(a, b, 0);
+    const Time from = std::max(a.start(), b.start()) + from_seconds(budget.clock_bound_s);
+    const double seconds = std::max(0.0, to_seconds(std::max(a.end(), b.end()) - from));
+    const Duration off_a = from_seconds(budget.clock_bound_s), off_b = -off_a;
+    for (int i = 0; i < 20; ++i) {
+      const Time t = from + from_seconds(rng.uniform(0, seconds));
+      const Vec2 place_a = a.state_at(t + off_a).position_m, place_b = b.state_at(t + off_b).position_m;
+      const double lost = margin - ((place_a - place_b).norm() - 2 * budget.tracking_bound_m);
+      REQUIRE(lost <= budget.needed_margin_m());
+      // What is really needed: twice the bound at the speed, not at twice the speed.
+      REQUIRE(lost <= 2 * budget.tracking_bound_m + 2 * budget.clock_bound_s * budget.speed_mps + 1e-9);
+      for_clocks = std::max(for_clocks, lost - 2 * budget.tracking_bound_m);
+    }
+  }
+  // Clocks really cost something.
+  CHECK(for_clocks > 0.001);
+}
