@@ -72,7 +72,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;
     result.checks += static_cast<int>(around.others.size());
-    if (!rests_before_all(trajectory, query.moving, rules.radius_m + rules.margin_m)) return;
+    if (!rests_before_all(trajectory, query.moving, rules.radius_m + rules.margin_m + query.grown_m)) return;
     if (check_place_after(candidate, base.trajectory, rules) != msg::REASON_GRANTED) return;
     const bool is_clear_of_all = std::ranges::all_of(around.others, [&](const Other& other) {
       return is_clear(trajectory, *other.trajectory, other.kept_m);

@@ -73,7 +73,8 @@ SearchResult SafetySearch::search(const SearchQuery& query, Crowd& others, Rng& 
     const Trajectory trajectory = accelerate_then_stop(
         query.start, query.at_start, choice_.acceleration(*index), query.phase, limits.deceleration_mps2);
     if (!is_allowed(trajectory, choice_.is_certainly_clear(*index))) continue;
-    if (!rests_before_all(trajectory, query.moving, rules_.radius_m + rules_.margin_m)) continue;
+    if (!rests_before_all(trajectory, query.moving, rules_.radius_m + rules_.margin_m + query.grown_m))
+      continue;
     choice_.keep(*index);
     result.wish_is_clear = result.wish_is_clear || *index == 0;
     result.candidates[result.count++] = trajectory;
