@@ -2,8 +2,10 @@
 #include "common/config/scenario_loader.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "common/random/rng.hpp"
@@ -75,6 +77,24 @@ TEST_CASE("a circle puts neighbours one spacing apart and every goal opposite") 
     CHECK((robots[i].goals.back().position_m + robots[i].start_m).norm() == Approx(0).margin(1e-9));
     CHECK(robots[i].team != next.team);
   }
+}
+
+TEST_CASE(
+    "streams give each robot a square of its own, and a way across so many lanes in one of four directions") {
+  const Scenario scenario = load_scenario(kScenarios + "streams-1000.yaml");
+  const auto& robots = scenario.robots;
+  REQUIRE(robots.size() == 1000);
+  std::map<std::pair<int, int>, int> directions;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((robots[i].start_m - robots[j].start_m).norm() < 0.8366) FAIL("starts of " << i << " and " << j);
+    }
+    const Vec2 way = robots[i].goals.back().position_m - robots[i].start_m;
+    CHECK(way.norm() == Approx(12 * 0.83666));
+    ++directions[{static_cast<int>(std::lround(way.x())), static_cast<int>(std::lround(way.y()))}];
+  }
+  REQUIRE(directions.size() == 4);
+  for (const auto& [direction, count] : directions) CHECK(count > 200);
 }
 
 TEST_CASE("every key is read in its unit") {
@@ -335,6 +355,9 @@ TEST_CASE("starts and goals in an obstacle or outside the field are refused") {
   check_refused(robot("[4.411, 0]", "[0, 0]"), 3, "outside the field: expected |x| <= 4.41 and |y| <= 2.91");
   check_refused(robot("[0, 0]", "[0, -2.92]"), 4, "outside the field");
   CHECK(refusal(robot("[4.41, 2.91]", "[-4.41, -2.91]")) == "accepted");
+  check_refused(
+      "field: {length_m: 99, width_m: 99}\nstreams:\n  count: 9\n  spacing_m: 1\n  lanes_crossed: 6\n", 5,
+      "multiple of 4");
   check_refused("field: {length_m: 2, width_m: 2}\ncircle: {count: 40, spacing_m: 0.4}\n", 2,
                 "outside the field");
 }
