@@ -46,6 +46,8 @@ class SimSystem {
   void start_twin(RobotId robot) { restart(twin_process(robot)); }
   /// SIGSTOP for a while; see SimBus::pause. Does nothing when the process is dead.
   void pause(const std::string& process, Duration duration, std::size_t most_waiting);
+  /// Somebody's hand on a robot.
+  void disturb(msg::Disturbance& disturbance) { hand_.publish(disturbance, now()); }
   /// What the link between two processes does from now on, whatever their lives.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
   /// The processes that a system starts with.
@@ -72,6 +74,7 @@ class SimSystem {
   SimNetwork network_;
   Judge judge_;
   SimBus judge_bus_;
+  Writer<msg::Disturbance> hand_;
   std::map<std::string, ProcessId> ids_;
   std::map<std::string, Incarnation> incarnations_;  // of the latest lives
   std::map<std::string, std::unique_ptr<Process>> processes_;

@@ -31,6 +31,8 @@ class Draw {
     if (rng_.chance(0.55)) repeat(6, [&] { draw_partition(); });
     if (rng_.chance(0.6)) repeat(8, [&] { draw_pause(); });
     if (rng_.chance(0.65)) repeat(8, [&] { draw_kill(); });
+    plan_.has_hands = rng_.chance(0.12);
+    if (plan_.has_hands) repeat(8, [&] { draw_hand(); });
     std::ranges::stable_sort(plan_.faults, {}, &TimedFault::at);
     return std::move(plan_);
   }
@@ -156,6 +158,20 @@ class Draw {
     // Everybody comes back: no later coordinator grants anything while an agent is missing.
     const double dead_s = rng_.chance(0.3) ? 0 : log_uniform(0.01, 4);
     add(std::max(at + Duration{1}, at + until_healed(at, dead_s) - Duration{1}), Start{victim});
+  }
+
+  void draw_hand() {
+    static constexpr msg::DisturbanceKind kKinds[] = {msg::DISTURBANCE_PUSH, msg::DISTURBANCE_SLIP,
+                                                      msg::DISTURBANCE_BLOCK, msg::DISTURBANCE_REBOOT};
+    Hand hand;
+    hand.robot = pick(scenario_.robots).id;
+    hand.kind = kKinds[rng_.below(std::size(kKinds))];
+    const Duration at = time();
+    hand.push_mps = rotated(Vec2(log_uniform(0.05, 2), 0), rng_.uniform(-3.14, 3.14));
+    hand.grip = rng_.uniform(0.05, 0.9);
+    hand.heading_rad = rng_.uniform(-3.14, 3.14);
+    hand.duration = until_healed(at, log_uniform(0.05, 3));
+    add(at, hand);
   }
 
   /// Two agents for one robot, alive at once, until one of them dies.

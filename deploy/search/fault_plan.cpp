@@ -34,6 +34,21 @@ class Words {
   }
   std::string operator()(const Kill& kill) const { return kill.process + " killed"; }
   std::string operator()(const Start& start) const { return start.process + " started"; }
+  std::string operator()(const Hand& hand) const {
+    const double lasts_s = to_seconds(hand.duration);
+    switch (hand.kind) {
+      case msg::DISTURBANCE_PUSH:
+        return fmt::format("robot {} pushed by ({:.3f}, {:.3f}) m/s", hand.robot, hand.push_mps.x(),
+                           hand.push_mps.y());
+      case msg::DISTURBANCE_SLIP:
+        return fmt::format("robot {} slips for {:.3f} s, grip {:.2f}", hand.robot, lasts_s, hand.grip);
+      case msg::DISTURBANCE_BLOCK:
+        return fmt::format("a wheel of robot {} blocked for {:.3f} s, along {:.2f} rad", hand.robot, lasts_s,
+                           hand.heading_rad);
+      default:
+        return fmt::format("robot {} starts again", hand.robot);
+    }
+  }
 
  private:
   /// Whole hosts go by their numbers, and most by those that are not among them.
@@ -65,6 +80,9 @@ std::vector<std::string> in_words(const FaultPlan& plan) {
   for (const auto& [process, offset] : plan.clocks) {
     lines.push_back(fmt::format("clock of {}: {:+.4f} ms", process, ms(offset)));
   }
+  if (!plan.off_clock.empty())
+    lines.push_back(
+        fmt::format("robots that must not move for their clocks: {}", fmt::join(plan.off_clock, ", ")));
   for (const TimedFault& timed : plan.faults) {
     lines.push_back(fmt::format("{:.3f} s: {}", to_seconds(timed.at), std::visit(Words(plan), timed.fault)));
   }

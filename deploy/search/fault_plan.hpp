@@ -7,8 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "common/geometry/vec2.hpp"
 #include "common/messaging/sim_links.hpp"
 #include "common/motion/version.hpp"
+#include "idl/disturbance.h"
 
 namespace sidestep {
 
@@ -38,7 +40,17 @@ struct Start {
   std::string process;
 };
 
-using Fault = std::variant<WeatherChange, Partition, Pause, Kill, Start>;
+/// Somebody's hand on a robot.
+struct Hand {
+  RobotId robot = 0;
+  msg::DisturbanceKind kind = msg::DISTURBANCE_PUSH;
+  Vec2 push_mps{0, 0};
+  double grip = 1;         ///< of a robot that slips
+  double heading_rad = 0;  ///< of the wheel that is blocked
+  Duration duration{0};
+};
+
+using Fault = std::variant<WeatherChange, Partition, Pause, Kill, Start, Hand>;
 
 struct TimedFault {
   Duration at{0};  ///< from the begin of the run
@@ -48,8 +60,10 @@ struct TimedFault {
 /// What goes wrong in one run, drawn up front. From `healed_at` on nothing does: the network is perfect,
 /// nobody is stopped or dies any more.
 struct FaultPlan {
+  bool has_hands = false;                  ///< robots are pushed and slip: then they may touch
   std::vector<ProcessNames> hosts;         ///< within a host messages are fast and are not lost
   std::map<std::string, Duration> clocks;  ///< ahead of true time, by process
+  std::vector<RobotId> off_clock;          ///< robots whose clocks are so wrong that they must not move
   std::vector<TimedFault> faults;          ///< by time
   Duration healed_at{0};
 };

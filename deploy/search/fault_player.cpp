@@ -60,6 +60,18 @@ void FaultPlayer::operator()(const Pause& pause) {
   }
 }
 
+void FaultPlayer::operator()(const Hand& hand) {
+  msg::Disturbance disturbance;
+  disturbance.robot(hand.robot);
+  disturbance.disturbance_kind(hand.kind);
+  disturbance.vx_mps(hand.push_mps.x());
+  disturbance.vy_mps(hand.push_mps.y());
+  disturbance.grip(hand.grip);
+  disturbance.heading_rad(hand.heading_rad);
+  disturbance.duration_ns(hand.duration.count());
+  system_.disturb(disturbance);
+}
+
 void FaultPlayer::end_partitions(Duration until) {
   const auto earlier = [](const End& a, const End& b) { return a.at < b.at; };
   while (!ends_.empty()) {

@@ -128,18 +128,21 @@ Scenario draw_scene(Rng& rng) {
     lines[i] = {1, std::vector<int>(kGoals, 1)};
   }
   draw_ways(scenario, rng);
+  const double u = rng.uniform();
+  scenario.coordinators = u < 0.25 ? 1 : u < 0.85 ? 2 : 3;
   check_placement(scenario, lines, scenario.name);
   return scenario;
 }
 
 std::string floor_in_words(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {} obstacles, at most {:.2f} m/s; commands lost {:.1f} %, vision "
+      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; commands lost "
+      "{:.1f} %, vision "
       "{:.1f} ms late, "
       "robots missed {:.1f} %",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
-      scenario.limits.speed_mps, 100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
-      100 * scenario.vision.missed);
+      scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
+      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.missed);
 }
 
 }  // namespace sidestep

@@ -31,6 +31,7 @@ Json to_json(const TrialResult& r) {
   return {{"seed", r.seed},
           {"failures", r.failures},
           {"contacts", r.contacts},
+          {"contacts_by_hand", r.contacts_by_hand},
           {"promise_violations", r.promise_violations},
           {"firmware_violations", r.firmware_violations},
           {"proposals", r.proposals},
@@ -55,6 +56,7 @@ TrialResult result_from(const std::string& line) {
   json.at("seed").get_to(r.seed);
   json.at("failures").get_to(r.failures);
   json.at("contacts").get_to(r.contacts);
+  json.at("contacts_by_hand").get_to(r.contacts_by_hand);
   json.at("promise_violations").get_to(r.promise_violations);
   json.at("firmware_violations").get_to(r.firmware_violations);
   json.at("proposals").get_to(r.proposals);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "deploy/search/clock_draw.hpp"
 #include "deploy/search/fault_draw.hpp"
 #include "deploy/search/fault_player.hpp"
 #include "deploy/search/motion_meter.hpp"
@@ -22,23 +23,41 @@ constexpr double kStill_m = 0.05;
 
 std::string list(const std::vector<RobotId>& robots) { return fmt::format("{}", fmt::join(robots, ", ")); }
 
-/// Robots that have an agent which does not drive, although nothing has been wrong for long.
-std::vector<RobotId> not_driving(const SimSystem& system) {
-  std::vector<RobotId> robots;
+/// Robots whose agents are not in the state in which they should be, although nothing has been wrong for
+/// long.
+struct Astray {
+  std::vector<RobotId> not_driving, not_off_clock, driven_off_clock;
+};
+
+Astray find_astray(const SimSystem& system, const FaultPlan& plan) {
+  Astray astray;
   for (const RobotProgress& row : system.judge().progress()) {
-    const bool has_agent =
-        system.is_alive(agent_process(row.robot)) || system.is_alive(twin_process(row.robot));
     const bool drives = row.phase == msg::AGENT_DRIVING || row.phase == msg::AGENT_ARRIVED;
-    if (has_agent && !drives) robots.push_back(row.robot);
+    if (std::ranges::find(plan.off_clock, row.robot) == plan.off_clock.end()) {
+      if (!drives) astray.not_driving.push_back(row.robot);
+      continue;
+    }
+    if (row.phase != msg::AGENT_OFF_CLOCK) astray.not_off_clock.push_back(row.robot);
+    if (row.grants > 0) astray.driven_off_clock.push_back(row.robot);
   }
-  return robots;
+  return astray;
 }
 
-void judge(const SimSystem& system, const PromiseWatch& watch, const MotionMeter& meter,
+/// Whether clocks were so far off that nothing may have been granted to their robots at all.
+bool is_surely_noticed(const Trial& trial) {
+  const auto is_far = [](Duration offset) { return std::chrono::abs(offset) > kSurelyNoticed; };
+  return std::ranges::all_of(trial.plan.off_clock, [&](RobotId robot) {
+    const auto coordinator = trial.plan.clocks.find("coordinator");
+    const Duration reference = coordinator == trial.plan.clocks.end() ? Duration{0} : coordinator->second;
+    return is_far(find_robot(trial.scenario, robot)->clock_offset - reference);
+  });
+}
+
+void judge(const Trial& trial, const SimSystem& system, const PromiseWatch& watch, const MotionMeter& meter,
            TrialResult& result) {
   const Report report = system.judge().report();
   const auto fail = [&](const std::string& what) { result.failures.push_back(what); };
-  result.contacts = report.contacts;
+  (trial.plan.has_hands ? result.contacts_by_hand : result.contacts) = report.contacts;
   result.promise_violations = watch.violations();
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
@@ -48,28 +67,34 @@ void judge(const SimSystem& system, const PromiseWatch& watch, const MotionMeter
   result.moved_m = meter.total_m();
   result.calm_moved_m = meter.total_since_m();
   result.idle = static_cast<int>(meter.still(kStill_m).size());
-  if (report.contacts > 0)
+  if (result.contacts > 0)
     fail(fmt::format("{} contacts, {:.6f} m s deep", report.contacts, report.penetration_m_s));
   if (watch.violations() > 0)
     fail(fmt::format("{} violations of the promise; {}", watch.violations(), watch.first()));
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
   if (watch.pages() == 0) fail("no coordinator has ever granted");
-  if (const auto robots = not_driving(system); !robots.empty()) {
-    fail(fmt::format("stuck: the agents of robots {} do not drive, long after the last fault", list(robots)));
-  }
-  const bool all_still = result.idle == result.robots;
-  if (all_still && !system.judge().all_arrived()) fail("stuck: nobody moves, long after the last fault");
+  const Astray astray = find_astray(system, trial.plan);
+  if (!astray.not_driving.empty())
+    fail(fmt::format("stuck: robots {} do not drive, long after the last fault", list(astray.not_driving)));
+  if (!astray.not_off_clock.empty())
+    fail(fmt::format("robots {} do not know that their clocks are wrong", list(astray.not_off_clock)));
+  if (!astray.driven_off_clock.empty() && is_surely_noticed(trial))
+    fail(fmt::format("robots {} were driven although their clocks are wrong", list(astray.driven_off_clock)));
+  const bool may_move = static_cast<int>(trial.plan.off_clock.size()) < result.robots;
+  if (may_move && result.idle == result.robots && !system.judge().all_arrived())
+    fail("stuck: nobody moves, long after the last fault");
 }
 
 }  // namespace
 
 Trial draw_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario) {
   Rng rng(seed);
-  Rng for_scene = rng.fork(), for_faults = rng.fork();
+  Rng for_scene = rng.fork(), for_faults = rng.fork(), for_clocks = rng.fork();
   Trial trial{seed, scenario ? *scenario : draw_scene(for_scene), {}, duration};
   const Duration calm = std::min(kCalm, duration / 2);
   trial.plan =
       draw_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration, calm, for_faults);
+  draw_clocks(trial.scenario, trial.plan, for_clocks);
   return trial;
 }
 
@@ -90,7 +115,7 @@ TrialResult run_trial(const Trial& trial, Report* report,
     if (on_truth) on_truth(truth);
   });
   FaultPlayer(system, trial.plan).run_until(trial.duration);
-  judge(system, watch, meter, result);
+  judge(trial, system, watch, meter, result);
   if (report) {
     *report = system.judge().report();
     report->must_arrive = false;

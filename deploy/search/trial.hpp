@@ -28,7 +28,9 @@ Trial draw_trial(std::uint64_t seed, Duration duration, const std::optional<Scen
 struct TrialResult {
   std::uint64_t seed = 0;
   std::vector<std::string> failures;
-  std::uint64_t contacts = 0, promise_violations = 0, firmware_violations = 0;
+  std::uint64_t contacts = 0;
+  std::uint64_t contacts_by_hand = 0;  ///< where robots were pushed or slipped, which is beyond the bounds
+  std::uint64_t promise_violations = 0, firmware_violations = 0;
   std::uint64_t proposals = 0, grants = 0, denials = 0;
   double robot_s = 0;       ///< robots times simulated time
   double moved_m = 0;       ///< by all robots together

@@ -85,6 +85,30 @@ TEST_CASE("drawn faults keep within what is promised, are of every kind, and end
   CHECK(two_way > 50);
 }
 
+TEST_CASE("robots' clocks are within the bound of every coordinator's, or far beyond it and named") {
+  int with_clocks = 0, beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    const Trial trial = draw_trial(seed, 60s, std::nullopt);
+    const auto& clocks = trial.plan.clocks;
+    with_clocks += !clocks.empty();
+    beyond += !trial.plan.off_clock.empty();
+    for (const RobotSpec& robot : trial.scenario.robots) {
+      const Duration robot_s = robot.clock_offset + (clocks.empty() ? Duration{0} : clocks.at("simulator"));
+      for (int number = 0; number < trial.scenario.coordinators && !clocks.empty(); ++number) {
+        const Duration difference = std::chrono::abs(robot_s - clocks.at(coordinator_process(number)));
+        const bool is_off = std::ranges::find(trial.plan.off_clock, robot.id) != trial.plan.off_clock.end();
+        CAPTURE(robot.id, number, to_seconds(difference));
+        CHECK((is_off ? difference > Duration{300ms}
+                      : difference < from_seconds(trial.scenario.clock_bound_s)));
+      }
+    }
+  }
+  CHECK(with_clocks > 150);
+  CHECK(beyond > 15);
+  CHECK(beyond < 60);
+}
+
 TEST_CASE("the same seed draws the same trial, and the floor does not depend on the length") {
   const Trial a = draw_trial(5, 60s, std::nullopt), b = draw_trial(5, 60s, std::nullopt),
               shorter = draw_trial(5, 20s, std::nullopt), other = draw_trial(6, 60s, std::nullopt);

@@ -109,7 +109,7 @@ TEST_CASE("a system that never gets to drive is stuck, and the trial says so") {
   const TrialResult dead = run_trial(trial);
   REQUIRE(dead.failures.size() == 3);
   CHECK(dead.failures[0] == "no coordinator has ever granted");
-  CHECK_THAT(dead.failures[1], Catch::Contains("the agents of robots 0, 1 do not drive"));
+  CHECK_THAT(dead.failures[1], Catch::Contains("robots 0, 1 do not drive"));
   CHECK_THAT(dead.failures[2], Catch::Contains("nobody moves"));
   trial.plan.faults.clear();
   CHECK(run_trial(trial).failures.empty());

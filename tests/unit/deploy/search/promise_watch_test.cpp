@@ -78,6 +78,42 @@ TEST_CASE("a ledger whose versions are not clear of each other is found, but not
   CHECK(rig.watch.violations() == 1);
 }
 
+TEST_CASE("a robot that was off its reference may be too near until it is clear once more") {
+  Rig rig;
+  rig.executes(stand(0, 1, 0), 7);
+  Version measured = stand(1, 5, 0.25);
+  measured.grown_m = 0.07;
+  rig.executes(measured, 7);
+  rig.holds({stand(0, 1, 0), measured}, 7);
+  CHECK(rig.watch.violations() == 0);
+  // It has its size again, is still too near, and goes away.
+  rig.executes(stand(1, 6, 0.18), 7);
+  rig.holds({stand(0, 1, 0), stand(1, 6, 0.18)}, 7);
+  CHECK(rig.watch.violations() == 0);
+  rig.executes(stand(1, 7, 0.2), 7);
+  rig.holds({stand(0, 1, 0), stand(1, 7, 0.2)}, 7);
+  CHECK(rig.watch.violations() == 0);
+  rig.holds({stand(0, 1, 0), stand(1, 7, 0.2), stand(1, 8, 0.18)}, 7);
+  CHECK(rig.watch.violations() == 1);
+  rig.executes(stand(1, 8, 0.18), 7);
+  CHECK(rig.watch.violations() == 2);
+}
+
+TEST_CASE("a robot that is lifted is nowhere") {
+  Rig rig;
+  rig.executes(stand(0, 1, 0), 7);
+  rig.executes(stand(1, 1, 0.5), 7);
+  msg::Feedback lifted;
+  lifted.robot(1);
+  lifted.is_lifted(true);
+  lifted.obeyed_epoch(7);
+  rig.feedback[1].publish(lifted, rig.network.now());
+  rig.network.run_until(rig.network.now() + 10ms);
+  rig.executes(stand(0, 2, 0.5), 7);
+  rig.holds({stand(0, 2, 0.5)}, 7);
+  CHECK(rig.watch.violations() == 0);
+}
+
 TEST_CASE("a robot that executes what is not in the ledger of the coordinator that it obeys is found") {
   Rig rig;
   rig.executes(stand(0, 3, 0), 7);
