@@ -279,6 +279,7 @@ Report Judge::report() const {
     report.robot_time_s = std::max(0.0, to_seconds(*truth_at_ - *granting_since_));
   report.deaths = deaths_;
   report.conflicts = conflicts_;
+  if (auditor_) report.audit = auditor_->totals();
   return report;
 }
 

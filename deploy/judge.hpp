@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "deploy/audit/auditor.hpp"
 #include "deploy/report.hpp"
 #include "idl/monitor.h"
 #include "idl/negotiation.h"
@@ -40,6 +41,9 @@ class Judge {
   void on_status(const msg::AgentStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
+
+  /// Puts what the auditor finds into the report; it outlives the judge's last report.
+  void include(const Auditor& auditor) { auditor_ = &auditor; }
 
   bool all_arrived() const;
   int arrived() const;
@@ -78,6 +82,7 @@ class Judge {
   double to_go_m(const Watched& robot) const;
 
   const Scenario& scenario_;
+  const Auditor* auditor_ = nullptr;
   std::vector<Watched> robots_;               ///< ascending by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each life, without robots
   struct CoordinatorLife {

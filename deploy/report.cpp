@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/report.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -34,6 +35,26 @@ Json quantiles(const DurationHistogram& histogram, bool with_largest) {
   return json;
 }
 
+Json audit_json(const AuditTotals& audit) {
+  Json json;
+  json["violations"] = audit.violations;
+  json["by_rule"] = Json::object();
+  for (std::size_t i = 0; i < kAuditRules; ++i) {
+    if (audit.by_rule[i] > 0) json["by_rule"][audit_rule(static_cast<AuditRule>(i)).name] = audit.by_rule[i];
+  }
+  json["first"] = Json::array();
+  for (const Violation& violation : audit.first)
+    json["first"].push_back(Json::parse(to_json_line(violation)));
+  json["heard"] = audit.heard;
+  json["missed"] = audit.missed;
+  json["invalid"] = audit.invalid;
+  json["pairs"] = audit.pairs;
+  json["unjudged"] = audit.unjudged;
+  json["farthest_from_reference_m"] = rounded(audit.farthest_m);
+  json["beyond_tracking_bound"] = audit.beyond;
+  return json;
+}
+
 std::string shown(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
@@ -47,6 +68,10 @@ std::string Report::verdict() const {
   if (contacts > 0) add(fmt::format("{} contacts", contacts));
   if (moving_crashes > 0) add(fmt::format("{} crashes of moving robots", moving_crashes));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
+  if (audit && audit->violations > 0) {
+    add(fmt::format("{} violations found by the audit, first of {}", audit->violations,
+                    audit_rule(audit->first.front().rule).name));
+  }
   if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
   return why;
 }
@@ -93,6 +118,7 @@ std::string to_json(const Report& r) {
                               {"at_s", rounded(death.at_s)},
                               {"restarted", death.restarted}});
   }
+  json["audit"] = r.audit ? audit_json(*r.audit) : Json(nullptr);
   Json& wall = json["wall_clock"];
   wall["plan_us"] = quantiles(r.plan, false);
   wall["search_us"] = quantiles(r.search, false);
@@ -123,6 +149,12 @@ std::string summary(const Report& r) {
   }
   for (const auto& [first, second] : r.conflicts)
     text += fmt::format("robots {} and {} were brought too near to each other\n", first, second);
+  if (r.audit) {
+    text += fmt::format("audit: {} violations in {} messages, {} missed; {} pairs of versions compared\n",
+                        r.audit->violations, r.audit->heard, r.audit->missed, r.audit->pairs);
+    for (std::size_t i = 0; i < std::min<std::size_t>(r.audit->first.size(), 5); ++i)
+      text += "  " + to_line(r.audit->first[i]) + "\n";
+  }
   for (const Death& death : r.deaths) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");

@@ -10,6 +10,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/time/histogram.hpp"
+#include "deploy/audit/audit_rules.hpp"
 
 namespace sidestep {
 
@@ -59,10 +60,11 @@ struct Report {
   DurationHistogram plan;
   DurationHistogram search;
   std::vector<Death> deaths;
-  double duration_s = 0;  ///< wall clock
+  std::optional<AuditTotals> audit;  ///< none: nobody listened
+  double duration_s = 0;             ///< wall clock
 
   /// Why the run failed in one line; empty when everybody arrived, nobody touched, no robot moved when an
-  /// opponent touched it, and no firmware rule was broken.
+  /// opponent touched it, and no rule was broken.
   std::string verdict() const;
 };
 

@@ -15,6 +15,7 @@
 #include "deploy/judge.hpp"
 #include "deploy/process_group.hpp"
 #include "deploy/progress.hpp"
+#include "deploy/record/recording.hpp"
 
 namespace sidestep {
 namespace {
@@ -40,7 +41,17 @@ class Launcher {
         network_(network),
         group_(log_path),
         bus_(options.dds),
-        judge_(scenario) {
+        judge_(scenario),
+        auditor_(scenario, {}) {
+    judge_.include(auditor_);
+    auditor_.on_violation([this](const Violation& violation) {
+      if (said_violations_++ < AuditTotals::kMostKept) say("audit: " + to_line(violation));
+    });
+    listen(bus_, scenario, auditor_);
+    if (!options.recording_file.empty()) {
+      recording_.emplace(options.recording_file, recording_head(scenario.name, options.scenario_file));
+      record(bus_, scenario, *recording_);
+    }
     bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) { judge_.on_truth(truth); });
     bus_.subscribe<msg::AgentStatus>(topics::kStatus,
                                      [this](const auto& status) { judge_.on_status(status); });
@@ -67,6 +78,7 @@ class Launcher {
       for (const ChildEvent& event : group_.poll(0ms)) handle(event);
       display_.update(judge_, bus_.now());
     }
+    if (recording_) recording_->close();
     Report report = judge_.report();
     for (const std::string& name : group_.terminate(kPatience)) say(name + " did not end and was killed");
     report.program = "run";
@@ -200,6 +212,9 @@ class Launcher {
   ProcessGroup group_;
   DdsBus bus_;
   Judge judge_;
+  Auditor auditor_;
+  std::uint64_t said_violations_ = 0;
+  std::optional<RecordingWriter> recording_;
   ProgressDisplay display_;
   std::atomic<bool> is_interrupted_{false};
   bool is_ready_ = false;

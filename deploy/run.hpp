@@ -11,8 +11,9 @@ namespace sidestep {
 
 struct RunOptions {
   std::string scenario_file;
-  std::string hosts_file;   ///< empty: everything on this machine, on the interface of `dds`
-  std::string report_file;  ///< empty: reports/<scenario>-<time>.json; the log lies beside it
+  std::string hosts_file;      ///< empty: everything on this machine, on the interface of `dds`
+  std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log lies beside it
+  std::string recording_file;  ///< of all messages; empty: none
   DdsSettings dds;
   std::uint64_t seed = 1;         ///< of the simulator's noise
   std::optional<double> seconds;  ///< instead of the scenario's time limit
@@ -21,8 +22,8 @@ struct RunOptions {
 
 /// Starts every process of the system, watches until all robots have arrived, the time is up or somebody
 /// interrupts, stops them and writes the report. Returns the exit code: 0 only if all arrived, nobody touched
-/// and no firmware rule was broken. Throws ScenarioError, and std::runtime_error when something cannot be
-/// started or written.
+/// and the auditor found no rule broken. Throws ScenarioError, and std::runtime_error when something cannot
+/// be started or written.
 int run(const RunOptions& options);
 
 }  // namespace sidestep

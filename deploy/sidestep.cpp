@@ -5,6 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
+#include "deploy/audit/audit_command.hpp"
 #include "deploy/fault/fault_command.hpp"
 #include "deploy/run.hpp"
 #include "deploy/search/seed_search.hpp"
@@ -20,6 +21,7 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
       root.add_subcommand("run", "Runs a scenario: one process for each part of the system, over DDS");
   command->add_option("SCENARIO", options.scenario_file, "scenario file, see deploy/scenarios/README.md")
       ->required();
+  command->add_option("--record", options.recording_file, "write all messages into this file");
   command->add_option("--report", options.report_file, "report file [reports/<scenario>-<time>.json]");
   command->add_option("--seed", options.seed, "of the simulator's noise")
       ->check(CLI::NonNegativeNumber)
@@ -66,6 +68,8 @@ void add_simulate_command(CLI::App& root, std::function<int()>& action, Simulate
                       "report file [reports/<scenario>-<seed>.json; --seeds: none]");
   CLI::Option* svg =
       command->add_option("--svg", options.picture_file, "draw the robots' ways into this file");
+  CLI::Option* recording =
+      command->add_option("--record", options.recording_file, "write all messages into this file");
   CLI::Option* seed = command->add_option("--seed", options.seed, "of everything that is random")
                           ->check(CLI::NonNegativeNumber)
                           ->capture_default_str();
@@ -88,6 +92,7 @@ void add_simulate_command(CLI::App& root, std::function<int()>& action, Simulate
                                "FIRST..LAST: one run for each seed, on all cores")
                            ->needs(faults)
                            ->excludes(seed)
+                           ->excludes(recording)
                            ->excludes(svg);
   command->add_option("--jobs", search.jobs, "processes for --seeds [as many as there are cores]")
       ->check(CLI::PositiveNumber)
@@ -116,6 +121,7 @@ int main(int argc, char** argv) {
   add_topic_command(app, action);
   add_fault_command(app, action);
   add_study_command(app, action);
+  add_audit_commands(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {
     return action();

@@ -36,9 +36,12 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       begin_(kBegin),
       network_(seed, kBegin, scenario.network),
       judge_(scenario_),
+      auditor_(scenario_, {true, {}}),
       judge_bus_(network_),
       hand_(judge_bus_.advertise(topics::kDisturbance)) {
   judge_bus_.listen_aside();
+  judge_.include(auditor_);
+  listen(judge_bus_, scenario_, auditor_);
   judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
     judge_.on_truth(truth);
     if (truth_watcher_) truth_watcher_(truth);

@@ -11,6 +11,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/sim_bus.hpp"
+#include "deploy/audit/auditor.hpp"
 #include "deploy/judge.hpp"
 
 namespace sidestep {
@@ -60,6 +61,8 @@ class SimSystem {
   /// Shows every ground truth that the judge sees.
   void on_truth(std::function<void(const msg::GroundTruth&)> watcher) { truth_watcher_ = std::move(watcher); }
   const Judge& judge() const { return judge_; }
+  /// Hears every message, whatever becomes of it; the judge's report says what it found.
+  Auditor& auditor() { return auditor_; }
 
  private:
   struct Process;
@@ -73,6 +76,7 @@ class SimSystem {
   Time begin_;
   SimNetwork network_;
   Judge judge_;
+  Auditor auditor_;
   SimBus judge_bus_;
   Writer<msg::Disturbance> hand_;
   std::map<std::string, ProcessId> ids_;

@@ -10,6 +10,7 @@
 #include "common/process/process.hpp"
 #include "deploy/picture.hpp"
 #include "deploy/progress.hpp"
+#include "deploy/record/recording.hpp"
 #include "deploy/search/commit.hpp"
 #include "deploy/search/scene_draw.hpp"
 #include "deploy/search/seed_search.hpp"
@@ -60,6 +61,30 @@ std::string drive(SimSystem& system, double limit_s) {
   return system.judge().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
 }
 
+/// Writes all messages of a system into a file, if one is asked for. Completeness is about what makes and
+/// follows versions: nothing of that is said while a system is made.
+class SimRecorder {
+ public:
+  SimRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options) : bus_(network) {
+    if (options.recording_file.empty()) return;
+    RecordingHead head;
+    head.scenario = scenario.name;
+    if (!options.scenario_file.empty()) head = recording_head(scenario.name, options.scenario_file);
+    head.is_complete = true;
+    writer_.emplace(options.recording_file, head);
+    bus_.listen_aside();
+    record(bus_, scenario, *writer_);
+  }
+  /// Throws std::runtime_error when not everything could be written.
+  void close() {
+    if (writer_) writer_->close();
+  }
+
+ private:
+  std::optional<RecordingWriter> writer_;
+  SimBus bus_;
+};
+
 /// Completes and writes the report, prints it, and returns the exit code.
 int conclude(const SimulateOptions& options, Report& report, const Picture& picture,
              steady_clock::time_point begin) {
@@ -87,9 +112,14 @@ int simulate_trial(const SimulateOptions& options) {
   for (const std::string& line : in_words(trial.plan)) fmt::print("  {}\n", line);
   Picture picture(trial.scenario);
   Report report;
-  run_trial(trial, &report, [&](const msg::GroundTruth& truth) {
-    if (!options.picture_file.empty()) picture.add(truth);
-  });
+  std::optional<SimRecorder> recorder;
+  run_trial(
+      trial, &report,
+      [&](const msg::GroundTruth& truth) {
+        if (!options.picture_file.empty()) picture.add(truth);
+      },
+      [&](SimSystem& system) { recorder.emplace(system.network(), trial.scenario, options); },
+      [&] { recorder->close(), recorder.reset(); });
   return conclude(options, report, picture, begin);
 }
 
@@ -101,7 +131,9 @@ int simulate(const SimulateOptions& options) {
   Picture picture(scenario);
   if (!options.picture_file.empty())
     system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
+  SimRecorder recorder(system.network(), scenario, options);
   const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
+  recorder.close();
   Report report = system.judge().report();
   report.failure = failure;
   return conclude(options, report, picture, begin);

@@ -8,9 +8,10 @@
 namespace sidestep {
 
 struct SimulateOptions {
-  std::string scenario_file;  ///< may be empty with faults
-  std::string report_file;    ///< empty: reports/<scenario>-<seed>.json
-  std::string picture_file;   ///< SVG of the robots' ways; empty: none
+  std::string scenario_file;   ///< may be empty with faults
+  std::string report_file;     ///< empty: reports/<scenario>-<seed>.json
+  std::string picture_file;    ///< SVG of the robots' ways; empty: none
+  std::string recording_file;  ///< of all messages; empty: none
   std::uint64_t seed = 1;
   std::optional<double> seconds;  ///< instead of the scenario's time limit
 };

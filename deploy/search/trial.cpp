@@ -58,7 +58,7 @@ void judge(const Trial& trial, const SimSystem& system, const PromiseWatch& watc
   const Report report = system.judge().report();
   const auto fail = [&](const std::string& what) { result.failures.push_back(what); };
   (trial.plan.has_hands ? result.contacts_by_hand : result.contacts) = report.contacts;
-  result.promise_violations = watch.violations();
+  result.promise_violations = watch.violations() + report.audit->violations;
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
   result.grants = report.grants;
@@ -71,6 +71,10 @@ void judge(const Trial& trial, const SimSystem& system, const PromiseWatch& watc
     fail(fmt::format("{} contacts, {:.6f} m s deep", report.contacts, report.penetration_m_s));
   if (watch.violations() > 0)
     fail(fmt::format("{} violations of the promise; {}", watch.violations(), watch.first()));
+  if (report.audit->violations > 0) {
+    fail(fmt::format("{} violations found by the audit; {}", report.audit->violations,
+                     to_line(report.audit->first.front())));
+  }
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
   if (watch.pages() == 0) fail("no coordinator has ever granted");
   const Astray astray = find_astray(system, trial.plan);
@@ -99,7 +103,8 @@ Trial draw_trial(std::uint64_t seed, Duration duration, const std::optional<Scen
 }
 
 TrialResult run_trial(const Trial& trial, Report* report,
-                      const std::function<void(const msg::GroundTruth&)>& on_truth) {
+                      const std::function<void(const msg::GroundTruth&)>& on_truth,
+                      const std::function<void(SimSystem&)>& before, const std::function<void()>& after) {
   const auto begin = std::chrono::steady_clock::now();
   TrialResult result;
   result.seed = trial.seed;
@@ -114,7 +119,9 @@ TrialResult run_trial(const Trial& trial, Report* report,
     meter.add(truth);
     if (on_truth) on_truth(truth);
   });
+  if (before) before(system);
   FaultPlayer(system, trial.plan).run_until(trial.duration);
+  if (after) after();
   judge(trial, system, watch, meter, result);
   if (report) {
     *report = system.judge().report();

@@ -9,6 +9,7 @@
 
 #include "deploy/report.hpp"
 #include "deploy/search/fault_plan.hpp"
+#include "deploy/sim_system.hpp"
 #include "idl/monitor.h"
 
 namespace sidestep {
@@ -41,8 +42,11 @@ struct TrialResult {
   double wall_s = 0;
 };
 
-/// Runs a trial. The report and every ground truth are for whoever wants to look at one closely.
+/// Runs a trial. The report, every ground truth and the system itself, before it runs and after, are for
+/// whoever wants to look at one closely.
 TrialResult run_trial(const Trial& trial, Report* report = nullptr,
-                      const std::function<void(const msg::GroundTruth&)>& on_truth = {});
+                      const std::function<void(const msg::GroundTruth&)>& on_truth = {},
+                      const std::function<void(SimSystem&)>& before = {},
+                      const std::function<void()>& after = {});
 
 }  // namespace sidestep

@@ -219,6 +219,9 @@ void require_untouched(const nlohmann::json& report) {
   REQUIRE(report.is_object());
   CHECK(report["contacts"] == 0);
   CHECK(report["firmware_violations"] == 0);
+  INFO(report["audit"].dump(2));
+  CHECK(report["audit"]["violations"] == 0);
+  CHECK(report["audit"]["pairs"] > 0);
 }
 
 bool is_running(pid_t pid) {

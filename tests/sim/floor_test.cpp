@@ -81,6 +81,8 @@ TEST_CASE("among opponents every robot arrives, and whoever is touched is at res
     CHECK(system.run_until_arrived(system.begin() + from_seconds(scenario.time_limit_s)));
     const Report report = system.judge().report();
     CHECK(report.contacts == 0);
+    for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
+    CHECK(report.audit->violations == 0);
     CHECK(report.moving_crashes == 0);
     CHECK(report.robot_crash_speed_mps < 0.05);
     crashes += report.crashes;

@@ -32,6 +32,9 @@ struct Watched {
     REQUIRE(report.firmware_violations == 0);
     INFO(watch.first());
     REQUIRE(watch.violations() == 0);
+    for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
+    REQUIRE(report.audit->violations == 0);
+    REQUIRE(report.audit->pairs > 0);
     REQUIRE(watch.pages() > 0);
   }
   double speed_mps(RobotId robot) {

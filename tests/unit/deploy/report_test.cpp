@@ -69,6 +69,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "negotiation_us",
                                          "robot_time_s",
                                          "deaths",
+                                         "audit",
                                          "wall_clock"});
   CHECK(json["seed"] == 7);
   CHECK(json["passed"] == false);
@@ -139,6 +140,29 @@ TEST_CASE("a crash of a moving robot fails a run, one of a robot at rest is told
              Catch::Contains("3 crashes with opponents, 0 of them moving; fastest 1.50 m/s"));
   report.moving_crashes = 1;
   CHECK(report.verdict() == "1 crashes of moving robots");
+}
+
+TEST_CASE("what the audit found fails a run, and stands in its report") {
+  Report report = example();
+  report.arrived = report.robots;
+  CHECK(nlohmann::json::parse(to_json(report))["audit"].is_null());
+  report.audit = AuditTotals{};
+  CHECK(report.verdict().empty());
+  Violation violation;
+  violation.rule = AuditRule::kLate;
+  violation.robot = 3;
+  violation.version = 17;
+  violation.what = "is executed, although";
+  report.audit->violations = 1;
+  report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLate)] = 1;
+  report.audit->first.push_back(violation);
+  CHECK(report.verdict() == "1 violations found by the audit, first of late");
+  const auto audit = nlohmann::json::parse(to_json(report))["audit"];
+  CHECK(audit["violations"] == 1);
+  CHECK(audit["by_rule"]["late"] == 1);
+  CHECK(audit["first"][0]["robot"] == 3);
+  CHECK(audit["first"][0]["what"] == "is executed, although");
+  CHECK_THAT(summary(report), Catch::Contains("late (firmware, S-05): robot 3 version 17: is executed"));
 }
 
 }  // namespace sidestep

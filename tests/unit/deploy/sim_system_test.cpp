@@ -30,6 +30,7 @@ TEST_CASE("one seed gives one run, another seed another") {
     SimSystem system(scenario, seeds[i]);
     system.run_until_arrived(system.begin() + 60s);
     CHECK(system.judge().report().contacts == 0);
+    CHECK(system.auditor().totals().violations == 0);
     outcomes[i] = outcome(system);
   }
   CHECK(outcomes[0] == outcomes[1]);
@@ -59,6 +60,7 @@ TEST_CASE("an agent that is killed leaves its robot at rest, and the others arri
   CHECK(row().distance_to_go_m == Approx(left_m).margin(0.01));
   const Report report = system.judge().report();
   CHECK(report.contacts == 0);
+  CHECK(report.audit->violations == 0);
   CHECK(report.firmware_violations == 0);
   REQUIRE(report.deaths.size() == 1);
   CHECK(report.deaths[0].process == "agent 3");
@@ -77,6 +79,7 @@ TEST_CASE("killed processes that are restarted bring everybody to their goals") 
   CHECK(system.is_alive(process));
   CHECK(system.run_until_arrived(system.now() + 60s));
   CHECK(system.judge().report().contacts == 0);
+  CHECK(system.auditor().totals().violations == 0);
   CHECK(system.judge().report().firmware_violations == 0);
 }
 
@@ -95,6 +98,7 @@ TEST_CASE("with two coordinators the death of either does not keep anybody from 
   if (comes_back) system.restart(process);
   CHECK(system.run_until_arrived(system.now() + 30s));
   CHECK(system.judge().report().contacts == 0);
+  CHECK(system.auditor().totals().violations == 0);
   CHECK(system.judge().report().firmware_violations == 0);
   CHECK(system.judge().report().deaths.at(0).process == process);
 }
