@@ -100,13 +100,15 @@ double SearchSummary::robot_hours() const {
 }
 
 template <typename Value>
-std::string SearchSummary::largest(Value value) const {
+std::string SearchSummary::extremes(Value value, bool are_largest) const {
+  const double sign = are_largest ? -1 : 1;
   std::vector<std::pair<double, std::uint64_t>> order;
-  for (const auto& [seed, result] : results_) order.emplace_back(-value(result), seed);
+  for (const auto& [seed, result] : results_) order.emplace_back(sign * value(result), seed);
   std::ranges::sort(order);
   std::string text;
   for (std::size_t i = 0; i < std::min(order.size(), kShown); ++i) {
-    text += fmt::format("{}seed {} ({:.3g})", i > 0 ? ", " : "", order[i].second, std::abs(order[i].first));
+    text +=
+        fmt::format("{}seed {} ({:.3g})", i > 0 ? ", " : "", order[i].second, sign * order[i].first + 0.0);
   }
   return text;
 }
@@ -124,6 +126,11 @@ std::string SearchSummary::text() const {
       "of firmware rules\n",
       seeds(), failed(), hours, moved_m / 1000, contacts(), sum(&TrialResult::promise_violations),
       sum(&TrialResult::firmware_violations));
+  if (const auto by_hand = sum(&TrialResult::contacts_by_hand); by_hand > 0) {
+    text += fmt::format(
+        "{} more contacts where robots were pushed, slipped or started again, which is beyond the bounds\n",
+        by_hand);
+  }
   text += fmt::format(
       "so with 95 % confidence there are at most {:.3g} contacts per robot-hour under these faults\n",
       upper_bound_95(contacts(), hours));
@@ -131,15 +138,17 @@ std::string SearchSummary::text() const {
                       sum(&TrialResult::proposals),
                       100 * share(sum(&TrialResult::denials), sum(&TrialResult::proposals)),
                       wall_s > 0 ? hours * 3600 / wall_s : 0);
-  text += "least driven, in metres per robot and minute: " +
-          largest([](const TrialResult& r) { return r.robot_s > 0 ? -60 * r.moved_m / r.robot_s : 0; }) +
-          "\n";
+  text +=
+      "least driven, in metres per robot and minute: " +
+      extremes([](const TrialResult& r) { return r.robot_s > 0 ? 60 * r.moved_m / r.robot_s : 0; }, false) +
+      "\n";
   text += "most denied, as a share: " +
-          largest([](const TrialResult& r) { return share(r.denials, r.proposals); }) + "\n";
+          extremes([](const TrialResult& r) { return share(r.denials, r.proposals); }, true) + "\n";
   text += "most robots that stood still at the end, as a share: " +
-          largest([](const TrialResult& r) { return r.robots > 0 ? double(r.idle) / r.robots : 0; }) + "\n";
-  text += "least clearance, in metres: " + largest([](const TrialResult& r) { return -r.min_clearance_m; }) +
+          extremes([](const TrialResult& r) { return r.robots > 0 ? double(r.idle) / r.robots : 0; }, true) +
           "\n";
+  text += "least clearance, in metres: " +
+          extremes([](const TrialResult& r) { return r.min_clearance_m; }, false) + "\n";
   return text;
 }
 

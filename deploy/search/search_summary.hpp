@@ -29,9 +29,9 @@ class SearchSummary {
 
  private:
   std::uint64_t sum(std::uint64_t TrialResult::*count) const;
-  /// Seeds with the largest values, "seed 5 (0.3), seed 9 (0.2)".
+  /// Seeds with the largest or smallest values, "seed 5 (0.3), seed 9 (0.2)".
   template <typename Value>
-  std::string largest(Value value) const;
+  std::string extremes(Value value, bool are_largest) const;
 
   std::map<std::uint64_t, TrialResult> results_;
 };

@@ -43,6 +43,8 @@ TEST_CASE("a summary does not depend on the order in which trials end") {
     results[i].denials = i;
   }
   results[4].contacts = 2;
+  results[7].contacts_by_hand = 3;
+  results[7].min_clearance_m = -0.002;
   results[4].failures = {"2 contacts"};
   for (const TrialResult& result : results) forwards.add(result);
   for (auto at = results.rbegin(); at != results.rend(); ++at) backwards.add(*at);
@@ -53,4 +55,6 @@ TEST_CASE("a summary does not depend on the order in which trials end") {
   CHECK(forwards.failed() == 1);
   CHECK_THAT(forwards.text(), Catch::Contains("20 seeds, 1 failed") &&
                                   Catch::Contains("most denied, as a share: seed 19 (0.19)"));
+  CHECK_THAT(forwards.text(), Catch::Contains("3 more contacts where robots were pushed"));
+  CHECK_THAT(forwards.text(), Catch::Contains("least clearance, in metres: seed 7 (-0.002)"));
 }
