@@ -19,7 +19,7 @@ std::string quoted(const std::string& text) {
 std::string script(const Plot& plot, const std::string& png_file) {
   std::string text = fmt::format(
       "set terminal pngcairo size 720,440 font 'sans,10' noenhanced\nset output {}\nset title {}\n"
-      "set xlabel {}\nset ylabel {}\nset grid\nset key top left\nset yrange [0:*]\n",
+      "set xlabel {}\nset ylabel {}\nset grid\nset key outside bottom center horizontal\nset yrange [0:*]\n",
       quoted(png_file), quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
   if (plot.has_log_x) text += "set logscale x\n";
   std::string lines;

@@ -101,8 +101,7 @@ Table margins(const StudyOptions& options, const Sizes& sizes) {
     for (int trial = 0; trial < sizes.margin_trials; ++trial) {
       const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
       Row row;
-      if (is_poor)
-        row.line = fmt::format("margin {} mm{}", margin_mm, breaks_off ? ", braking off the reference" : "");
+      if (is_poor && !breaks_off) row.line = fmt::format("margin {} mm", margin_mm);
       row.x = noise_mm;
       row.key = fmt::format("{},{},{},{},{},{},{}", is_poor ? "poor" : "usual", breaks_off ? "on" : "off",
                             margin_mm, noise_mm, sizes.margin_robots, sizes.margin_seconds, seed);
