@@ -48,6 +48,7 @@ Json audit_json(const AuditTotals& audit) {
   json["heard"] = audit.heard;
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
+  json["by_hand"] = audit.by_hand;
   json["pairs"] = audit.pairs;
   json["unjudged"] = audit.unjudged;
   json["farthest_from_reference_m"] = rounded(audit.farthest_m);

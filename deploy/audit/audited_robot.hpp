@@ -31,7 +31,7 @@ struct Known {
   Epoch granted_in = 0;                 ///< or, for the firmware's own, whose ledger was seen to hold it
   std::int64_t granted_by_ns = kNever;  ///< the verdict, or that page, was not sent after
   bool is_granted_by_page = false;      ///< its verdict was not heard, but a page that holds it was
-  std::array<Epoch, 3> registered_in{};
+  std::array<Epoch, 8> registered_in{};
   std::int64_t sent_ns = kNever;  ///< the first command with it
   Epoch sent_epoch = 0;           ///< the highest that one came with
   bool was_executed = false;

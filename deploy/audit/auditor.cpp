@@ -25,6 +25,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
   }
   whereabouts_.resize(robots_.size());
   sights_.resize(robots_.size());
+  by_hand_until_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
 }
 
@@ -223,6 +224,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     hear(topics::kVerdict, robot.id, &Auditor::on_verdict);
     hear(topics::kCommand, robot.id, &Auditor::on_command);
     hear(topics::kFeedback, robot.id, &Auditor::on_feedback);
+    hear(topics::kDisturbance, robot.id, &Auditor::on_disturbance);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "deploy/audit/audit_rules.hpp"
 #include "deploy/audit/audited_robot.hpp"
 #include "deploy/audit/hearing.hpp"
+#include "idl/disturbance.h"
 
 namespace sidestep {
 
@@ -39,6 +40,8 @@ class Auditor {
   void on_command(const msg::Command& command, Time now);
   void on_feedback(const msg::Feedback& feedback, Time now);
   void on_truth(const msg::GroundTruth& truth, Time now);
+  /// Whoever is pushed may touch others, and be where it ought not to be, until it has settled.
+  void on_disturbance(const msg::Disturbance& disturbance, Time now);
 
   AuditTotals totals() const;
   /// Calls back for each violation as it is found.
@@ -102,6 +105,8 @@ class Auditor {
   void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                     const Heard& heard);
   void judge_place(AuditedRobot& robot, const msg::Feedback& feedback, const Heard& heard);
+  void judge_contacts(const msg::GroundTruth& truth);
+  bool is_by_hand(RobotId robot) const;
   static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
                       std::int64_t now_ns);
   bool clock_is_sound(const msg::Feedback& feedback, const Heard& heard) const;
@@ -135,6 +140,7 @@ class Auditor {
   double most_grown_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;
+  std::vector<Time> by_hand_until_;
   std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {

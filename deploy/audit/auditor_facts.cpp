@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::int64_t kKept_ns = 1'500'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
+constexpr std::int64_t kLongestHand_ns = 60'000'000'000;
+// So long after it was let go a robot is at rest, and knows where it is.
+constexpr Duration kSettles = std::chrono::seconds(1);
 constexpr std::size_t kMostLives = 16;
 // A robot looks at its error once a millisecond, and reports where it is in between.
 constexpr double kLookedLater_m = 0.0005;
@@ -126,7 +129,8 @@ void Auditor::judge_order(const AuditedRobot& robot, const msg::Feedback& feedba
   const auto broken = [&](const std::string& what) {
     report(AuditRule::kFacts, robot.id, robot.find(number), feedback.obeyed_epoch(), what);
   };
-  if (feedback.at_ns() < last.at_ns)
+  // A clock that is wrong may be set.
+  if (feedback.at_ns() < last.at_ns && has_sound_clock_[index_of(robot)])
     broken(fmt::format("at {} ns, after a fact at {} ns", feedback.at_ns(), last.at_ns));
   if (feedback.obeyed_incarnation() < last.obeyed)
     broken(fmt::format("obeys incarnation {}, after {}", feedback.obeyed_incarnation(), last.obeyed));
@@ -258,9 +262,41 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   totals_.farthest_m = std::max(totals_.farthest_m, error);
   totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
   if (error <= scenario_.margin_m + then->version.grown_m()) return;
+  if (is_by_hand(robot.id)) {
+    ++totals_.by_hand;
+    return;
+  }
   report(AuditRule::kPlace, robot.id, then, 0,
          fmt::format("is {:.6f} m from where it ought to be at {} ns, the margin is {:.6f} m", error, at_ns,
                      scenario_.margin_m));
+}
+
+void Auditor::judge_contacts(const msg::GroundTruth& truth) {
+  const auto [first, second] = nearest_pair(truth);
+  if (is_by_hand(first) || is_by_hand(second)) {
+    ++totals_.by_hand;
+    return;
+  }
+  report(AuditRule::kContact, first, nullptr, 0,
+         fmt::format(
+             "{} contacts so far, {:.9f} m s of penetration, least clearance {:.6f} m; nearest is robot {}",
+             truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m(), second));
+}
+
+bool Auditor::is_by_hand(RobotId robot) const {
+  return robot < index_.size() && index_[robot] < robots_.size() && now_ < by_hand_until_[index_[robot]];
+}
+
+void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
+  now_ = now;
+  if (disturbance.robot() >= index_.size() || index_[disturbance.robot()] == robots_.size()) {
+    ++totals_.invalid;
+    return;
+  }
+  if (disturbance.disturbance_kind() == msg::DISTURBANCE_CLOCK) return;
+  const Duration lasts(std::clamp<std::int64_t>(disturbance.duration_ns(), 0, kLongestHand_ns));
+  Time& until = by_hand_until_[index_[disturbance.robot()]];
+  until = std::max(until, now + lasts + kSettles);
 }
 
 void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
@@ -275,13 +311,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
     truths_.erase(truths_.begin());
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
-  if (truth.contacts() > last.contacts()) {
-    const auto [first, second] = nearest_pair(truth);
-    report(AuditRule::kContact, first, nullptr, 0,
-           fmt::format(
-               "{} contacts so far, {:.9f} m s of penetration, least clearance {:.6f} m; nearest is robot {}",
-               truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m(), second));
-  }
+  if (truth.contacts() > last.contacts()) judge_contacts(truth);
   if (truth.firmware_violations() > last.firmware_violations())
     report(AuditRule::kFirmwareJudge, nobody, nullptr, 0,
            fmt::format("{} so far", truth.firmware_violations()));

@@ -10,7 +10,6 @@
 #include "deploy/search/fault_draw.hpp"
 #include "deploy/search/fault_player.hpp"
 #include "deploy/search/motion_meter.hpp"
-#include "deploy/search/promise_watch.hpp"
 #include "deploy/search/scene_draw.hpp"
 
 namespace sidestep {
@@ -53,12 +52,11 @@ bool is_surely_noticed(const Trial& trial) {
   });
 }
 
-void judge(const Trial& trial, const SimSystem& system, const PromiseWatch& watch, const MotionMeter& meter,
-           TrialResult& result) {
+void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter, TrialResult& result) {
   const Report report = system.judge().report();
   const auto fail = [&](const std::string& what) { result.failures.push_back(what); };
   (trial.plan.has_hands ? result.contacts_by_hand : result.contacts) = report.contacts;
-  result.promise_violations = watch.violations() + report.audit->violations;
+  result.promise_violations = report.audit->violations;
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
   result.grants = report.grants;
@@ -69,14 +67,12 @@ void judge(const Trial& trial, const SimSystem& system, const PromiseWatch& watc
   result.idle = static_cast<int>(meter.still(kStill_m).size());
   if (result.contacts > 0)
     fail(fmt::format("{} contacts, {:.6f} m s deep", report.contacts, report.penetration_m_s));
-  if (watch.violations() > 0)
-    fail(fmt::format("{} violations of the promise; {}", watch.violations(), watch.first()));
   if (report.audit->violations > 0) {
     fail(fmt::format("{} violations found by the audit; {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
-  if (watch.pages() == 0) fail("no coordinator has ever granted");
+  if (report.grants == 0) fail("no coordinator has ever granted");
   const Astray astray = find_astray(system, trial.plan);
   if (!astray.not_driving.empty())
     fail(fmt::format("stuck: robots {} do not drive, long after the last fault", list(astray.not_driving)));
@@ -111,9 +107,6 @@ TrialResult run_trial(const Trial& trial, Report* report,
   result.robots = static_cast<int>(trial.scenario.robots.size());
   result.robot_s = result.robots * to_seconds(trial.duration);
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks);
-  SimBus watch_bus(system.network());
-  watch_bus.listen_aside();
-  PromiseWatch watch(watch_bus, trial.scenario);
   MotionMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecovery, trial.duration));
   system.on_truth([&](const msg::GroundTruth& truth) {
     meter.add(truth);
@@ -122,7 +115,7 @@ TrialResult run_trial(const Trial& trial, Report* report,
   if (before) before(system);
   FaultPlayer(system, trial.plan).run_until(trial.duration);
   if (after) after();
-  judge(trial, system, watch, meter, result);
+  judge(trial, system, meter, result);
   if (report) {
     *report = system.judge().report();
     report->must_arrive = false;

@@ -221,7 +221,7 @@ void require_untouched(const nlohmann::json& report) {
   CHECK(report["firmware_violations"] == 0);
   INFO(report["audit"].dump(2));
   CHECK(report["audit"]["violations"] == 0);
-  CHECK(report["audit"]["pairs"] > 0);
+  CHECK(report["audit"]["heard"] > 0);
 }
 
 bool is_running(pid_t pid) {

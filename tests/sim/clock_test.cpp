@@ -41,7 +41,7 @@ TEST_CASE("agents on hosts whose clocks are wrong drive their robots all the sam
   Statuses statuses(floor.network);
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);
   CHECK(floor.arrived() == 6);
-  CHECK(floor.watch.violations() == 0);
+  CHECK(floor.violations() == 0);
   for (const auto& [robot, status] : statuses.latest) {
     CAPTURE(robot);
     CHECK(std::abs(status.clock_offset_s()) <= status.clock_uncertainty_s());
@@ -64,7 +64,7 @@ TEST_CASE(
     }
     const double clearance = floor.run_until_arrived(20);
     REQUIRE(clearance >= scenario.margin_m - shift_m);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.arrived() == 16);
     smallest = std::min(smallest, clearance);
   }
@@ -89,7 +89,7 @@ TEST_CASE(
   floor.robots.set_clock_ahead(1, Duration{0});
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);
   CHECK(floor.arrived() == 4);
-  CHECK(floor.watch.violations() == 0);
+  CHECK(floor.violations() == 0);
 }
 
 TEST_CASE(
@@ -108,7 +108,7 @@ TEST_CASE(
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);
   CHECK(floor.granting() == 1);
   CHECK(floor.arrived() == 6);
-  CHECK(floor.watch.violations() == 0);
+  CHECK(floor.violations() == 0);
 }
 
 TEST_CASE("a robot that waits for long measures the clocks again before it moves on") {

@@ -2,6 +2,7 @@
 #include "tests/sim/ideal_floor.hpp"
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 namespace sidestep {
 namespace {
@@ -11,15 +12,23 @@ constexpr Duration kLook{5'000'000};
 
 }  // namespace
 
-IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed)
+IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed, AuditHearing hearing)
     : scenario(s),
       network(seed, kBegin, s.network),
       robots(robots_bus, scenario),
-      watch(network, scenario),
+      auditor_(scenario, hearing),
       rng_(seed) {
+  audit_bus_.listen_aside();
+  listen(audit_bus_, scenario, auditor_);
   for (int number = 0; number < scenario.coordinators; ++number)
     start_coordinator(static_cast<CoordinatorNumber>(number));
   for (const RobotSpec& robot : scenario.robots) start_agent(robot.id);
+}
+
+std::uint64_t IdealFloor::violations() const {
+  const AuditTotals totals = auditor_.totals();
+  for (const Violation& violation : totals.first) UNSCOPED_INFO(to_line(violation));
+  return totals.violations;
 }
 
 Incarnation IdealFloor::next_incarnation() {

@@ -6,8 +6,8 @@
 
 #include "agents/agent/agent_node.hpp"
 #include "coordinator/coordinator_node.hpp"
+#include "deploy/audit/auditor.hpp"
 #include "tests/sim/ideal_robots.hpp"
-#include "tests/sim/ledger_watch.hpp"
 #include "tests/sim/troubled_bus.hpp"
 
 namespace sidestep {
@@ -16,8 +16,9 @@ namespace sidestep {
 /// micrometre.
 class IdealFloor {
  public:
-  /// Starts an agent for each robot and as many coordinators as the scenario has.
-  IdealFloor(const Scenario& scenario, std::uint64_t seed);
+  /// Starts an agent for each robot and as many coordinators as the scenario has. The audit hears everything,
+  /// but for what is said on a bus that is mute.
+  IdealFloor(const Scenario& scenario, std::uint64_t seed, AuditHearing hearing = {true, {}});
 
   void start_coordinator(CoordinatorNumber number);
   void kill_coordinator(CoordinatorNumber number) { coordinators_.erase(number); }
@@ -39,6 +40,8 @@ class IdealFloor {
   /// How often a robot executed what the coordinator in charge did not know of. Not counted: what a robot
   /// made itself, off its reference, until the coordinator hears of it.
   int unknown_versions() const { return unknown_; }
+  /// Rules that the audit found broken.
+  std::uint64_t violations() const;
   int arrived();
   /// Runs until all have arrived, at most for so long; the smallest clearance meanwhile.
   double run_until_arrived(double most_seconds);
@@ -51,7 +54,6 @@ class IdealFloor {
   SimNetwork network;
   SimBus robots_bus{network};
   IdealRobots robots;
-  LedgerWatch watch;
 
  private:
   template <typename Node>
@@ -63,6 +65,8 @@ class IdealFloor {
 
   void compare_with_ledger();
 
+  SimBus audit_bus_{network};
+  Auditor auditor_;
   int unknown_ = 0;
   Rng rng_;
   Incarnation last_incarnation_ = 0;

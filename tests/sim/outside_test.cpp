@@ -132,7 +132,7 @@ TEST_CASE("a fact that contradicts the ledger begins a new epoch, and the robots
   clearance = std::min(clearance, floor.run_until_arrived(20));
   CHECK(floor.arrived() == 8);
   CHECK(clearance >= floor.scenario.margin_m);
-  CHECK(floor.watch.violations() == 0);
+  CHECK(floor.violations() == 0);
   CHECK(floor.unknown_versions() == 0);
 }
 
@@ -174,7 +174,7 @@ TEST_CASE("robots are lifted and placed while others drive, agents and coordinat
     clearance = std::min(clearance, floor.run_until_arrived(40));
     REQUIRE(clearance >= scenario.margin_m);
     REQUIRE(floor.arrived() == 8);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
   }
 }

@@ -32,7 +32,7 @@ TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and re
     IdealFloor run(scenario, seed);
     const double clearance = run.run(15);
     REQUIRE(clearance >= scenario.margin_m);
-    REQUIRE(run.watch.violations() == 0);
+    REQUIRE(run.violations() == 0);
     if (loss == 0) REQUIRE(run.arrived() == 12);
   }
 }

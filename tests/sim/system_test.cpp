@@ -6,7 +6,6 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/report.hpp"
-#include "deploy/search/promise_watch.hpp"
 #include "deploy/sim_system.hpp"
 
 using namespace sidestep;
@@ -21,21 +20,16 @@ Scenario shipped(const std::string& name) {
 struct Watched {
   Scenario scenario;
   SimSystem system;
-  SimBus bus{system.network()};
-  PromiseWatch watch{bus, scenario};
 
-  Watched(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) { bus.listen_aside(); }
+  Watched(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {}
 
   void require_safe() {
     const Report report = system.judge().report();
     REQUIRE(report.contacts == 0);
     REQUIRE(report.firmware_violations == 0);
-    INFO(watch.first());
-    REQUIRE(watch.violations() == 0);
     for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
     REQUIRE(report.audit->violations == 0);
     REQUIRE(report.audit->pairs > 0);
-    REQUIRE(watch.pages() > 0);
   }
   double speed_mps(RobotId robot) {
     for (const RobotProgress& row : system.judge().progress()) {

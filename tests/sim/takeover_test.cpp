@@ -49,7 +49,7 @@ TEST_CASE("the standby takes over when the active coordinator dies, and robots m
     REQUIRE(floor.granting() == 1);
     REQUIRE(floor.run_until_arrived(20) >= floor.scenario.margin_m);
     REQUIRE(floor.arrived() == 12);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
   }
   std::ranges::sort(seconds);
@@ -74,7 +74,7 @@ TEST_CASE("coordinators that die and come back again and again only interrupt th
     }
     clearance = std::min(clearance, floor.run_until_arrived(20));
     REQUIRE(clearance >= floor.scenario.margin_m);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }
@@ -102,7 +102,7 @@ TEST_CASE("a coordinator that is stopped and wakes up again does no harm, and st
     floor.coordinator_bus(1).go_on();
     clearance = std::min(clearance, floor.run_until_arrived(20));
     REQUIRE(clearance >= floor.scenario.margin_m);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 12);
   }
@@ -118,7 +118,7 @@ TEST_CASE("coordinators that do not hear each other do not keep the robots from 
     if (both_deaf) floor.coordinator_bus(0).set_deaf_to("coordinator");
     const double clearance = floor.run_until_arrived(30);
     REQUIRE(clearance >= floor.scenario.margin_m);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }
@@ -131,7 +131,7 @@ TEST_CASE("one-way partitions of agents and coordinators cost motion, never clea
     scenario.network.loss = 0.05;
     scenario.network.duplicate = 0.05;
     scenario.network.delay_max = std::chrono::milliseconds(20);
-    IdealFloor floor(scenario, seed);
+    IdealFloor floor(scenario, seed, AuditHearing{});
     Rng rng(seed);
     double clearance = floor.run(1.5);
     for (int round = 0; round < 12; ++round) {
@@ -150,7 +150,7 @@ TEST_CASE("one-way partitions of agents and coordinators cost motion, never clea
     }
     clearance = std::min(clearance, floor.run_until_arrived(30));
     REQUIRE(clearance >= floor.scenario.margin_m);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
     REQUIRE(floor.arrived() == 10);
   }

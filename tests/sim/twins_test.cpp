@@ -53,7 +53,7 @@ TEST_CASE("of two living agents of one robot the later one drives, and nobody co
     clearance = std::min(clearance, floor.run_until_arrived(30));
     REQUIRE(clearance >= scenario.margin_m);
     REQUIRE(floor.arrived() == 8);
-    REQUIRE(floor.watch.violations() == 0);
+    REQUIRE(floor.violations() == 0);
     REQUIRE(floor.unknown_versions() == 0);
     (void)floor.run(1);
     REQUIRE(spoken.messages.size() == 4);

@@ -355,6 +355,31 @@ TEST_CASE("what truth says against the promise is named") {
       });
     });
   }
+  SECTION("a robot elsewhere whom nobody has pushed, and one that was long ago") {
+    // Nobody, then the robot itself, then another, and for how long it has been so.
+    const auto [pushed, late, is_named] = GENERATE(
+        table<int, Duration, bool>({{-1, 0ms, true}, {2, 0ms, false}, {2, 1200ms, true}, {3, 0ms, true}}));
+    CAPTURE(pushed, to_seconds(late), is_named);
+    const AuditTotals totals = tampered([&, robot_pushed = pushed, after = late](History& h) {
+      const Time push = h.messages.front().at + 1500ms;
+      const RobotId moved = a_switch(h).robot;
+      h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
+        if (at < push + after || at > push + after + 500ms) return;
+        for (msg::TruthRobot& robot : truth.robots()) {
+          if (robot.robot() == moved) robot.x_m(robot.x_m() + 0.02);
+        }
+      });
+      if (robot_pushed < 0) return;
+      msg::Disturbance hand;
+      hand.robot(static_cast<RobotId>(robot_pushed));
+      hand.disturbance_kind(msg::DISTURBANCE_PUSH);
+      const auto place = std::ranges::find_if(h.messages, [&](const auto& m) { return m.at >= push; });
+      h.messages.insert(place, {push, hand});
+    });
+    INFO(lines(totals));
+    CHECK((count(totals, AuditRule::kPlace) > 0) == is_named);
+    CHECK((totals.by_hand > 0) == !is_named);
+  }
   SECTION("a contact") {
     require_caught(AuditRule::kContact, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.contacts(1); });

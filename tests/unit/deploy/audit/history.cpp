@@ -67,6 +67,7 @@ AuditTotals audit_of(const History& history, const AuditHearing& hearing) {
     void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
     void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
     void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
+    void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
   };
   for (const HeardMessage& heard : history.messages) std::visit(Hear{auditor, heard.at}, heard.message);
   return auditor.totals();

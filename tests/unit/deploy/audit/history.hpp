@@ -10,8 +10,9 @@
 
 namespace sidestep {
 
-using AuditedMessage = std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState,
-                                    msg::LedgerPage, msg::Command, msg::Feedback, msg::GroundTruth>;
+using AuditedMessage =
+    std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
+                 msg::Command, msg::Feedback, msg::GroundTruth, msg::Disturbance>;
 
 struct HeardMessage {
   Time at;
