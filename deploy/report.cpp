@@ -48,7 +48,8 @@ Json audit_json(const AuditTotals& audit) {
   json["heard"] = audit.heard;
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
-  json["by_hand"] = audit.by_hand;
+  json["contacts_by_hand"] = audit.contacts_by_hand;
+  json["places_by_hand"] = audit.places_by_hand;
   json["pairs"] = audit.pairs;
   json["unjudged"] = audit.unjudged;
   json["farthest_from_reference_m"] = rounded(audit.farthest_m);
@@ -62,11 +63,16 @@ std::string shown(const std::optional<double>& value, const char* unit) {
 
 }  // namespace
 
+std::uint64_t Report::contacts_of_its_own() const {
+  const std::uint64_t by_hand = audit ? audit->contacts_by_hand : 0;
+  return contacts > by_hand ? contacts - by_hand : 0;
+}
+
 std::string Report::verdict() const {
   std::string why;
   const auto add = [&why](const std::string& part) { why += (why.empty() ? "" : ", ") + part; };
   if (!failure.empty()) add(failure);
-  if (contacts > 0) add(fmt::format("{} contacts", contacts));
+  if (const auto touched = contacts_of_its_own(); touched > 0) add(fmt::format("{} contacts", touched));
   if (moving_crashes > 0) add(fmt::format("{} crashes of moving robots", moving_crashes));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {

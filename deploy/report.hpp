@@ -63,6 +63,8 @@ struct Report {
   std::optional<AuditTotals> audit;  ///< none: nobody listened
   double duration_s = 0;             ///< wall clock
 
+  /// Contacts but for those of robots that somebody had just pushed.
+  std::uint64_t contacts_of_its_own() const;
   /// Why the run failed in one line; empty when everybody arrived, nobody touched, no robot moved when an
   /// opponent touched it, and no rule was broken.
   std::string verdict() const;

@@ -85,7 +85,8 @@ struct AuditTotals {
   std::uint64_t pairs = 0;       ///< pairs of versions that were compared
   double farthest_m = 0;         ///< that a robot on its reference really was from it
   std::uint64_t beyond = 0;      ///< how often that was more than the tracking bound, unnoticed by the robot
-  std::uint64_t by_hand = 0;     ///< contacts and wrong places of robots that somebody had just disturbed
+  std::uint64_t contacts_by_hand = 0;  ///< contacts of robots that somebody had just disturbed,
+  std::uint64_t places_by_hand = 0;    ///< and how often those were not where they ought to be
   std::uint64_t unjudged = 0;  ///< pairs too near to each other, for which what would excuse it was not heard
 };
 

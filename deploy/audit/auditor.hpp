@@ -105,7 +105,7 @@ class Auditor {
   void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                     const Heard& heard);
   void judge_place(AuditedRobot& robot, const msg::Feedback& feedback, const Heard& heard);
-  void judge_contacts(const msg::GroundTruth& truth);
+  void judge_contacts(const msg::GroundTruth& truth, std::uint64_t more);
   bool is_by_hand(RobotId robot) const;
   static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
                       std::int64_t now_ns);

@@ -263,7 +263,7 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
   if (error <= scenario_.margin_m + then->version.grown_m()) return;
   if (is_by_hand(robot.id)) {
-    ++totals_.by_hand;
+    ++totals_.places_by_hand;
     return;
   }
   report(AuditRule::kPlace, robot.id, then, 0,
@@ -271,10 +271,10 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
                      scenario_.margin_m));
 }
 
-void Auditor::judge_contacts(const msg::GroundTruth& truth) {
+void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t more) {
   const auto [first, second] = nearest_pair(truth);
   if (is_by_hand(first) || is_by_hand(second)) {
-    ++totals_.by_hand;
+    totals_.contacts_by_hand += more;
     return;
   }
   report(AuditRule::kContact, first, nullptr, 0,
@@ -311,7 +311,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
     truths_.erase(truths_.begin());
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
-  if (truth.contacts() > last.contacts()) judge_contacts(truth);
+  if (truth.contacts() > last.contacts()) judge_contacts(truth, truth.contacts() - last.contacts());
   if (truth.firmware_violations() > last.firmware_violations())
     report(AuditRule::kFirmwareJudge, nobody, nullptr, 0,
            fmt::format("{} so far", truth.firmware_violations()));

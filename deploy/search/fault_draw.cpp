@@ -31,8 +31,7 @@ class Draw {
     if (rng_.chance(0.55)) repeat(6, [&] { draw_partition(); });
     if (rng_.chance(0.6)) repeat(8, [&] { draw_pause(); });
     if (rng_.chance(0.65)) repeat(8, [&] { draw_kill(); });
-    plan_.has_hands = rng_.chance(0.12);
-    if (plan_.has_hands) repeat(8, [&] { draw_hand(); });
+    if (rng_.chance(0.12)) repeat(8, [&] { draw_hand(); });
     std::ranges::stable_sort(plan_.faults, {}, &TimedFault::at);
     return std::move(plan_);
   }

@@ -60,7 +60,6 @@ struct TimedFault {
 /// What goes wrong in one run, drawn up front. From `healed_at` on nothing does: the network is perfect,
 /// nobody is stopped or dies any more.
 struct FaultPlan {
-  bool has_hands = false;                  ///< robots are pushed and slip: then they may touch
   std::vector<ProcessNames> hosts;         ///< within a host messages are fast and are not lost
   std::map<std::string, Duration> clocks;  ///< ahead of true time, by process
   std::vector<RobotId> off_clock;          ///< robots whose clocks are so wrong that they must not move

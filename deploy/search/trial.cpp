@@ -55,7 +55,8 @@ bool is_surely_noticed(const Trial& trial) {
 void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter, TrialResult& result) {
   const Report report = system.judge().report();
   const auto fail = [&](const std::string& what) { result.failures.push_back(what); };
-  (trial.plan.has_hands ? result.contacts_by_hand : result.contacts) = report.contacts;
+  result.contacts = report.contacts_of_its_own();
+  result.contacts_by_hand = report.contacts - result.contacts;
   result.promise_violations = report.audit->violations;
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
@@ -66,13 +67,12 @@ void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter
   result.calm_moved_m = meter.total_since_m();
   result.idle = static_cast<int>(meter.still(kStill_m).size());
   if (result.contacts > 0)
-    fail(fmt::format("{} contacts, {:.6f} m s deep", report.contacts, report.penetration_m_s));
+    fail(fmt::format("{} contacts, {:.6f} m s deep", result.contacts, report.penetration_m_s));
   if (report.audit->violations > 0) {
     fail(fmt::format("{} violations found by the audit; {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
-  if (report.grants == 0) fail("no coordinator has ever granted");
   const Astray astray = find_astray(system, trial.plan);
   if (!astray.not_driving.empty())
     fail(fmt::format("stuck: robots {} do not drive, long after the last fault", list(astray.not_driving)));
@@ -81,6 +81,7 @@ void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter
   if (!astray.driven_off_clock.empty() && is_surely_noticed(trial))
     fail(fmt::format("robots {} were driven although their clocks are wrong", list(astray.driven_off_clock)));
   const bool may_move = static_cast<int>(trial.plan.off_clock.size()) < result.robots;
+  if (may_move && report.grants == 0) fail("no coordinator has ever granted");
   if (may_move && result.idle == result.robots && !system.judge().all_arrived())
     fail("stuck: nobody moves, long after the last fault");
 }

@@ -165,4 +165,16 @@ TEST_CASE("what the audit found fails a run, and stands in its report") {
   CHECK_THAT(summary(report), Catch::Contains("late (firmware, S-05): robot 3 version 17: is executed"));
 }
 
+TEST_CASE("contacts of robots that somebody has just pushed fail no run, others do") {
+  Report report = example();
+  report.arrived = report.robots;
+  report.failure.clear();
+  report.contacts = 3;
+  report.audit = AuditTotals();
+  report.audit->contacts_by_hand = 3;
+  CHECK(report.verdict() == "");
+  report.contacts = 4;
+  CHECK(report.verdict() == "1 contacts");
+}
+
 }  // namespace sidestep

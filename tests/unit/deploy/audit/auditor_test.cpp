@@ -378,7 +378,7 @@ TEST_CASE("what truth says against the promise is named") {
     });
     INFO(lines(totals));
     CHECK((count(totals, AuditRule::kPlace) > 0) == is_named);
-    CHECK((totals.by_hand > 0) == !is_named);
+    CHECK((totals.places_by_hand > 0) == !is_named);
   }
   SECTION("a contact") {
     require_caught(AuditRule::kContact, [](History& h) {
