@@ -100,7 +100,9 @@ class Auditor {
   // Facts.
   void judge_order(const AuditedRobot& robot, const msg::Feedback& feedback);
   void judge_switch(const AuditedRobot& robot, const Known& to, const msg::Feedback& feedback);
-  void judge_origin(AuditedRobot& robot, Known& executing, const msg::Feedback& feedback);
+  void judge_origin(AuditedRobot& robot, Known& executing);
+  void judge_tracking(const AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
+                      const Heard& heard);
   void judge_own(const AuditedRobot& robot, const Known& own);
   void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                     const Heard& heard);

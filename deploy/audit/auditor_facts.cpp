@@ -103,7 +103,8 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
   if (!executes_nothing) {
     Known& executing = *robot->find(feedback.executing().version_number());
     judge_switch(*robot, executing, feedback);
-    judge_origin(*robot, executing, feedback);
+    judge_origin(*robot, executing);
+    judge_tracking(*robot, executing, feedback, heard);
     judge_epochs(*robot, executing, feedback, heard);
     if (executing.is_own && !executing.was_executed) judge_own(*robot, executing);
     Known* base = robot->find(executing.version.base());
@@ -162,13 +163,19 @@ void Auditor::judge_switch(const AuditedRobot& robot, const Known& to, const msg
          fmt::format("continues version {}, and version {} was executed", step->version.base(), from));
 }
 
-void Auditor::judge_origin(AuditedRobot& robot, Known& executing, const msg::Feedback& feedback) {
+void Auditor::judge_origin(AuditedRobot& robot, Known& executing) {
   if (!executing.was_executed && how_.is_complete && !executing.is_own &&
       executing.number > robot.given_up_version && executing.sent_ns == kNever &&
       !executing.is_reported_unsent) {
     executing.is_reported_unsent = true;
     report(AuditRule::kSent, robot.id, &executing, 0, "was in no command");
   }
+}
+
+void Auditor::judge_tracking(const AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
+                             const Heard& heard) {
+  // Whose clock is set finds itself far off all at once.
+  if (!has_sound_clock_[index_of(robot)] || !clock_is_sound(feedback, heard)) return;
   if (!feedback.is_off_reference() && !feedback.is_lifted() && robot.fact && !robot.fact->is_off_reference &&
       feedback.tracking_error_m() > tracking_bound_m_ + executing.version.grown_m() + kLookedLater_m) {
     report(AuditRule::kTracking, robot.id, &executing, 0,

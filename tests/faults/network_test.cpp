@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "tests/faults/launched_run.hpp"
 
@@ -77,4 +78,49 @@ TEST_CASE("a robot that an operator pushes says that it is off its reference, dr
   INFO(run.output());
   require_untouched(run.report());
   CHECK(run.report()["arrived"] == 8);
+}
+
+TEST_CASE(
+    "robots that slip, block, start again, are lifted and set drive on and arrive, each as it is told") {
+  LaunchedRun run(shuttles(5, ""));
+  std::map<RobotId, msg::Feedback> facts;
+  std::map<RobotId, bool> was_off;
+  std::map<RobotId, msg::AgentPhase> phases;
+  for (RobotId robot = 0; robot < 8; ++robot) {
+    run.bus().subscribe(topics::kFeedback, robot, std::function([&](const msg::Feedback& feedback) {
+                          facts[feedback.robot()] = feedback;
+                          was_off[feedback.robot()] |= feedback.is_off_reference();
+                        }));
+  }
+  run.bus().subscribe(topics::kStatus, std::function([&](const msg::AgentStatus& status) {
+                        phases[status.robot()] = status.agent_phase();
+                      }));
+  REQUIRE(run.until([&] { return facts.size() == 8 && run.speed_mps(0) > 0.8 && run.speed_mps(1) > 0.8; }));
+  const auto order = [&](std::vector<std::string> words) {
+    CAPTURE(words);
+    REQUIRE(run.command(fault(run, std::move(words))) == "exit code 0");
+  };
+  order({"slip", "0", "--grip", "0.1", "--seconds", "2"});
+  order({"block", "1", "--heading", "0.3", "--seconds", "1"});
+  order({"reboot", "2"});
+  CHECK(run.until([&] { return was_off[0] && was_off[1] && was_off[2]; }));
+
+  order({"clock", "3", "--offset-ms", "400"});
+  CHECK(run.until([&] { return phases[3] == msg::AGENT_OFF_CLOCK && run.speed_mps(3) < 0.03; }));
+  order({"clock", "3", "--offset-ms", "0"});
+
+  order({"lift", "5"});
+  CHECK(run.until([&] { return facts[5].is_lifted(); }));
+  order({"place", "5", "--at", "4,2.6"});
+  CHECK(run.until([&] { return !facts[5].is_lifted() && facts[5].executing().version_number() != 0; }));
+  CHECK(run.until([&] { return run.speed_mps(3) > 0.5 && run.speed_mps(5) > 0.5; }));
+
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  const auto report = run.report();
+  REQUIRE(report.is_object());
+  CHECK(report["contacts"] == report["audit"]["contacts_by_hand"]);
+  CHECK(report["audit"]["violations"] == 0);
+  CHECK(report["audit"]["heard"] > 0);
+  CHECK(report["arrived"] == 8);
 }

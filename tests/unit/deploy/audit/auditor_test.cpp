@@ -344,6 +344,18 @@ TEST_CASE("every breach of the firmware's rules is named") {
   }
 }
 
+TEST_CASE("a robot that finds itself far off because its clock is set breaks no rule") {
+  const AuditTotals totals = tampered([](History& h) {
+    int count = 0;
+    h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
+      if (f.robot() != 2 || ++count != 100) return;
+      f.tracking_error_m(0.3);
+      f.at_ns(f.at_ns() + 400'000'000);
+    });
+  });
+  CHECK(count(totals, AuditRule::kTracking) == 0);
+}
+
 TEST_CASE("what truth says against the promise is named") {
   SECTION("a robot elsewhere") {
     require_caught(AuditRule::kPlace, [](History& h) {
