@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Makes what the generator wrote of the plain types as cheap as a struct: their accessors are defined in the header,
+# where they can be inlined, and they are copied as the compiler does it, so that a copy is a plain move of memory.
+# cmake -D DIRECTORY=... -D NAMES=... -P inline_types.cmake
+# What is no longer matched because the generator has changed does not compile or does not link.
+function(replace pattern by)
+  string(REGEX REPLACE "${pattern}" "${by}" text "${text}")
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+
+foreach(name IN LISTS NAMES)
+  file(READ ${DIRECTORY}/${name}.h text)
+  set(export "eProsima_user_DllExport +")
+  replace("${export}~[A-Za-z]+\\(\\);" "")
+  replace("${export}([A-Za-z]+)\\(\\);" "\\1() = default;")
+  replace("${export}([A-Za-z]+& operator =|[A-Za-z]+)(\\([ \n]*const [A-Za-z]+& x\\));" "\\1\\2 = default;")
+  replace("${export}([A-Za-z]+& operator =|[A-Za-z]+)(\\([ \n]*[A-Za-z]+&& x\\) noexcept);" "\\1\\2 = default;")
+  replace("${export}([^;()]*)([ &])([a-z0-9_]+)\\(\\) const;" "\\1\\2\\3() const { return m_\\3; }")
+  replace("${export}([^;()]*& )([a-z0-9_]+)\\(\\);" "\\1\\2() { return m_\\2; }")
+  replace("${export}void ([a-z0-9_]+)\\([ \n]*([^();]*&& )_[a-z0-9_]+\\);" "void \\1(\\2value) { m_\\1 = std::move(value); }")
+  replace("${export}void ([a-z0-9_]+)\\([ \n]*([^();]* |[^();]*& ?)_[a-z0-9_]+\\);" "void \\1(\\2value) { m_\\1 = value; }")
+  replace("\n( +[A-Za-z][A-Za-z0-9_:<>, ]* m_[a-z0-9_]+);" "\n\\1{};")
+  file(WRITE ${DIRECTORY}/${name}.h "${text}")
+
+  file(READ ${DIRECTORY}/${name}.cxx text)
+  set(type "sidestep::msg::[A-Za-z]+")
+  replace("\n${type}::~?[A-Za-z]+\\([^)]*\\)( noexcept)? *\n{[^}]*}\n" "\n")
+  replace("\n${type}& ${type}::operator =\\([^)]*\\)( noexcept)? *\n{[^}]*}\n" "\n")
+  replace("\n[^\n]* ${type}::[a-z0-9_]+\\([^)]*\\)( const)? *\n{\n *(return )?m_[^}]*}\n" "\n")
+  file(WRITE ${DIRECTORY}/${name}.cxx "${text}")
+endforeach()
