@@ -159,7 +159,9 @@ void Agent::on_world(const msg::WorldState& world, Time now) {
   fix_->heading_rad(seen.seen_heading_rad());
 }
 
-void Agent::on_ledger(const msg::LedgerPage& page) { neighbours_.on_page(page); }
+void Agent::on_ledger(const msg::LedgerPage& page, std::shared_ptr<void>* beside) {
+  neighbours_.on_page(page, beside);
+}
 
 void Agent::on_disturbance(const msg::Disturbance& disturbance) {
   if (disturbance.robot() != robot_.id || disturbance.disturbance_kind() != msg::DISTURBANCE_PLACE) return;

@@ -28,7 +28,8 @@ class Agent {
   void on_feedback(const msg::Feedback& feedback);
   /// `now`: the latest that it can be by the robot's clock.
   void on_world(const msg::WorldState& world, Time now);
-  void on_ledger(const msg::LedgerPage& page);
+  /// `beside` as for Neighbours::on_page().
+  void on_ledger(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
   /// Somebody's hand: hears where a robot that was lifted shall be put down.
   void on_disturbance(const msg::Disturbance& disturbance);
   void on_coordinator_state(const msg::CoordinatorState& state, Time now);

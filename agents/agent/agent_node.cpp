@@ -51,8 +51,9 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
                  }));
   bus_.subscribe(topics::kDisturbance,
                  std::function([this](const msg::Disturbance& hand) { agent_.on_disturbance(hand); }));
-  bus_.subscribe(topics::kLedger,
-                 std::function([this](const msg::LedgerPage& page) { agent_.on_ledger(page); }));
+  bus_.subscribe(topics::kLedger, std::function([this](const msg::LedgerPage& page) {
+                   agent_.on_ledger(page, bus_.beside(&page));
+                 }));
   bus_.subscribe(topics::kCoordinator,
                  std::function([this](const msg::CoordinatorState& state) { on_coordinator_state(state); }));
   const Time now = robot_now();

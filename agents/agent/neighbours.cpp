@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/messaging/codec.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -16,6 +14,18 @@ constexpr std::uint32_t kCounted = 64;  // pages in in_use_
 bool is_far(const msg::LedgerPage& page, const Vec2& here, double horizon) {
   return page.low_x_m() - here.x() > horizon || here.x() - page.high_x_m() > horizon ||
          page.low_y_m() - here.y() > horizon || here.y() - page.high_y_m() > horizon;
+}
+
+/// The readers' common view if there is one, or made in the place of the old one where nobody else reads
+/// that.
+void look_at(const msg::LedgerPage& page, std::shared_ptr<LedgerView>& view, std::shared_ptr<void>* beside) {
+  if (beside && *beside) {
+    view = std::static_pointer_cast<LedgerView>(*beside);
+    return;
+  }
+  if (!view || view.use_count() > 1) view = std::make_shared<LedgerView>();
+  view->assign(page);
+  if (beside) *beside = view;
 }
 
 }  // namespace
@@ -30,7 +40,7 @@ bool Neighbours::is_of_no_concern(const msg::LedgerPage& page) const {
   return index < kCounted && (in_use_ >> index & 1) == 0 && is_far(page, here_m_, horizon_m_);
 }
 
-void Neighbours::on_page(const msg::LedgerPage& message) {
+void Neighbours::on_page(const msg::LedgerPage& message, std::shared_ptr<void>* beside) {
   if (is_of_no_concern(message)) return;
   const std::uint32_t index = message.page_index();
   if (index >= kMaxRobots || message.epoch() > kHighestEpoch) {
@@ -44,34 +54,34 @@ void Neighbours::on_page(const msg::LedgerPage& message) {
   if (older) return;
   page.epoch = message.epoch();
   page.number = message.head().message_number();
-  take(message, page);
+  take(message, page, beside);
   if (index >= kCounted) return;
   const std::uint64_t bit = std::uint64_t{1} << index;
-  in_use_ = page.versions.empty() ? in_use_ & ~bit : in_use_ | bit;
+  in_use_ = page.held.empty() ? in_use_ & ~bit : in_use_ | bit;
 }
 
-void Neighbours::take(const msg::LedgerPage& message, Page& page) {
-  page.versions.clear();
-  page.ends.clear();
+void Neighbours::take(const msg::LedgerPage& message, Page& page, std::shared_ptr<void>* beside) {
+  page.held.clear();
   if (is_far(message, here_m_, horizon_m_)) return;
-  for (const msg::Version& entry : message.versions()) {
-    const Vec2 offset(entry.x_m() - here_m_.x(), entry.y_m() - here_m_.y());
-    if (entry.robot() == self_ || offset.squaredNorm() > horizon_m_ * horizon_m_) continue;
-    if (const auto version = decode(entry)) {
-      page.versions.push_back(*version);
-      page.ends.push_back(version->trajectory.end());
-    } else {
+  look_at(message, page.view, beside);
+  const auto& entries = page.view->entries;
+  for (std::uint32_t i = 0; i < entries.size(); ++i) {
+    const LedgerView::Entry& entry = entries[i];
+    if (entry.robot == self_ || (entry.place_m - here_m_).squaredNorm() > horizon_m_ * horizon_m_) continue;
+    if (entry.is_sound)
+      page.held.push_back(i);
+    else
       ++invalid_;
-    }
   }
 }
 
 Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
   crowd_.clear();
   for (const Page& page : pages_) {
-    for (const Version& version : page.versions) {
-      const Vec2 offset = version.trajectory.at_start().position_m - here;
-      if (offset.squaredNorm() <= horizon * horizon) crowd_.add(version);
+    for (const std::uint32_t i : page.held) {
+      const LedgerView& view = *page.view;
+      if ((view.entries[i].place_m - here).squaredNorm() <= horizon * horizon)
+        crowd_.add(view.versions[i], view.outlines[i]);
     }
   }
   return crowd_;
@@ -80,9 +90,9 @@ Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
 std::span<const Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
   standing_.clear();
   for (const Page& page : pages_) {
-    for (std::size_t i = 0; i < page.ends.size(); ++i) {
-      const Version& version = page.versions[i];
-      if (page.ends[i] > since || moves(version.robot, since)) continue;
+    for (const std::uint32_t i : page.held) {
+      const Version& version = page.view->versions[i];
+      if (page.view->ends[i] > since || moves(version.robot, since)) continue;
       const Vec2 place = version.trajectory.rest_position_m();
       standing_.push_back({version.robot, place, (place - here).squaredNorm()});
     }
@@ -97,8 +107,8 @@ std::span<const Vec2> Neighbours::standing(Time since, const Vec2& here, std::si
 
 bool Neighbours::moves(RobotId robot, Time since) const {
   return std::ranges::any_of(pages_, [=](const Page& page) {
-    return std::ranges::any_of(page.versions, [=](const Version& version) {
-      return version.robot == robot && version.trajectory.end() > since;
+    return std::ranges::any_of(page.held, [&](std::uint32_t i) {
+      return page.view->entries[i].robot == robot && page.view->ends[i] > since;
     });
   });
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "agents/agent/ledger_view.hpp"
 #include "common/motion/crowd.hpp"
 #include "idl/negotiation.h"
 
@@ -17,8 +19,9 @@ class Neighbours {
 
   /// From now on versions that begin farther than `horizon_m` from `here` are left out.
   void look_about(const Vec2& here_m, double horizon_m);
-  /// Takes over a page of the ledger, unless it is older than what is known of that page.
-  void on_page(const msg::LedgerPage& page);
+  /// Takes over a page of the ledger, unless it is older than what is known of that page. `beside`, if any,
+  /// is where the page's readers share their view of it.
+  void on_page(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
 
   /// Those that begin within `horizon_m` of `here`, to be found by place.
   Crowd& crowd(const Vec2& here_m, double horizon_m);
@@ -31,10 +34,10 @@ class Neighbours {
   struct Page {
     Epoch epoch = 0;
     std::uint64_t number = 0;
-    std::vector<Version> versions;
-    std::vector<Time> ends;  // of their trajectories
+    std::shared_ptr<LedgerView> view;
+    std::vector<std::uint32_t> held;  // what of the view was within the horizon
   };
-  void take(const msg::LedgerPage& message, Page& page);
+  void take(const msg::LedgerPage& message, Page& page, std::shared_ptr<void>* beside);
   struct Stand {
     RobotId robot;
     Vec2 place_m;

@@ -48,6 +48,14 @@ class Bus {
   /// Calls back once, as soon as may be at or after the time.
   virtual void at(Time when, std::function<void()> callback) = 0;
 
+  /// While a message is being delivered: where its readers in this process share what they make of it, which
+  /// is kept as long as the message, empty at first; nullptr when nobody shares. A topic's readers agree
+  /// about what it is.
+  virtual std::shared_ptr<void>* beside(const void* message) {
+    (void)message;
+    return nullptr;
+  }
+
   /// `robot` is for topics that every robot has one of (Topic::per_robot); it is ignored for the others.
   template <typename Message>
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {

@@ -43,6 +43,12 @@ void SimBus::at(Time when, std::function<void()> callback) {
                        {timers_, network_.timers_.put(std::move(callback)), true, false});
 }
 
+std::shared_ptr<void>* SimBus::beside(const void* message) {
+  if (!network_.delivering_) return nullptr;
+  SimNetwork::Sent& sent = network_.sent_[*network_.delivering_];
+  return sent.message.get() == message ? &sent.beside : nullptr;
+}
+
 void SimBus::listen_aside() { life_->is_aside = true; }
 
 void SimBus::pause(Time until, std::size_t most_waiting) {
@@ -94,7 +100,9 @@ void SimNetwork::run(const Event& event) {
     return;
   }
   const void* message = sent_[event.content].message.get();
+  delivering_ = event.content;
   event.reader->callback(message);
+  delivering_.reset();
   release(event.content);
 }
 

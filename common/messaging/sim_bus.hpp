@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class SimBus : public Bus {
   /// By the process's own clock.
   Time now() const override;
   void at(Time when, std::function<void()> callback) override;
+  std::shared_ptr<void>* beside(const void* message) override;
 
   /// Hears everything at once and loses nothing: for judges, who are no part of the system.
   void listen_aside();
@@ -102,7 +104,8 @@ class SimNetwork {
   using Reader = SimReader;
   struct Sent {
     std::shared_ptr<const void> message;
-    std::uint32_t under_way = 0;  ///< to so many readers, and one more while it is being sent
+    std::uint32_t under_way = 0;     ///< to so many readers, and one more while it is being sent
+    std::shared_ptr<void> beside{};  ///< what readers have made of it
   };
   struct Event {
     Reader* reader;
@@ -132,6 +135,7 @@ class SimNetwork {
   EventQueue<Event> events_;
   Pool<std::function<void()>> timers_;
   Pool<Sent> sent_;
+  std::optional<std::uint32_t> delivering_;  ///< in sent_
   std::deque<SimLife> lives_;
   std::deque<Reader> readers_;
   std::map<std::string, std::unique_ptr<Channel>> channels_;

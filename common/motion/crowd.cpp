@@ -21,9 +21,9 @@ void Crowd::clear() {
   is_built_ = false;
 }
 
-void Crowd::add(const Version& version) {
+void Crowd::add(const Version& version, const Outline& outline) {
   versions_.push_back(&version);
-  outlines_.push_back(outline_of(version.trajectory));
+  outlines_.push_back(outline);
   outlines_.back().disc.radius_m += version.grown_m;
   is_built_ = false;
 }

@@ -19,7 +19,9 @@ class Crowd {
 
   void clear();
   /// The version is read until clear() or assign().
-  void add(const Version& version);
+  void add(const Version& version) { add(version, outline_of(version.trajectory)); }
+  /// The same with the outline of its trajectory.
+  void add(const Version& version, const Outline& outline);
   void assign(std::span<const Version> versions);
 
   std::size_t size() const { return versions_.size(); }

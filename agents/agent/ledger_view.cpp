@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/ledger_view.hpp"
+
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+
+void LedgerView::assign(const msg::LedgerPage& page) {
+  const std::size_t count = page.versions().size();
+  entries.clear();
+  versions.clear();
+  outlines.clear();
+  ends.clear();
+  entries.reserve(count);
+  versions.reserve(count);
+  outlines.reserve(count);
+  ends.reserve(count);
+  for (const msg::Version& message : page.versions()) {
+    const auto version = decode(message);
+    entries.push_back({{message.x_m(), message.y_m()}, message.robot(), version.has_value()});
+    versions.push_back(version.value_or(Version{}));
+    outlines.push_back(outline_of(versions.back().trajectory));
+    ends.push_back(versions.back().trajectory.end());
+  }
+}
+
+}  // namespace sidestep
