@@ -2,6 +2,7 @@
 // Trials of the seeded search that say something about the system rather than about the search.
 #include <catch2/catch.hpp>
 
+#include "deploy/search/scene_draw.hpp"
 #include "deploy/search/trial.hpp"
 
 using namespace sidestep;
@@ -11,8 +12,9 @@ TEST_CASE("on crowded floors on which nothing goes wrong nearly everybody keeps 
   int robots = 0, idle = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     CAPTURE(seed);
-    Trial trial = draw_trial(seed, 30s, std::nullopt);
-    trial.plan.faults.clear();
+    Rng rng(seed);
+    Rng for_scene = rng.fork();
+    Trial trial{seed, draw_scene(for_scene), {}, 30s};
     trial.plan.healed_at = 18s;
     const TrialResult result = run_trial(trial);
     REQUIRE(result.failures.empty());
