@@ -88,7 +88,7 @@ TEST_CASE("a fact removes older versions, and newer ones whose start is not afte
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
   for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).granted());
-  REQUIRE(two.fact(two.a, 0.9) == FactUse::kUsed);
+  REQUIRE(two.fact(two.a, 1 - 1e-9) == FactUse::kUsed);
   CHECK(two.ledger.versions(1).size() == 4);
   REQUIRE(two.fact(two.a, 1.0) == FactUse::kUsed);  // 10 was not taken at its start
   REQUIRE(two.ledger.versions(1).size() == 3);

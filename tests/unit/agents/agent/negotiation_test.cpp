@@ -133,6 +133,22 @@ TEST_CASE("a verdict is obeyed once, and of several grants for one start only th
   CHECK(d.n.registration().version_count() == 2);
 }
 
+TEST_CASE("what was denied is neither forwarded nor registered") {
+  Driver d;
+  d.become_ready();
+  const auto proposal = d.propose(1.0, 0.9);
+  msg::Verdict denial;
+  denial.robot(kRobot);
+  denial.epoch(kEpoch);
+  denial.proposal_number(proposal.candidates()[0].version_number());
+  denial.granted(0);
+  denial.reasons().fill(msg::REASON_CONFLICT);
+  CHECK_FALSE(d.n.on_verdict(denial, at_s(0.95)));
+  CHECK(d.n.counts().denials == 1);
+  CHECK(d.n.base_at(at_s(1.05)).number == 0);
+  CHECK(d.n.registration().version_count() == 1);
+}
+
 TEST_CASE("what was not answered is asked again while there is time, and not for ever") {
   Driver d;
   d.become_ready();
