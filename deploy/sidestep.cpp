@@ -97,6 +97,10 @@ void add_simulate_command(CLI::App& root, std::function<int()>& action, Simulate
   command->add_option("--jobs", search.jobs, "processes for --seeds [as many as there are cores]")
       ->check(CLI::PositiveNumber)
       ->needs(seeds);
+  command
+      ->add_option("--results", search.results_file,
+                   "file of the seeds' results; a search that was stopped goes on where it was")
+      ->needs(seeds);
   command->callback([=, &action, &options, &search] {
     const bool draws_faults = faults->count() > 0, is_many = seeds->count() > 0;
     if (!draws_faults && scenario->count() == 0) throw CLI::RequiredError("SCENARIO");

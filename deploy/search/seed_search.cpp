@@ -5,11 +5,13 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <optional>
+#include <set>
 #include <thread>
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/search/commit.hpp"
+#include "deploy/search/results_file.hpp"
 #include "deploy/search/scene_draw.hpp"
 #include "deploy/search/search_summary.hpp"
 #include "deploy/search/trial.hpp"
@@ -25,7 +27,7 @@ constexpr auto kPlainLine = std::chrono::seconds(10);
 
 class Progress {
  public:
-  explicit Progress(std::uint64_t seeds) : seeds_(seeds) {}
+  Progress(std::uint64_t seeds, double hours_before) : seeds_(seeds), hours_before_(hours_before) {}
 
   void update(const SearchSummary& summary) {
     const auto now = steady_clock::now();
@@ -37,7 +39,7 @@ class Progress {
         stderr,
         "{}{} of {} seeds, {:.2f} robot-hours, {:.0f} robot-seconds a second, {} contacts, {} failed{}",
         is_terminal_ ? "\r\x1b[K" : "", summary.seeds(), seeds_, hours,
-        elapsed_s > 0 ? hours * 3600 / elapsed_s : 0, summary.contacts(), summary.failed(),
+        elapsed_s > 0 ? (hours - hours_before_) * 3600 / elapsed_s : 0, summary.contacts(), summary.failed(),
         is_terminal_ ? "" : "\n");
   }
   /// Before something else is printed.
@@ -48,6 +50,7 @@ class Progress {
  private:
   bool is_terminal_ = isatty(STDERR_FILENO) == 1;
   std::uint64_t seeds_;
+  double hours_before_;
   steady_clock::time_point begin_ = steady_clock::now();
   steady_clock::time_point next_ = begin_ + kRedraw;
 };
@@ -68,6 +71,28 @@ void print_failure(const SearchOptions& options, const std::optional<Scenario>& 
   std::fflush(stdout);
 }
 
+/// The seeds whose results the file does not hold; takes over those that it does.
+std::vector<std::uint64_t> seeds_left(const SearchOptions& options, std::optional<ResultsFile>& results,
+                                      SearchSummary& summary) {
+  std::set<std::uint64_t> done;
+  if (!options.results_file.empty()) {
+    results.emplace(options.results_file,
+                    fmt::format("{} of {:g} s at commit {}",
+                                options.scenario_file.empty() ? "drawn floors" : options.scenario_file,
+                                to_seconds(options.duration), kCommit));
+    for (const TrialResult& result : results->found()) {
+      if (result.seed < options.first_seed || result.seed > options.last_seed) continue;
+      if (done.insert(result.seed).second) summary.add(result);
+    }
+    if (!done.empty()) fmt::print("{}: holds {} of them\n", options.results_file, done.size());
+  }
+  std::vector<std::uint64_t> left;
+  for (std::uint64_t seed = options.first_seed;; ++seed) {
+    if (!done.contains(seed)) left.push_back(seed);
+    if (seed == options.last_seed) return left;
+  }
+}
+
 }  // namespace
 
 int search_seeds(const SearchOptions& options) {
@@ -79,7 +104,9 @@ int search_seeds(const SearchOptions& options) {
              to_seconds(options.duration), kCommit);
   std::fflush(stdout);
   SearchSummary summary;
-  Progress progress(options.last_seed - options.first_seed + 1);
+  std::optional<ResultsFile> results;
+  const std::vector<std::uint64_t> left = seeds_left(options, results, summary);
+  Progress progress(options.last_seed - options.first_seed + 1, summary.robot_hours());
   WorkerPool pool(
       options.jobs > 0 ? options.jobs : cores,
       [&](std::uint64_t seed) { return to_line(run_trial(draw_trial(seed, options.duration, scenario))); },
@@ -91,11 +118,12 @@ int search_seeds(const SearchOptions& options) {
         else
           result.failures.push_back("the program died of it: " + died);
         summary.add(result);
+        if (results) results->add(result);
         progress.clear();
         if (!result.failures.empty()) print_failure(options, scenario, result);
         progress.update(summary);
       });
-  pool.run(options.first_seed, options.last_seed);
+  pool.run(left);
   progress.clear();
   fmt::print("{}{:.1f} s\n{}\n", summary.text(),
              std::chrono::duration<double>(steady_clock::now() - begin).count(),

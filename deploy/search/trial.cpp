@@ -73,6 +73,8 @@ void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter
                      to_line(report.audit->first.front())));
   }
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
+  const bool may_move = static_cast<int>(trial.plan.off_clock.size()) < result.robots;
+  if (may_move && report.grants == 0) fail("no coordinator has ever granted");
   const Astray astray = find_astray(system, trial.plan);
   if (!astray.not_driving.empty())
     fail(fmt::format("stuck: robots {} do not drive, long after the last fault", list(astray.not_driving)));
@@ -80,8 +82,6 @@ void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter
     fail(fmt::format("robots {} do not know that their clocks are wrong", list(astray.not_off_clock)));
   if (!astray.driven_off_clock.empty() && is_surely_noticed(trial))
     fail(fmt::format("robots {} were driven although their clocks are wrong", list(astray.driven_off_clock)));
-  const bool may_move = static_cast<int>(trial.plan.off_clock.size()) < result.robots;
-  if (may_move && report.grants == 0) fail("no coordinator has ever granted");
   if (may_move && result.idle == result.robots && !system.judge().all_arrived())
     fail("stuck: nobody moves, long after the last fault");
 }

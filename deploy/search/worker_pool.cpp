@@ -126,12 +126,12 @@ void WorkerPool::hear(Worker& worker) {
   done_(worker.job, std::exchange(worker.text, {}), "");
 }
 
-void WorkerPool::run(std::uint64_t first, std::uint64_t last) {
-  std::uint64_t next = first;
+void WorkerPool::run(const std::vector<std::uint64_t>& jobs) {
+  auto next = jobs.begin();
   for (;;) {
     std::vector<pollfd> waiting;
     for (Worker& worker : workers_) {
-      if (!worker.is_busy && next <= last) give(worker, next++);
+      if (!worker.is_busy && next != jobs.end()) give(worker, *next++);
       waiting.push_back({worker.is_busy ? worker.lines : -1, POLLIN, 0});
     }
     const bool is_any = std::ranges::any_of(workers_, &Worker::is_busy);

@@ -25,8 +25,8 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// Does the jobs first .. last and returns when all are done.
-  void run(std::uint64_t first, std::uint64_t last);
+  /// Returns when all jobs are done.
+  void run(const std::vector<std::uint64_t>& jobs);
 
  private:
   struct Worker {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <unistd.h>
 #include <vector>
@@ -170,7 +171,9 @@ std::vector<std::string> measure(const Table& table) {
         results[job] = line;
         progress.advance();
       });
-  pool.run(0, table.rows.size() - 1);
+  std::vector<std::uint64_t> jobs(table.rows.size());
+  std::iota(jobs.begin(), jobs.end(), 0);
+  pool.run(jobs);
   if (!failure.empty()) throw std::runtime_error("a run has died: " + failure);
   return results;
 }

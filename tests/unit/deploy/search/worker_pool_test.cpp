@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -20,7 +21,9 @@ Outcome run(int workers, std::uint64_t first, std::uint64_t last, const WorkerPo
   WorkerPool pool(workers, work, [&](std::uint64_t job, const std::string& line, const std::string& died) {
     (died.empty() ? outcome.lines : outcome.deaths)[job] = died.empty() ? line : died;
   });
-  pool.run(first, last);
+  std::vector<std::uint64_t> jobs(last - first + 1);
+  std::iota(jobs.begin(), jobs.end(), first);
+  pool.run(jobs);
   return outcome;
 }
 
