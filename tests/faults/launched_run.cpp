@@ -68,6 +68,7 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
 
 LaunchedRun::~LaunchedRun() {
   (void)group_.terminate(std::chrono::seconds(10));
+  check_sanitizers();
   bus_.reset();
   visit_.reset();
   remove_abandoned_namespaces();
@@ -78,6 +79,16 @@ LaunchedRun::~LaunchedRun() {
 void LaunchedRun::watch() {
   bus_ = std::make_unique<DdsBus>(DdsSettings{domain_.number(), interface_, "judge"});
   bus_->subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
+}
+
+void LaunchedRun::check_sanitizers() const {
+  // The exit code of what the launcher has started does not always come as far as here.
+  for (const char* log : {"launcher.log", "report.log"}) {
+    const std::string text = text_of(folder_ / log);
+    for (const char* complaint : {"Sanitizer: ", ": runtime error: "}) {
+      if (text.find(complaint) != std::string::npos) FAIL_CHECK(log << ":\n" << text);
+    }
+  }
 }
 
 void LaunchedRun::listen() {

@@ -18,7 +18,7 @@ namespace sidestep {
 
 /// `sidestep run` as a user starts it, in a domain of its own, watched from outside: through what it prints,
 /// the ground truth on the bus, and the report that it leaves. Whatever happens, nothing of it outlives this
-/// object.
+/// object, and a sanitizer's complaint about any process of it fails the test.
 class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
@@ -78,6 +78,7 @@ class LaunchedRun {
               const std::string& interface);
   void listen();
   void watch();
+  void check_sanitizers() const;
 
   OwnDomain domain_;
   std::string interface_;
