@@ -189,7 +189,7 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   if (is_rebooting_ && may_break_off) start_again(now);
 
   State now_wanted = executing_.trajectory.state_at(now);
-  if (may_break_off && is_beyond_bound(estimator_.position_m() - now_wanted.position_m)) {
+  if (must_break_off(estimator_.position_m() - now_wanted.position_m, now) && may_break_off) {
     break_off(now);
     now_wanted = executing_.trajectory.at_start();
   }
@@ -225,7 +225,21 @@ bool Firmware::is_beyond_bound(const Vec2& error_m) const {
   return error_m.norm() + std::min(2 * estimator_.deviation_m(), half) > allowed;
 }
 
+// A fix may show in a moment what drift has grown up to it; the control cures that before anybody could be
+// told of it, and a robot that brakes where nobody expects it to endangers those around it. What cannot be
+// cured is what the bound is for.
+bool Firmware::must_break_off(const Vec2& error_m, Time now) {
+  if (!is_beyond_bound(error_m)) {
+    beyond_since_ = Time::max();
+    return false;
+  }
+  beyond_since_ = std::min(beyond_since_, now);
+  return now - beyond_since_ >= kCure || estimator_.jump_m() > 0 ||
+         error_m.norm() > 2 * settings_.tracking_bound_m + executing_.grown_m;
+}
+
 void Firmware::break_off(Time now) {
+  beyond_since_ = Time::max();
   Version stop;
   stop.robot = robot_;
   stop.incarnation = obeyed_;

@@ -40,14 +40,17 @@ struct FirmwareCounts {
 /// command it follows what it executes to its end and stays at rest there. At creation it executes version 0:
 /// at rest for ever on its mark.
 ///
-/// When it may be farther from its reference than the tracking bound, it breaks off: it makes a version of
-/// its own, which brakes at D from where and how fast it believes to be, and executes that. Lifted off the
-/// floor it executes nothing (version 0 again), and takes a granted stand on version 0 only.
+/// When it may be farther from its reference than the tracking bound, and does not get back within kCure, or
+/// is twice as far, or was moved past its wheels, it breaks off: it makes a version of its own, which brakes
+/// at D from where and how fast it believes to be, and executes that. Lifted off the floor it executes
+/// nothing (version 0 again), and takes a granted stand on version 0 only.
 ///
 /// All times are by the robot's clock, which never goes back.
 class Firmware {
  public:
   static constexpr int kMaxPending = 8;
+  /// So long its control may take to bring it back to its reference.
+  static constexpr Duration kCure = std::chrono::milliseconds(25);
   /// Between the numbers it has seen and the number of a stop of its own: versions that it has not seen may
   /// be granted and under way.
   static constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 20;
@@ -98,6 +101,7 @@ class Firmware {
   const Trajectory& planned(Time t) const;
   bool may_take(const Version& version) const;
   bool is_beyond_bound(const Vec2& error_m) const;
+  bool must_break_off(const Vec2& error_m, Time now);
   void break_off(Time now);
   void start_again(Time now);
 
@@ -111,6 +115,7 @@ class Firmware {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   Time last_fact_ = Time::min();
+  Time beyond_since_ = Time::max();  ///< the tracking bound
   std::int64_t heard_stamp_ns_ = 0;
   Time heard_at_{};
   std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number

@@ -93,6 +93,7 @@ class AuditedRobot {
     bool is_lifted = false;
   };
   std::optional<Fact> fact;
+  std::int64_t beyond_since_ns = kNever;  ///< all facts since then say that it is beyond the tracking bound
 
   /// The latest registration.
   struct Registered {

@@ -25,7 +25,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
   }
   whereabouts_.resize(robots_.size());
   sights_.resize(robots_.size());
-  by_hand_until_.resize(robots_.size());
+  by_hand_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
 }
 

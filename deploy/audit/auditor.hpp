@@ -40,7 +40,8 @@ class Auditor {
   void on_command(const msg::Command& command, Time now);
   void on_feedback(const msg::Feedback& feedback, Time now);
   void on_truth(const msg::GroundTruth& truth, Time now);
-  /// Whoever is pushed may touch others, and be where it ought not to be, until it has settled.
+  /// Whoever is pushed may touch others, and be where it ought not to be, until it is seen in its place
+  /// again.
   void on_disturbance(const msg::Disturbance& disturbance, Time now);
 
   AuditTotals totals() const;
@@ -101,7 +102,7 @@ class Auditor {
   void judge_order(const AuditedRobot& robot, const msg::Feedback& feedback);
   void judge_switch(const AuditedRobot& robot, const Known& to, const msg::Feedback& feedback);
   void judge_origin(AuditedRobot& robot, Known& executing);
-  void judge_tracking(const AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
+  void judge_tracking(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                       const Heard& heard);
   void judge_own(const AuditedRobot& robot, const Known& own);
   void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
@@ -142,8 +143,8 @@ class Auditor {
   double most_grown_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;
-  std::vector<Time> by_hand_until_;
-  std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
+  std::vector<std::optional<Time>> by_hand_;  ///< whom somebody has disturbed: not in place before then
+  std::vector<std::size_t> index_;            ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {
     Incarnation incarnation = 0;

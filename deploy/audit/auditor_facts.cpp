@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "deploy/audit/auditor.hpp"
 
@@ -12,11 +13,13 @@ namespace {
 constexpr std::int64_t kKept_ns = 1'500'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 constexpr std::int64_t kLongestHand_ns = 60'000'000'000;
-// So long after it was let go a robot is at rest, and knows where it is.
+// So long after it was let go it may still look as if it were in place.
 constexpr Duration kSettles = std::chrono::seconds(1);
 constexpr std::size_t kMostLives = 16;
 // A robot looks at its error once a millisecond, and reports where it is in between.
 constexpr double kLookedLater_m = 0.0005;
+// It may take so long to get back to its reference, before it has to break off.
+constexpr std::int64_t kCure_ns = 26'000'000;
 
 bool is_sane(const msg::Feedback& feedback) {
   return std::isfinite(feedback.x_m()) && std::isfinite(feedback.y_m()) && std::isfinite(feedback.vx_mps()) &&
@@ -172,16 +175,24 @@ void Auditor::judge_origin(AuditedRobot& robot, Known& executing) {
   }
 }
 
-void Auditor::judge_tracking(const AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
+void Auditor::judge_tracking(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                              const Heard& heard) {
+  const std::int64_t before_ns = std::exchange(robot.beyond_since_ns, kNever);
   // Whose clock is set finds itself far off all at once.
   if (!has_sound_clock_[index_of(robot)] || !clock_is_sound(feedback, heard)) return;
-  if (!feedback.is_off_reference() && !feedback.is_lifted() && robot.fact && !robot.fact->is_off_reference &&
-      feedback.tracking_error_m() > tracking_bound_m_ + executing.version.grown_m() + kLookedLater_m) {
-    report(AuditRule::kTracking, robot.id, &executing, 0,
-           fmt::format("{:.6f} m off its reference by its own estimate, {:.6f} m allowed",
-                       feedback.tracking_error_m(), tracking_bound_m_));
-  }
+  if (feedback.is_off_reference() || feedback.is_lifted() || !robot.fact || robot.fact->is_off_reference)
+    return;
+  const double beyond_m =
+      feedback.tracking_error_m() - tracking_bound_m_ - executing.version.grown_m() - kLookedLater_m;
+  if (!(beyond_m > 0)) return;
+  // Between two facts that were not heard it may have been back.
+  robot.beyond_since_ns = heard.is_next && before_ns != kNever ? before_ns : feedback.at_ns();
+  if (beyond_m <= tracking_bound_m_ && feedback.at_ns() - robot.beyond_since_ns <= kCure_ns) return;
+  report(
+      AuditRule::kTracking, robot.id, &executing, 0,
+      fmt::format("{:.6f} m off its reference by its own estimate, for {:.3f} s at least; {:.6f} m allowed",
+                  feedback.tracking_error_m(),
+                  static_cast<double>(feedback.at_ns() - robot.beyond_since_ns) * 1e-9, tracking_bound_m_));
 }
 
 void Auditor::judge_own(const AuditedRobot& robot, const Known& own) {
@@ -268,6 +279,8 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   const double error = std::hypot(seen.x - reference.x, seen.y - reference.y);
   totals_.farthest_m = std::max(totals_.farthest_m, error);
   totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
+  std::optional<Time>& by_hand = by_hand_[index_of(robot)];
+  if (error <= tracking_bound_m_ + then->version.grown_m() && by_hand && now_ > *by_hand) by_hand.reset();
   if (error <= scenario_.margin_m + then->version.grown_m()) return;
   if (is_by_hand(robot.id)) {
     ++totals_.places_by_hand;
@@ -291,7 +304,7 @@ void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t more) 
 }
 
 bool Auditor::is_by_hand(RobotId robot) const {
-  return robot < index_.size() && index_[robot] < robots_.size() && now_ < by_hand_until_[index_[robot]];
+  return robot < index_.size() && index_[robot] < robots_.size() && by_hand_[index_[robot]];
 }
 
 void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
@@ -302,8 +315,8 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   }
   if (disturbance.disturbance_kind() == msg::DISTURBANCE_CLOCK) return;
   const Duration lasts(std::clamp<std::int64_t>(disturbance.duration_ns(), 0, kLongestHand_ns));
-  Time& until = by_hand_until_[index_[disturbance.robot()]];
-  until = std::max(until, now + lasts + kSettles);
+  std::optional<Time>& by_hand = by_hand_[index_[disturbance.robot()]];
+  by_hand = std::max(by_hand.value_or(now), now + lasts + kSettles);
 }
 
 void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {

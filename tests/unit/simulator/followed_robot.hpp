@@ -42,7 +42,8 @@ class FollowedRobot {
     const auto seen = std::find_if(seen_.rbegin(), seen_.rend(), [&](const msg::PoseFix& fix) {
       return time_from_ns(fix.captured_at_ns()) + scenario_.vision.delay <= now;
     });
-    if (seen != seen_.rend()) {
+    const bool is_missed = scenario_.vision.missed > 0 && rng_.chance(scenario_.vision.missed);
+    if (seen != seen_.rend() && !is_missed) {
       command.has_fix(true);
       command.fix(*seen);
     }

@@ -70,6 +70,24 @@ TEST_CASE("a robot that nobody disturbs never breaks off") {
   }
 }
 
+TEST_CASE("a robot that is seen rarely and late gets back to its reference, and does not break off") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  CAPTURE(seed);
+  Scenario scenario = lonely_robots(20);
+  scenario.vision.delay = milliseconds(120);
+  scenario.vision.missed = 0.85;
+  Floor floor(scenario, seed);
+  double farthest_m = 0;
+  while (floor.now < kBegin + std::chrono::seconds(10)) {
+    floor.run_for(milliseconds(5));
+    for (std::size_t i = 0; i < floor.world.robot_count(); ++i)
+      farthest_m = std::max(farthest_m, floor.world.reference_error_m(i));
+  }
+  CHECK(floor.broke_off() == 0);
+  // Drift there was: more than what is allowed for less than no time.
+  CHECK(farthest_m > 0.5 * scenario.tracking_bound_m);
+}
+
 TEST_CASE("a shoved robot breaks off when the second frame after it has come") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   const bool drives = GENERATE(false, true);
