@@ -17,6 +17,12 @@ constexpr int kTakenToTrust = 10;
 
 void Pace::on_round_trip(Duration duration) {
   round_trips_[count_++ % kRoundTrips] = duration;
+  const std::size_t count = std::min(count_, kRoundTrips);
+  auto sorted = round_trips_;
+  const std::size_t place = count - 1 - count / 8;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
+                   sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  slow_round_trip_ = sorted[place];
   update();
 }
 
@@ -38,21 +44,11 @@ void Pace::on_late() {
 
 void Pace::reset() { *this = Pace(cycle_); }
 
-Duration Pace::slow_round_trip() const {
-  const std::size_t count = std::min(count_, kRoundTrips);
-  if (count == 0) return Duration{0};
-  auto sorted = round_trips_;
-  const std::size_t place = count - 1 - count / 8;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
-                   sorted.begin() + static_cast<std::ptrdiff_t>(count));
-  return sorted[place];
-}
-
-Duration Pace::patience() const { return std::max(cycle_, slow_round_trip()); }
+Duration Pace::patience() const { return std::max(cycle_, slow_round_trip_); }
 
 void Pace::update() {
   // The command to the robot takes half a round trip more.
-  const Duration needed = slow_round_trip() + slow_round_trip() / 2;
+  const Duration needed = slow_round_trip_ + slow_round_trip_ / 2;
   const auto cycles =
       static_cast<int>(std::min<std::int64_t>(kLongestLead, (needed + cycle_ - Duration{1}) / cycle_));
   lead_ = std::min(std::max(1, cycles) + spare_, kLongestLead);

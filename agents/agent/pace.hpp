@@ -26,13 +26,12 @@ class Pace {
 
  private:
   static constexpr std::size_t kRoundTrips = 16;
-  /// All but the slowest few are faster; zero until something is known.
-  Duration slow_round_trip() const;
   void update();
 
   Duration cycle_;
   std::array<Duration, kRoundTrips> round_trips_{};
   std::size_t count_ = 0;
+  Duration slow_round_trip_{0};  // all but the slowest few are faster; zero until something is known
   int taken_in_a_row_ = 0, late_in_a_row_ = 0;
   int spare_ = 0;
   int lead_ = 1;
