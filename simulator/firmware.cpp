@@ -196,12 +196,11 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
 
   // With a motor lag T, p + T v and v + T a move as a double integrator without any lag under the wish.
   const double lag = settings_.body.lag_s;
-  const Trajectory& ahead = planned(now + look_ahead_);
+  const Motion ahead = planned(now + look_ahead_).motion_at(now + look_ahead_);
   const Vec2 position_lead = now_wanted.position_m + lag * now_wanted.velocity_mps -
                              (estimator_.position_m() + lag * estimator_.velocity_mps());
-  const Vec2 velocity_lead =
-      ahead.state_at(now + look_ahead_).velocity_mps - (estimator_.velocity_mps() + lag * believed);
-  Vec2 wanted = ahead.acceleration_at(now + look_ahead_) + settings_.position_gain_ps2 * position_lead +
+  const Vec2 velocity_lead = ahead.state.velocity_mps - (estimator_.velocity_mps() + lag * believed);
+  Vec2 wanted = ahead.acceleration_mps2 + settings_.position_gain_ps2 * position_lead +
                 settings_.velocity_gain_ps * velocity_lead;
   const double most = settings_.body.acceleration_mps2;
   if (wanted.squaredNorm() > most * most) wanted *= most / wanted.norm();

@@ -39,23 +39,21 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)) {
-  bus_.subscribe(topics::kFeedback, robot, std::function([this](const msg::Feedback& feedback) {
-                   measure_robot_clock(feedback);
-                   agent_.on_feedback(feedback);
-                   register_if_due();
-                   if (agent_.negotiation().is_contradicted()) negotiate_if_time();
-                 }));
-  bus_.subscribe(topics::kVerdict, robot, std::function([this](const msg::Verdict& v) { on_verdict(v); }));
-  bus_.subscribe(topics::kWorld, std::function([this](const msg::WorldState& w) {
-                   agent_.on_world(w, bus_.now() + clocks_.robot_ahead_at_most(bus_.now()));
-                 }));
-  bus_.subscribe(topics::kDisturbance,
-                 std::function([this](const msg::Disturbance& hand) { agent_.on_disturbance(hand); }));
-  bus_.subscribe(topics::kLedger, std::function([this](const msg::LedgerPage& page) {
-                   agent_.on_ledger(page, bus_.beside(&page));
-                 }));
+  bus_.subscribe(topics::kFeedback, robot, [this](const msg::Feedback& feedback) {
+    measure_robot_clock(feedback);
+    agent_.on_feedback(feedback);
+    register_if_due();
+    if (agent_.negotiation().is_contradicted()) negotiate_if_time();
+  });
+  bus_.subscribe(topics::kVerdict, robot, [this](const msg::Verdict& v) { on_verdict(v); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& w) {
+    agent_.on_world(w, bus_.now() + clocks_.robot_ahead_at_most(bus_.now()));
+  });
+  bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& hand) { agent_.on_disturbance(hand); });
+  bus_.subscribe(topics::kLedger,
+                 [this](const msg::LedgerPage& page) { agent_.on_ledger(page, bus_.beside(&page)); });
   bus_.subscribe(topics::kCoordinator,
-                 std::function([this](const msg::CoordinatorState& state) { on_coordinator_state(state); }));
+                 [this](const msg::CoordinatorState& state) { on_coordinator_state(state); });
   const Time now = robot_now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + phase_of(scenario, robot) + cycle_;
   begin_next_cycle_later();
@@ -156,13 +154,16 @@ Time AgentNode::next_start() { return next_cycle_ + cycle_ * (agent_.negotiation
 
 void AgentNode::negotiate(Time start) {
   if (!agent_.negotiation().may_propose(robot_now()) || !clocks_agree()) return;
-  if (agent_.wants_stand(robot_now())) return ask(agent_.propose_stand(robot_now(), start));
+  if (agent_.wants_stand(robot_now())) {
+    auto stand = agent_.propose_stand(robot_now(), start);
+    return ask(stand);
+  }
   const auto query = timed(plan_, [&] { return agent_.plan(robot_now(), start); });
   if (!query) return;
   if (auto proposal = timed(search_, [&] { return agent_.search(*query, robot_now()); })) ask(*proposal);
 }
 
-void AgentNode::ask(msg::Proposal proposal) {
+void AgentNode::ask(msg::Proposal& proposal) {
   publish(proposal_writer_, proposal);
   clocks_.on_asked(time_from_ns(proposal.head().stamp_ns()));
 }

@@ -36,7 +36,7 @@ class AgentNode {
   void negotiate_if_time();
   /// Proposes what to do from a time on.
   void negotiate(Time start);
-  void ask(msg::Proposal proposal);
+  void ask(msg::Proposal& proposal);
   /// The begin of the next cycle, or of a later one where the network is slow.
   Time next_start();
   void on_verdict(const msg::Verdict& verdict);

@@ -5,26 +5,17 @@
 
 namespace sidestep {
 
-State Trajectory::state_at(Time t) const {
+Motion Trajectory::motion_at(Time t) const {
   State state = at_start_;
-  if (t < start_) return state;
+  if (t < start_) return {state};
   Duration left = t - start_;
   for (const Phase& phase : phases()) {
-    if (left < phase.duration) return state_after(state, phase.acceleration_mps2, to_seconds(left));
-    state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
+    const Vec2& acceleration = phase.acceleration_mps2;
+    if (left < phase.duration) return {state_after(state, acceleration, to_seconds(left)), acceleration};
+    state = state_after(state, acceleration, to_seconds(phase.duration));
     left -= phase.duration;
   }
-  return {state.position_m, Vec2::Zero()};
-}
-
-Vec2 Trajectory::acceleration_at(Time t) const {
-  if (t < start_) return Vec2::Zero();
-  Duration left = t - start_;
-  for (const Phase& phase : phases()) {
-    if (left < phase.duration) return phase.acceleration_mps2;
-    left -= phase.duration;
-  }
-  return Vec2::Zero();
+  return {{state.position_m, Vec2::Zero()}};
 }
 
 namespace {

@@ -21,6 +21,12 @@ struct Phase {
   Vec2 acceleration_mps2{0, 0};
 };
 
+/// A state and the acceleration in force.
+struct Motion {
+  State state;
+  Vec2 acceleration_mps2{0, 0};
+};
+
 /// The state after a time in a phase that began in `from`.
 inline State state_after(const State& from, const Vec2& acceleration_mps2, double elapsed_s) {
   return {from.position_m + elapsed_s * (from.velocity_mps + (0.5 * elapsed_s) * acceleration_mps2),
@@ -57,9 +63,11 @@ class Trajectory {
   std::span<const Phase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
 
   /// The state at a time; at rest at the end point from end() on; the start state before the start.
-  State state_at(Time t) const;
-  /// The acceleration in force at a time (of the phase that begins, at a boundary); zero from end() on.
-  Vec2 acceleration_at(Time t) const;
+  State state_at(Time t) const { return motion_at(t).state; }
+  /// The acceleration in force at a time (of the phase that begins, at a boundary); zero from end() on, and
+  /// before the start.
+  Vec2 acceleration_at(Time t) const { return motion_at(t).acceleration_mps2; }
+  Motion motion_at(Time t) const;
   Vec2 rest_position_m() const;
   /// What is left of the velocity when the last phase ends: nearly zero for a valid trajectory.
   double residual_speed_mps() const;

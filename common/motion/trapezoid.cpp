@@ -5,7 +5,11 @@
 
 namespace sidestep {
 
-Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limits) : velocity_(velocity) {
+template <typename Add>
+void Trapezoid::for_each_stretch(double distance, double velocity, const MotionLimits& limits, Add add) {
+  const auto append = [&](double seconds, double acceleration) {
+    if (seconds > 0) add(seconds, acceleration);
+  };
   const double accelerate = limits.acceleration_mps2, brake = limits.deceleration_mps2,
                top = limits.speed_mps;
   // Seen from the side of the point where an immediate stop would end, the rest is always forward.
@@ -33,8 +37,16 @@ Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limit
   append(peak / brake, -sign * brake);
 }
 
-void Trapezoid::append(double seconds, double acceleration) {
-  if (seconds > 0) stretches_[static_cast<std::size_t>(count_++)] = {seconds, acceleration};
+Trapezoid::Trapezoid(double distance, double velocity, const MotionLimits& limits) : velocity_(velocity) {
+  for_each_stretch(distance, velocity, limits, [this](double seconds, double acceleration) {
+    stretches_[static_cast<std::size_t>(count_++)] = {seconds, acceleration};
+  });
+}
+
+double Trapezoid::duration_s(double distance, double velocity, const MotionLimits& limits) {
+  double total = 0;
+  for_each_stretch(distance, velocity, limits, [&total](double seconds, double) { total += seconds; });
+  return total;
 }
 
 double Trapezoid::duration_s() const {
@@ -66,8 +78,8 @@ double balance(double distance, double v_along, double v_across, const MotionLim
   double low = 0, high = std::abs(v_across) < 1e-6 ? 1e-3 : 1.5707963267948966;
   for (int i = 0; i < 20 && high - low > 1e-4; ++i) {
     const double angle = 0.5 * (low + high);
-    const double along_s = Trapezoid(distance, v_along, share(limits, std::cos(angle))).duration_s();
-    const double across_s = Trapezoid(0, v_across, share(limits, std::sin(angle))).duration_s();
+    const double along_s = Trapezoid::duration_s(distance, v_along, share(limits, std::cos(angle)));
+    const double across_s = Trapezoid::duration_s(0, v_across, share(limits, std::sin(angle)));
     (along_s < across_s ? low : high) = angle;
   }
   return 0.5 * (low + high);

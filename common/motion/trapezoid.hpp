@@ -17,12 +17,16 @@ class Trapezoid {
   Trapezoid(double distance_m, double velocity_mps, const MotionLimits& limits);
 
   double duration_s() const;
+  /// That of a Trapezoid with these arguments, for less.
+  static double duration_s(double distance_m, double velocity_mps, const MotionLimits& limits);
   /// For how long the first acceleration is held; 0 when there is nothing to do.
   double first_stretch_s() const { return count_ > 0 ? stretches_[0].seconds : 0; }
   double velocity_after(double seconds) const;
 
  private:
-  void append(double seconds, double acceleration);
+  /// Calls for each stretch with its seconds, above zero, and its acceleration.
+  template <typename Add>
+  static void for_each_stretch(double distance, double velocity, const MotionLimits& limits, Add add);
 
   struct Stretch {
     double seconds, acceleration;
