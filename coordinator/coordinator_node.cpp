@@ -30,17 +30,15 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id,
-                   std::function([this](const msg::Feedback& feedback) { on_feedback(feedback); }));
+                   [this](const msg::Feedback& feedback) { on_feedback(feedback); });
   }
-  bus_.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
-                   succession_.on_coordinator_state(state, bus_.now());
-                   follow_succession();
-                 }));
-  bus_.subscribe(topics::kRegistration, std::function([this](const msg::Registration& registration) {
-                   on_registration(registration);
-                 }));
-  bus_.subscribe(topics::kProposal,
-                 std::function([this](const msg::Proposal& proposal) { on_proposal(proposal); }));
+  bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
+    succession_.on_coordinator_state(state, bus_.now());
+    follow_succession();
+  });
+  bus_.subscribe(topics::kRegistration,
+                 [this](const msg::Registration& registration) { on_registration(registration); });
+  bus_.subscribe(topics::kProposal, [this](const msg::Proposal& proposal) { on_proposal(proposal); });
   look();
   publish_state_periodically();
   publish_ledger();

@@ -50,6 +50,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
                                          [this](const auto& status) { judge_.on_status(status); });
   judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
                                               [this](const auto& state) { judge_.on_coordinator(state); });
+  for (const RobotSpec& robot : scenario_.robots)
+    robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
   for (const std::string& process : process_names(scenario_)) start(process);
 }
 
@@ -86,11 +88,8 @@ void SimSystem::start(const std::string& name) {
     const CoordinatorIdentity self{static_cast<CoordinatorNumber>(number), incarnation};
     process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
   }
-  for (const RobotSpec& robot : scenario_.robots) {
-    if (name == agent_process(robot.id) || name == twin_process(robot.id)) {
-      process->node = std::make_shared<AgentNode>(bus, scenario_, robot.id, incarnation);
-    }
-  }
+  if (const auto agent = robot_of_.find(name); agent != robot_of_.end())
+    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation);
   if (!process->node) throw std::invalid_argument("the system has no process \"" + name + "\"");
   processes_[name] = std::move(process);
 }

@@ -79,6 +79,7 @@ class SimSystem {
   Auditor auditor_;
   SimBus judge_bus_;
   Writer<msg::Disturbance> hand_;
+  std::map<std::string, RobotId> robot_of_;  // by the names of its agents
   std::map<std::string, ProcessId> ids_;
   std::map<std::string, Incarnation> incarnations_;  // of the latest lives
   std::map<std::string, std::unique_ptr<Process>> processes_;

@@ -61,15 +61,16 @@ class Bus {
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {
     return Writer<Message>(make_writer(topic, channel_name(topic, robot)));
   }
-  template <typename Message>
-  void subscribe(const Topic<Message>& topic, std::uint32_t robot,
-                 std::function<void(const Message&)> callback) {
-    make_reader(topic, channel_name(topic, robot), [callback = std::move(callback)](const void* message) {
-      callback(*static_cast<const Message*>(message));
-    });
+  /// `callback` takes a const Message&.
+  template <typename Message, typename Callback>
+  void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
+    make_reader(topic, channel_name(topic, robot),
+                [callback = std::move(callback)](const void* message) mutable {
+                  callback(*static_cast<const Message*>(message));
+                });
   }
-  template <typename Message>
-  void subscribe(const Topic<Message>& topic, std::function<void(const Message&)> callback) {
+  template <typename Message, typename Callback>
+  void subscribe(const Topic<Message>& topic, Callback callback) {
     subscribe(topic, 0, std::move(callback));
   }
 
