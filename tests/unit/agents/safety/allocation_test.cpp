@@ -1,33 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "agents/agent/neighbours.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/codec.hpp"
 #include "common/motion/clearance_batch.hpp"
+#include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto unit = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 using namespace sidestep;
 
@@ -46,18 +25,18 @@ Version random_version(RobotId robot, Rng& rng) {
 template <typename Work>
 std::size_t allocations_once_warm(Work work) {
   for (int i = 0; i < 300; ++i) work();
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   for (int i = 0; i < 300; ++i) work();
-  return allocations - before;
+  return allocations() - before;
 }
 
 }  // namespace
 
 TEST_CASE("an allocation is counted") {
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   std::vector<int> numbers(100);
   CHECK(numbers.size() == 100);
-  CHECK(allocations > before);
+  CHECK(allocations() > before);
 }
 
 TEST_CASE("a search allocates nothing once warm, whoever is near") {

@@ -1,26 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <atomic>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
+#include "tests/counted_allocations.hpp"
 #include "tests/unit/vision/floor.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace sidestep;
 using namespace sidestep::test;
@@ -125,12 +107,12 @@ TEST_CASE("updates and publications allocate nothing") {
   const std::vector<Arrival> frames = frames_of_two_cameras(rng, 1);
   Watcher watcher(3);
   watcher.world_at(kBegin);
-  const long before = allocations;
+  const std::size_t before = allocations();
   for (const Arrival& frame : frames) {
     watcher.feed(frame.frame, frame.at);
     watcher.world_at(frame.at);
   }
-  CHECK(allocations == before);
+  CHECK(allocations() == before);
 }
 
 TEST_CASE("any numbers in any frame leave the tracker alive and its world finite") {
