@@ -307,6 +307,8 @@ msg::Feedback Firmware::feedback(Time now) {
   facts.vy_mps(estimator_.velocity_mps().y());
   facts.heading_rad(wrapped_rad(estimator_.heading_rad()));
   facts.tracking_error_m((position - reference).norm());
+  facts.deviation_m(estimator_.deviation_m());
+  facts.scale_deviation(estimator_.scale_deviation());
   facts.taken(counts_.taken);
   facts.refused_late(counts_.refused_late);
   facts.refused_base(counts_.refused_base);

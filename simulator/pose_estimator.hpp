@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -54,6 +56,8 @@ class PoseEstimator {
   double scale_error() const { return scale_; }
   /// Root mean square distance from the truth, as far as the filter can tell.
   double deviation_m() const;
+  /// Standard deviation of scale_error(), as far as the filter can tell.
+  double scale_deviation() const { return std::sqrt(std::max(0.0, covariance_(2, 2))); }
   /// How far the last fix showed the robot to have been moved past its wheels, 0: it did not.
   double jump_m() const { return jump_m_; }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "agents/navigation/drift.hpp"
 #include "common/messaging/codec.hpp"
 
 namespace sidestep {
@@ -52,6 +53,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       rules_(floor_rules(scenario)),
       clocks_differ_(from_seconds(2 * scenario.clock_bound_s)),
       cycle_(scenario.cycle),
+      tracking_bound_m_(scenario.tracking_bound_m),
       goal_tolerance_m_(scenario.goal_tolerance_m),
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
@@ -111,8 +113,11 @@ void Agent::update_ways(Time now) {
 void Agent::on_feedback(const msg::Feedback& feedback) {
   negotiation_.on_feedback(feedback);
   const Vec2 position(feedback.x_m(), feedback.y_m()), velocity(feedback.vx_mps(), feedback.vy_mps());
+  const Localisation known{feedback.deviation_m(), feedback.scale_deviation()};
   if (feedback.robot() != robot_.id || !position.allFinite() || !velocity.allFinite()) return;
+  if (!(known.deviation_m >= 0) || !(known.scale_deviation >= 0)) return;
   estimate_ = {position, velocity};
+  blind_way_m_ = blind_way_m(known, tracking_bound_m_);
   neighbours_.look_about(position, page_horizon_m(rules_));
   const VersionNumber stop = feedback.is_off_reference() ? feedback.executing().version_number() : 0;
   off_reference_ += stop > last_stop_;
@@ -202,8 +207,10 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Vec2 to_goal = goal().position_m - there.position_m;
   const Route route = ways_->route_from(there.position_m).value_or(Route{goal().position_m, to_goal.norm()});
   const Vec2 direction = direction_beside(there.position_m, route);
-  const MotionWish wish = wished_motion(route.length_m * direction, there.velocity_mps, rules_.limits, cycle_,
-                                        cycle_ * negotiation_.lead());
+  // It comes to rest before it would drift too far were it never seen again.
+  const double blind_m = std::max(0.0, blind_way_m_ - (there.position_m - estimate_.position_m).norm());
+  const MotionWish wish = wished_motion(std::min(route.length_m, blind_m) * direction, there.velocity_mps,
+                                        rules_.limits, cycle_, cycle_ * negotiation_.lead());
   return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, grown_m, obstacles_.recent(now)};
 }
 

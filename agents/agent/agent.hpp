@@ -75,6 +75,7 @@ class Agent {
   const FloorRules rules_;
   const Duration clocks_differ_;  // any two of those that keep the bound, at most
   const Duration cycle_;
+  const double tracking_bound_m_;
   const double goal_tolerance_m_;
   Negotiation negotiation_;
   Neighbours neighbours_;
@@ -86,7 +87,8 @@ class Agent {
   std::vector<Circle> in_the_way_;       // that ways_ leads round, besides the scenario's obstacles
   PassingOnTheRight passing_;
   bool arrived_ = false;
-  State estimate_;                   // the robot's own
+  State estimate_;                   // the robot's own,
+  double blind_way_m_ = 0;           // and how far from there it may drive without being seen again
   std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
   std::size_t in_world_ = 0;  // the robot's place in the last world that it was in

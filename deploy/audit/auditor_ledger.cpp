@@ -179,9 +179,9 @@ void Auditor::judge_floor(const AuditedRobot& robot, const Known& known) {
     }
     return most;
   };
-  // What was pushed over the edge may come back.
+  // What was pushed over the edge may come back, in as many steps as it takes.
   const Known* base = robot.find(known.version.base());
-  const double allowed = base && base->is_own ? outside(base->path) + kLength_m : 0;
+  const double allowed = base && base->has_content ? std::max(0.0, outside(base->path) + kLength_m) : 0;
   if (const double most = outside(known.path); most > allowed) {
     report(AuditRule::kFloor, robot.id, &known, known.granted_in,
            fmt::format("{:.6f} m over the edge", most));

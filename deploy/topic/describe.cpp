@@ -175,6 +175,8 @@ Json describe(const msg::Feedback& m) {
           {"vy_mps", m.vy_mps()},
           {"heading_rad", m.heading_rad()},
           {"tracking_error_m", m.tracking_error_m()},
+          {"deviation_m", m.deviation_m()},
+          {"scale_deviation", m.scale_deviation()},
           {"taken", m.taken()},
           {"refused_late", m.refused_late()},
           {"refused_base", m.refused_base()},
