@@ -18,11 +18,17 @@ constexpr int kTakenToTrust = 10;
 void Pace::on_round_trip(Duration duration) {
   round_trips_[count_++ % kRoundTrips] = duration;
   const std::size_t count = std::min(count_, kRoundTrips);
-  auto sorted = round_trips_;
-  const std::size_t place = count - 1 - count / 8;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
-                   sorted.begin() + static_cast<std::ptrdiff_t>(count));
-  slow_round_trip_ = sorted[place];
+  std::array<Duration, kRoundTrips / 8 + 1> slowest;
+  slowest.fill(Duration::min());
+  for (std::size_t i = 0; i < count; ++i) {
+    Duration falling = round_trips_[i];
+    for (Duration& place : slowest) {
+      const Duration lower = std::min(place, falling);
+      place = std::max(place, falling);
+      falling = lower;
+    }
+  }
+  slow_round_trip_ = slowest[count / 8];
   update();
 }
 
