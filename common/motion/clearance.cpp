@@ -137,6 +137,14 @@ double smallest_inside(const Piece& piece) {
   return smallest;
 }
 
+/// False only where the way along the line between both does not come that near.
+bool may_come_within(const Piece& piece, double far_m) {
+  const double distance = piece.d.norm();
+  const double closing = std::min(0.0, piece.seconds * piece.d.dot(piece.v)) +
+                         std::min(0.0, 0.5 * piece.seconds * piece.seconds * piece.d.dot(piece.a));
+  return distance * distance + closing < (far_m + kClearanceTolerance_m) * distance;
+}
+
 /// Goes through the pieces of the relative motion until `stop(squared distance)` says so for one that it has
 /// to look at; returns the smallest squared distance seen. Pieces that stay beyond `far_m` for sure are not
 /// looked at closely.
@@ -151,9 +159,7 @@ double smallest_squared_distance(const Trajectory& a, const Trajectory& b, doubl
     const Piece piece{walk_a.state().position_m - walk_b.state().position_m,
                       walk_a.state().velocity_mps - walk_b.state().velocity_mps,
                       walk_a.acceleration() - walk_b.acceleration(), to_seconds(step)};
-    const double travel =
-        piece.seconds * (piece.v.norm() + 0.5 * piece.seconds * piece.a.norm()) + kClearanceTolerance_m;
-    if (piece.d.norm() - travel < far_m) smallest = std::min(smallest, smallest_inside(piece));
+    if (may_come_within(piece, far_m)) smallest = std::min(smallest, smallest_inside(piece));
     walk_a.advance(step);
     walk_b.advance(step);
     smallest = std::min(smallest, (walk_a.state().position_m - walk_b.state().position_m).squaredNorm());
