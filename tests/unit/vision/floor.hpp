@@ -24,11 +24,12 @@ struct Pose {
 };
 
 /// A motion that is known at every millisecond, so that tests can compare with what really was.
-class Motion {
+class TrueMotion {
  public:
   /// Constant acceleration from a state.
-  static Motion accelerating(Pose pose, const Vec2& acceleration_mps2, double turn_radps, double duration_s) {
-    Motion motion;
+  static TrueMotion accelerating(Pose pose, const Vec2& acceleration_mps2, double turn_radps,
+                                 double duration_s) {
+    TrueMotion motion;
     for (double t = 0; t <= duration_s; t += 0.001) {
       motion.poses_.push_back({pose.position_m + pose.velocity_mps * t + acceleration_mps2 * (t * t / 2),
                                pose.velocity_mps + acceleration_mps2 * t, pose.heading_rad + turn_radps * t});
@@ -37,8 +38,8 @@ class Motion {
   }
 
   /// A robot that drives about: new accelerations of up to 5 m/s² every 50 to 400 ms, speeds up to 2 m/s.
-  static Motion driving(Rng& rng, double duration_s) {
-    Motion motion;
+  static TrueMotion driving(Rng& rng, double duration_s) {
+    TrueMotion motion;
     Pose pose;
     Vec2 acceleration{0, 0};
     double turn_radps = 0, until = 0;

@@ -27,7 +27,7 @@ Scenario scenario_of(RobotId robots) {
 /// Two cameras over one robot, each publishing what it saw 35 ms ago.
 class Cameras {
  public:
-  Cameras(Bus& bus, const Motion& motion, Rng rng)
+  Cameras(Bus& bus, const TrueMotion& motion, Rng rng)
       : bus_(bus), motion_(motion), rng_(rng), writer_(bus.advertise(topics::kDetections)) {
     bus_.at(kBegin + 40 * kMs, [this] { publish(); });
   }
@@ -44,13 +44,13 @@ class Cameras {
   }
 
   Bus& bus_;
-  const Motion& motion_;
+  const TrueMotion& motion_;
   Rng rng_;
   Writer<msg::DetectionFrame> writer_;
 };
 
 std::vector<msg::WorldState> worlds_of_a_run(std::uint64_t seed, const NetworkSpec& network,
-                                             const Motion& motion) {
+                                             const TrueMotion& motion) {
   SimNetwork net(seed, kBegin, network);
   SimBus camera_bus(net), vision_bus(net), listener_bus(net);
   std::vector<msg::WorldState> worlds;
@@ -66,7 +66,7 @@ std::vector<msg::WorldState> worlds_of_a_run(std::uint64_t seed, const NetworkSp
 
 TEST_CASE("the node publishes a world at the cameras' rate, valid when it is published") {
   Rng rng(301);
-  const Motion motion = Motion::driving(rng, 6);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
   const auto worlds = worlds_of_a_run(301, {}, motion);
   CHECK(worlds.size() == Approx(300).margin(3));
   std::uint64_t number = 0;
@@ -89,7 +89,7 @@ TEST_CASE("a network that loses, delays, duplicates and reorders frames leaves a
   const std::uint64_t seed = GENERATE(311u, 312u, 313u);
   CAPTURE(seed);
   Rng rng(seed);
-  const Motion motion = Motion::driving(rng, 6);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
   NetworkSpec network;
   network.loss = 0.3;
   network.duplicate = 0.1;
@@ -112,7 +112,7 @@ TEST_CASE("a network that loses, delays, duplicates and reorders frames leaves a
 
 TEST_CASE("the same seed gives the same worlds") {
   Rng rng(321);
-  const Motion motion = Motion::driving(rng, 6);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
   NetworkSpec network;
   network.loss = 0.1;
   network.delay_max = 50 * kMs;

@@ -23,7 +23,7 @@ TEST_CASE("filtered velocities and positions of a driving robot are better than 
   const std::uint64_t seed = GENERATE(21u, 22u, 23u);
   CAPTURE(seed);
   Rng rng(seed);
-  const Motion motion = Motion::driving(rng, 60);
+  const TrueMotion motion = TrueMotion::driving(rng, 60);
   Watcher watcher(1);
   Errors position, velocity, measured_position, measured_velocity;
   Vec2 last{0, 0};
@@ -53,7 +53,7 @@ TEST_CASE("errors of the world at the time of publishing are as large as its var
   const std::uint64_t seed = GENERATE(31u, 32u, 33u);
   CAPTURE(seed);
   Rng rng(seed);
-  const Motion motion = Motion::driving(rng, 60);
+  const TrueMotion motion = TrueMotion::driving(rng, 60);
   Watcher watcher(1);
   double position = 0, velocity = 0, worst = 0;
   int count = 0;
@@ -94,7 +94,7 @@ TEST_CASE(
   Errors errors;
   for (int run = 0; run < 200; ++run) {
     const Vec2 acceleration = Vec2(5, 0);
-    const Motion motion = Motion::accelerating({{0, 0}, {-1.5, 0.3}, 0}, acceleration, 0, 0.7);
+    const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {-1.5, 0.3}, 0}, acceleration, 0, 0.7);
     Watcher watcher(1, settings);
     for (Time t = kBegin; t < after_s(0.6); t += kFrame) {
       msg::DetectionFrame frame = frame_message(0, t);
@@ -114,7 +114,7 @@ TEST_CASE(
 }
 
 TEST_CASE("latency is made up for: under constant acceleration the world lags by millimetres") {
-  const Motion motion = Motion::accelerating({{0, 0}, {0, 0}, 0}, {5, 0}, 0, 0.5);
+  const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {0, 0}, 0}, {5, 0}, 0, 0.5);
   Watcher watcher(1);
   double worst = 0;
   for (Time t = kBegin; t < after_s(0.4); t += kFrame) {
@@ -159,7 +159,7 @@ TEST_CASE("a heading that turns through pi stays a heading, with its rate") {
   const double turn_radps = GENERATE(3.0, -3.0);
   CAPTURE(turn_radps);
   Rng rng(61);
-  const Motion motion = Motion::accelerating({{0, 0}, {0, 0}, 2.5}, {0, 0}, turn_radps, 11);
+  const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {0, 0}, 2.5}, {0, 0}, turn_radps, 11);
   Watcher watcher(1);
   double squared_error = 0;
   int count = 0;

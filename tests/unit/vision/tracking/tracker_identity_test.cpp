@@ -58,7 +58,7 @@ TEST_CASE("a robot that brakes to a halt while nobody sees it stays within the p
   CAPTURE(gap_s);
   Rng rng(72);
   Watcher watcher(1);
-  const Motion driving = Motion::accelerating({{0, 0}, {2, 0}, 0}, {0, 0}, 0, 1);
+  const TrueMotion driving = TrueMotion::accelerating({{0, 0}, {2, 0}, 0}, {0, 0}, 0, 1);
   Time t = kBegin;
   for (; t < after_s(0.5); t += kFrame) {
     msg::DetectionFrame frame = frame_message(0, t);
@@ -77,7 +77,7 @@ TEST_CASE("ghosts never move a robot that is seen, never make one, and are count
   const std::uint64_t seed = GENERATE(81u, 82u, 83u);
   CAPTURE(seed);
   Rng rng(seed);
-  const Motion motion = Motion::driving(rng, 30);
+  const TrueMotion motion = TrueMotion::driving(rng, 30);
   Watcher watcher(2);
   std::uint64_t ghosts = 0;
   for (Time t = kBegin; t < after_s(30); t += kFrame) {
@@ -175,8 +175,8 @@ TEST_CASE(
   CAPTURE(seed, speed_mps);
   Rng rng(seed);
   const double half_s = 1 / speed_mps;
-  const Motion right = Motion::accelerating({{-1, 0.095}, {speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
-  const Motion left = Motion::accelerating({{1, -0.095}, {-speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
+  const TrueMotion right = TrueMotion::accelerating({{-1, 0.095}, {speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
+  const TrueMotion left = TrueMotion::accelerating({{1, -0.095}, {-speed_mps, 0}, 0}, {0, 0}, 0, 2 * half_s);
   Watcher watcher(2);
   int mixed_up = 0;
   for (Time t = kBegin; t < after_s(2 * half_s); t += kFrame) {

@@ -17,8 +17,8 @@ struct Arrival {
 /// Two cameras' frames of three robots, one of which comes late into the picture, with ghosts, misses and a
 /// ball.
 std::vector<Arrival> frames_of_two_cameras(Rng& rng, double duration_s) {
-  std::vector<Motion> motions;
-  for (int i = 0; i < 3; ++i) motions.push_back(Motion::driving(rng, duration_s));
+  std::vector<TrueMotion> motions;
+  for (int i = 0; i < 3; ++i) motions.push_back(TrueMotion::driving(rng, duration_s));
   std::vector<Arrival> frames;
   for (Time t = kBegin; t < after_s(duration_s); t += kFrame) {
     for (std::uint32_t camera = 0; camera < 2; ++camera) {
