@@ -13,6 +13,8 @@ namespace {
 constexpr std::int64_t kKept_ns = 1'500'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 constexpr std::int64_t kLongestHand_ns = 60'000'000'000;
+// Who touched may have parted a little until ground truth says so.
+constexpr double kTouching_m = 0.02;
 // So long after it was let go it may still look as if it were in place.
 constexpr Duration kSettles = std::chrono::seconds(1);
 constexpr std::size_t kMostLives = 16;
@@ -292,15 +294,40 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
 }
 
 void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t more) {
-  const auto [first, second] = nearest_pair(truth);
-  if (is_by_hand(first) || is_by_hand(second)) {
+  if (spread_hands(truth)) {
     totals_.contacts_by_hand += more;
     return;
   }
+  const auto [first, second] = nearest_pair(truth);
   report(AuditRule::kContact, first, nullptr, 0,
          fmt::format(
              "{} contacts so far, {:.9f} m s of penetration, least clearance {:.6f} m; nearest is robot {}",
              truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m(), second));
+}
+
+bool Auditor::spread_hands(const msg::GroundTruth& truth) {
+  std::vector<const msg::TruthRobot*> disturbed;
+  for (const msg::TruthRobot& robot : truth.robots()) {
+    if (is_by_hand(robot.robot())) disturbed.push_back(&robot);
+  }
+  bool is_any = false;
+  for (std::size_t i = 0; i < disturbed.size(); ++i) {
+    const msg::TruthRobot& a = *disturbed[i];
+    const auto touches = [&](double x, double y, double radius_m) {
+      return std::hypot(a.x_m() - x, a.y_m() - y) < scenario_.radius_m + radius_m + kTouching_m;
+    };
+    for (const Circle& obstacle : scenario_.obstacles)
+      is_any = is_any || touches(obstacle.centre_m.x(), obstacle.centre_m.y(), obstacle.radius_m);
+    for (const msg::TruthRobot& b : truth.robots()) {
+      const bool is_known = b.robot() < index_.size() && index_[b.robot()] < robots_.size();
+      if (!is_known || b.robot() == a.robot() || !touches(b.x_m(), b.y_m(), scenario_.radius_m)) continue;
+      is_any = true;
+      if (is_by_hand(b.robot())) continue;
+      by_hand_[index_[b.robot()]] = now_ + kSettles;
+      disturbed.push_back(&b);
+    }
+  }
+  return is_any;
 }
 
 bool Auditor::is_by_hand(RobotId robot) const {
