@@ -20,7 +20,8 @@ constexpr Duration kSettles = std::chrono::seconds(1);
 constexpr std::size_t kMostLives = 16;
 // A robot looks at its error once a millisecond, and reports where it is in between.
 constexpr double kLookedLater_m = 0.0005;
-// It may take so long to get back to its reference, before it has to break off.
+// It may take so long to get back to its reference, or to look again after a fix has shown that it is far
+// off.
 constexpr std::int64_t kCure_ns = 26'000'000;
 
 bool is_sane(const msg::Feedback& feedback) {
@@ -189,7 +190,7 @@ void Auditor::judge_tracking(AuditedRobot& robot, const Known& executing, const 
   if (!(beyond_m > 0)) return;
   // Between two facts that were not heard it may have been back.
   robot.beyond_since_ns = heard.is_next && before_ns != kNever ? before_ns : feedback.at_ns();
-  if (beyond_m <= tracking_bound_m_ && feedback.at_ns() - robot.beyond_since_ns <= kCure_ns) return;
+  if (feedback.at_ns() - robot.beyond_since_ns <= kCure_ns) return;
   report(
       AuditRule::kTracking, robot.id, &executing, 0,
       fmt::format("{:.6f} m off its reference by its own estimate, for {:.3f} s at least; {:.6f} m allowed",
