@@ -51,6 +51,17 @@ TEST_CASE("a version on what is executed is taken at its start time, not before"
   CHECK(robot.counts().taken == 1);
 }
 
+TEST_CASE("what a robot has told for a time it does not undo by breaking off at that time") {
+  const Time begin = time_from_ns(1'000'000'000), told = begin + std::chrono::milliseconds(10);
+  Firmware firmware(0, {0, 0}, 0, begin, {});
+  firmware.reboot();
+  REQUIRE(firmware.feedback(told).executing().version_number() == 0);
+  firmware.tick(told, Odometry{});
+  CHECK(firmware.executing().number == 0);
+  firmware.tick(told + kPhysicsStep, Odometry{});
+  CHECK(firmware.is_off_reference());
+}
+
 TEST_CASE("a version that comes after its start time is refused") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(21));
