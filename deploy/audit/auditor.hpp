@@ -146,8 +146,9 @@ class Auditor {
   double most_grown_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;
-  std::vector<std::optional<Time>> by_hand_;  ///< whom somebody has disturbed: not in place before then
-  std::vector<std::size_t> index_;            ///< by id; robots_.size(): not on the roster
+  /// Of whom somebody has disturbed: so many ground truths more before it may be in place.
+  std::vector<std::optional<std::int64_t>> by_hand_;
+  std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {
     Incarnation incarnation = 0;

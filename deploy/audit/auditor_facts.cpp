@@ -282,8 +282,8 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   const double error = std::hypot(seen.x - reference.x, seen.y - reference.y);
   totals_.farthest_m = std::max(totals_.farthest_m, error);
   totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
-  std::optional<Time>& by_hand = by_hand_[index_of(robot)];
-  if (error <= tracking_bound_m_ + then->version.grown_m() && by_hand && now_ > *by_hand) by_hand.reset();
+  std::optional<std::int64_t>& by_hand = by_hand_[index_of(robot)];
+  if (error <= tracking_bound_m_ + then->version.grown_m() && by_hand && *by_hand <= 0) by_hand.reset();
   if (error <= scenario_.margin_m + then->version.grown_m()) return;
   if (is_by_hand(robot.id)) {
     ++totals_.places_by_hand;
@@ -324,7 +324,7 @@ bool Auditor::spread_hands(const msg::GroundTruth& truth) {
       if (!is_known || b.robot() == a.robot() || !touches(b.x_m(), b.y_m(), scenario_.radius_m)) continue;
       is_any = true;
       if (is_by_hand(b.robot())) continue;
-      by_hand_[index_[b.robot()]] = now_ + kSettles;
+      by_hand_[index_[b.robot()]] = kSettles / scenario_.cycle;
       disturbed.push_back(&b);
     }
   }
@@ -343,8 +343,9 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   }
   if (disturbance.disturbance_kind() == msg::DISTURBANCE_CLOCK) return;
   const Duration lasts(std::clamp<std::int64_t>(disturbance.duration_ns(), 0, kLongestHand_ns));
-  std::optional<Time>& by_hand = by_hand_[index_[disturbance.robot()]];
-  by_hand = std::max(by_hand.value_or(now), now + lasts + kSettles);
+  // A simulator that stands still takes the order later.
+  std::optional<std::int64_t>& by_hand = by_hand_[index_[disturbance.robot()]];
+  by_hand = std::max(by_hand.value_or(0), (lasts + kSettles) / scenario_.cycle);
 }
 
 void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
@@ -357,6 +358,9 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   if (!heard.is_newest) return;
   if (truths_.size() >= kMostLives && !truths_.contains(truth.head().incarnation()))
     truths_.erase(truths_.begin());
+  for (std::optional<std::int64_t>& by_hand : by_hand_) {
+    if (by_hand) --*by_hand;
+  }
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
   if (truth.contacts() > last.contacts()) judge_contacts(truth, truth.contacts() - last.contacts());
