@@ -14,6 +14,7 @@ constexpr double kLongestDelay_s = 0.15;
 constexpr double kMostLoss = 0.3;
 // Nothing begins later than so long before everything heals.
 constexpr Duration kLeastTime = std::chrono::milliseconds(1);
+constexpr Duration kTwinLeast = std::chrono::milliseconds(50);
 
 class Draw {
  public:
@@ -180,7 +181,8 @@ class Draw {
       const std::string first = agent_process(robot), second = twin_process(robot);
       if (std::ranges::find(processes_, second) != processes_.end()) return;
       processes_.push_back(second);
-      const Duration at = time();
+      // Nobody starts an agent again within less than this of its twin's start.
+      const Duration at = std::max(Duration{0}, std::min(time(), plan_.healed_at - kTwinLeast));
       add(at, Start{second});
       const Duration yields = at + until_healed(at, log_uniform(0.02, 10)) - Duration{4};
       add(yields, Kill{first});
