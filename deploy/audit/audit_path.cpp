@@ -116,8 +116,6 @@ AuditPath::AuditPath(const msg::Version& version)
   }
 }
 
-std::int64_t AuditPath::end_ns() const { return start_ns_ + static_cast<std::int64_t>(duration_s() * 1e9); }
-
 AuditPath::Node AuditPath::at_s(double after_s) const {
   if (after_s <= 0) return nodes_[0];
   int i = 0;

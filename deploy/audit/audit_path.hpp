@@ -26,8 +26,6 @@ class AuditPath {
   explicit AuditPath(const msg::Version& version);
 
   std::int64_t start_ns() const { return start_ns_; }
-  /// When the last phase has ended.
-  std::int64_t end_ns() const;
   double duration_s() const { return nodes_[static_cast<std::size_t>(count_)].after_s; }
   /// Position, velocity and acceleration so long after the path's start; at the start before it, at rest
   /// after the end.

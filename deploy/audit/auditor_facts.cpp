@@ -359,7 +359,8 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   if (truths_.size() >= kMostLives && !truths_.contains(truth.head().incarnation()))
     truths_.erase(truths_.begin());
   for (std::optional<std::int64_t>& by_hand : by_hand_) {
-    if (by_hand) --*by_hand;
+    // Only who hears everything judges places, and so sees that it is back in its own.
+    if (by_hand && --*by_hand <= 0 && !how_.is_complete) by_hand.reset();
   }
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;

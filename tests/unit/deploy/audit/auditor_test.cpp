@@ -392,6 +392,26 @@ TEST_CASE("what truth says against the promise is named") {
     CHECK((count(totals, AuditRule::kPlace) > 0) == is_named);
     CHECK((totals.places_by_hand > 0) == !is_named);
   }
+  SECTION("a contact long after a push, by who hears badly too") {
+    const bool hears_all = GENERATE(true, false);
+    CAPTURE(hears_all);
+    History history = crossing();
+    const Time push = history.messages.front().at + 500ms;
+    msg::Disturbance hand;
+    hand.robot(2);
+    hand.disturbance_kind(msg::DISTURBANCE_PUSH);
+    const auto place = std::ranges::find_if(history.messages, [&](const auto& m) { return m.at >= push; });
+    history.messages.insert(place, {push, hand});
+    history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
+      if (at < push + 2s) return;
+      truth.contacts(1);
+      // The pushed robot is beside another one.
+      truth.robots()[2].x_m(truth.robots()[3].x_m() + 0.18);
+      truth.robots()[2].y_m(truth.robots()[3].y_m());
+    });
+    const AuditTotals totals = audit_of(history, hears_all ? kComplete : AuditHearing{});
+    CHECK(count(totals, AuditRule::kContact) > 0);
+  }
   SECTION("a contact") {
     require_caught(AuditRule::kContact, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.contacts(1); });
