@@ -10,7 +10,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "deploy/record/cdr.hpp"
+#include "common/messaging/cdr.hpp"
 
 namespace sidestep {
 namespace {

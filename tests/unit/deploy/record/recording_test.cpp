@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/cdr.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/record/cdr.hpp"
 #include "deploy/sim_system.hpp"
 
 namespace sidestep {

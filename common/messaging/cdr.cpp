@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/record/cdr.hpp"
+#include "common/messaging/cdr.hpp"
 
 #include <cstring>
 #include <exception>
