@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a scenario is said with its line, whatever it is.
+#include <fstream>
+#include <sstream>
+
+#include "common/random/rng.hpp"
+#include "tests/unit/common/config/refusal.hpp"
+
+namespace sidestep {
+namespace {
+
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/deploy/scenarios/";
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a margin below the safety budget is refused with the margin that is needed") {
+  // 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s: the defaults fit each other exactly.
+  CHECK(budget_of(Scenario{}).needed_margin_m() == Approx(0.01).epsilon(1e-12));
+  CHECK(refusal(kRobot + "margin_m: 0.01\n") == "accepted");
+  check_refused(kRobot + "margin_m: 0.0099\n", 2, "expected at least 0.01 m");
+  check_refused(kRobot + "\nlimits: {speed_mps: 3}\n", 1, "margin_m: 0.01 m is less than the safety budget");
+  check_refused(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.011\n", 3, "expected at least 0.012 m");
+  CHECK(refusal(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.012\n") == "accepted");
+  check_refused(kRobot + "tracking_bound_m: 0.005\n", 1, "expected at least 0.014 m");
+  check_refused(kRobot + "clock_bound_s: 0.002\nmargin_m: 0.02\n", 3, "expected at least 0.022 m");
+  CHECK(refusal(kRobot + "clock_bound_s: 0\nmargin_m: 0.006\n") == "accepted");
+  check_refused(kRobot + "tracking_bound_m: 0\n", 2, "tracking_bound_m: expected 0.0005 to 1");
+  check_refused(kRobot + "clock_bound_s: .nan\n", 2, "clock_bound_s: expected");
+}
+
+TEST_CASE("opponents that make no sense are refused with their line") {
+  const auto opponent = [](const std::string& keys) { return kRobot + "opponents:\n- {" + keys + "}\n"; };
+  CHECK(refusal(opponent("radius_m: 0.1, speed_mps: 1.5, way_m: [[2, 2]]")) == "accepted");
+  check_refused(opponent("speed_mps: 1, way_m: [[2, 2]]"), 3, "key \"radius_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, way_m: [[2, 2]]"), 3, "key \"speed_mps\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1"), 3, "key \"way_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: []"), 3, "expected at least one point");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, 2, 2]]"), 3, "a list of 2 numbers, got 3");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, .nan]]"), 3, "expected");
+  check_refused(opponent("radius_m: 0, speed_mps: 1, way_m: [[2, 2]]"), 3, "radius_m: expected 0.01 to 5");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 0, way_m: [[2, 2]]"), 3,
+                "speed_mps: expected 0.01 to 20");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]"), 3,
+                "opponents[0].speed_mps: expected at most opponent_speed_mps, 1.5, got 1.6");
+  CHECK(refusal("opponent_speed_mps: 1.6\n" + opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]")) ==
+        "accepted");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[0.1, 0.16]]"), 1, "where an opponent begins");
+  std::string many = kRobot + "opponents:\n";
+  for (int i = 0; i < 17; ++i) many += "- {radius_m: 0.1, speed_mps: 1, way_m: [[2, 2]]}\n";
+  check_refused(many, 3, "expected at most 16 elements, got 17");
+}
+
+TEST_CASE("an absent robot is in nobody's way until it is placed") {
+  const auto pair = [](const std::string& how) {
+    return "robots:\n- {id: 0, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 1, start_m: [0, 0.1], goals_m: "
+           "[[2, "
+           "0]]" +
+           how + "}\n";
+  };
+  check_refused(pair(""), 3, "starts of robots 0 and 1 overlap");
+  check_refused(pair(", absent: false"), 3, "starts of robots 0 and 1 overlap");
+  CHECK(refusal(pair(", absent: true")) == "accepted");
+  check_refused(pair(", absent: 1"), 3, "absent: expected true or false, got \"1\"");
+  check_refused(pair(", absent: \"true\""), 3, "expected true or false");
+  check_refused(pair(", absent: true, clock_offset_ms: 60001"), 3,
+                "clock_offset_ms: expected -60000 to 60000");
+}
+
+TEST_CASE("unknown and repeated keys are refused with their line") {
+  check_refused(kRobot + "margin: 0.1\n", 2, "unknown key \"margin\", expected one of: ");
+  check_refused(kRobot + "vision:\n  rate_hz: 60\n  dely_ms: 3\n", 4, "unknown key \"dely_ms\"");
+  check_refused("robots:\n  - id: 0\n    start_m: [0, 0]\n    goals_m: [[1, 0]]\n    colour: red\n", 5,
+                "unknown key \"colour\"");
+  check_refused(kRobot + "obstacles:\n  - {centre_m: [2, 2], radius_m: 0.1, hight_m: 3}\n", 3, "unknown key");
+  check_refused(kRobot + "circle:\n  count: 4\n  spacing_m: 1\n  radius_m: 3\n", 5,
+                "unknown key \"radius_m\"");
+  check_refused(kRobot + "margin_m: 0.1\nradius_m: 0.1\nmargin_m: 0.1\n", 4,
+                "\"margin_m\" stands here twice");
+  check_refused(kRobot + "vision:\n  missed: 0\n  missed: 0\n", 4, "twice");
+}
+
+TEST_CASE("values of a wrong type are refused with their line") {
+  check_refused(kRobot + "margin_m: wide\n", 2, "expected a number from 0 to 1, got \"wide\"");
+  check_refused(kRobot + "margin_m: \"0.1\"\n", 2, "expected a number");
+  check_refused(kRobot + "margin_m: 0.1m\n", 2, "expected a number");
+  check_refused(kRobot + "margin_m:\n", 2, "expected a number");
+  check_refused(kRobot + "margin_m: [0.1]\n", 2, "got a list");
+  check_refused(kRobot + "vision: 3\n", 2, "expected a mapping");
+  check_refused(kRobot + "vision:\n  columns: 2.5\n", 3, "expected a whole number");
+  check_refused(kRobot + "obstacles: {centre_m: [0, 0]}\n", 2, "expected a list");
+  check_refused(kRobot + "obstacles:\n- 3\n", 3, "expected a mapping");
+  check_refused(kRobot + "restart:\n- agents\n- everything\n", 4, "expected agents, coordinator or vision");
+  check_refused(kRobot + "ball: {position_m: [1]}\n", 2, "expected a list of 2 numbers, got 1");
+  check_refused("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
+                "expected blue or yellow");
+  check_refused("robots:\n- {id: 0, start_m: [0, 0], goals_m: [1, 0]}\n", 2,
+                "expected a list of 2 to 3 numbers");
+  check_refused("robots:\n- id: 0\n  start_m: [0, 0]\n  goals_m:\n  - [1, 0]\n  - [1, 0, 0, 0]\n", 6,
+                "got 4");
+  check_refused("robots: 4\n", 1, "expected a list");
+  check_refused("? [a, b]\n: 3\n", 1, "expected a key");
+  check_refused("- 1\n- 2\n", 1, "expected a mapping");
+  check_refused(kRobot + "name: [a]\n", 2, "expected text");
+  check_refused(kRobot + "name: ../../x\n", 2, "letters, digits");
+}
+
+TEST_CASE("numbers out of range, infinite or not numbers are refused with their line") {
+  for (const char* bad : {".nan", "nan", ".inf", "-.inf", "inf", "-0.001", "1.001", "1e400", "--1"}) {
+    check_refused(kRobot + "\nmargin_m: " + bad + "\n", 3, "margin_m: expected");
+  }
+  check_refused(kRobot + "network: {delay_min_ms: 5,\n delay_max_ms: 4}\n", 3,
+                "expected at least delay_min_ms");
+  check_refused(kRobot + "coordinators: 0\n", 2, "expected 1 to 8, got 0");
+  check_refused(kRobot + "coordinators: 9\n", 2, "expected 1 to 8, got 9");
+  check_refused(kRobot + "ball: {position_m: [5, 0]}\n", 2, "outside the field");
+  check_refused("robots:\n- id: 1024\n  start_m: [0, 0]\n  goals_m: [[1, 0]]\n", 2,
+                "expected 0 to 1023, got 1024");
+  check_refused("robots:\n- {id: -1, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2, "expected 0 to 1023, got -1");
+  check_refused("robots:\n- {id: 1, start_m: [0, 0], goals_m: [[1, 0, 9]]}\n", 2, "expected -6.28");
+}
+
+TEST_CASE("missing robots, ids, starts and goals are refused") {
+  check_refused("field: {length_m: 4}\n", 1, "no robots");
+  check_refused("robots: []\n", 1, "no robots");
+  check_refused("robots:\n- {start_m: [0, 0], goals_m: [[1, 0]]}\n", 2, "key \"id\" is missing");
+  check_refused("robots:\n- {id: 1, goals_m: [[1, 0]]}\n", 2, "key \"start_m\" is missing");
+  check_refused("robots:\n- {id: 1, start_m: [0, 0]}\n", 2, "key \"goals_m\" is missing");
+  check_refused("robots:\n- {id: 1, start_m: [0, 0],\n   goals_m: []}\n", 3, "at least one goal");
+  check_refused(kRobot + "obstacles:\n- {centre_m: [2, 2]}\n", 3, "key \"radius_m\" is missing");
+}
+
+TEST_CASE("robots that share an id are refused at the second") {
+  check_refused(
+      "robots:\n"
+      "- {id: 4, start_m: [0, 0], goals_m: [[1, 0]]}\n"
+      "- {id: 2, start_m: [0, 1], goals_m: [[1, 1]]}\n"
+      "- {id: 4, start_m: [0, 2], goals_m: [[1, 2]]}\n",
+      4, "robot id 4 is used twice");
+  check_refused("circle: {count: 5, spacing_m: 0.5}\n" + kRobot, 1, "used twice");
+}
+
+TEST_CASE("more robots than ids are refused") {
+  check_refused("field: {length_m: 900, width_m: 900}\ncircle:\n  count: 1025\n  spacing_m: 0.4\n", 3,
+                "expected 2 to 1024");
+  check_refused(
+      "field: {length_m: 900, width_m: 900}\ncircle: {first_id: 1000,\n  count: 25, spacing_m: 0.4}\n", 3,
+      "more robots than ids: from id 1000 on expected at most 24, got 25");
+  std::string many = "field: {length_m: 900, width_m: 900}\nrobots:\n";
+  for (int i = 0; i < 1025; ++i) many += "- {id: 0, start_m: [0, 0], goals_m: [[0, 0]]}\n";
+  check_refused(many, 3, "more robots than ids");
+}
+
+TEST_CASE("overlapping starts and last goals are refused, exact distance is not") {
+  const auto pair = [](double apart, double goals_apart) {
+    std::ostringstream text;
+    text << "radius_m: 0.09\nmargin_m: 0.01\nrobots:\n- {id: 0, start_m: [0, 0], goals_m: [[0, 0], [1, 1]]}\n"
+         << "- {id: 1, start_m: [" << apart << ", 0],\n   goals_m: [[1, 1],\n     [" << 1 + goals_apart
+         << ", 1]]}\n";
+    return text.str();
+  };
+  check_refused(pair(0.189, 0.5), 5,
+                "starts of robots 0 and 1 overlap: distance 0.1890 m, expected at least 0.1900");
+  check_refused(pair(0.5, 0.189), 7, "last goals of robots 0 and 1 overlap");
+  CHECK(refusal(pair(0.19, 0.19)) == "accepted");
+}
+
+TEST_CASE("starts and goals in an obstacle or outside the field are refused") {
+  const std::string obstacle = "obstacles: [{centre_m: [2, 0], radius_m: 0.2}]\n";
+  const auto robot = [](const char* start, const char* goal) {
+    return std::string("robots:\n- id: 0\n  start_m: ") + start + "\n  goals_m: [" + goal + "]\n";
+  };
+  check_refused(obstacle + robot("[1.701, 0]", "[0, 0]"), 4,
+                "start of robot 0 (1.701, 0) is inside the obstacle");
+  check_refused(obstacle + robot("[0, 0]", "[0, 1],\n    [2.1, 0.1], [0, 0]"), 6, "goal of robot 0");
+  CHECK(refusal(obstacle + robot("[1.7, 0]", "[2.3, 0]")) == "accepted");
+  check_refused(robot("[4.411, 0]", "[0, 0]"), 3, "outside the field: expected |x| <= 4.41 and |y| <= 2.91");
+  check_refused(robot("[0, 0]", "[0, -2.92]"), 4, "outside the field");
+  CHECK(refusal(robot("[4.41, 2.91]", "[-4.41, -2.91]")) == "accepted");
+  check_refused(
+      "field: {length_m: 99, width_m: 99}\nstreams:\n  count: 9\n  spacing_m: 1\n  lanes_crossed: 6\n", 5,
+      "multiple of 4");
+  check_refused("field: {length_m: 2, width_m: 2}\ncircle: {count: 40, spacing_m: 0.4}\n", 2,
+                "outside the field");
+}
+
+TEST_CASE("what is not one YAML document is refused with its line") {
+  check_refused("robots: [\n  {id: 0\n", 3, "not YAML");
+  check_refused("field: {length_m: 3}\n bad\n", 2, "not YAML");
+  check_refused("", 1, "the file is empty");
+  check_refused(kRobot + "---\n" + kRobot, 2, "a second YAML document");
+  check_refused("\x01\x02\xff", 1, "");
+  check_refused("# , endless in yaml-cpp's LoadAll\n, x_# y\nfield: {length_m: 3}\n", 2, "");
+  check_refused(std::string(100000, '['), 1, "not YAML");
+}
+
+TEST_CASE("files that cannot be read are refused") {
+  const auto said = [](const std::string& path) -> std::string {
+    try {
+      load_scenario(path);
+    } catch (const ScenarioError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK_THAT(said("/nowhere/x.yaml"),
+             Catch::StartsWith("/nowhere/x.yaml:1: cannot read the file (No such file"));
+  CHECK_THAT(said("/tmp"), Catch::StartsWith("/tmp:1: cannot read the file (a directory"));
+}
+
+TEST_CASE("a mutated scenario loads or is refused, and never does anything else") {
+  const std::uint64_t seed = 20261121;
+  CAPTURE(seed);
+  Rng rng(seed);
+  const std::string alphabet = "[]{}:,-&*!|>'\"%@`#?\n \t0123456789.eEinfa~\xff\x01";
+  int accepted = 0, refused = 0;
+  for (const char* name : {"crossing.yaml", "crossing-noisy.yaml", "circle-20.yaml", "two-teams-22.yaml"}) {
+    const std::string valid = text_of(kScenarios + name);
+    for (int round = 0; round < 1500; ++round) {
+      std::string text = valid;
+      for (auto edits = 1 + rng.below(4); edits > 0 && !text.empty(); --edits) {
+        const std::size_t at = rng.below(text.size());
+        const std::size_t length = std::min<std::size_t>(1 + rng.below(12), text.size() - at);
+        switch (rng.below(4)) {
+          case 0:
+            text[at] = alphabet[rng.below(alphabet.size())];
+            break;
+          case 1:
+            text.erase(at, length);
+            break;
+          case 2:
+            text.insert(at, 1, alphabet[rng.below(alphabet.size())]);
+            break;
+          default:
+            text.insert(rng.below(text.size()), text.substr(at, length));
+            break;
+        }
+      }
+      CAPTURE(text);
+      try {
+        const Scenario scenario = parse_scenario(text, name);
+        REQUIRE_FALSE(scenario.robots.empty());
+        ++accepted;
+      } catch (const ScenarioError& error) {
+        REQUIRE_THAT(error.what(), Catch::StartsWith(std::string(name) + ":"));
+        ++refused;
+      }
+    }
+  }
+  CHECK(accepted > 100);
+  CHECK(refused > 1000);
+}
+
+}  // namespace sidestep
