@@ -96,7 +96,8 @@ void Contacts::look_at(Pair& pair, std::span<const Body> bodies) {
     if (clearance > kApart_m) pair.is_touching = false;
     return;
   }
-  if (!pair.is_touching) ++totals_.contacts;
+  if (!pair.is_touching)
+    totals_.touches[totals_.contacts++ % totals_.touches.size()] = {pair.first, pair.second};
   pair.is_touching = true;
   totals_.penetration_m_s += -clearance * kPhysicsStepSeconds;
   const Vec2 away = distance > 0 ? Vec2(apart / distance) : Vec2(1, 0);

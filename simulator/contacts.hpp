@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "common/geometry/circle.hpp"
+#include "idl/monitor.h"
 #include "simulator/body.hpp"
 
 namespace sidestep {
 
+/// A body's index, and another one's, or the number of bodies + an obstacle's.
+struct Touch {
+  std::uint32_t first = 0, second = 0;
+};
+
 struct ContactTotals {
-  std::uint64_t contacts = 0;  ///< pairs that began to touch
-  double penetration_m_s = 0;  ///< interpenetration depth x time
+  std::uint64_t contacts = 0;                     ///< pairs that began to touch
+  std::array<Touch, msg::MAX_TOUCHES> touches{};  ///< the last of them: the k-th, from 0, at k % MAX_TOUCHES
+  double penetration_m_s = 0;                     ///< interpenetration depth x time
   double min_clearance_m = 1;  ///< smallest distance between edges; what is farther than 1 m is not looked at
 };
 

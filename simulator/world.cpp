@@ -172,6 +172,11 @@ double World::reference_error_m(std::size_t index) const {
 void World::fill(msg::GroundTruth& truth) const {
   truth.at_ns(to_ns(time_));
   truth.contacts(contacts().contacts);
+  for (std::size_t i = 0; i < std::min<std::size_t>(contacts().contacts, msg::MAX_TOUCHES); ++i) {
+    const Touch& touch = contacts().touches[i];
+    truth.touches()[i].first(robots_[touch.first].id);
+    truth.touches()[i].second(touch.second < robots_.size() ? robots_[touch.second].id : msg::NO_ROBOT);
+  }
   truth.penetration_m_s(contacts().penetration_m_s);
   truth.min_clearance_m(contacts().min_clearance_m);
   truth.firmware_violations(firmware_violations());

@@ -108,11 +108,11 @@ class Auditor {
   void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
                     const Heard& heard);
   void judge_place(AuditedRobot& robot, const msg::Feedback& feedback, const Heard& heard);
-  void judge_contacts(const msg::GroundTruth& truth, std::uint64_t more);
+  /// `before`: contacts that were told of before.
+  void judge_contacts(const msg::GroundTruth& truth, std::uint64_t before);
   bool is_by_hand(RobotId robot) const;
-  /// Whoever touches one that somebody has pushed is pushed by it, and so on. Whether anybody may have
-  /// touched such a one: ground truth does not say who touched, and they may have parted again.
-  bool spread_hands(const msg::GroundTruth& truth);
+  /// Whoever touches one that somebody has pushed is pushed by it, and so on. Whether one of the two was.
+  bool spread_hands(const msg::Touch& touch);
   static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
                       std::int64_t now_ns);
   bool clock_is_sound(const msg::Feedback& feedback, const Heard& heard) const;

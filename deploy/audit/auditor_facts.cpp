@@ -13,8 +13,6 @@ namespace {
 constexpr std::int64_t kKept_ns = 1'500'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 constexpr std::int64_t kLongestHand_ns = 60'000'000'000;
-// Who touched may have parted a little until ground truth says so.
-constexpr double kTouching_m = 0.02;
 // So long after it was let go it may still look as if it were in place.
 constexpr Duration kSettles = std::chrono::seconds(1);
 constexpr std::size_t kMostLives = 16;
@@ -28,21 +26,6 @@ bool is_sane(const msg::Feedback& feedback) {
   return std::isfinite(feedback.x_m()) && std::isfinite(feedback.y_m()) && std::isfinite(feedback.vx_mps()) &&
          std::isfinite(feedback.vy_mps()) && std::isfinite(feedback.tracking_error_m()) &&
          feedback.at_ns() >= 0 && feedback.at_ns() < kLatest_ns;
-}
-
-/// The two robots that are nearest to each other; twice the same where there are not two.
-std::pair<RobotId, RobotId> nearest_pair(const msg::GroundTruth& truth) {
-  std::pair<RobotId, RobotId> pair{0, 0};
-  double least = std::numeric_limits<double>::infinity();
-  for (const msg::TruthRobot& a : truth.robots()) {
-    for (const msg::TruthRobot& b : truth.robots()) {
-      const double distance = std::hypot(a.x_m() - b.x_m(), a.y_m() - b.y_m());
-      if (a.robot() >= b.robot() || !(distance < least)) continue;
-      least = distance;
-      pair = {a.robot(), b.robot()};
-    }
-  }
-  return pair;
 }
 
 const char* why(Excluded excluded) {
@@ -294,41 +277,36 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
                      scenario_.margin_m));
 }
 
-void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t more) {
-  if (spread_hands(truth)) {
-    totals_.contacts_by_hand += more;
-    return;
+void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t before) {
+  const std::uint64_t more = truth.contacts() - before,
+                      told = std::min<std::uint64_t>(more, msg::MAX_TOUCHES);
+  bool are_all_by_hand = true;
+  for (std::uint64_t k = truth.contacts() - told; k < truth.contacts(); ++k) {
+    const msg::Touch& touch = truth.touches()[k % msg::MAX_TOUCHES];
+    if (spread_hands(touch)) {
+      ++totals_.contacts_by_hand;
+      continue;
+    }
+    are_all_by_hand = false;
+    report(
+        AuditRule::kContact, touch.first(), nullptr, 0,
+        fmt::format("touches {}; {} contacts so far, {:.9f} m s of penetration, least clearance {:.6f} m",
+                    touch.second() == msg::NO_ROBOT ? "an obstacle" : fmt::format("robot {}", touch.second()),
+                    truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m()));
   }
-  const auto [first, second] = nearest_pair(truth);
-  report(AuditRule::kContact, first, nullptr, 0,
-         fmt::format(
-             "{} contacts so far, {:.9f} m s of penetration, least clearance {:.6f} m; nearest is robot {}",
-             truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m(), second));
+  // Of more than it tells of, the last ones stand for the earlier ones.
+  if (are_all_by_hand) totals_.contacts_by_hand += more - told;
 }
 
-bool Auditor::spread_hands(const msg::GroundTruth& truth) {
-  std::vector<const msg::TruthRobot*> disturbed;
-  for (const msg::TruthRobot& robot : truth.robots()) {
-    if (is_by_hand(robot.robot())) disturbed.push_back(&robot);
-  }
-  bool is_any = false;
-  for (std::size_t i = 0; i < disturbed.size(); ++i) {
-    const msg::TruthRobot& a = *disturbed[i];
-    const auto touches = [&](double x, double y, double radius_m) {
-      return std::hypot(a.x_m() - x, a.y_m() - y) < scenario_.radius_m + radius_m + kTouching_m;
-    };
-    for (const Circle& obstacle : scenario_.obstacles)
-      is_any = is_any || touches(obstacle.centre_m.x(), obstacle.centre_m.y(), obstacle.radius_m);
-    for (const msg::TruthRobot& b : truth.robots()) {
-      const bool is_known = b.robot() < index_.size() && index_[b.robot()] < robots_.size();
-      if (!is_known || b.robot() == a.robot() || !touches(b.x_m(), b.y_m(), scenario_.radius_m)) continue;
-      is_any = true;
-      if (is_by_hand(b.robot())) continue;
-      by_hand_[index_[b.robot()]] = kSettles / scenario_.cycle;
-      disturbed.push_back(&b);
-    }
-  }
-  return is_any;
+bool Auditor::spread_hands(const msg::Touch& touch) {
+  const auto place = [&](RobotId robot) {
+    return robot < index_.size() && index_[robot] < robots_.size() ? &by_hand_[index_[robot]] : nullptr;
+  };
+  auto *first = place(touch.first()), *second = place(touch.second());
+  const bool by_first = first && *first, by_second = second && *second;
+  if (by_first && second && !by_second) *second = kSettles / scenario_.cycle;
+  if (by_second && first && !by_first) *first = kSettles / scenario_.cycle;
+  return by_first || by_second;
 }
 
 bool Auditor::is_by_hand(RobotId robot) const {
@@ -364,7 +342,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   }
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
-  if (truth.contacts() > last.contacts()) judge_contacts(truth, truth.contacts() - last.contacts());
+  if (truth.contacts() > last.contacts()) judge_contacts(truth, last.contacts());
   if (truth.firmware_violations() > last.firmware_violations())
     report(AuditRule::kFirmwareJudge, nobody, nullptr, 0,
            fmt::format("{} so far", truth.firmware_violations()));

@@ -61,6 +61,9 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   }
   if (verdict.granted() == 0) return;
   const Known* before = robot.find(verdict.granted());
+  // A coordinator that was held up answers a copy of an old proposal as it did before, when what it granted
+  // has been given up here.
+  if (!before && verdict.granted() <= robot.given_up_version) return;
   if (before && before->granted_in == verdict.epoch()) {
     robot.find(verdict.granted())->granted_by_ns = std::min(before->granted_by_ns, heard.latest_ns);
     return;

@@ -269,10 +269,14 @@ Json describe(const msg::GroundTruth& m) {
             {"vy_mps", r.vy_mps()},
             {"reference_error_m", r.reference_error_m()}};
   };
+  const auto touch = [](const msg::Touch& t) -> Json {
+    return {{"first", t.first()}, {"second", t.second()}};
+  };
   return {{"simulator", m.simulator()},
           {"head", head(m.head())},
           {"at_ns", m.at_ns()},
           {"contacts", m.contacts()},
+          {"touches", list(m.touches(), touch)},
           {"penetration_m_s", m.penetration_m_s()},
           {"min_clearance_m", m.min_clearance_m()},
           {"firmware_violations", m.firmware_violations()},

@@ -108,6 +108,10 @@ TEST_CASE("robots that part and meet again touch twice") {
     }
   }
   CHECK(contacts.totals().contacts == 2);
+  for (std::size_t i : {0, 1}) {
+    CHECK(contacts.totals().touches[i].first == 0);
+    CHECK(contacts.totals().touches[i].second == 1);
+  }
 }
 
 TEST_CASE("an obstacle stops a robot and does not move") {
@@ -119,6 +123,8 @@ TEST_CASE("an obstacle stops a robot and does not move") {
     contacts.step(bodies);
   }
   CHECK(contacts.totals().contacts == 1);
+  CHECK(contacts.totals().touches[0].first == 0);
+  CHECK(contacts.totals().touches[0].second == bodies.size());
   CHECK(bodies[0].position_m().x() == Approx(1 - 0.25 - kRadius_m).margin(1e-3));
 }
 

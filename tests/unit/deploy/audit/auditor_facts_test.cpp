@@ -153,12 +153,37 @@ TEST_CASE("what truth says against the promise is named") {
     history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
       if (at < push + 2s) return;
       truth.contacts(1);
-      // The pushed robot is beside another one.
-      truth.robots()[2].x_m(truth.robots()[3].x_m() + 0.18);
-      truth.robots()[2].y_m(truth.robots()[3].y_m());
+      truth.touches()[0].first(2);
+      truth.touches()[0].second(3);
     });
     const AuditTotals totals = audit_of(history, hears_all ? kComplete : AuditHearing{});
     CHECK(count(totals, AuditRule::kContact) > 0);
+  }
+  SECTION("who touches one that was pushed and has parted from it, and who touches that one") {
+    // The last pair, and how many contacts are by hand and how many are not.
+    const auto [first, second, by_hand, own] = GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
+        {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));
+    CAPTURE(first, second);
+    const AuditTotals totals = tampered([a = first, b = second](History& h) {
+      const Time push = h.messages.front().at + 1500ms;
+      msg::Disturbance hand;
+      hand.robot(2);
+      hand.disturbance_kind(msg::DISTURBANCE_PUSH);
+      const auto place = std::ranges::find_if(h.messages, [&](const auto& m) { return m.at >= push; });
+      h.messages.insert(place, {push, hand});
+      h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
+        if (at < push + 100ms) return;
+        truth.contacts(3);
+        const std::pair<RobotId, RobotId> pairs[] = {{2, 5}, {4, 5}, {a, b}};
+        for (std::size_t i = 0; i < 3; ++i) {
+          truth.touches()[i].first(pairs[i].first);
+          truth.touches()[i].second(pairs[i].second);
+        }
+      });
+    });
+    INFO(lines(totals));
+    CHECK(totals.contacts_by_hand == by_hand);
+    CHECK(count(totals, AuditRule::kContact) == own);
   }
   SECTION("a contact") {
     require_caught(AuditRule::kContact, [](History& h) {

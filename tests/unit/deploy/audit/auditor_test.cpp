@@ -3,11 +3,14 @@
 // this breaks has to be named.
 #include "deploy/audit/auditor.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/unit/deploy/audit/tampering.hpp"
 
 namespace sidestep {
+
+using namespace std::chrono_literals;
 
 TEST_CASE("a true history is judged without a word") {
   const AuditTotals totals = audit_of(crossing(), kComplete);
@@ -204,6 +207,23 @@ TEST_CASE("every breach of an agent's duties is named") {
       });
     });
   }
+}
+
+TEST_CASE("a grant that is said once more long after breaks no rule") {
+  const AuditTotals totals = tampered([](History& h) {
+    const Switch s = a_switch(h);
+    const auto is_grant = [&](const HeardMessage& m) {
+      const auto* verdict = std::get_if<msg::Verdict>(&m.message);
+      return verdict && verdict->robot() == s.robot && verdict->granted() == s.number;
+    };
+    const HeardMessage grant = *std::ranges::find_if(h.messages, is_grant);
+    const Time later = grant.at + 2s;
+    const auto place = std::ranges::find_if(h.messages, [&](const auto& m) { return m.at >= later; });
+    REQUIRE(place != h.messages.end());
+    h.messages.insert(place, {later, grant.message});
+  });
+  INFO(lines(totals));
+  CHECK(totals.violations == 0);
 }
 
 TEST_CASE("messages that make no sense are counted and tell nothing") {
