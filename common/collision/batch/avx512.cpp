@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/batch/levels.hpp"
+
+#define SIDESTEP_VECTOR_WIDTH 16
+#define SIDESTEP_LEVEL "avx512"
+#define SIDESTEP_KERNELS kAvx512Kernels
+#include "common/collision/batch/code.hpp"

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/batch/dispatch.hpp"
+
+#include "common/collision/batch/levels.hpp"
+
+namespace sidestep::collision {
+namespace {
+
+std::vector<Kernels> found() {
+  std::vector<Kernels> kernels{kBaselineKernels};
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(kAvx2Kernels);
+  if (__builtin_cpu_supports("avx512f")) kernels.push_back(kAvx512Kernels);
+#endif
+  return kernels;
+}
+
+}  // namespace
+
+const std::vector<Kernels>& available_kernels() {
+  static const std::vector<Kernels> kernels = found();
+  return kernels;
+}
+
+const Kernels& best_kernels() { return available_kernels().back(); }
+
+}  // namespace sidestep::collision

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "common/collision/linear_set.hpp"
+#include "common/collision/obstacle_id.hpp"
+
+namespace sidestep {
+
+/// How a world finds the obstacles that a query may touch.
+enum class Structure {
+  kAutomatic,  ///< by the number of obstacles
+  kLinear,
+};
+
+/// The obstacle nearest to a point: infinitely far, and none, in an empty world.
+struct Nearest {
+  double distance_m = std::numeric_limits<double>::infinity();  ///< to its border, negative inside
+  ObstacleId obstacle = kNoObstacle;
+};
+
+/// Obstacles and what touches them; touching is having a point in common. Obstacles come, move and go without
+/// the rest being built anew. Const functions may be called by many threads at a time and do not allocate.
+/// Whatever is not finite, a negative radius, a wrong shape (see check) and an id that is not in use are
+/// refused with std::invalid_argument.
+class ObstacleWorld {
+ public:
+  explicit ObstacleWorld(std::vector<Shape> shapes = {}, Structure structure = Structure::kAutomatic);
+
+  /// Whether a disc at a place touches an obstacle.
+  bool touches(const Vec2& at_m, double radius_m) const { return touches(at_m, at_m, radius_m); }
+  /// Whether a disc touches an obstacle anywhere on its straight way.
+  bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
+  Nearest nearest(const Vec2& at_m) const;
+
+  /// The shapes given to the constructor have the ids 0, 1, 2, … in their order.
+  ObstacleId add(Shape shape);
+  void move(ObstacleId obstacle, const Vec2& by_m);
+  void remove(ObstacleId obstacle);
+
+  std::size_t size() const { return bodies_.slots().size(); }
+  bool has(ObstacleId obstacle) const { return bodies_.has(static_cast<Slot>(obstacle)); }
+  const Shape& shape(ObstacleId obstacle) const;
+  /// Of all obstacles, in no order; until one is added or removed.
+  std::vector<ObstacleId> obstacles() const;
+
+ private:
+  Slot slot_of(ObstacleId obstacle) const;
+
+  Bodies bodies_;
+  LinearSet linear_;
+};
+
+}  // namespace sidestep

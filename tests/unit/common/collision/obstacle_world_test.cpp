@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/obstacle_world.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/common/collision/random_world.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTolerance_m = 1e-9;
+
+/// The smallest distance from a way to any shape, by a function that shares nothing with the structures.
+double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& to) {
+  double nearest2 = kInfinite;
+  for (const ObstacleId id : world.obstacles())
+    nearest2 = std::min(nearest2, squared_distance(Segment{from, to}, world.shape(id)));
+  return std::sqrt(nearest2);
+}
+
+void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double longest_m, int queries) {
+  for (int i = 0; i < queries; ++i) {
+    const Vec2 from = random_place(rng, 1.2 * half_m);
+    const Vec2 to = rng.chance(0.1) ? from : from + random_way(rng, longest_m);
+    const double distance = exact_distance(world, from, to);
+    // Many radii are about where the answer changes.
+    double radius = rng.uniform(0, 0.2 * half_m);
+    if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
+    CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
+    if (std::abs(distance - radius) > kTolerance_m)
+      CHECK(world.touches(from, to, radius) == (distance < radius));
+    const Nearest nearest = world.nearest(from);
+    double signed_m = kInfinite;
+    for (const ObstacleId id : world.obstacles())
+      signed_m = std::min(signed_m, signed_distance(from, world.shape(id)));
+    CHECK(nearest.distance_m == Approx(signed_m).margin(1e-12));
+    CHECK(signed_distance(from, world.shape(nearest.obstacle)) == nearest.distance_m);
+    if (std::abs(signed_m - radius) > kTolerance_m) CHECK(world.touches(from, radius) == (signed_m < radius));
+  }
+}
+
+TEST_CASE("a world answers as the distances to its shapes do") {
+  const std::size_t count = GENERATE(1, 2, 15, 16, 17, 64, 65, 300);
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(count, seed);
+  Rng rng(seed);
+  const ObstacleWorld world(random_shapes(rng, count, 5));
+  check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), 300);
+}
+
+TEST_CASE("a world far from the origin answers exactly") {
+  Rng rng(3);
+  std::vector<Shape> shapes = random_shapes(rng, 40, 5);
+  for (Shape& shape : shapes) shape = moved(shape, {4e5, -3e5});
+  const ObstacleWorld world(shapes);
+  for (int i = 0; i < 300; ++i) {
+    const Vec2 from = Vec2(4e5, -3e5) + random_place(rng, 6), to = from + random_way(rng, 2);
+    const double distance = exact_distance(world, from, to);
+    CHECK(world.touches(from, to, distance + 1e-8));
+    if (distance > 1e-8) CHECK_FALSE(world.touches(from, to, distance - 1e-8));
+  }
+}
+
+TEST_CASE("a swept disc touches where one of the discs along its way does") {
+  const std::uint64_t seed = GENERATE(range(1, 20));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const ObstacleWorld world(random_shapes(rng, 30, 1));
+  for (int i = 0; i < 50; ++i) {
+    const Vec2 from = random_place(rng, 1), to = from + random_way(rng, 0.5);
+    const double radius = rng.uniform(0, 0.1);
+    double sampled = kInfinite;
+    for (const ObstacleId id : world.obstacles())
+      sampled = std::min(sampled, sampled_distance(from, to, world.shape(id), 250));
+    if (sampled <= radius - kTolerance_m) CHECK(world.touches(from, to, radius));
+    if (sampled > radius + 1e-3 + kTolerance_m) CHECK_FALSE(world.touches(from, to, radius));
+  }
+}
+
+TEST_CASE("a world answers for what is in it after obstacles came and moved and went") {
+  const std::uint64_t seed = GENERATE(range(1, 6));
+  CAPTURE(seed);
+  Rng rng(seed);
+  ObstacleWorld world(random_shapes(rng, 20, 2));
+  for (int round = 0; round < 40; ++round) {
+    for (int change = 0; change < 5; ++change) {
+      const std::vector<ObstacleId> ids = world.obstacles();
+      const ObstacleId any = ids.empty() ? kNoObstacle : ids[rng.below(ids.size())];
+      const double what = rng.uniform();
+      if (what < 0.3 || ids.empty())
+        world.add(random_shape(rng, 2, 0.3));
+      else if (what < 0.5 && ids.size() > 5)
+        world.remove(any);
+      else
+        world.move(any, random_way(rng, rng.chance(0.1) ? 30 : 0.5));
+    }
+    check_queries(world, rng, 2, 1, 20);
+  }
+}
+
+TEST_CASE("an obstacle's id stays its own while others come and go") {
+  ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}, Circle{{9, 0}, 1}});
+  const ObstacleId third{2};
+  world.remove(ObstacleId{0});
+  const ObstacleId wall = world.add(Segment{{0, 5}, {9, 5}});
+  CHECK(std::get<Circle>(world.shape(third)).centre_m == Vec2(9, 0));
+  world.move(third, {0, 2});
+  CHECK(world.nearest({9, 2}).obstacle == third);
+  CHECK(world.nearest({4, 4.5}).obstacle == wall);
+  CHECK_FALSE(world.touches({0, 0}, 1));
+  CHECK(world.size() == 3);
+}
+
+TEST_CASE("nothing touches in an empty world") {
+  ObstacleWorld world;
+  CHECK_FALSE(world.touches({0, 0}, {1, 1}, 100));
+  CHECK(world.nearest({0, 0}).obstacle == kNoObstacle);
+  CHECK(world.nearest({0, 0}).distance_m == kInfinite);
+  const ObstacleId only = world.add(Circle{{0, 0}, 1});
+  CHECK(world.touches({0.5, 0}, 0));
+  world.remove(only);
+  CHECK_FALSE(world.touches({0.5, 0}, 0));
+}
+
+TEST_CASE("what only touches touches") {
+  const ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}});
+  CHECK(world.touches({2, 0}, 1));
+  CHECK(world.touches({-2, 1}, {2, 1}, 0));
+  CHECK(world.touches({3, 0.5}, 1));
+}
+
+TEST_CASE("a world refuses what is none of its business") {
+  CHECK_THROWS_WITH(ObstacleWorld({Circle{{0, 0}, 1}, Circle{{0, 0}, -1}}),
+                    "obstacle 1: a circle's radius is negative");
+  ObstacleWorld world({Circle{{0, 0}, 1}});
+  CHECK_THROWS_AS(world.touches({kNan, 0}, 1), std::invalid_argument);
+  CHECK_THROWS_AS(world.touches({0, 0}, {0, kInfinite}, 1), std::invalid_argument);
+  CHECK_THROWS_AS(world.touches({0, 0}, {0, 1}, -1e-9), std::invalid_argument);
+  CHECK_THROWS_AS(world.touches({0, 0}, {0, 1}, kNan), std::invalid_argument);
+  CHECK_THROWS_AS(world.nearest({kInfinite, 0}), std::invalid_argument);
+  CHECK_THROWS_AS(world.add(Box{{1, 1}, {0, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(world.move(ObstacleId{0}, {kNan, 0}), std::invalid_argument);
+  CHECK_THROWS_WITH(world.move(ObstacleId{5}, {1, 0}), "there is no obstacle 5");
+  CHECK_THROWS_AS(world.remove(kNoObstacle), std::invalid_argument);
+  world.remove(ObstacleId{0});
+  CHECK_THROWS_AS(world.shape(ObstacleId{0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sidestep
