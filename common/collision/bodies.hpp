@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/collision/batch/kernels.hpp"
 #include "common/collision/shapes.hpp"
 #include "common/collision/sweep.hpp"
 
@@ -11,41 +12,45 @@ namespace sidestep {
 /// Where an obstacle is kept: a small number, given again once it is free.
 using Slot = std::uint32_t;
 
-/// Shapes by slot, and the exact comparison with each. Circles, which are most, are kept so that one is
-/// compared from half a cache line.
+/// Shapes by slot, and the exact comparison with each.
 class Bodies {
  public:
-  /// Takes the shape in, which has to be a right one (see check), and says where.
+  /// Takes shapes in the slots 0, 1, 2, …; they have to be right ones (see check). Their middle is the origin
+  /// that positions in single precision are from.
+  explicit Bodies(std::vector<Shape> shapes);
+
   Slot add(Shape shape);
   void replace(Slot slot, Shape shape);
   void remove(Slot slot);
 
-  bool has(Slot slot) const { return slot < kept_.size() && kept_[slot].kind != Kind::kNone; }
+  bool has(Slot slot) const { return slot < places_.size() && places_[slot] != kNowhere; }
   const Shape& shape(Slot slot) const { return shapes_[slot]; }
-  const Circle* circle(Slot slot) const { return std::get_if<Circle>(&shapes_[slot]); }
   /// Slots in use, in no order.
   const std::vector<Slot>& slots() const { return slots_; }
+  /// All slots, in use or not, are below.
+  Slot end() const { return static_cast<Slot>(shapes_.size()); }
+  const Vec2& origin_m() const { return origin_m_; }
 
   /// Exact but for the last digits.
-  bool touches(Slot slot, const Sweep& sweep) const {
-    const Kept& kept = kept_[slot];
-    if (kept.kind == Kind::kCircle) return sweep.touches(kept.x_m, kept.y_m, kept.radius_m);
-    return touches_shape(slot, sweep);
-  }
+  bool touches(Slot slot, const Sweep& sweep) const;
+  /// For kernels, until anything changes.
+  collision::BodiesView view() const;
 
  private:
-  enum class Kind : std::uint32_t { kNone, kCircle, kOther };
-  struct alignas(32) Kept {
-    double x_m = 0, y_m = 0, radius_m = 0;
-    Kind kind = Kind::kNone;
-    std::uint32_t place = 0;  // in slots_
-  };
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
-  bool touches_shape(Slot slot, const Sweep& sweep) const;
+  void record(Slot slot);
 
-  std::vector<Kept> kept_;
   std::vector<Shape> shapes_;
+  std::vector<std::uint32_t> places_;  // in slots_, by slot
   std::vector<Slot> slots_, free_;
+  Vec2 origin_m_{0, 0};
+  float farthest_m_ = 0, largest_radius_m_ = 0;
+  std::vector<collision::CircleRecord> circles_;  // by slot, and one more that is nowhere
 };
+
+/// A number in single precision that is surely not above, or not below.
+float rounded_down(double value);
+float rounded_up(double value);
 
 }  // namespace sidestep

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
-#include <vector>
+#include <variant>
 
+#include "common/collision/box_tree.hpp"
+#include "common/collision/extent_masks.hpp"
 #include "common/collision/linear_set.hpp"
 #include "common/collision/obstacle_id.hpp"
 
@@ -12,7 +14,9 @@ namespace sidestep {
 /// How a world finds the obstacles that a query may touch.
 enum class Structure {
   kAutomatic,  ///< by the number of obstacles
-  kLinear,
+  kLinear,     ///< see LinearSet
+  kMasks,      ///< see ExtentMasks
+  kTree,       ///< see BoxTree
 };
 
 /// The obstacle nearest to a point: infinitely far, and none, in an empty world.
@@ -28,6 +32,8 @@ struct Nearest {
 class ObstacleWorld {
  public:
   explicit ObstacleWorld(std::vector<Shape> shapes = {}, Structure structure = Structure::kAutomatic);
+  /// With the inner loops of an instruction set that is not the best, for comparisons.
+  ObstacleWorld(std::vector<Shape> shapes, Structure structure, const collision::Kernels& kernels);
 
   /// Whether a disc at a place touches an obstacle.
   bool touches(const Vec2& at_m, double radius_m) const { return touches(at_m, at_m, radius_m); }
@@ -47,10 +53,17 @@ class ObstacleWorld {
   std::vector<ObstacleId> obstacles() const;
 
  private:
-  Slot slot_of(ObstacleId obstacle) const;
+  using Sets = std::variant<LinearSet, ExtentMasks, BoxTree>;
 
+  static Sets set_of(const Bodies& bodies, Structure structure);
+  Slot slot_of(ObstacleId obstacle) const;
+  bool touches_exactly(const Sweep& sweep) const;
+
+  const collision::Kernels* kernels_;
+  Structure structure_;
   Bodies bodies_;
-  LinearSet linear_;
+  Sets set_;
+  std::size_t size_when_built_;
 };
 
 }  // namespace sidestep

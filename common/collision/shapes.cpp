@@ -8,6 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kFarthest_m = 1e15;
 
 void require(bool is_right, const char* what) {
   if (!is_right) throw std::invalid_argument(what);
@@ -18,8 +19,6 @@ std::array<Vec2, 4> corners_of(const Box& box) {
 }
 
 void check_corners(const std::vector<Vec2>& corners) {
-  require(corners.size() >= 3, "a polygon has fewer than three corners");
-  for (const Vec2& corner : corners) require(corner.allFinite(), "a polygon's corner is not finite");
   double turned_rad = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2& here = corners[i];
@@ -36,18 +35,24 @@ void check_corners(const std::vector<Vec2>& corners) {
 }  // namespace
 
 void check(const Shape& shape) {
-  if (const auto* circle = std::get_if<Circle>(&shape)) {
-    require(circle->centre_m.allFinite() && std::isfinite(circle->radius_m), "a circle is not finite");
-    require(circle->radius_m >= 0, "a circle's radius is negative");
-  } else if (const auto* box = std::get_if<Box>(&shape)) {
-    require(box->min_m.allFinite() && box->max_m.allFinite(), "a box is not finite");
-    require((box->min_m.array() <= box->max_m.array()).all(), "a box's minimum is above its maximum");
-  } else if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) {
-    check_corners(polygon->corners_m);
-  } else {
-    const auto& segment = std::get<Segment>(shape);
-    require(segment.from_m.allFinite() && segment.to_m.allFinite(), "a segment is not finite");
-  }
+  const auto* polygon = std::get_if<ConvexPolygon>(&shape);
+  require(polygon == nullptr || polygon->corners_m.size() >= 3, "a polygon has fewer than three corners");
+  if (const auto* circle = std::get_if<Circle>(&shape))
+    require(!(circle->radius_m < 0), "a circle's radius is negative");
+  if (const auto* box = std::get_if<Box>(&shape))
+    require(!(box->min_m.array() > box->max_m.array()).any(), "a box's minimum is above its maximum");
+  // Of points that are no numbers, bounds may not tell.
+  const auto* segment = std::get_if<Segment>(&shape);
+  bool is_right = segment == nullptr || (segment->from_m.allFinite() && segment->to_m.allFinite());
+  if (polygon != nullptr)
+    for (const Vec2& corner : polygon->corners_m) is_right = is_right && corner.allFinite();
+  require(is_right && is_near_enough(bounds(shape)),
+          "a shape is not finite, or farther than 1e15 m from the origin");
+  if (polygon != nullptr) check_corners(polygon->corners_m);
+}
+
+bool is_near_enough(const Box& bounds) {
+  return (bounds.min_m.array() >= -kFarthest_m).all() && (bounds.max_m.array() <= kFarthest_m).all();
 }
 
 Box bounds(const Shape& shape) {

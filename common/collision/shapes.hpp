@@ -17,6 +17,9 @@ using Shape = std::variant<Circle, Box, ConvexPolygon, Segment>;
 /// box whose minimum is above its maximum, corners that are not those of a convex polygon counter-clockwise.
 void check(const Shape& shape);
 
+/// Whether all is within 1e15 m of the origin; not where a number is infinite or none.
+bool is_near_enough(const Box& bounds);
+
 /// The smallest box that holds the shape.
 Box bounds(const Shape& shape);
 

@@ -5,8 +5,10 @@
 
 namespace sidestep {
 
-void Sweep::refuse() {
-  throw std::invalid_argument("a disc's places and radius have to be finite, and the radius not negative");
+Sweep::Sweep(const Vec2& from, const Vec2& to, double radius) : from_m(from), to_m(to), radius_m(radius) {
+  if (!from.allFinite() || !to.allFinite() || !std::isfinite(radius))
+    throw std::invalid_argument("a disc's places and radius have to be finite");
+  if (radius < 0) throw std::invalid_argument("a disc's radius is negative");
 }
 
 }  // namespace sidestep

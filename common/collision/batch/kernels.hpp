@@ -7,39 +7,84 @@
 
 namespace sidestep::collision {
 
-inline constexpr std::size_t kLanes = 16;  ///< of a block, whatever the machine's vectors hold
+inline constexpr std::size_t kLanes = 16;     ///< of a block, whatever the machine's vectors hold
+inline constexpr std::size_t kBuckets = 128;  ///< into which an axis is divided for masks
 
-/// Discs, in metres from an origin that all share.
+/// An obstacle by slot, in metres from the origin. What has no number for a radius is not a circle.
+struct alignas(16) CircleRecord {
+  float x_m, y_m, radius_m, unused;
+};
+
+/// Obstacles one by one, and what single precision has to know of all of them.
+struct BodiesView {
+  double origin_x_m, origin_y_m;
+  float farthest_m, largest_radius_m;  ///< of circles, from the origin along an axis; of a circle
+  const CircleRecord* circles;         ///< by slot; the last one, `nowhere`, is no obstacle and never touched
+  std::uint32_t nowhere;
+  /// Compares exactly.
+  bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
+                  double radius_m);
+  const void* bodies;
+};
+
+/// Discs, in metres from the origin.
 struct alignas(64) CircleBlock {
   float x_m[kLanes], y_m[kLanes], radius_m[kLanes];
 };
 
-/// Boxes, rounded outwards.
+/// Boxes, in metres from the origin, rounded outwards; not a number where there is none.
 struct alignas(64) BoxBlock {
   float min_x_m[kLanes], min_y_m[kLanes], max_x_m[kLanes], max_y_m[kLanes];
 };
 
-/// A swept disc. `along` is `way` over its squared length, or 0 for a disc that stands still.
-struct SweepRow {
-  float x_m, y_m, way_x_m, way_y_m, along_x_per_m, along_y_per_m, radius_m;
-  /// How wrong a difference of squared distances may be that comes out near 0.
-  float doubt_m2;
+/// Circles, and the boxes of other shapes.
+struct LinearView {
+  const CircleBlock* circles;
+  std::size_t circle_blocks;
+  const BoxBlock* boxes;
+  std::size_t box_blocks;
+  const std::uint32_t* box_slots;  ///< by lane
 };
 
-struct BoxRow {
-  float min_x_m, min_y_m, max_x_m, max_y_m;
+/// Four tables of kBuckets rows of `words` words with a bit for each slot, one after the other: who does not
+/// end before a bucket (in x, in y), and who begins before its end (in x, in y). The bucket of a number v is
+/// (v - zero) * per_m, cut off and to the range. The latter two tables are looked up by the number's
+/// negative, so the signs of their zero and scale are turned.
+struct MasksView {
+  const std::uint64_t* rows;
+  std::size_t words;
+  const double *zero_m, *per_m;  ///< four of each
 };
 
-enum class Answer : std::uint8_t { kClear, kTouches, kInDoubt };
+/// A node of a tree: boxes, and which node or slot each is of.
+struct TreeNode {
+  BoxBlock boxes;
+  std::uint32_t children[kLanes];
+  std::uint32_t parent, lane;  ///< of the parent, and which of its lanes this is
+  std::uint32_t count;         ///< lanes in use, the first ones
+  bool is_leaf;
+};
 
-/// The inner loops of collision detection for one instruction set.
+inline constexpr std::size_t kDeepest = 16;  ///< nodes from the root to a leaf
+
+struct TreeView {
+  const TreeNode* nodes;
+  std::uint32_t root;
+};
+
+enum class Answer : unsigned { kClear = 0, kTouches = 1, kInDoubt = 2 };
+
+/// The inner loops of collision detection for one instruction set: whether a disc on its way touches an
+/// obstacle. In doubt are ways that are not finite or negative radii, and, in the linear array, circles
+/// touched but for rounding: then everything has to be compared exactly.
 struct Kernels {
   const char* name;
-  /// Whether the swept disc touches one of the discs.
-  Answer (*sweep)(const CircleBlock* circles, std::size_t blocks, const SweepRow& sweep);
-  /// The first block from `block` on with boxes that overlap the box, and the bits of those; or `blocks`.
-  std::size_t (*next_overlap)(const BoxBlock* boxes, std::size_t block, std::size_t blocks, const BoxRow& box,
-                              unsigned* lanes);
+  Answer (*linear)(const LinearView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
+                   double radius_m);
+  Answer (*masks)(const MasksView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
+                  double radius_m);
+  Answer (*tree)(const TreeView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
+                 double radius_m);
 };
 
 }  // namespace sidestep::collision

@@ -12,33 +12,57 @@ namespace {
 
 constexpr std::size_t kWidth = SIDESTEP_VECTOR_WIDTH;
 typedef float Vector __attribute__((vector_size(kWidth * sizeof(float))));
+typedef float FourFloats __attribute__((vector_size(16)));
+typedef double FourDoubles __attribute__((vector_size(32)));
+typedef std::int32_t FourInts __attribute__((vector_size(16)));
 
-inline Vector load(const float* lanes) {
-  Vector v;
+template <typename V>
+inline V load(const float* lanes) {
+  V v;
   __builtin_memcpy(&v, lanes, sizeof v);
   return v;
 }
-inline Vector all(float value) { return value - Vector{}; }
+template <typename V>
+inline V all(float value) {
+  return value - V{};
+}
 
-#if SIDESTEP_VECTOR_WIDTH == 16
-// g++ 12 warns of the forms without a mask.
-inline Vector smaller(const Vector& a, const Vector& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
-inline Vector larger(const Vector& a, const Vector& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
-/// Bit k: whether a.lane k <= b.lane k.
-inline unsigned not_above(const Vector& a, const Vector& b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-#elif SIDESTEP_VECTOR_WIDTH == 8
+// What g++ makes of `a < b ? a : b` is not one instruction for all of these. not_above: bit k is whether
+// a.lane k
+// <= b.lane k.
+#ifdef __AVX2__
+inline FourFloats smaller(const FourFloats& a, const FourFloats& b) { return _mm_min_ps(a, b); }
+inline FourFloats larger(const FourFloats& a, const FourFloats& b) { return _mm_max_ps(a, b); }
+inline FourDoubles smaller(const FourDoubles& a, const FourDoubles& b) { return _mm256_min_pd(a, b); }
+inline FourDoubles larger(const FourDoubles& a, const FourDoubles& b) { return _mm256_max_pd(a, b); }
+inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmp_ps(a, b, _CMP_LE_OQ)));
+}
+#if SIDESTEP_VECTOR_WIDTH == 8
 inline Vector smaller(const Vector& a, const Vector& b) { return _mm256_min_ps(a, b); }
 inline Vector larger(const Vector& a, const Vector& b) { return _mm256_max_ps(a, b); }
 inline unsigned not_above(const Vector& a, const Vector& b) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
 }
 #else
-inline Vector smaller(const Vector& a, const Vector& b) { return a < b ? a : b; }
-inline Vector larger(const Vector& a, const Vector& b) { return a > b ? a : b; }
-inline unsigned not_above(const Vector& a, const Vector& b) {
+// g++ 12 warns of the forms without a mask.
+inline Vector smaller(const Vector& a, const Vector& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
+inline Vector larger(const Vector& a, const Vector& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
+inline unsigned not_above(const Vector& a, const Vector& b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+#endif
+#else
+template <typename V>
+inline V smaller(const V& a, const V& b) {
+  return a < b ? a : b;
+}
+template <typename V>
+inline V larger(const V& a, const V& b) {
+  return a > b ? a : b;
+}
+inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
   const auto is = a <= b;
   unsigned bits = 0;
-  for (std::size_t i = 0; i < kWidth; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     // In one expression with the shift, g++ 12 takes a wrong lane under -fsanitize=shift.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
@@ -46,6 +70,23 @@ inline unsigned not_above(const Vector& a, const Vector& b) {
   return bits;
 }
 #endif
+
+/// Bit k: whether four comparisons of lane k are all so.
+inline unsigned all_not_above(const Vector& a, const Vector& b, const Vector& c, const Vector& d,
+                              const Vector& e, const Vector& f, const Vector& g, const Vector& h) {
+#if SIDESTEP_VECTOR_WIDTH == 16
+  const __mmask16 ab = _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ), ef = _mm512_cmp_ps_mask(e, f, _CMP_LE_OQ);
+  return _kand_mask16(_mm512_mask_cmp_ps_mask(ab, c, d, _CMP_LE_OQ),
+                      _mm512_mask_cmp_ps_mask(ef, g, h, _CMP_LE_OQ));
+#elif SIDESTEP_VECTOR_WIDTH == 8
+  const __m256 ab = _mm256_cmp_ps(a, b, _CMP_LE_OQ), cd = _mm256_cmp_ps(c, d, _CMP_LE_OQ);
+  const __m256 ef = _mm256_cmp_ps(e, f, _CMP_LE_OQ), gh = _mm256_cmp_ps(g, h, _CMP_LE_OQ);
+  return static_cast<unsigned>(
+      _mm256_movemask_ps(_mm256_and_ps(_mm256_and_ps(ab, cd), _mm256_and_ps(ef, gh))));
+#else
+  return not_above(a, b) & not_above(c, d) & not_above(e, f) & not_above(g, h);
+#endif
+}
 
 }  // namespace
 }  // namespace sidestep::collision

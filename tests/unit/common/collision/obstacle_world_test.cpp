@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/collision/batch/dispatch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep {
@@ -11,6 +12,8 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTolerance_m = 1e-9;
+constexpr Structure kStructures[] = {Structure::kAutomatic, Structure::kLinear, Structure::kMasks,
+                                     Structure::kTree};
 
 /// The smallest distance from a way to any shape, by a function that shares nothing with the structures.
 double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& to) {
@@ -42,19 +45,42 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double l
 }
 
 TEST_CASE("a world answers as the distances to its shapes do") {
-  const std::size_t count = GENERATE(1, 2, 15, 16, 17, 64, 65, 300);
+  const std::size_t count = GENERATE(1, 2, 15, 16, 17, 64, 65, 300, 1500);
   const std::uint64_t seed = GENERATE(1, 2, 3);
-  CAPTURE(count, seed);
-  Rng rng(seed);
-  const ObstacleWorld world(random_shapes(rng, count, 5));
-  check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), 300);
+  for (const Structure structure : kStructures) {
+    for (const collision::Kernels& kernels : collision::available_kernels()) {
+      CAPTURE(count, seed, structure, kernels.name);
+      Rng rng(seed);
+      const ObstacleWorld world(random_shapes(rng, count, 5), structure, kernels);
+      check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), count < 1000 ? 200 : 50);
+    }
+  }
+}
+
+TEST_CASE("a world of circles answers as the distances to them do") {
+  const std::size_t count = GENERATE(3, 16, 64, 100, 1100);
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  for (const Structure structure : kStructures) {
+    for (const collision::Kernels& kernels : collision::available_kernels()) {
+      CAPTURE(count, seed, structure, kernels.name);
+      Rng rng(seed);
+      std::vector<Shape> circles;
+      for (std::size_t i = 0; i < count; ++i)
+        circles.push_back(
+            Circle{random_place(rng, 5), rng.uniform(0, 3 / std::sqrt(static_cast<double>(count)))});
+      const ObstacleWorld world(circles, structure, kernels);
+      check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), count < 1000 ? 300 : 50);
+    }
+  }
 }
 
 TEST_CASE("a world far from the origin answers exactly") {
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  CAPTURE(structure);
   Rng rng(3);
   std::vector<Shape> shapes = random_shapes(rng, 40, 5);
   for (Shape& shape : shapes) shape = moved(shape, {4e5, -3e5});
-  const ObstacleWorld world(shapes);
+  const ObstacleWorld world(shapes, structure);
   for (int i = 0; i < 300; ++i) {
     const Vec2 from = Vec2(4e5, -3e5) + random_place(rng, 6), to = from + random_way(rng, 2);
     const double distance = exact_distance(world, from, to);
@@ -64,10 +90,11 @@ TEST_CASE("a world far from the origin answers exactly") {
 }
 
 TEST_CASE("a swept disc touches where one of the discs along its way does") {
-  const std::uint64_t seed = GENERATE(range(1, 20));
-  CAPTURE(seed);
+  const std::uint64_t seed = GENERATE(range(1, 8));
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  CAPTURE(seed, structure);
   Rng rng(seed);
-  const ObstacleWorld world(random_shapes(rng, 30, 1));
+  const ObstacleWorld world(random_shapes(rng, 30, 1), structure);
   for (int i = 0; i < 50; ++i) {
     const Vec2 from = random_place(rng, 1), to = from + random_way(rng, 0.5);
     const double radius = rng.uniform(0, 0.1);
@@ -80,23 +107,27 @@ TEST_CASE("a swept disc touches where one of the discs along its way does") {
 }
 
 TEST_CASE("a world answers for what is in it after obstacles came and moved and went") {
-  const std::uint64_t seed = GENERATE(range(1, 6));
-  CAPTURE(seed);
+  const std::uint64_t seed = GENERATE(range(1, 4));
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  const std::size_t count = GENERATE(0, 20, 400);
+  CAPTURE(seed, structure, count);
   Rng rng(seed);
-  ObstacleWorld world(random_shapes(rng, 20, 2));
-  for (int round = 0; round < 40; ++round) {
-    for (int change = 0; change < 5; ++change) {
+  ObstacleWorld world(random_shapes(rng, count, 2), structure);
+  // First more come than go, then the other way round.
+  for (int round = 0; round < 60; ++round) {
+    const double coming = round < 30 ? 0.3 : 0.05;
+    for (int change = 0; change < 15; ++change) {
       const std::vector<ObstacleId> ids = world.obstacles();
       const ObstacleId any = ids.empty() ? kNoObstacle : ids[rng.below(ids.size())];
       const double what = rng.uniform();
-      if (what < 0.3 || ids.empty())
+      if (what < coming || ids.empty())
         world.add(random_shape(rng, 2, 0.3));
-      else if (what < 0.5 && ids.size() > 5)
+      else if (what < 0.5)
         world.remove(any);
       else
         world.move(any, random_way(rng, rng.chance(0.1) ? 30 : 0.5));
     }
-    check_queries(world, rng, 2, 1, 20);
+    if (world.size() > 0) check_queries(world, rng, 2, 1, 20);
   }
 }
 
@@ -114,7 +145,9 @@ TEST_CASE("an obstacle's id stays its own while others come and go") {
 }
 
 TEST_CASE("nothing touches in an empty world") {
-  ObstacleWorld world;
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  CAPTURE(structure);
+  ObstacleWorld world({}, structure);
   CHECK_FALSE(world.touches({0, 0}, {1, 1}, 100));
   CHECK(world.nearest({0, 0}).obstacle == kNoObstacle);
   CHECK(world.nearest({0, 0}).distance_m == kInfinite);
@@ -125,7 +158,9 @@ TEST_CASE("nothing touches in an empty world") {
 }
 
 TEST_CASE("what only touches touches") {
-  const ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}});
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  CAPTURE(structure);
+  const ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}}, structure);
   CHECK(world.touches({2, 0}, 1));
   CHECK(world.touches({-2, 1}, {2, 1}, 0));
   CHECK(world.touches({3, 0.5}, 1));
@@ -134,7 +169,9 @@ TEST_CASE("what only touches touches") {
 TEST_CASE("a world refuses what is none of its business") {
   CHECK_THROWS_WITH(ObstacleWorld({Circle{{0, 0}, 1}, Circle{{0, 0}, -1}}),
                     "obstacle 1: a circle's radius is negative");
-  ObstacleWorld world({Circle{{0, 0}, 1}});
+  const Structure structure = kStructures[GENERATE(range(0, 4))];
+  CAPTURE(structure);
+  ObstacleWorld world({Circle{{0, 0}, 1}}, structure);
   CHECK_THROWS_AS(world.touches({kNan, 0}, 1), std::invalid_argument);
   CHECK_THROWS_AS(world.touches({0, 0}, {0, kInfinite}, 1), std::invalid_argument);
   CHECK_THROWS_AS(world.touches({0, 0}, {0, 1}, -1e-9), std::invalid_argument);

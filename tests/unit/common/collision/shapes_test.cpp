@@ -102,6 +102,9 @@ TEST_CASE("shapes that are none are refused") {
   CHECK_THROWS_WITH(check(Box{{1, 0}, {0, 1}}), "a box's minimum is above its maximum");
   CHECK_THROWS_AS(check(Box{{0, 0}, {kNan, 1}}), std::invalid_argument);
   CHECK_THROWS_AS(check(Segment{{0, 0}, {infinite, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(check(Segment{{0, 0}, {kNan, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(check(Segment{{0, 0}, {1e16, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(check(ConvexPolygon{{{0, 0}, {1, 0}, {kNan, 1}}}), std::invalid_argument);
   CHECK_THROWS_WITH(check(ConvexPolygon{{{0, 0}, {1, 0}}}), "a polygon has fewer than three corners");
   const char* const not_convex = "a polygon is not convex, or its corners are clockwise";
   CHECK_THROWS_WITH(check(ConvexPolygon{{{0, 0}, {0, 1}, {1, 0}}}), not_convex);

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/box_tree.hpp"
+
+#include "common/collision/box_tree_split.hpp"
+
+namespace sidestep {
+
+using collision::kLanes;
+using collision::TreeNode;
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kFewest = 4;  // lanes of a node in use, but for the root's
+
+FloatBox lane_box(const TreeNode& node, std::uint32_t lane) {
+  return {node.boxes.min_x_m[lane], node.boxes.min_y_m[lane], node.boxes.max_x_m[lane],
+          node.boxes.max_y_m[lane]};
+}
+
+void set_lane_box(TreeNode& node, std::uint32_t lane, const FloatBox& box) {
+  node.boxes.min_x_m[lane] = box.min_x_m;
+  node.boxes.min_y_m[lane] = box.min_y_m;
+  node.boxes.max_x_m[lane] = box.max_x_m;
+  node.boxes.max_y_m[lane] = box.max_y_m;
+}
+
+bool equal(const FloatBox& a, const FloatBox& b) {
+  return a.min_x_m == b.min_x_m && a.min_y_m == b.min_y_m && a.max_x_m == b.max_x_m && a.max_y_m == b.max_y_m;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), places_(bodies.end()) {
+  std::vector<Item> slots;
+  for (const Slot slot : bodies.slots()) slots.push_back({box_of(bodies.shape(slot)), slot});
+  root_ = build(slots);
+}
+
+BoxTree::NodeId BoxTree::new_node(bool is_leaf) {
+  auto id = static_cast<NodeId>(nodes_.size());
+  if (free_nodes_.empty()) {
+    nodes_.emplace_back();
+  } else {
+    id = free_nodes_.back();
+    free_nodes_.pop_back();
+  }
+  TreeNode& node = nodes_[id];
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    set_lane_box(node, lane, {kNan, kNan, kNan, kNan});
+    node.children[lane] = kNone;
+  }
+  node.parent = node.lane = kNone;
+  node.count = 0;
+  node.is_leaf = is_leaf;
+  return id;
+}
+
+BoxTree::NodeId BoxTree::build(std::span<Item> slots) {
+  const NodeId id = new_node(slots.size() <= kLanes);
+  if (slots.size() <= kLanes) {
+    for (const Item& slot : slots) append(id, slot);
+    return id;
+  }
+  // The largest is split until there are as many as a node holds.
+  std::vector<std::span<Item>> groups{slots};
+  const auto smaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
+  while (groups.size() < kLanes) {
+    const auto largest = std::max_element(groups.begin(), groups.end(), smaller);
+    if (largest->size() <= kLanes) break;
+    const std::span<Item> group = *largest;
+    const std::size_t cut = split_by_heuristic(group);
+    *largest = group.first(cut);
+    groups.push_back(group.subspan(cut));
+  }
+  for (const std::span<Item> group : groups) {
+    const NodeId child = build(group);
+    append(id, {box_of(child), child});
+  }
+  return id;
+}
+
+FloatBox BoxTree::box_of(const Shape& shape) const {
+  const Box box = bounds(shape);
+  const Vec2 low = box.min_m - origin_m_, high = box.max_m - origin_m_;
+  return {rounded_down(low.x()), rounded_down(low.y()), rounded_up(high.x()), rounded_up(high.y())};
+}
+
+FloatBox BoxTree::box_of(NodeId id) const {
+  FloatBox box = kNoBox;
+  for (std::uint32_t lane = 0; lane < nodes_[id].count; ++lane) box = around(box, lane_box(nodes_[id], lane));
+  return box;
+}
+
+void BoxTree::put(NodeId id, std::uint32_t lane, const Item& item) {
+  TreeNode& node = nodes_[id];
+  set_lane_box(node, lane, item.box);
+  node.children[lane] = item.id;
+  if (node.is_leaf) {
+    places_[item.id] = {id, lane};
+  } else {
+    nodes_[item.id].parent = id;
+    nodes_[item.id].lane = lane;
+  }
+}
+
+void BoxTree::append(NodeId id, const Item& item) { put(id, nodes_[id].count++, item); }
+
+void BoxTree::take_out(NodeId id, std::uint32_t lane) {
+  TreeNode& node = nodes_[id];
+  const std::uint32_t last = --node.count;
+  if (lane != last) put(id, lane, {lane_box(node, last), node.children[last]});
+  set_lane_box(node, last, {kNan, kNan, kNan, kNan});
+  node.children[last] = kNone;
+}
+
+void BoxTree::refit(NodeId id) {
+  while (nodes_[id].parent != kNone) {
+    const FloatBox box = box_of(id);
+    const std::uint32_t lane = nodes_[id].lane;
+    id = nodes_[id].parent;
+    if (equal(box, lane_box(nodes_[id], lane))) return;
+    set_lane_box(nodes_[id], lane, box);
+  }
+}
+
+void BoxTree::insert(const Item& slot) {
+  NodeId id = root_;
+  while (!nodes_[id].is_leaf) {
+    const TreeNode& node = nodes_[id];
+    std::uint32_t best = 0;
+    float least_growth = std::numeric_limits<float>::infinity(), least_size = least_growth;
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      const FloatBox box = lane_box(node, lane);
+      const float size = half_perimeter(box), growth = half_perimeter(around(box, slot.box)) - size;
+      if (growth > least_growth || (growth == least_growth && size >= least_size)) continue;
+      least_growth = growth;
+      least_size = size;
+      best = lane;
+    }
+    id = node.children[best];
+  }
+  if (nodes_[id].count == kLanes) return split(id, slot);
+  append(id, slot);
+  refit(id);
+}
+
+void BoxTree::split(NodeId id, const Item& more) {
+  std::vector<Item> items{more};
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane)
+    items.push_back({lane_box(nodes_[id], lane), nodes_[id].children[lane]});
+  const std::size_t cut = split_by_heuristic(std::span<Item>(items));
+  while (nodes_[id].count > 0) take_out(id, nodes_[id].count - 1);
+  const NodeId sibling = new_node(nodes_[id].is_leaf);
+  for (std::size_t i = 0; i < items.size(); ++i) append(i < cut ? id : sibling, items[i]);
+  NodeId parent = nodes_[id].parent;
+  if (parent == kNone) {
+    parent = root_ = new_node(false);
+    append(parent, {box_of(id), id});
+  } else {
+    refit(id);
+  }
+  const Item second{box_of(sibling), sibling};
+  if (nodes_[parent].count == kLanes) return split(parent, second);
+  append(parent, second);
+  refit(parent);
+}
+
+void BoxTree::erase(Slot slot) {
+  NodeId id = places_[slot].node;
+  take_out(id, places_[slot].lane);
+  // What is left of nodes with too few is put in anew.
+  std::vector<Item> loose;
+  while (nodes_[id].parent != kNone && nodes_[id].count < kFewest) {
+    const NodeId parent = nodes_[id].parent;
+    const std::uint32_t lane = nodes_[id].lane;
+    collect(id, loose);
+    take_out(parent, lane);
+    id = parent;
+  }
+  refit(id);
+  while (!nodes_[root_].is_leaf && nodes_[root_].count <= 1) {
+    free_nodes_.push_back(root_);
+    root_ = nodes_[root_].count == 1 ? nodes_[root_].children[0] : new_node(true);
+    nodes_[root_].parent = nodes_[root_].lane = kNone;
+  }
+  for (const Item& item : loose) insert(item);
+}
+
+void BoxTree::collect(NodeId id, std::vector<Item>& slots) {
+  for (std::uint32_t lane = 0; lane < nodes_[id].count; ++lane) {
+    if (nodes_[id].is_leaf)
+      slots.push_back({lane_box(nodes_[id], lane), nodes_[id].children[lane]});
+    else
+      collect(nodes_[id].children[lane], slots);
+  }
+  free_nodes_.push_back(id);
+}
+
+void BoxTree::add(Slot slot, const Shape& shape) {
+  if (slot >= places_.size()) places_.resize(slot + 1);
+  insert({box_of(shape), slot});
+}
+
+void BoxTree::replace(Slot slot, const Shape& shape) {
+  const Item item{box_of(shape), slot};
+  const Place place = places_[slot];
+  const TreeNode& node = nodes_[place.node];
+  const bool stays = node.parent == kNone || equal(around(lane_box(nodes_[node.parent], node.lane), item.box),
+                                                   lane_box(nodes_[node.parent], node.lane));
+  if (stays) {
+    put(place.node, place.lane, item);
+    refit(place.node);
+  } else {
+    erase(slot);
+    insert(item);
+  }
+}
+
+void BoxTree::remove(Slot slot) { erase(slot); }
+
+}  // namespace sidestep

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "common/collision/bodies.hpp"
+
+namespace sidestep {
+
+/// A box in single precision, in metres from an origin, rounded outwards.
+struct FloatBox {
+  float min_x_m, min_y_m, max_x_m, max_y_m;
+};
+
+/// A tree of axis-aligned boxes in a flat array, with up to sixteen boxes to a node, which are compared at
+/// once. It is built from the top by the surface area heuristic (MacDonald and Booth 1990), here on half
+/// perimeters; afterwards it lives as an R-tree does (Guttman 1984), with the same heuristic to split nodes
+/// that overflow.
+class BoxTree {
+ public:
+  explicit BoxTree(const Bodies& bodies);
+
+  void add(Slot slot, const Shape& shape);
+  void replace(Slot slot, const Shape& shape);
+  void remove(Slot slot);
+
+  collision::TreeView view() const { return {nodes_.data(), root_}; }
+
+ private:
+  using NodeId = std::uint32_t;
+
+  /// A slot or a node, and its box.
+  struct Item {
+    FloatBox box;
+    std::uint32_t id;
+  };
+  struct Place {
+    NodeId node;
+    std::uint32_t lane;
+  };
+
+  NodeId new_node(bool is_leaf);
+  NodeId build(std::span<Item> slots);
+  FloatBox box_of(const Shape& shape) const;
+  FloatBox box_of(NodeId node) const;
+
+  /// Writes the item to the lane, and there to itself.
+  void put(NodeId node, std::uint32_t lane, const Item& item);
+  void take_out(NodeId node, std::uint32_t lane);
+  void insert(const Item& slot);
+  void append(NodeId node, const Item& item);
+  void split(NodeId node, const Item& more);
+  /// Gives every box above what it holds now.
+  void refit(NodeId node);
+  void erase(Slot slot);
+  void collect(NodeId node, std::vector<Item>& slots);
+
+  Vec2 origin_m_;
+  std::vector<collision::TreeNode> nodes_;
+  std::vector<NodeId> free_nodes_;
+  std::vector<Place> places_;  // by slot
+  NodeId root_ = 0;
+};
+
+}  // namespace sidestep

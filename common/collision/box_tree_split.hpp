@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "common/collision/box_tree.hpp"
+
+namespace sidestep {
+
+inline constexpr FloatBox kNoBox{
+    std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+    -std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+
+inline FloatBox around(const FloatBox& a, const FloatBox& b) {
+  return {std::min(a.min_x_m, b.min_x_m), std::min(a.min_y_m, b.min_y_m), std::max(a.max_x_m, b.max_x_m),
+          std::max(a.max_y_m, b.max_y_m)};
+}
+
+inline float half_perimeter(const FloatBox& box) {
+  return box.max_x_m - box.min_x_m + box.max_y_m - box.min_y_m;
+}
+
+/// Orders items so that those before the number returned and those after it are split as the heuristic says:
+/// of the cuts through their order by x and by y, of which each side has a quarter at least, the one with the
+/// smallest sum of half perimeter times number of leaves needed.
+template <typename Item>
+std::size_t split_by_heuristic(std::span<Item> items) {
+  const auto leaves = [](std::size_t count) {
+    return static_cast<float>((count + collision::kLanes - 1) / collision::kLanes);
+  };
+  const auto by_x = [](const Item& a, const Item& b) {
+    return a.box.min_x_m + a.box.max_x_m < b.box.min_x_m + b.box.max_x_m;
+  };
+  const auto by_y = [](const Item& a, const Item& b) {
+    return a.box.min_y_m + a.box.max_y_m < b.box.min_y_m + b.box.max_y_m;
+  };
+  const std::size_t least = std::max<std::size_t>(1, items.size() / 4);
+  std::vector<float> after(items.size() + 1);
+  std::size_t best_cut = items.size() / 2;
+  float best_cost = std::numeric_limits<float>::infinity();
+  bool best_is_x = false;
+  for (const bool is_x : {true, false}) {
+    if (is_x)
+      std::sort(items.begin(), items.end(), by_x);
+    else
+      std::sort(items.begin(), items.end(), by_y);
+    FloatBox box = kNoBox;
+    for (std::size_t i = items.size(); i > least; --i) {
+      box = around(box, items[i - 1].box);
+      after[i - 1] = half_perimeter(box) * leaves(items.size() - (i - 1));
+    }
+    box = kNoBox;
+    for (std::size_t i = 0; i < items.size() - least; ++i) {
+      box = around(box, items[i].box);
+      const float cost = half_perimeter(box) * leaves(i + 1) + after[i + 1];
+      if (i + 1 < least || cost >= best_cost) continue;
+      best_cost = cost;
+      best_cut = i + 1;
+      best_is_x = is_x;
+    }
+  }
+  if (best_is_x) std::sort(items.begin(), items.end(), by_x);
+  return best_cut;
+}
+
+}  // namespace sidestep

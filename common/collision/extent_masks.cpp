@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/extent_masks.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+
+using collision::kBuckets;
+
+namespace {
+
+constexpr std::size_t kTables = 4;
+constexpr std::size_t kBits = 64;
+
+}  // namespace
+
+ExtentMasks::ExtentMasks(const Bodies& bodies)
+    : words_(std::max<std::size_t>(1, (bodies.end() + kBits - 1) / kBits)) {
+  Box box;
+  if (!bodies.slots().empty()) box = bounds(bodies.shape(bodies.slots().front()));
+  for (const Slot slot : bodies.slots()) box = around(box, bounds(bodies.shape(slot)));
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto row = static_cast<Eigen::Index>(axis);
+    const double range_m = box.max_m[row] - box.min_m[row];
+    zero_m_[axis] = box.min_m[row];
+    per_m_[axis] = range_m > 0 && std::isfinite(kBuckets / range_m) ? kBuckets / range_m : 0;
+    zero_m_[axis + 2] = -zero_m_[axis];
+    per_m_[axis + 2] = -per_m_[axis];
+  }
+  rows_.assign(kTables * kBuckets * words_, 0);
+  for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
+}
+
+void ExtentMasks::add(Slot slot, const Shape& shape) {
+  if (slot >= words_ * kBits) widen(2 * words_);
+  replace(slot, shape);
+}
+
+void ExtentMasks::replace(Slot slot, const Shape& shape) {
+  const Box box = bounds(shape);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto row = static_cast<Eigen::Index>(axis);
+    mark(axis, slot, 0, bucket(axis, box.max_m[row]) + 1);
+    mark(axis + 2, slot, bucket(axis, box.min_m[row]), kBuckets);
+  }
+}
+
+void ExtentMasks::remove(Slot slot) {
+  for (std::size_t table = 0; table < kTables; ++table) mark(table, slot, 0, 0);
+}
+
+std::size_t ExtentMasks::bucket(std::size_t axis, double at_m) const {
+  const double scaled = (at_m - zero_m_[axis]) * per_m_[axis];
+  return scaled > 0 ? static_cast<std::size_t>(std::min(scaled, kBuckets - 1.0)) : 0;
+}
+
+void ExtentMasks::mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row) {
+  const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
+  for (std::size_t row = 0; row < kBuckets; ++row) {
+    std::uint64_t& word = rows_[(table * kBuckets + row) * words_ + slot / kBits];
+    word = first_row <= row && row < end_row ? word | bit : word & ~bit;
+  }
+}
+
+void ExtentMasks::widen(std::size_t words) {
+  std::vector<std::uint64_t> rows(kTables * kBuckets * words, 0);
+  for (std::size_t row = 0; row < kTables * kBuckets; ++row) {
+    std::copy_n(rows_.begin() + static_cast<std::ptrdiff_t>(row * words_), words_,
+                rows.begin() + static_cast<std::ptrdiff_t>(row * words));
+  }
+  rows_ = std::move(rows);
+  words_ = words;
+}
+
+}  // namespace sidestep

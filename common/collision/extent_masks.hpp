@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/collision/bodies.hpp"
+
+namespace sidestep {
+
+/// Extent masks (Bruce 2006, chapter 3) that take a query four look-ups: for each bucket of an axis a bit
+/// mask of the obstacles that begin before its end, and one of those that do not end before it; the obstacles
+/// whose box the query's overlaps are in the masks of the query's four bounds. Instead of the sorted end
+/// points of the original, buckets are equally wide: finding one takes a product, and an obstacle that moves
+/// changes only its own bits. Obstacles outside of the range of the first ones count for the outermost
+/// buckets.
+class ExtentMasks {
+ public:
+  explicit ExtentMasks(const Bodies& bodies);
+
+  void add(Slot slot, const Shape& shape);
+  void replace(Slot slot, const Shape& shape);
+  void remove(Slot slot);
+
+  collision::MasksView view() const { return {rows_.data(), words_, zero_m_, per_m_}; }
+
+ private:
+  std::size_t bucket(std::size_t axis, double at_m) const;
+  /// Sets the slot's bits for rows of a table, and takes them from the others.
+  void mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row);
+  void widen(std::size_t words);
+
+  std::size_t words_ = 1;
+  double zero_m_[4], per_m_[4];
+  std::vector<std::uint64_t> rows_;
+};
+
+}  // namespace sidestep
