@@ -8,10 +8,10 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr collision::CircleRecord kNoCircle{1e18f, 1e18f, 0, 0};
+constexpr std::size_t kMoreCircles =
+    128;  // than slots, as words of bits have, and one of bits that are not there
 
-bool touches_exactly(const void* bodies, Slot slot, const double* from_m, const double* to_m,
-                     double radius_m) {
+bool touches_one(const void* bodies, Slot slot, const double* from_m, const double* to_m, double radius_m) {
   return static_cast<const Bodies*>(bodies)->touches(
       slot, Sweep(Vec2(from_m[0], from_m[1]), Vec2(to_m[0], to_m[1]), radius_m));
 }
@@ -21,7 +21,7 @@ bool touches_exactly(const void* bodies, Slot slot, const double* from_m, const 
 float rounded_down(double value) { return std::nextafter(static_cast<float>(value), -kInfinite); }
 float rounded_up(double value) { return std::nextafter(static_cast<float>(value), kInfinite); }
 
-Bodies::Bodies(std::vector<Shape> shapes) : circles_{kNoCircle} {
+Bodies::Bodies(std::vector<Shape> shapes) : circles_(kMoreCircles) {
   if (shapes.empty()) return;
   Box box = bounds(shapes.front());
   for (const Shape& shape : shapes) box = around(box, bounds(shape));
@@ -34,7 +34,7 @@ Slot Bodies::add(Shape shape) {
   if (free_.empty()) {
     shapes_.push_back(std::move(shape));
     places_.push_back(kNowhere);
-    circles_.push_back(kNoCircle);
+    circles_.emplace_back();
   } else {
     slot = free_.back();
     free_.pop_back();
@@ -57,11 +57,13 @@ void Bodies::remove(Slot slot) {
   slots_.pop_back();
   places_[slot] = kNowhere;
   shapes_[slot] = Circle{};
-  circles_[slot] = kNoCircle;
   free_.push_back(slot);
 }
 
 void Bodies::record(Slot slot) {
+  const Box box = bounds(shapes_[slot]);
+  farthest_m_ = std::max({farthest_m_, (box.min_m - origin_m_).cwiseAbs().maxCoeff(),
+                          (box.max_m - origin_m_).cwiseAbs().maxCoeff()});
   const auto* circle = std::get_if<Circle>(&shapes_[slot]);
   if (circle == nullptr) {
     circles_[slot] = {0, 0, kNan, 0};
@@ -70,8 +72,7 @@ void Bodies::record(Slot slot) {
   const Vec2 centre = circle->centre_m - origin_m_;
   circles_[slot] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
                     static_cast<float>(circle->radius_m), 0};
-  farthest_m_ = std::max(farthest_m_, rounded_up(centre.cwiseAbs().maxCoeff()));
-  largest_radius_m_ = std::max(largest_radius_m_, rounded_up(circle->radius_m));
+  largest_radius_m_ = std::max(largest_radius_m_, circle->radius_m);
 }
 
 bool Bodies::touches(Slot slot, const Sweep& sweep) const {
@@ -80,8 +81,17 @@ bool Bodies::touches(Slot slot, const Sweep& sweep) const {
 }
 
 collision::BodiesView Bodies::view() const {
-  return {origin_m_.x(),   origin_m_.y(), farthest_m_,     largest_radius_m_,
-          circles_.data(), end(),         touches_exactly, this};
+  // Places up to L from the origin are wrong by a rounding of L each, their differences by that of 2 L: with
+  // what the way's foot adds, across the way, distances are wrong by less than 16 of them.
+  constexpr double kRounding = 0x1p-24;
+  const double limit_m = 4 * farthest_m_, error_m = 16 * kRounding * limit_m;
+  return {{origin_m_.x(), origin_m_.y()},
+          rounded_up(largest_radius_m_),
+          rounded_down(limit_m),
+          rounded_up(error_m),
+          circles_.data(),
+          touches_one,
+          this};
 }
 
 }  // namespace sidestep

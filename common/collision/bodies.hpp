@@ -30,6 +30,8 @@ class Bodies {
   /// All slots, in use or not, are below.
   Slot end() const { return static_cast<Slot>(shapes_.size()); }
   const Vec2& origin_m() const { return origin_m_; }
+  /// All obstacles are within, and ever were.
+  Box bounds_m() const { return grown({origin_m_, origin_m_}, farthest_m_); }
 
   /// Exact but for the last digits.
   bool touches(Slot slot, const Sweep& sweep) const;
@@ -45,8 +47,8 @@ class Bodies {
   std::vector<std::uint32_t> places_;  // in slots_, by slot
   std::vector<Slot> slots_, free_;
   Vec2 origin_m_{0, 0};
-  float farthest_m_ = 0, largest_radius_m_ = 0;
-  std::vector<collision::CircleRecord> circles_;  // by slot, and one more that is nowhere
+  double farthest_m_ = 0, largest_radius_m_ = 0;  // of anything, from the origin along an axis; of a circle
+  std::vector<collision::CircleRecord> circles_;  // by slot, and some more
 };
 
 /// A number in single precision that is surely not above, or not below.

@@ -49,7 +49,7 @@ BoxTree::NodeId BoxTree::new_node(bool is_leaf) {
   TreeNode& node = nodes_[id];
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     set_lane_box(node, lane, {kNan, kNan, kNan, kNan});
-    node.children[lane] = kNone;
+    node.children[lane] = 0;
   }
   node.parent = node.lane = kNone;
   node.count = 0;
@@ -112,7 +112,7 @@ void BoxTree::take_out(NodeId id, std::uint32_t lane) {
   const std::uint32_t last = --node.count;
   if (lane != last) put(id, lane, {lane_box(node, last), node.children[last]});
   set_lane_box(node, last, {kNan, kNan, kNan, kNan});
-  node.children[last] = kNone;
+  node.children[last] = 0;
 }
 
 void BoxTree::refit(NodeId id) {

@@ -15,17 +15,15 @@ constexpr std::size_t kBits = 64;
 }  // namespace
 
 ExtentMasks::ExtentMasks(const Bodies& bodies)
-    : words_(std::max<std::size_t>(1, (bodies.end() + kBits - 1) / kBits)) {
-  Box box;
-  if (!bodies.slots().empty()) box = bounds(bodies.shape(bodies.slots().front()));
+    : words_(std::max<std::size_t>(1, (bodies.end() + kBits - 1) / kBits)), origin_m_(bodies.origin_m()) {
+  Box box{origin_m_, origin_m_};
   for (const Slot slot : bodies.slots()) box = around(box, bounds(bodies.shape(slot)));
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto row = static_cast<Eigen::Index>(axis);
-    const double range_m = box.max_m[row] - box.min_m[row];
-    zero_m_[axis] = box.min_m[row];
-    per_m_[axis] = range_m > 0 && std::isfinite(kBuckets / range_m) ? kBuckets / range_m : 0;
-    zero_m_[axis + 2] = -zero_m_[axis];
+    const double range_m = box.max_m[row] - box.min_m[row], per_m = range_m > 1e-15 ? kBuckets / range_m : 0;
+    per_m_[axis] = static_cast<float>(per_m);
     per_m_[axis + 2] = -per_m_[axis];
+    shift_[axis] = shift_[axis + 2] = static_cast<float>(per_m * (origin_m_[row] - box.min_m[row]));
   }
   rows_.assign(kTables * kBuckets * words_, 0);
   for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
@@ -40,8 +38,8 @@ void ExtentMasks::replace(Slot slot, const Shape& shape) {
   const Box box = bounds(shape);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto row = static_cast<Eigen::Index>(axis);
-    mark(axis, slot, 0, bucket(axis, box.max_m[row]) + 1);
-    mark(axis + 2, slot, bucket(axis, box.min_m[row]), kBuckets);
+    mark(axis, slot, 0, bucket(axis, box.max_m[row] - origin_m_[row]) + 1);
+    mark(axis + 2, slot, bucket(axis, box.min_m[row] - origin_m_[row]), kBuckets);
   }
 }
 
@@ -50,7 +48,7 @@ void ExtentMasks::remove(Slot slot) {
 }
 
 std::size_t ExtentMasks::bucket(std::size_t axis, double at_m) const {
-  const double scaled = (at_m - zero_m_[axis]) * per_m_[axis];
+  const double scaled = at_m * per_m_[axis] + shift_[axis];
   return scaled > 0 ? static_cast<std::size_t>(std::min(scaled, kBuckets - 1.0)) : 0;
 }
 

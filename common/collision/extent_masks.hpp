@@ -19,16 +19,18 @@ class ExtentMasks {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  collision::MasksView view() const { return {rows_.data(), words_, zero_m_, per_m_}; }
+  collision::MasksView view() const { return {rows_.data(), words_, per_m_, shift_}; }
 
  private:
+  /// Of a number in metres from the origin.
   std::size_t bucket(std::size_t axis, double at_m) const;
   /// Sets the slot's bits for rows of a table, and takes them from the others.
   void mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row);
   void widen(std::size_t words);
 
   std::size_t words_ = 1;
-  double zero_m_[4], per_m_[4];
+  Vec2 origin_m_;
+  float per_m_[4], shift_[4];
   std::vector<std::uint64_t> rows_;
 };
 

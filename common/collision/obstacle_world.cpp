@@ -10,8 +10,6 @@
 namespace sidestep {
 namespace {
 
-using collision::Answer;
-
 constexpr std::size_t kMostInLine = 32, kMostInMasks = 1024;
 
 std::vector<Shape> checked(std::vector<Shape> shapes) {
@@ -25,20 +23,9 @@ std::vector<Shape> checked(std::vector<Shape> shapes) {
   return shapes;
 }
 
-}  // namespace
+using Sets = std::variant<LinearSet, ExtentMasks, BoxTree>;
 
-ObstacleWorld::ObstacleWorld(std::vector<Shape> shapes, Structure structure)
-    : ObstacleWorld(std::move(shapes), structure, collision::best_kernels()) {}
-
-ObstacleWorld::ObstacleWorld(std::vector<Shape> shapes, Structure structure,
-                             const collision::Kernels& kernels)
-    : kernels_(&kernels),
-      structure_(structure),
-      bodies_(checked(std::move(shapes))),
-      set_(set_of(bodies_, structure)),
-      size_when_built_(size()) {}
-
-ObstacleWorld::Sets ObstacleWorld::set_of(const Bodies& bodies, Structure structure) {
+Sets set_of(const Bodies& bodies, Structure structure) {
   const std::size_t size = bodies.slots().size();
   if (structure == Structure::kAutomatic)
     structure = size <= kMostInLine    ? Structure::kLinear
@@ -49,30 +36,55 @@ ObstacleWorld::Sets ObstacleWorld::set_of(const Bodies& bodies, Structure struct
   return BoxTree(bodies);
 }
 
-bool ObstacleWorld::touches(const Vec2& from, const Vec2& to, double radius) const {
-  const collision::BodiesView bodies = bodies_.view();
-  Answer answer = Answer::kInDoubt;
-  if (const auto* masks = std::get_if<ExtentMasks>(&set_))
-    answer = kernels_->masks(masks->view(), bodies, from.data(), to.data(), radius);
-  else if (const auto* line = std::get_if<LinearSet>(&set_))
-    answer = kernels_->linear(line->view(), bodies, from.data(), to.data(), radius);
-  else
-    answer = kernels_->tree(std::get_if<BoxTree>(&set_)->view(), bodies, from.data(), to.data(), radius);
-  if (answer == Answer::kInDoubt) [[unlikely]]
-    return touches_exactly(Sweep(from, to, radius));
-  return answer == Answer::kTouches;
+}  // namespace
+
+ObstacleWorld::ObstacleWorld(std::vector<Shape> shapes, Structure structure)
+    : ObstacleWorld(std::move(shapes), structure, collision::best_kernels()) {}
+
+ObstacleWorld::ObstacleWorld(std::vector<Shape> shapes, Structure structure,
+                             const collision::Kernels& kernels)
+    : ObstacleWorld([&] {
+        Bodies bodies(checked(std::move(shapes)));
+        auto set = set_of(bodies, structure);
+        const std::size_t size = bodies.slots().size();
+        return Parts{&kernels, structure, std::move(bodies), std::move(set), size};
+      }()) {}
+
+ObstacleWorld::ObstacleWorld(Parts parts) : parts_(std::move(parts)) { look(); }
+
+ObstacleWorld& ObstacleWorld::operator=(const ObstacleWorld& other) {
+  parts_ = other.parts_;
+  look();
+  return *this;
 }
 
-bool ObstacleWorld::touches_exactly(const Sweep& sweep) const {
-  return std::any_of(bodies_.slots().begin(), bodies_.slots().end(),
-                     [&](Slot slot) { return bodies_.touches(slot, sweep); });
+void ObstacleWorld::look() {
+  view_.bodies = parts_.bodies.view();
+  if (const auto* line = std::get_if<LinearSet>(&parts_.set)) {
+    view_.linear = line->view();
+    sweep_ = parts_.kernels->linear;
+  } else if (const auto* masks = std::get_if<ExtentMasks>(&parts_.set)) {
+    view_.masks = masks->view();
+    sweep_ = view_.masks.words == 1 ? parts_.kernels->one_word_masks : parts_.kernels->masks;
+  } else {
+    view_.tree = std::get<BoxTree>(parts_.set).view();
+    sweep_ = parts_.kernels->tree;
+  }
+}
+
+bool ObstacleWorld::touches_exactly(const Vec2& from, const Vec2& to, double radius) const {
+  const Sweep sweep(from, to, radius);
+  if (!overlap(sweep.bounds(), parts_.bodies.bounds_m())) return false;
+  const std::vector<Slot>& slots = parts_.bodies.slots();
+  return std::any_of(slots.begin(), slots.end(),
+                     [&](Slot slot) { return parts_.bodies.touches(slot, sweep); });
 }
 
 Nearest ObstacleWorld::nearest(const Vec2& at) const {
   if (!at.allFinite()) throw std::invalid_argument("a place from which the nearest is asked is not finite");
   Nearest nearest;
-  for (const Slot slot : bodies_.slots()) {
-    const double distance_m = signed_distance(at, bodies_.shape(slot));
+  for (const Slot slot : parts_.bodies.slots()) {
+    const double distance_m = signed_distance(at, parts_.bodies.shape(slot));
     if (distance_m < nearest.distance_m) nearest = {distance_m, ObstacleId{slot}};
   }
   return nearest;
@@ -80,37 +92,42 @@ Nearest ObstacleWorld::nearest(const Vec2& at) const {
 
 ObstacleId ObstacleWorld::add(Shape shape) {
   check(shape);
-  const Slot slot = bodies_.add(std::move(shape));
-  if (size() <= 2 * size_when_built_ + kMostInLine) {
-    std::visit([&](auto& set) { set.add(slot, bodies_.shape(slot)); }, set_);
+  const Slot slot = parts_.bodies.add(std::move(shape));
+  if (size() <= 2 * parts_.size_when_built + kMostInLine) {
+    std::visit([&](auto& set) { set.add(slot, parts_.bodies.shape(slot)); }, parts_.set);
   } else {
-    set_ = set_of(bodies_, structure_);
-    size_when_built_ = size();
+    parts_.set = set_of(parts_.bodies, parts_.structure);
+    parts_.size_when_built = size();
   }
+  look();
   return ObstacleId{slot};
 }
 
 void ObstacleWorld::move(ObstacleId obstacle, const Vec2& by) {
   const Slot slot = slot_of(obstacle);
-  Shape shape = moved(bodies_.shape(slot), by);
+  Shape shape = moved(parts_.bodies.shape(slot), by);
   if (!is_near_enough(bounds(shape)))
     throw std::invalid_argument("an obstacle would be moved farther than 1e15 m from the origin");
-  bodies_.replace(slot, std::move(shape));
-  std::visit([&](auto& set) { set.replace(slot, bodies_.shape(slot)); }, set_);
+  parts_.bodies.replace(slot, std::move(shape));
+  std::visit([&](auto& set) { set.replace(slot, parts_.bodies.shape(slot)); }, parts_.set);
+  look();
 }
 
 void ObstacleWorld::remove(ObstacleId obstacle) {
   const Slot slot = slot_of(obstacle);
-  std::visit([&](auto& set) { set.remove(slot); }, set_);
-  bodies_.remove(slot);
+  std::visit([&](auto& set) { set.remove(slot); }, parts_.set);
+  parts_.bodies.remove(slot);
+  look();
 }
 
-const Shape& ObstacleWorld::shape(ObstacleId obstacle) const { return bodies_.shape(slot_of(obstacle)); }
+const Shape& ObstacleWorld::shape(ObstacleId obstacle) const {
+  return parts_.bodies.shape(slot_of(obstacle));
+}
 
 std::vector<ObstacleId> ObstacleWorld::obstacles() const {
   std::vector<ObstacleId> ids;
   ids.reserve(size());
-  for (const Slot slot : bodies_.slots()) ids.push_back(ObstacleId{slot});
+  for (const Slot slot : parts_.bodies.slots()) ids.push_back(ObstacleId{slot});
   return ids;
 }
 

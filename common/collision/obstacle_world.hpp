@@ -35,10 +35,18 @@ class ObstacleWorld {
   /// With the inner loops of an instruction set that is not the best, for comparisons.
   ObstacleWorld(std::vector<Shape> shapes, Structure structure, const collision::Kernels& kernels);
 
+  ObstacleWorld(const ObstacleWorld& other) : ObstacleWorld(Parts(other.parts_)) {}
+  ObstacleWorld& operator=(const ObstacleWorld& other);
+
   /// Whether a disc at a place touches an obstacle.
   bool touches(const Vec2& at_m, double radius_m) const { return touches(at_m, at_m, radius_m); }
   /// Whether a disc touches an obstacle anywhere on its straight way.
-  bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
+  bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const {
+    const collision::Answer answer = sweep_(view_, from_m.data(), to_m.data(), radius_m);
+    if (answer == collision::Answer::kInDoubt) [[unlikely]]
+      return touches_exactly(from_m, to_m, radius_m);
+    return answer == collision::Answer::kTouches;
+  }
   Nearest nearest(const Vec2& at_m) const;
 
   /// The shapes given to the constructor have the ids 0, 1, 2, … in their order.
@@ -46,24 +54,30 @@ class ObstacleWorld {
   void move(ObstacleId obstacle, const Vec2& by_m);
   void remove(ObstacleId obstacle);
 
-  std::size_t size() const { return bodies_.slots().size(); }
-  bool has(ObstacleId obstacle) const { return bodies_.has(static_cast<Slot>(obstacle)); }
+  std::size_t size() const { return parts_.bodies.slots().size(); }
+  bool has(ObstacleId obstacle) const { return parts_.bodies.has(static_cast<Slot>(obstacle)); }
   const Shape& shape(ObstacleId obstacle) const;
   /// Of all obstacles, in no order; until one is added or removed.
   std::vector<ObstacleId> obstacles() const;
 
  private:
-  using Sets = std::variant<LinearSet, ExtentMasks, BoxTree>;
+  /// All but what points to it.
+  struct Parts {
+    const collision::Kernels* kernels;
+    Structure structure;
+    Bodies bodies;
+    std::variant<LinearSet, ExtentMasks, BoxTree> set;
+    std::size_t size_when_built;
+  };
 
-  static Sets set_of(const Bodies& bodies, Structure structure);
+  explicit ObstacleWorld(Parts parts);
+  void look();
   Slot slot_of(ObstacleId obstacle) const;
-  bool touches_exactly(const Sweep& sweep) const;
+  bool touches_exactly(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
 
-  const collision::Kernels* kernels_;
-  Structure structure_;
-  Bodies bodies_;
-  Sets set_;
-  std::size_t size_when_built_;
+  Parts parts_;
+  collision::WorldView view_{};
+  collision::Sweep sweep_ = nullptr;
 };
 
 }  // namespace sidestep

@@ -19,25 +19,16 @@ inline Vector smallest_gaps(const CircleBlock& circles, const MovingDisc& disc) 
   return smallest;
 }
 
-/// A box in single precision that holds all that the disc sweeps.
+/// A box that holds all that the disc sweeps.
 struct SweptBox {
   float min_x_m, min_y_m, max_x_m, max_y_m;
 };
 
-inline SweptBox swept_box(const BodiesView& bodies, const double* from_m, const double* to_m,
-                          double radius_m) {
-  // Enough for what rounding to single precision takes off a number, however small.
-  constexpr double kMore = 1 + 0x1p-22, kLess = 1 - 0x1p-22, kLeast = 0x1p-140;
-  const double x = from_m[0] - bodies.origin_x_m, y = from_m[1] - bodies.origin_y_m;
-  const double to_x = to_m[0] - bodies.origin_x_m, to_y = to_m[1] - bodies.origin_y_m;
-  const double min_x = (x < to_x ? x : to_x) - radius_m - kLeast,
-               max_x = (x < to_x ? to_x : x) + radius_m + kLeast;
-  const double min_y = (y < to_y ? y : to_y) - radius_m - kLeast,
-               max_y = (y < to_y ? to_y : y) + radius_m + kLeast;
-  return {static_cast<float>(min_x * (min_x < 0 ? kMore : kLess)),
-          static_cast<float>(min_y * (min_y < 0 ? kMore : kLess)),
-          static_cast<float>(max_x * (max_x < 0 ? kLess : kMore)),
-          static_cast<float>(max_y * (max_y < 0 ? kLess : kMore))};
+inline SweptBox swept_box(const BodiesView& bodies, const MovingDisc& disc) {
+  const FourFloats from = disc.ends_m, to = __builtin_shufflevector(from, from, 2, 3, 0, 1);
+  const float reach = disc.radius_m + bodies.error_m;
+  const FourFloats low = smaller(from, to) - reach, high = larger(from, to) + reach;
+  return {low[0], low[1], high[0], high[1]};
 }
 
 /// The bits of a block's boxes that overlap the box.
@@ -53,22 +44,9 @@ inline unsigned overlaps(const BoxBlock& boxes, const SweptBox& box) {
   return bits;
 }
 
-/// Whether an obstacle whose bit is set is touched; `slots` are by bit.
-inline bool touches_marked(const Query& query, unsigned bits, const std::uint32_t* slots) {
-  bool touched = false;
-  while (bits != 0 && !touched) {
-    std::uint32_t four[kTogether];
-    for (std::uint32_t& slot : four) {
-      slot = bits != 0 ? slots[__builtin_ctz(bits)] : query.bodies.nowhere;
-      bits &= bits - 1;
-    }
-    touched = query.touches(four);
-  }
-  return touched;
-}
-
-Answer linear(const LinearView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-              double radius_m) {
+Answer linear(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+  const BodiesView& bodies = world.bodies;
+  const LinearView& view = world.linear;
   const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
   if (!disc.is_sound) [[unlikely]]
     return Answer::kInDoubt;
@@ -90,78 +68,64 @@ Answer linear(const LinearView& view, const BodiesView& bodies, const double* fr
   const auto touched = static_cast<unsigned>(not_above(smallest, -doubt) != 0);
   const unsigned answer = touched | (static_cast<unsigned>(doubtful != 0) & ~touched) << 1;
   if (view.box_blocks == 0 || answer != 0) return static_cast<Answer>(answer);
-  const Query query{bodies, disc, from_m, to_m, radius_m};
-  const SweptBox box = swept_box(bodies, from_m, to_m, radius_m);
+  const SweptBox box = swept_box(bodies, disc);
   for (std::size_t block = 0; block < view.box_blocks; ++block) {
-    if (touches_marked(query, overlaps(view.boxes[block], box), view.box_slots + block * kLanes))
-      return Answer::kTouches;
+    const std::uint32_t* slots = view.box_slots + block * kLanes;
+    for (unsigned bits = overlaps(view.boxes[block], box); bits != 0; bits &= bits - 1) {
+      if (bodies.touches(bodies.bodies, slots[lowest(bits)], from_m, to_m, radius_m)) return Answer::kTouches;
+    }
   }
   return Answer::kClear;
 }
 
 /// The buckets of the numbers that bound what the disc sweeps: minimum x and y, maximum x and y.
-inline FourInts buckets(const MasksView& view, const double* from_m, const double* to_m, double radius_m) {
-  const FourDoubles from{from_m[0], from_m[1], -from_m[0], -from_m[1]};
-  const FourDoubles to{to_m[0], to_m[1], -to_m[0], -to_m[1]};
-  FourDoubles zero, per_m;
-  __builtin_memcpy(&zero, view.zero_m, sizeof zero);
-  __builtin_memcpy(&per_m, view.per_m, sizeof per_m);
-  const FourDoubles low = smaller(from, to) - radius_m;
-  const FourDoubles scaled = (low - zero) * per_m;
-  const FourDoubles last = static_cast<double>(kBuckets - 1) - FourDoubles{};
-  return __builtin_convertvector(smaller(larger(scaled, FourDoubles{}), last), FourInts);
+inline FourInts buckets(const MasksView& view, const BodiesView& bodies, const MovingDisc& disc) {
+  const FourFloats ends = disc.ends_m, turned = -ends;
+  const FourFloats low = smaller(__builtin_shufflevector(ends, turned, 0, 1, 4, 5),
+                                 __builtin_shufflevector(ends, turned, 2, 3, 6, 7)) -
+                         (disc.radius_m + bodies.error_m);
+  const FourFloats scaled = low * load<FourFloats>(view.per_m) + load<FourFloats>(view.shift);
+  return __builtin_convertvector(smaller(larger(scaled, all<FourFloats>(0)), all<FourFloats>(kBuckets - 1)),
+                                 FourInts);
 }
 
-/// Compares with the obstacles of a word's bits.
-inline bool touches_word(const Query& query, std::uint64_t bits, std::uint32_t first_slot) {
-  bool touched = false;
-  do {
-    std::uint32_t four[kTogether];
-    for (std::uint32_t& slot : four) {
-      slot =
-          bits != 0 ? first_slot + static_cast<std::uint32_t>(__builtin_ctzll(bits)) : query.bodies.nowhere;
-      bits &= bits - 1;
-    }
-    touched = touched | query.touches(four);
-  } while (bits != 0 && !touched);
-  return touched;
-}
-
-Answer masks(const MasksView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-             double radius_m) {
-  const Query query{bodies, moving_disc(bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
+template <bool kIsOneWord>
+Answer masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+  const MasksView& view = world.masks;
+  const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_sound) [[unlikely]]
     return Answer::kInDoubt;
-  const FourInts bucket = buckets(view, from_m, to_m, radius_m);
-  const std::size_t words = view.words;
+  const FourInts bucket = buckets(view, world.bodies, query.disc);
+  const std::size_t words = kIsOneWord ? 1 : view.words;
   const std::uint64_t* row[4];
   for (std::size_t i = 0; i < 4; ++i)
-    row[i] = view.rows + (i * kBuckets + static_cast<std::size_t>(bucket[i])) * words;
-  if (words == 1) return static_cast<Answer>(touches_word(query, *row[0] & *row[1] & *row[2] & *row[3], 0));
+    row[i] = view.rows + (i * kBuckets + static_cast<std::uint32_t>(bucket[i])) * words;
   for (std::size_t word = 0; word < words; ++word) {
     const std::uint64_t bits = row[0][word] & row[1][word] & row[2][word] & row[3][word];
-    if (bits != 0 && touches_word(query, bits, static_cast<std::uint32_t>(word) * 64))
-      return Answer::kTouches;
+    const auto slot = [word](unsigned bit) { return static_cast<std::uint32_t>(word) * 64 + bit; };
+    if (kIsOneWord) return static_cast<Answer>(touches_marked(query, bits, slot));
+    if (bits != 0 && touches_marked(query, bits, slot)) return Answer::kTouches;
   }
   return Answer::kClear;
 }
 
-Answer tree(const TreeView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-            double radius_m) {
+Answer tree(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+  const BodiesView& bodies = world.bodies;
   const Query query{bodies, moving_disc(bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_sound) [[unlikely]]
     return Answer::kInDoubt;
-  const SweptBox box = swept_box(bodies, from_m, to_m, radius_m);
+  const SweptBox box = swept_box(bodies, query.disc);
   std::uint32_t open[kDeepest * kLanes];
   std::size_t count = 1;
-  open[0] = view.root;
+  open[0] = world.tree.root;
   while (count != 0) {
-    const TreeNode& node = view.nodes[open[--count]];
+    const TreeNode& node = world.tree.nodes[open[--count]];
     unsigned bits = overlaps(node.boxes, box);
     if (node.is_leaf) {
-      if (touches_marked(query, bits, node.children)) return Answer::kTouches;
+      const auto slot = [&node](unsigned bit) { return node.children[bit % kLanes]; };
+      if (bits != 0 && touches_marked(query, bits, slot)) return Answer::kTouches;
     } else {
-      for (; bits != 0; bits &= bits - 1) open[count++] = node.children[__builtin_ctz(bits)];
+      for (; bits != 0; bits &= bits - 1) open[count++] = node.children[lowest(bits)];
     }
   }
   return Answer::kClear;
@@ -169,6 +133,6 @@ Answer tree(const TreeView& view, const BodiesView& bodies, const double* from_m
 
 }  // namespace
 
-const Kernels SIDESTEP_KERNELS{SIDESTEP_LEVEL, linear, masks, tree};
+const Kernels SIDESTEP_KERNELS{SIDESTEP_LEVEL, linear, masks<true>, masks<false>, tree};
 
 }  // namespace sidestep::collision

@@ -17,10 +17,11 @@ struct alignas(16) CircleRecord {
 
 /// Obstacles one by one, and what single precision has to know of all of them.
 struct BodiesView {
-  double origin_x_m, origin_y_m;
-  float farthest_m, largest_radius_m;  ///< of circles, from the origin along an axis; of a circle
-  const CircleRecord* circles;         ///< by slot; the last one, `nowhere`, is no obstacle and never touched
-  std::uint32_t nowhere;
+  double origin_m[2];
+  float largest_radius_m;       ///< of a circle
+  float limit_m;                ///< places and radii in queries are not decided in single precision beyond
+  float error_m;                ///< more than a distance up to there may be wrong by
+  const CircleRecord* circles;  ///< by slot; some more may be read
   /// Compares exactly.
   bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
                   double radius_m);
@@ -53,10 +54,11 @@ struct LinearView {
 struct MasksView {
   const std::uint64_t* rows;
   std::size_t words;
-  const double *zero_m, *per_m;  ///< four of each
+  const float *per_m, *shift;  ///< four of each
 };
 
-/// A node of a tree: boxes, and which node or slot each is of.
+/// A node of a tree: boxes, and which node or slot each is of. Where there is none, that may be looked up
+/// still.
 struct TreeNode {
   BoxBlock boxes;
   std::uint32_t children[kLanes];
@@ -74,17 +76,22 @@ struct TreeView {
 
 enum class Answer : unsigned { kClear = 0, kTouches = 1, kInDoubt = 2 };
 
-/// The inner loops of collision detection for one instruction set: whether a disc on its way touches an
-/// obstacle. In doubt are ways that are not finite or negative radii, and, in the linear array, circles
-/// touched but for rounding: then everything has to be compared exactly.
+/// A world's obstacles, and the one of the sets of them that is in use.
+struct WorldView {
+  BodiesView bodies;
+  LinearView linear;
+  MasksView masks;
+  TreeView tree;
+};
+
+/// Whether a disc on its way touches an obstacle. In doubt are ways that are not finite or far away, negative
+/// radii, and, with the linear array, circles touched but for rounding: then all has to be compared exactly.
+using Sweep = Answer (*)(const WorldView& world, const double* from_m, const double* to_m, double radius_m);
+
+/// The inner loops of collision detection for one instruction set.
 struct Kernels {
   const char* name;
-  Answer (*linear)(const LinearView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-                   double radius_m);
-  Answer (*masks)(const MasksView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-                  double radius_m);
-  Answer (*tree)(const TreeView& view, const BodiesView& bodies, const double* from_m, const double* to_m,
-                 double radius_m);
+  Sweep linear, one_word_masks, masks, tree;
 };
 
 }  // namespace sidestep::collision

@@ -3,7 +3,7 @@
 // hold. They must not include anything that has inline functions: the linker would keep one copy, perhaps
 // that of an instruction set which the machine does not have. Intrinsics are always inlined.
 #include "common/collision/batch/kernels.hpp"
-#ifdef __AVX2__
+#ifdef __SSE2__
 #include <immintrin.h>
 #endif
 
@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kWidth = SIDESTEP_VECTOR_WIDTH;
 typedef float Vector __attribute__((vector_size(kWidth * sizeof(float))));
 typedef float FourFloats __attribute__((vector_size(16)));
-typedef double FourDoubles __attribute__((vector_size(32)));
+typedef double TwoDoubles __attribute__((vector_size(16)));
 typedef std::int32_t FourInts __attribute__((vector_size(16)));
 
 template <typename V>
@@ -33,8 +33,6 @@ inline V all(float value) {
 #ifdef __AVX2__
 inline FourFloats smaller(const FourFloats& a, const FourFloats& b) { return _mm_min_ps(a, b); }
 inline FourFloats larger(const FourFloats& a, const FourFloats& b) { return _mm_max_ps(a, b); }
-inline FourDoubles smaller(const FourDoubles& a, const FourDoubles& b) { return _mm256_min_pd(a, b); }
-inline FourDoubles larger(const FourDoubles& a, const FourDoubles& b) { return _mm256_max_pd(a, b); }
 inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
   return static_cast<unsigned>(_mm_movemask_ps(_mm_cmp_ps(a, b, _CMP_LE_OQ)));
 }
@@ -70,6 +68,41 @@ inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
   return bits;
 }
 #endif
+
+inline TwoDoubles load_two(const double* lanes) {
+  TwoDoubles v;
+  __builtin_memcpy(&v, lanes, sizeof v);
+  return v;
+}
+
+/// Both in single precision, one after the other.
+inline FourFloats joined(const TwoDoubles& a, const TwoDoubles& b) {
+#ifdef __SSE2__
+  return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));
+#else
+  return FourFloats{static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(b[0]),
+                    static_cast<float>(b[1])};
+#endif
+}
+
+/// Which bit is the lowest that is set; 64 where none is.
+inline unsigned lowest(std::uint64_t bits) {
+#ifdef __BMI__
+  return static_cast<unsigned>(_tzcnt_u64(bits));
+#else
+  return bits != 0 ? static_cast<unsigned>(__builtin_ctzll(bits)) : 64;
+#endif
+}
+
+/// As many bits, the first ones, as are set, but four at most.
+inline unsigned lowest_four(std::uint64_t bits) {
+  const auto count = static_cast<unsigned>(__builtin_popcountll(bits));
+#ifdef __BMI2__
+  return _bzhi_u32(0xf, count);
+#else
+  return count < 4 ? (1u << count) - 1 : 0xf;
+#endif
+}
 
 /// Bit k: whether four comparisons of lane k are all so.
 inline unsigned all_not_above(const Vector& a, const Vector& b, const Vector& c, const Vector& d,
