@@ -80,6 +80,25 @@ bool Bodies::touches(Slot slot, const Sweep& sweep) const {
   return squared_distance(sweep.segment(), shapes_[slot]) <= sweep.radius_m * sweep.radius_m;
 }
 
+void Bodies::compare(Slot slot, const Vec2& at, NearestSlot& nearest) const {
+  const double distance_m = signed_distance(at, shapes_[slot]);
+  if (distance_m < nearest.distance_m) nearest = {distance_m, slot};
+}
+
+NearestSlot Bodies::nearest(const Vec2& at) const {
+  NearestSlot nearest;
+  const Vec2 place = at - origin_m_;
+  const double slack_m = 8 * 0x1p-24 * (farthest_m_ + largest_radius_m_);
+  for (const Slot slot : slots_) {
+    const collision::CircleRecord& circle = circles_[slot];
+    const double dx = circle.x_m - place.x(), dy = circle.y_m - place.y();
+    const double reach = nearest.distance_m + circle.radius_m + slack_m;
+    // Also what has no number for a radius, as it is no circle.
+    if (!(dx * dx + dy * dy > reach * reach)) compare(slot, at, nearest);
+  }
+  return nearest;
+}
+
 collision::BodiesView Bodies::view() const {
   // Places up to L from the origin are wrong by a rounding of L each, their differences by that of 2 L: with
   // what the way's foot adds, across the way, distances are wrong by less than 16 of them.

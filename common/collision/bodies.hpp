@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "common/collision/batch/kernels.hpp"
@@ -11,6 +12,12 @@ namespace sidestep {
 
 /// Where an obstacle is kept: a small number, given again once it is free.
 using Slot = std::uint32_t;
+
+/// The obstacle nearest to a point: infinitely far where there is none.
+struct NearestSlot {
+  double distance_m = std::numeric_limits<double>::infinity();
+  Slot slot = 0xffffffffu;
+};
 
 /// Shapes by slot, and the exact comparison with each.
 class Bodies {
@@ -35,6 +42,10 @@ class Bodies {
 
   /// Exact but for the last digits.
   bool touches(Slot slot, const Sweep& sweep) const;
+  /// Takes the obstacle for the nearest one if it is nearer.
+  void compare(Slot slot, const Vec2& at_m, NearestSlot& nearest) const;
+  /// Compares all.
+  NearestSlot nearest(const Vec2& at_m) const;
   /// For kernels, until anything changes.
   collision::BodiesView view() const;
 

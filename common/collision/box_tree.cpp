@@ -34,7 +34,7 @@ bool equal(const FloatBox& a, const FloatBox& b) {
 
 BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), places_(bodies.end()) {
   std::vector<Item> slots;
-  for (const Slot slot : bodies.slots()) slots.push_back({box_of(bodies.shape(slot)), slot});
+  for (const Slot slot : bodies.slots()) slots.push_back({box_in_floats(bounds(bodies.shape(slot))), slot});
   root_ = build(slots);
 }
 
@@ -81,8 +81,7 @@ BoxTree::NodeId BoxTree::build(std::span<Item> slots) {
   return id;
 }
 
-FloatBox BoxTree::box_of(const Shape& shape) const {
-  const Box box = bounds(shape);
+FloatBox BoxTree::box_in_floats(const Box& box) const {
   const Vec2 low = box.min_m - origin_m_, high = box.max_m - origin_m_;
   return {rounded_down(low.x()), rounded_down(low.y()), rounded_up(high.x()), rounded_up(high.y())};
 }
@@ -200,11 +199,11 @@ void BoxTree::collect(NodeId id, std::vector<Item>& slots) {
 
 void BoxTree::add(Slot slot, const Shape& shape) {
   if (slot >= places_.size()) places_.resize(slot + 1);
-  insert({box_of(shape), slot});
+  insert({box_in_floats(bounds(shape)), slot});
 }
 
 void BoxTree::replace(Slot slot, const Shape& shape) {
-  const Item item{box_of(shape), slot};
+  const Item item{box_in_floats(bounds(shape)), slot};
   const Place place = places_[slot];
   const TreeNode& node = nodes_[place.node];
   const bool stays = node.parent == kNone || equal(around(lane_box(nodes_[node.parent], node.lane), item.box),
@@ -215,6 +214,33 @@ void BoxTree::replace(Slot slot, const Shape& shape) {
   } else {
     erase(slot);
     insert(item);
+  }
+}
+
+NearestSlot BoxTree::nearest(const Vec2& at, const Bodies& bodies) const {
+  NearestSlot nearest;
+  find_nearest(root_, at, bodies, nearest);
+  return nearest;
+}
+
+void BoxTree::find_nearest(NodeId id, const Vec2& at, const Bodies& bodies, NearestSlot& nearest) const {
+  const TreeNode& node = nodes_[id];
+  const Vec2 place = at - origin_m_;
+  double distances_m[kLanes];
+  for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+    const FloatBox box = lane_box(node, lane);
+    // Also to a border within: nothing in a box is deeper than the box.
+    distances_m[lane] = signed_distance(place, Box{{box.min_x_m, box.min_y_m}, {box.max_x_m, box.max_y_m}});
+  }
+  for (std::uint32_t next = 0; next < node.count; ++next) {
+    const auto lane =
+        static_cast<std::uint32_t>(std::min_element(distances_m, distances_m + node.count) - distances_m);
+    if (distances_m[lane] >= nearest.distance_m) return;
+    distances_m[lane] = std::numeric_limits<double>::infinity();
+    if (node.is_leaf)
+      bodies.compare(node.children[lane], at, nearest);
+    else
+      find_nearest(node.children[lane], at, bodies, nearest);
   }
 }
 

@@ -25,6 +25,13 @@ class BoxTree {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
+  /// Calls for each slot whose box overlaps the box.
+  template <typename Call>
+  void each_overlapping(const Box& box, const Call& call) const {
+    each_overlapping(root_, box_in_floats(box), call);
+  }
+  NearestSlot nearest(const Vec2& at_m, const Bodies& bodies) const;
+
   collision::TreeView view() const { return {nodes_.data(), root_}; }
 
  private:
@@ -40,9 +47,24 @@ class BoxTree {
     std::uint32_t lane;
   };
 
+  template <typename Call>
+  void each_overlapping(NodeId id, const FloatBox& box, const Call& call) const {
+    const collision::TreeNode& node = nodes_[id];
+    for (std::uint32_t lane = 0; lane < node.count; ++lane) {
+      if (!(node.boxes.min_x_m[lane] <= box.max_x_m && box.min_x_m <= node.boxes.max_x_m[lane] &&
+            node.boxes.min_y_m[lane] <= box.max_y_m && box.min_y_m <= node.boxes.max_y_m[lane]))
+        continue;
+      if (node.is_leaf)
+        call(node.children[lane]);
+      else
+        each_overlapping(node.children[lane], box, call);
+    }
+  }
+  void find_nearest(NodeId id, const Vec2& at_m, const Bodies& bodies, NearestSlot& nearest) const;
+
   NodeId new_node(bool is_leaf);
   NodeId build(std::span<Item> slots);
-  FloatBox box_of(const Shape& shape) const;
+  FloatBox box_in_floats(const Box& box) const;
   FloatBox box_of(NodeId node) const;
 
   /// Writes the item to the lane, and there to itself.

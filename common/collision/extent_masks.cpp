@@ -52,6 +52,16 @@ std::size_t ExtentMasks::bucket(std::size_t axis, double at_m) const {
   return scaled > 0 ? static_cast<std::size_t>(std::min(scaled, kBuckets - 1.0)) : 0;
 }
 
+void ExtentMasks::find_rows(const Box& box, const std::uint64_t* (&row)[4]) const {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto at = static_cast<Eigen::Index>(axis);
+    const std::size_t low = bucket(axis, box.min_m[at] - origin_m_[at]);
+    const std::size_t high = bucket(axis, box.max_m[at] - origin_m_[at]);
+    row[axis] = &rows_[(axis * kBuckets + low) * words_];
+    row[axis + 2] = &rows_[((axis + 2) * kBuckets + high) * words_];
+  }
+}
+
 void ExtentMasks::mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row) {
   const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
   for (std::size_t row = 0; row < kBuckets; ++row) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+
 #include "common/collision/bodies.hpp"
 
 namespace sidestep {
@@ -19,11 +21,24 @@ class ExtentMasks {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
+  /// Calls for each slot whose box may overlap the box.
+  template <typename Call>
+  void each_overlapping(const Box& box, const Call& call) const {
+    const std::uint64_t* row[4];
+    find_rows(box, row);
+    for (std::size_t word = 0; word < words_; ++word) {
+      for (std::uint64_t bits = row[0][word] & row[1][word] & row[2][word] & row[3][word]; bits != 0;
+           bits &= bits - 1)
+        call(static_cast<Slot>(64 * word) + static_cast<Slot>(std::countr_zero(bits)));
+    }
+  }
+
   collision::MasksView view() const { return {rows_.data(), words_, per_m_, shift_}; }
 
  private:
   /// Of a number in metres from the origin.
   std::size_t bucket(std::size_t axis, double at_m) const;
+  void find_rows(const Box& box, const std::uint64_t* (&row)[4]) const;
   /// Sets the slot's bits for rows of a table, and takes them from the others.
   void mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row);
   void widen(std::size_t words);

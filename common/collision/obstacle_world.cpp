@@ -6,11 +6,12 @@
 #include <string>
 
 #include "common/collision/batch/dispatch.hpp"
+#include "common/collision/first_touch.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMostInLine = 32, kMostInMasks = 1024;
+constexpr std::size_t kMostInLine = 32, kMostInMasks = 256;
 
 std::vector<Shape> checked(std::vector<Shape> shapes) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -80,14 +81,28 @@ bool ObstacleWorld::touches_exactly(const Vec2& from, const Vec2& to, double rad
                      [&](Slot slot) { return parts_.bodies.touches(slot, sweep); });
 }
 
+std::optional<Contact> ObstacleWorld::first_contact(const Vec2& from, const Vec2& to, double radius) const {
+  const Sweep sweep(from, to, radius);
+  const Box box = sweep.bounds();
+  std::optional<Contact> first;
+  const auto meet = [&](Slot slot) {
+    const std::optional<double> part = first_touch(sweep, parts_.bodies.shape(slot));
+    if (part && !(first && first->part <= *part)) first = Contact{*part, ObstacleId{slot}};
+  };
+  if (const auto* masks = std::get_if<ExtentMasks>(&parts_.set))
+    masks->each_overlapping(box, meet);
+  else if (const auto* tree = std::get_if<BoxTree>(&parts_.set))
+    tree->each_overlapping(box, meet);
+  else
+    std::for_each(parts_.bodies.slots().begin(), parts_.bodies.slots().end(), meet);
+  return first;
+}
+
 Nearest ObstacleWorld::nearest(const Vec2& at) const {
   if (!at.allFinite()) throw std::invalid_argument("a place from which the nearest is asked is not finite");
-  Nearest nearest;
-  for (const Slot slot : parts_.bodies.slots()) {
-    const double distance_m = signed_distance(at, parts_.bodies.shape(slot));
-    if (distance_m < nearest.distance_m) nearest = {distance_m, ObstacleId{slot}};
-  }
-  return nearest;
+  const auto* tree = std::get_if<BoxTree>(&parts_.set);
+  const NearestSlot nearest = tree != nullptr ? tree->nearest(at, parts_.bodies) : parts_.bodies.nearest(at);
+  return {nearest.distance_m, ObstacleId{nearest.slot}};
 }
 
 ObstacleId ObstacleWorld::add(Shape shape) {

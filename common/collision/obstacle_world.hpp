@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <variant>
 
 #include "common/collision/box_tree.hpp"
@@ -22,6 +23,12 @@ enum class Structure {
 /// The obstacle nearest to a point: infinitely far, and none, in an empty world.
 struct Nearest {
   double distance_m = std::numeric_limits<double>::infinity();  ///< to its border, negative inside
+  ObstacleId obstacle = kNoObstacle;
+};
+
+/// Where a disc on its way touches for the first time.
+struct Contact {
+  double part = 0;  ///< of the way that is free, 0 to 1
   ObstacleId obstacle = kNoObstacle;
 };
 
@@ -47,6 +54,8 @@ class ObstacleWorld {
       return touches_exactly(from_m, to_m, radius_m);
     return answer == collision::Answer::kTouches;
   }
+  /// How far the disc can go; none if it can go all the way, but for ways that touch no more than rounding.
+  std::optional<Contact> first_contact(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
   Nearest nearest(const Vec2& at_m) const;
 
   /// The shapes given to the constructor have the ids 0, 1, 2, … in their order.

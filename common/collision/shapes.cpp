@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/shapes.hpp"
 
-#include <array>
 #include <stdexcept>
 
 namespace sidestep {
@@ -12,10 +11,6 @@ constexpr double kFarthest_m = 1e15;
 
 void require(bool is_right, const char* what) {
   if (!is_right) throw std::invalid_argument(what);
-}
-
-std::array<Vec2, 4> corners_of(const Box& box) {
-  return {box.min_m, Vec2(box.max_m.x(), box.min_m.y()), box.max_m, Vec2(box.min_m.x(), box.max_m.y())};
 }
 
 void check_corners(const std::vector<Vec2>& corners) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "common/geometry/vec2.hpp"
 
@@ -17,6 +18,11 @@ inline double signed_distance(const Vec2& p, const Box& box) {
   const double x = std::max(box.min_m.x() - p.x(), p.x() - box.max_m.x());
   const double y = std::max(box.min_m.y() - p.y(), p.y() - box.max_m.y());
   return x > 0 && y > 0 ? std::hypot(x, y) : std::max(x, y);
+}
+
+/// Counter-clockwise.
+inline std::array<Vec2, 4> corners_of(const Box& box) {
+  return {box.min_m, Vec2(box.max_m.x(), box.min_m.y()), box.max_m, Vec2(box.min_m.x(), box.max_m.y())};
 }
 
 inline bool overlap(const Box& a, const Box& b) {

@@ -23,6 +23,18 @@ double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& 
   return std::sqrt(nearest2);
 }
 
+/// The first contact has to touch, and nothing before it.
+void check_first_contact(const ObstacleWorld& world, const Vec2& from, const Vec2& to, double radius,
+                         double distance) {
+  const std::optional<Contact> contact = world.first_contact(from, to, radius);
+  if (std::abs(distance - radius) > kTolerance_m) CHECK(contact.has_value() == (distance < radius));
+  if (!contact) return;
+  CHECK((contact->part >= 0 && contact->part <= 1));
+  const Vec2 at = from + contact->part * (to - from);
+  CHECK(signed_distance(at, world.shape(contact->obstacle)) <= radius + kTolerance_m);
+  if (contact->part > 0) CHECK(exact_distance(world, from, at) >= radius - kTolerance_m);
+}
+
 void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double longest_m, int queries) {
   for (int i = 0; i < queries; ++i) {
     const Vec2 from = random_place(rng, 1.2 * half_m);
@@ -34,6 +46,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double l
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
     if (std::abs(distance - radius) > kTolerance_m)
       CHECK(world.touches(from, to, radius) == (distance < radius));
+    check_first_contact(world, from, to, radius, distance);
     const Nearest nearest = world.nearest(from);
     double signed_m = kInfinite;
     for (const ObstacleId id : world.obstacles())
