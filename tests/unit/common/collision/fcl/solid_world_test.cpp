@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/collision/fcl/solid_world.hpp"
+
+#include <catch2/catch.hpp>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/sphere.h>
+
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
+
+/// A wall across x = 0 with a window of two metres around the origin, of triangles.
+Solid wall_with_window() {
+  std::vector<Vector3d> corners;
+  for (const double half : {1.0, 10.0})
+    for (const auto& [y, z] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      corners.emplace_back(0, half * y, half * z);
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t next = (i + 1) % 4;
+    triangles.push_back({i, next, 4 + i});
+    triangles.push_back({next, 4 + next, 4 + i});
+  }
+  return mesh(corners, triangles);
+}
+
+TEST_CASE("a body goes through the window of a mesh and not through the wall") {
+  SolidWorld world;
+  world.add(wall_with_window(), Isometry3d::Identity());
+  const Solid body = std::make_shared<fcl::Boxd>(0.4, 1.0, 1.0);
+  CHECK(world.clearance_m(body, at(0, 0, 0)) == Approx(0.5).margin(1e-5));
+  CHECK(world.clearance_m(body, at(-5, 0, 0)) > 4.7);
+  CHECK_FALSE(world.sweep(body, at(-5, 0, 0), {5, 0, 0}).touches());
+  CHECK_FALSE(world.sweep(body, at(-5, 0.3, 0.3), {5, -0.3, 0}).touches());
+  CHECK(world.sweep(body, at(-5, 0, 0), {5, 3, 0}).touches());
+  CHECK(world.sweep(body, at(-5, 0, 0), {5, 0, 0}, 0.51).touches());
+  const auto into_wall = world.sweep(body, at(-5, 4, 0), {5, 4, 0});
+  CHECK(into_wall.touches());
+  CHECK(into_wall.free_way_m() == Approx(4.8).margin(1e-4));
+}
+
+TEST_CASE("a swept body touches where one of the bodies along its way does") {
+  const std::uint64_t seed = GENERATE(range(1, 6));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SolidWorld world;
+  const auto random_place = [&](double half) {
+    Isometry3d place = at(rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-half, half));
+    place.rotate(
+        Eigen::AngleAxisd(rng.uniform(0, 3), Vector3d(rng.uniform(), rng.uniform(), 1).normalized()));
+    return place;
+  };
+  for (int i = 0; i < 15; ++i)
+    world.add(std::make_shared<fcl::Boxd>(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6), 0.3),
+              random_place(1.5));
+  const Solid body = std::make_shared<fcl::Boxd>(0.3, 0.2, 0.1);
+  for (int i = 0; i < 20; ++i) {
+    const Isometry3d from = random_place(1.5);
+    const Vector3d to = random_place(1.5).translation();
+    double sampled = 1e9;
+    for (int k = 0; k <= 200; ++k) {
+      Isometry3d place = from;
+      place.translation() += k / 200.0 * (to - from.translation());
+      sampled = std::min(sampled, world.clearance_m(body, place));
+    }
+    const bool touches = world.sweep(body, from, to).touches();
+    if (sampled == 0) CHECK(touches);
+    if (sampled > (to - from.translation()).norm() / 400 + 1e-5) CHECK_FALSE(touches);
+  }
+}
+
+TEST_CASE("solids move and go by their ids") {
+  SolidWorld world;
+  const Solid ball = std::make_shared<fcl::Sphered>(1);
+  CHECK(world.clearance_m(ball, at(0, 0, 0)) == std::numeric_limits<double>::infinity());
+  const SolidWorld::Id one = world.add(ball, at(5, 0, 0)), other = world.add(ball, at(0, 9, 0));
+  CHECK(world.clearance_m(ball, at(0, 0, 0)) == Approx(3));
+  world.move(one, at(0, 0, 4));
+  CHECK(world.clearance_m(ball, at(0, 0, 0)) == Approx(2));
+  CHECK(world.clearance_m(ball, at(0, 0, 3)) == 0);
+  world.remove(one);
+  CHECK(world.clearance_m(ball, at(0, 0, 0)) == Approx(7));
+  CHECK_THROWS_WITH(world.move(one, at(0, 0, 0)), "there is no solid 0");
+  CHECK_THROWS_AS(world.remove(one), std::invalid_argument);
+  world.remove(other);
+}
+
+TEST_CASE("solids that are none are refused") {
+  const std::vector<Vector3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  using Triangles = std::vector<std::array<std::size_t, 3>>;
+  CHECK_NOTHROW(mesh(corners, Triangles{{0, 1, 2}}));
+  CHECK_THROWS_WITH(mesh(corners, Triangles{}), "a mesh has no triangles");
+  CHECK_THROWS_WITH(mesh(corners, Triangles{{0, 1, 3}}), "a mesh's triangle has no such corner");
+  const std::vector<Vector3d> broken{{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}};
+  CHECK_THROWS_AS(mesh(broken, Triangles{{0, 1, 2}}), std::invalid_argument);
+  CHECK_THROWS_AS(prism(Circle{{0, 0}, -1}, 1), std::invalid_argument);
+  CHECK_THROWS_AS(prism(Circle{{0, 0}, 1}, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sidestep
