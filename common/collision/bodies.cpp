@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/bodies.hpp"
 
+#include <array>
 #include <limits>
 
 namespace sidestep {
@@ -8,7 +9,7 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMoreCircles =
+constexpr std::size_t kMoreRecords =
     128;  // than slots, as words of bits have, and one of bits that are not there
 
 bool touches_one(const void* bodies, Slot slot, const double* from_m, const double* to_m, double radius_m) {
@@ -21,7 +22,7 @@ bool touches_one(const void* bodies, Slot slot, const double* from_m, const doub
 float rounded_down(double value) { return std::nextafter(static_cast<float>(value), -kInfinite); }
 float rounded_up(double value) { return std::nextafter(static_cast<float>(value), kInfinite); }
 
-Bodies::Bodies(std::vector<Shape> shapes) : circles_(kMoreCircles) {
+Bodies::Bodies(std::vector<Shape> shapes) : records_(kMoreRecords) {
   if (shapes.empty()) return;
   Box box = bounds(shapes.front());
   for (const Shape& shape : shapes) box = around(box, bounds(shape));
@@ -34,7 +35,7 @@ Slot Bodies::add(Shape shape) {
   if (free_.empty()) {
     shapes_.push_back(std::move(shape));
     places_.push_back(kNowhere);
-    circles_.emplace_back();
+    records_.emplace_back();
   } else {
     slot = free_.back();
     free_.pop_back();
@@ -42,6 +43,7 @@ Slot Bodies::add(Shape shape) {
   }
   places_[slot] = static_cast<std::uint32_t>(slots_.size());
   slots_.push_back(slot);
+  records_[slot].edges = kNowhere;
   record(slot);
   return slot;
 }
@@ -57,22 +59,60 @@ void Bodies::remove(Slot slot) {
   slots_.pop_back();
   places_[slot] = kNowhere;
   shapes_[slot] = Circle{};
+  if (records_[slot].edges != kNowhere) unused_edges_ += edges_[records_[slot].edges].more + 1;
+  if (unused_edges_ > edges_.size() / 2) compact();
   free_.push_back(slot);
 }
 
 void Bodies::record(Slot slot) {
-  const Box box = bounds(shapes_[slot]);
+  const Shape& shape = shapes_[slot];
+  const Box box = bounds(shape);
   farthest_m_ = std::max({farthest_m_, (box.min_m - origin_m_).cwiseAbs().maxCoeff(),
                           (box.max_m - origin_m_).cwiseAbs().maxCoeff()});
-  const auto* circle = std::get_if<Circle>(&shapes_[slot]);
-  if (circle == nullptr) {
-    circles_[slot] = {0, 0, kNan, 0};
-    return;
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    const Vec2 centre = circle->centre_m - origin_m_;
+    records_[slot] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
+                      static_cast<float>(circle->radius_m), kNowhere};
+    largest_radius_m_ = std::max(largest_radius_m_, circle->radius_m);
+  } else if (std::holds_alternative<Box>(shape)) {
+    record_edges(slot, corners_of(std::get<Box>(shape)));
+  } else if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) {
+    record_edges(slot, polygon->corners_m);
+  } else {
+    record_edges(slot, std::array{std::get<Segment>(shape).from_m, std::get<Segment>(shape).to_m});
   }
-  const Vec2 centre = circle->centre_m - origin_m_;
-  circles_[slot] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
-                    static_cast<float>(circle->radius_m), 0};
-  largest_radius_m_ = std::max(largest_radius_m_, circle->radius_m);
+}
+
+void Bodies::record_edges(Slot slot, std::span<const Vec2> corners) {
+  const auto blocks = static_cast<std::uint32_t>((corners.size() + 3) / 4);
+  std::uint32_t& first = records_[slot].edges;
+  if (first == kNowhere) {
+    first = static_cast<std::uint32_t>(edges_.size());
+    edges_.resize(edges_.size() + blocks);
+  }
+  records_[slot] = {0, 0, kNan, first};
+  for (std::uint32_t i = 0; i < 4 * blocks; ++i) {
+    collision::EdgeBlock& block = edges_[first + i / 4];
+    const std::size_t at = std::min<std::size_t>(i, corners.size() - 1);
+    const Vec2 begin = corners[at] - origin_m_, way = corners[(at + 1) % corners.size()] - corners[at];
+    const Vec2 along = way / std::max(way.squaredNorm(), 1e-24);
+    block.x_m[i % 4] = static_cast<float>(begin.x());
+    block.y_m[i % 4] = static_cast<float>(begin.y());
+    block.way_x_m[i % 4] = static_cast<float>(way.x());
+    block.way_y_m[i % 4] = static_cast<float>(way.y());
+    block.along_x_per_m[i % 4] = static_cast<float>(along.x());
+    block.along_y_per_m[i % 4] = static_cast<float>(along.y());
+    block.more = blocks - 1 - i / 4;
+  }
+}
+
+void Bodies::compact() {
+  edges_.clear();
+  unused_edges_ = 0;
+  for (const Slot slot : slots_) {
+    records_[slot].edges = kNowhere;
+    record(slot);
+  }
 }
 
 bool Bodies::touches(Slot slot, const Sweep& sweep) const {
@@ -90,7 +130,7 @@ NearestSlot Bodies::nearest(const Vec2& at) const {
   const Vec2 place = at - origin_m_;
   const double slack_m = 8 * 0x1p-24 * (farthest_m_ + largest_radius_m_);
   for (const Slot slot : slots_) {
-    const collision::CircleRecord& circle = circles_[slot];
+    const collision::BodyRecord& circle = records_[slot];
     const double dx = circle.x_m - place.x(), dy = circle.y_m - place.y();
     const double reach = nearest.distance_m + circle.radius_m + slack_m;
     // Also what has no number for a radius, as it is no circle.
@@ -108,7 +148,8 @@ collision::BodiesView Bodies::view() const {
           rounded_up(largest_radius_m_),
           rounded_down(limit_m),
           rounded_up(error_m),
-          circles_.data(),
+          records_.data(),
+          edges_.data(),
           touches_one,
           this};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "common/collision/batch/kernels.hpp"
@@ -53,13 +54,18 @@ class Bodies {
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
   void record(Slot slot);
+  void record_edges(Slot slot, std::span<const Vec2> corners);
+  /// Takes edges anew, without those of shapes that are gone.
+  void compact();
 
   std::vector<Shape> shapes_;
   std::vector<std::uint32_t> places_;  // in slots_, by slot
   std::vector<Slot> slots_, free_;
   Vec2 origin_m_{0, 0};
   double farthest_m_ = 0, largest_radius_m_ = 0;  // of anything, from the origin along an axis; of a circle
-  std::vector<collision::CircleRecord> circles_;  // by slot, and some more
+  std::vector<collision::BodyRecord> records_;    // by slot, and some more
+  std::vector<collision::EdgeBlock> edges_;
+  std::size_t unused_edges_ = 0;  // blocks
 };
 
 /// A number in single precision that is surely not above, or not below.

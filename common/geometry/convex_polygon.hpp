@@ -21,19 +21,20 @@ inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
   for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
     const Segment edge{corners[last], corners[i]};
     nearest2 = std::min(nearest2, squared_distance(p, edge));
-    inside = inside && cross(edge.to_m - edge.from_m, p - edge.from_m) >= 0;
+    inside = inside && cross(edge.to_m - edge.from_m, p - edge.from_m) > 0;
   }
   return inside ? -std::sqrt(nearest2) : std::sqrt(nearest2);
 }
 
-/// The square of the distance from a segment to the convex polygon with these corners, 0 inside.
+/// The square of the distance from a segment to the convex polygon with these corners, 0 inside. The polygon may be
+/// as thin as a line.
 inline double squared_distance(const Segment& s, std::span<const Vec2> corners) {
   double nearest2 = std::numeric_limits<double>::infinity();
   bool inside = true;
   for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
     const Segment edge{corners[last], corners[i]};
     nearest2 = std::min(nearest2, squared_distance(s, edge));
-    inside = inside && cross(edge.to_m - edge.from_m, s.from_m - edge.from_m) >= 0;
+    inside = inside && cross(edge.to_m - edge.from_m, s.from_m - edge.from_m) > 0;
   }
   return inside ? 0 : nearest2;
 }

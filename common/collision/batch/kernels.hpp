@@ -10,18 +10,29 @@ namespace sidestep::collision {
 inline constexpr std::size_t kLanes = 16;     ///< of a block, whatever the machine's vectors hold
 inline constexpr std::size_t kBuckets = 128;  ///< into which an axis is divided for masks
 
-/// An obstacle by slot, in metres from the origin. What has no number for a radius is not a circle.
-struct alignas(16) CircleRecord {
-  float x_m, y_m, radius_m, unused;
+/// An obstacle by slot, in metres from the origin: a circle, or, where there is no number for a radius, what
+/// has edges from a block on.
+struct alignas(16) BodyRecord {
+  float x_m, y_m, radius_m;
+  std::uint32_t edges;
+};
+
+/// Four edges of a convex shape, which lies to the left of all, one to a lane: where they begin, the way
+/// along them, and that over its squared length. A segment has two, there and back; the last one may fill
+/// more lanes.
+struct alignas(32) EdgeBlock {
+  float x_m[4], y_m[4], way_x_m[4], way_y_m[4], along_x_per_m[4], along_y_per_m[4];
+  std::uint32_t more;  ///< blocks of the same shape that follow
 };
 
 /// Obstacles one by one, and what single precision has to know of all of them.
 struct BodiesView {
   double origin_m[2];
-  float largest_radius_m;       ///< of a circle
-  float limit_m;                ///< places and radii in queries are not decided in single precision beyond
-  float error_m;                ///< more than a distance up to there may be wrong by
-  const CircleRecord* circles;  ///< by slot; some more may be read
+  float largest_radius_m;     ///< of a circle
+  float limit_m;              ///< places and radii in queries are not decided in single precision beyond
+  float error_m;              ///< more than a distance up to there may be wrong by
+  const BodyRecord* records;  ///< by slot; some more may be read
+  const EdgeBlock* edges;
   /// Compares exactly.
   bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
                   double radius_m);

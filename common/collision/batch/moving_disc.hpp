@@ -29,8 +29,9 @@ inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, co
   d.along_x_per_m = along[0];
   d.along_y_per_m = along[1];
   d.radius_m = static_cast<float>(radius_m);
-  // Near the reach, a squared distance with an error e is wrong by at most 2 R e + e^2.
-  d.doubt_m2 = 2 * bodies.error_m * (d.radius_m + bodies.largest_radius_m + bodies.error_m);
+  // Near the reach, a squared distance with an error e is wrong by at most 2 R e + e^2; and edges may cross
+  // that come out 2 e apart.
+  d.doubt_m2 = 2 * bodies.error_m * (d.radius_m + bodies.largest_radius_m + 4 * bodies.error_m);
   const FourFloats sizes = larger(d.ends_m, -d.ends_m);
   d.is_sound = (not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf) & (radius_m >= 0) &
                (d.radius_m <= bodies.limit_m);
@@ -61,9 +62,9 @@ struct Touched {
 };
 
 inline Touched touched(const Query& query, const std::uint32_t* slots) {
-  const CircleRecord* circles = query.bodies.circles;
-  const FourFloats a = load<FourFloats>(&circles[slots[0]].x_m), b = load<FourFloats>(&circles[slots[1]].x_m);
-  const FourFloats c = load<FourFloats>(&circles[slots[2]].x_m), d = load<FourFloats>(&circles[slots[3]].x_m);
+  const BodyRecord* records = query.bodies.records;
+  const FourFloats a = load<FourFloats>(&records[slots[0]].x_m), b = load<FourFloats>(&records[slots[1]].x_m);
+  const FourFloats c = load<FourFloats>(&records[slots[2]].x_m), d = load<FourFloats>(&records[slots[3]].x_m);
   const FourFloats ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
   const FourFloats cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
   const FourFloats ab_radius = __builtin_shufflevector(a, b, 2, 6, 3, 7);
@@ -77,13 +78,73 @@ inline Touched touched(const Query& query, const std::uint32_t* slots) {
   return {surely, open};
 }
 
-/// Whether one of the obstacles is touched that `slot` says for the bits set, as the exact comparison says.
+/// The squares of distances from the nearest points of ways along which there is so much.
+template <typename V>
+inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, const V& way_x_m,
+                           const V& way_y_m) {
+  const V part = smaller(larger(along, all<V>(0)), all<V>(1));
+  const V ex = off_x_m - part * way_x_m, ey = off_y_m - part * way_y_m;
+  return ex * ex + ey * ey;
+}
+
+/// Whether a shape with edges is touched: where the way's ends are near to an edge, an edge's begin is near
+/// to the way, they cross, or the way begins within all edges.
+inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::uint32_t first) {
+  const EdgeBlock* block = bodies.edges + first;
+  const FourFloats error = all<FourFloats>(bodies.error_m);
+  bool doubtful = false, inside = true;
+  for (std::uint32_t more = block->more;; --more, ++block) {
+    const FourFloats way_x = load<FourFloats>(block->way_x_m), way_y = load<FourFloats>(block->way_y_m);
+    const FourFloats along_x = load<FourFloats>(block->along_x_per_m),
+                     along_y = load<FourFloats>(block->along_y_per_m);
+    const FourFloats x = d.ends_m[0] - load<FourFloats>(block->x_m),
+                     y = d.ends_m[1] - load<FourFloats>(block->y_m);
+    const FourFloats to_x = x + d.way_x_m, to_y = y + d.way_y_m;
+    const FourFloats nearest2 =
+        smaller(smaller(squared_distances(x, y, x * along_x + y * along_y, way_x, way_y),
+                        squared_distances(to_x, to_y, to_x * along_x + to_y * along_y, way_x, way_y)),
+                squared_distances(-x, -y, -x * d.along_x_per_m - y * d.along_y_per_m,
+                                  all<FourFloats>(d.way_x_m), all<FourFloats>(d.way_y_m)));
+    const FourFloats gap = nearest2 - all<FourFloats>(d.radius_m * d.radius_m);
+    // On which sides of the edge the way's ends are, and of the way those of the edge, times the other's
+    // length.
+    const FourFloats turn = d.way_x_m * way_y - d.way_y_m * way_x;
+    const FourFloats from = way_x * y - way_y * x, to = from - turn;
+    const FourFloats begin = d.way_y_m * x - d.way_x_m * y, end = begin + turn;
+    const FourFloats edge_room = error * (larger(way_x, -way_x) + larger(way_y, -way_y));
+    const FourFloats way_room =
+        error * all<FourFloats>(__builtin_fabsf(d.way_x_m) + __builtin_fabsf(d.way_y_m));
+    const FourFloats apart = larger(larger(smaller(from, to) + edge_room, edge_room - larger(from, to)),
+                                    larger(smaller(begin, end) + way_room, way_room - larger(begin, end)));
+    const unsigned touched = not_above(gap, all<FourFloats>(-d.doubt_m2));
+    const unsigned apart_bits = not_above(all<FourFloats>(0), apart);
+    if (touched != 0 || apart_bits != 0xf) return Answer::kTouches;
+    doubtful |= not_above(gap, all<FourFloats>(d.doubt_m2)) != 0;
+    inside &= not_above(from, edge_room) == 0;
+    if (more == 0) break;
+  }
+  return inside ? Answer::kTouches : doubtful ? Answer::kInDoubt : Answer::kClear;
+}
+
+/// Whether an obstacle is touched that is not a circle, or a circle touched but for rounding.
+inline bool touches_open(const BodiesView& bodies, const MovingDisc& disc, const double* from_m,
+                         const double* to_m, double radius_m, std::uint32_t slot) {
+  const BodyRecord& record = bodies.records[slot];
+  Answer answer = Answer::kInDoubt;
+  if (record.radius_m != record.radius_m) answer = touches_edges(bodies, disc, record.edges);
+  if (answer == Answer::kInDoubt) [[unlikely]]
+    return bodies.touches(bodies.bodies, slot, from_m, to_m, radius_m);
+  return answer == Answer::kTouches;
+}
+
+/// The same for the open ones of the first four whose bits are set.
 template <typename SlotOf>
-[[gnu::noinline, gnu::cold]] bool touches_exactly(const BodiesView& bodies, const double* from_m,
-                                                  const double* to_m, double radius_m, std::uint64_t bits,
-                                                  SlotOf slot) {
-  for (; bits != 0; bits &= bits - 1) {
-    if (bodies.touches(bodies.bodies, slot(lowest(bits)), from_m, to_m, radius_m)) return true;
+[[gnu::noinline]] bool touches_any_open(const BodiesView& bodies, const double* from_m, const double* to_m,
+                                        double radius_m, std::uint64_t bits, unsigned open, SlotOf slot) {
+  const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
+  for (; open != 0; open >>= 1, bits &= bits - 1) {
+    if ((open & 1) != 0 && touches_open(bodies, disc, from_m, to_m, radius_m, slot(lowest(bits))))
+      return true;
   }
   return false;
 }
@@ -98,9 +159,10 @@ inline bool touches_marked(const Query& query, std::uint64_t bits, const SlotOf&
                                    slot(lowest(bits3))};
     const Touched found = touched(query, four);
     const unsigned wanted = lowest_four(bits);
-    const bool touches = (found.surely & wanted) != 0;
-    if ((found.open & wanted) != 0) [[unlikely]]
-      return touches || touches_exactly(query.bodies, query.from_m, query.to_m, query.radius_m, bits, slot);
+    bool touches = (found.surely & wanted) != 0;
+    if (const unsigned open = found.open & wanted; open != 0) [[unlikely]]
+      touches = touches ||
+                touches_any_open(query.bodies, query.from_m, query.to_m, query.radius_m, bits, open, slot);
     bits = bits3 & (bits3 - 1);
     if (bits == 0 || touches) return touches;
   }

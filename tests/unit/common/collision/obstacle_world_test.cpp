@@ -41,7 +41,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double l
     const Vec2 to = rng.chance(0.1) ? from : from + random_way(rng, longest_m);
     const double distance = exact_distance(world, from, to);
     // Many radii are about where the answer changes.
-    double radius = rng.uniform(0, 0.2 * half_m);
+    double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.2 * half_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
     if (std::abs(distance - radius) > kTolerance_m)
@@ -83,6 +83,43 @@ TEST_CASE("a world of circles answers as the distances to them do") {
             Circle{random_place(rng, 5), rng.uniform(0, 3 / std::sqrt(static_cast<double>(count)))});
       const ObstacleWorld world(circles, structure, kernels);
       check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), count < 1000 ? 300 : 50);
+    }
+  }
+}
+
+TEST_CASE("shapes and ways on whole numbers are no special case") {
+  const std::uint64_t seed = GENERATE(range(1, 8));
+  Rng rng(seed);
+  const auto whole_place = [&] {
+    return Vec2(static_cast<double>(rng.below(9)) - 4, static_cast<double>(rng.below(9)) - 4);
+  };
+  // Some are points, lines or on one line with a way.
+  std::vector<Shape> shapes;
+  for (int i = 0; i < 12; ++i) {
+    const Vec2 a = whole_place(), b = whole_place();
+    shapes.push_back(Segment{a, rng.chance(0.2) ? a : b});
+    shapes.push_back(Box{a.cwiseMin(b), a.cwiseMax(b).cwiseMin(a.cwiseMin(b) + Vec2(1, 1))});
+    shapes.push_back(ConvexPolygon{{b, b + Vec2(1, 0), b + Vec2(2, 0), b + Vec2(2, 1), b + Vec2(1, 1.5)}});
+    shapes.push_back(Circle{b, rng.chance(0.5) ? 0 : 0.5});
+    const std::size_t first = rng.below(shapes.size());
+    shapes.erase(shapes.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+  for (const Structure structure : kStructures) {
+    for (const collision::Kernels& kernels : collision::available_kernels()) {
+      CAPTURE(seed, structure, kernels.name);
+      std::size_t number = 1;
+      for (const Shape& shape : shapes) {
+        // Few at a time, or nearly every way touches.
+        const ObstacleWorld world({shape, shapes[number++ % shapes.size()]}, structure, kernels);
+        for (int i = 0; i < 60; ++i) {
+          const Vec2 from = whole_place(), to = whole_place();
+          const double radius = 0.5 * static_cast<double>(rng.below(3)),
+                       distance = exact_distance(world, from, to);
+          CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
+          if (distance > radius + kTolerance_m) CHECK_FALSE(world.touches(from, to, radius));
+          if (distance < radius + kTolerance_m) CHECK(world.touches(from, to, radius + 2 * kTolerance_m));
+        }
+      }
     }
   }
 }
