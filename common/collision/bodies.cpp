@@ -144,10 +144,13 @@ collision::BodiesView Bodies::view() const {
   // what the way's foot adds, across the way, distances are wrong by less than 16 of them.
   constexpr double kRounding = 0x1p-24;
   const double limit_m = 4 * farthest_m_, error_m = 16 * kRounding * limit_m;
+  // Near a reach R, a squared distance with an error e is wrong by at most 2 R e + e^2; and edges may cross
+  // that come out 2 e apart.
   return {{origin_m_.x(), origin_m_.y()},
-          rounded_up(largest_radius_m_),
           rounded_down(limit_m),
           rounded_up(error_m),
+          rounded_up(2 * error_m),
+          rounded_up(2 * error_m * (largest_radius_m_ + 5 * error_m)),
           records_.data(),
           edges_.data(),
           touches_one,

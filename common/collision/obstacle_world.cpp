@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMostInLine = 32, kMostInMasks = 256;
+constexpr std::size_t kMostInLine = 8, kMostInMasks = 512;
 
 std::vector<Shape> checked(std::vector<Shape> shapes) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -85,25 +85,45 @@ inline FourInts buckets(const MasksView& view, const BodiesView& bodies, const M
                                  __builtin_shufflevector(ends, turned, 2, 3, 6, 7)) -
                          (disc.radius_m + bodies.error_m);
   const FourFloats scaled = low * load<FourFloats>(view.per_m) + load<FourFloats>(view.shift);
-  return __builtin_convertvector(smaller(larger(scaled, all<FourFloats>(0)), all<FourFloats>(kBuckets - 1)),
-                                 FourInts);
+  const FourInts bucket = __builtin_convertvector(smaller(scaled, all<FourFloats>(kBuckets - 1)), FourInts);
+  return bucket > 0 ? bucket : FourInts{};
 }
 
-template <bool kIsOneWord>
+/// The rows for the buckets of what the disc sweeps.
+struct Rows {
+  const std::uint64_t* row[4];
+
+  std::uint64_t candidates(std::size_t word) const {
+    return row[0][word] & row[1][word] & row[2][word] & row[3][word];
+  }
+};
+
+inline Rows rows(const MasksView& view, const FourInts& bucket, std::size_t words) {
+  Rows found;
+  for (std::size_t i = 0; i < 4; ++i)
+    found.row[i] = view.rows + (i * kBuckets + static_cast<std::uint32_t>(bucket[i])) * words;
+  return found;
+}
+
+Answer one_word_masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+  const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
+  if (!query.disc.is_sound) [[unlikely]]
+    return Answer::kInDoubt;
+  const std::uint64_t bits =
+      rows(world.masks, buckets(world.masks, world.bodies, query.disc), 1).candidates(0);
+  if (bits == 0) return Answer::kClear;
+  return static_cast<Answer>(touches_marked(query, bits, [](unsigned bit) { return bit; }));
+}
+
 Answer masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
   const MasksView& view = world.masks;
   const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_sound) [[unlikely]]
     return Answer::kInDoubt;
-  const FourInts bucket = buckets(view, world.bodies, query.disc);
-  const std::size_t words = kIsOneWord ? 1 : view.words;
-  const std::uint64_t* row[4];
-  for (std::size_t i = 0; i < 4; ++i)
-    row[i] = view.rows + (i * kBuckets + static_cast<std::uint32_t>(bucket[i])) * words;
-  for (std::size_t word = 0; word < words; ++word) {
-    const std::uint64_t bits = row[0][word] & row[1][word] & row[2][word] & row[3][word];
+  const Rows found = rows(view, buckets(view, world.bodies, query.disc), view.words);
+  for (std::size_t word = 0; word < view.words; ++word) {
+    const std::uint64_t bits = found.candidates(word);
     const auto slot = [word](unsigned bit) { return static_cast<std::uint32_t>(word) * 64 + bit; };
-    if (kIsOneWord) return static_cast<Answer>(touches_marked(query, bits, slot));
     if (bits != 0 && touches_marked(query, bits, slot)) return Answer::kTouches;
   }
   return Answer::kClear;
@@ -133,6 +153,6 @@ Answer tree(const WorldView& world, const double* from_m, const double* to_m, do
 
 }  // namespace
 
-const Kernels SIDESTEP_KERNELS{SIDESTEP_LEVEL, linear, masks<true>, masks<false>, tree};
+const Kernels SIDESTEP_KERNELS{SIDESTEP_LEVEL, linear, one_word_masks, masks, tree};
 
 }  // namespace sidestep::collision

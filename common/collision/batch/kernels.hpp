@@ -8,7 +8,7 @@
 namespace sidestep::collision {
 
 inline constexpr std::size_t kLanes = 16;     ///< of a block, whatever the machine's vectors hold
-inline constexpr std::size_t kBuckets = 128;  ///< into which an axis is divided for masks
+inline constexpr std::size_t kBuckets = 256;  ///< into which an axis is divided for masks
 
 /// An obstacle by slot, in metres from the origin: a circle, or, where there is no number for a radius, what
 /// has edges from a block on.
@@ -28,9 +28,11 @@ struct alignas(32) EdgeBlock {
 /// Obstacles one by one, and what single precision has to know of all of them.
 struct BodiesView {
   double origin_m[2];
-  float largest_radius_m;     ///< of a circle
-  float limit_m;              ///< places and radii in queries are not decided in single precision beyond
-  float error_m;              ///< more than a distance up to there may be wrong by
+  float limit_m;  ///< places and radii in queries are not decided in single precision beyond
+  float error_m;  ///< more than a distance up to there may be wrong by
+  /// How wrong differences of squared distances may be that come out near 0: a factor for a query's radius,
+  /// and what is added to that.
+  float doubt_per_m, least_doubt_m2;
   const BodyRecord* records;  ///< by slot; some more may be read
   const EdgeBlock* edges;
   /// Compares exactly.

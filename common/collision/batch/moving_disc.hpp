@@ -15,6 +15,14 @@ struct MovingDisc {
   bool is_sound;   ///< all is finite, and near enough for single precision
 };
 
+/// The bits of a number; those of numbers that are not negative are in the order of the numbers, all others
+/// are above.
+inline std::uint32_t pattern(float value) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
 inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, const double* to_m,
                               double radius_m) {
   const TwoDoubles origin = load_two(bodies.origin_m);
@@ -29,12 +37,10 @@ inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, co
   d.along_x_per_m = along[0];
   d.along_y_per_m = along[1];
   d.radius_m = static_cast<float>(radius_m);
-  // Near the reach, a squared distance with an error e is wrong by at most 2 R e + e^2; and edges may cross
-  // that come out 2 e apart.
-  d.doubt_m2 = 2 * bodies.error_m * (d.radius_m + bodies.largest_radius_m + 4 * bodies.error_m);
+  d.doubt_m2 = bodies.doubt_per_m * d.radius_m + bodies.least_doubt_m2;
   const FourFloats sizes = larger(d.ends_m, -d.ends_m);
-  d.is_sound = (not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf) & (radius_m >= 0) &
-               (d.radius_m <= bodies.limit_m);
+  d.is_sound = (not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf) &
+               (pattern(d.radius_m) <= pattern(bodies.limit_m));
   return d;
 }
 
