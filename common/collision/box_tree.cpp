@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/box_tree.hpp"
 
+#include <bit>
+
 #include "common/collision/box_tree_split.hpp"
 
 namespace sidestep {
@@ -225,22 +227,37 @@ NearestSlot BoxTree::nearest(const Vec2& at, const Bodies& bodies) const {
 
 void BoxTree::find_nearest(NodeId id, const Vec2& at, const Bodies& bodies, NearestSlot& nearest) const {
   const TreeNode& node = nodes_[id];
-  const Vec2 place = at - origin_m_;
+  const double x = at.x() - origin_m_.x(), y = at.y() - origin_m_.y();
+  // Lower bounds, also to borders within: nothing in a box is deeper than the box. Lanes without one are
+  // passed over.
   double distances_m[kLanes];
-  for (std::uint32_t lane = 0; lane < node.count; ++lane) {
-    const FloatBox box = lane_box(node, lane);
-    // Also to a border within: nothing in a box is deeper than the box.
-    distances_m[lane] = signed_distance(place, Box{{box.min_x_m, box.min_y_m}, {box.max_x_m, box.max_y_m}});
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const double left = node.boxes.min_x_m[lane] - x, right = x - node.boxes.max_x_m[lane];
+    const double below = node.boxes.min_y_m[lane] - y, above = y - node.boxes.max_y_m[lane];
+    const double dx = left > right ? left : right, dy = below > above ? below : above;
+    const double out_x = dx > 0 ? dx : 0, out_y = dy > 0 ? dy : 0, deep = dx > dy ? dx : dy;
+    const double out = std::sqrt(out_x * out_x + out_y * out_y);
+    distances_m[lane] = deep > 0 ? out : deep;
   }
-  for (std::uint32_t next = 0; next < node.count; ++next) {
-    const auto lane =
-        static_cast<std::uint32_t>(std::min_element(distances_m, distances_m + node.count) - distances_m);
-    if (distances_m[lane] >= nearest.distance_m) return;
-    distances_m[lane] = std::numeric_limits<double>::infinity();
+  std::uint32_t open = (1u << node.count) - 1;
+  while (open != 0) {
+    std::uint32_t nearest_lane = 0;
+    double least_m = std::numeric_limits<double>::infinity();
+    for (std::uint32_t bits = open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (distances_m[lane] >= nearest.distance_m) {
+        open &= ~(1u << lane);
+      } else if (distances_m[lane] < least_m) {
+        least_m = distances_m[lane];
+        nearest_lane = lane;
+      }
+    }
+    if (open == 0) return;
+    open &= ~(1u << nearest_lane);
     if (node.is_leaf)
-      bodies.compare(node.children[lane], at, nearest);
+      bodies.compare(node.children[nearest_lane], at, nearest);
     else
-      find_nearest(node.children[lane], at, bodies, nearest);
+      find_nearest(node.children[nearest_lane], at, bodies, nearest);
   }
 }
 

@@ -31,20 +31,31 @@ ExtentMasks::ExtentMasks(const Bodies& bodies)
 
 void ExtentMasks::add(Slot slot, const Shape& shape) {
   if (slot >= words_ * kBits) widen(2 * words_);
+  if (slot >= ends_.size()) ends_.resize(slot + 1, kNone);
   replace(slot, shape);
 }
 
 void ExtentMasks::replace(Slot slot, const Shape& shape) {
   const Box box = bounds(shape);
+  Ends ends{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto row = static_cast<Eigen::Index>(axis);
-    mark(axis, slot, 0, bucket(axis, box.max_m[row] - origin_m_[row]) + 1);
-    mark(axis + 2, slot, bucket(axis, box.min_m[row] - origin_m_[row]), kBuckets);
+    const auto at = static_cast<Eigen::Index>(axis);
+    ends[axis] = static_cast<std::uint16_t>(bucket(axis, box.max_m[at] - origin_m_[at]) + 1);
+    ends[axis + 2] = static_cast<std::uint16_t>(bucket(axis, box.min_m[at] - origin_m_[at]));
   }
+  set_ends(slot, ends);
 }
 
-void ExtentMasks::remove(Slot slot) {
-  for (std::size_t table = 0; table < kTables; ++table) mark(table, slot, 0, 0);
+void ExtentMasks::remove(Slot slot) { set_ends(slot, kNone); }
+
+void ExtentMasks::set_ends(Slot slot, const Ends& ends) {
+  const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
+  for (std::size_t table = 0; table < kTables; ++table) {
+    const std::size_t before = ends_[slot][table], after = ends[table];
+    for (std::size_t row = std::min(before, after); row < std::max(before, after); ++row)
+      rows_[(table * kBuckets + row) * words_ + slot / kBits] ^= bit;
+  }
+  ends_[slot] = ends;
 }
 
 std::size_t ExtentMasks::bucket(std::size_t axis, double at_m) const {
@@ -59,14 +70,6 @@ void ExtentMasks::find_rows(const Box& box, const std::uint64_t* (&row)[4]) cons
     const std::size_t high = bucket(axis, box.max_m[at] - origin_m_[at]);
     row[axis] = &rows_[(axis * kBuckets + low) * words_];
     row[axis + 2] = &rows_[((axis + 2) * kBuckets + high) * words_];
-  }
-}
-
-void ExtentMasks::mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row) {
-  const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
-  for (std::size_t row = 0; row < kBuckets; ++row) {
-    std::uint64_t& word = rows_[(table * kBuckets + row) * words_ + slot / kBits];
-    word = first_row <= row && row < end_row ? word | bit : word & ~bit;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <bit>
 
 #include "common/collision/bodies.hpp"
@@ -39,14 +40,20 @@ class ExtentMasks {
   /// Of a number in metres from the origin.
   std::size_t bucket(std::size_t axis, double at_m) const;
   void find_rows(const Box& box, const std::uint64_t* (&row)[4]) const;
-  /// Sets the slot's bits for rows of a table, and takes them from the others.
-  void mark(std::size_t table, Slot slot, std::size_t first_row, std::size_t end_row);
+  /// How many of a table's first rows have the slot's bit set, or, of those of begins, do not: 0 and all for
+  /// none.
+  using Ends = std::array<std::uint16_t, 4>;
+  static constexpr Ends kNone{0, 0, collision::kBuckets, collision::kBuckets};
+
+  /// Changes the slot's bits where the ends differ.
+  void set_ends(Slot slot, const Ends& ends);
   void widen(std::size_t words);
 
   std::size_t words_ = 1;
   Vec2 origin_m_;
   float per_m_[4], shift_[4];
   std::vector<std::uint64_t> rows_;
+  std::vector<Ends> ends_;  // by slot
 };
 
 }  // namespace sidestep

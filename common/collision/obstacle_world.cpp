@@ -94,7 +94,8 @@ std::optional<Contact> ObstacleWorld::first_contact(const Vec2& from, const Vec2
   else if (const auto* tree = std::get_if<BoxTree>(&parts_.set))
     tree->each_overlapping(box, meet);
   else
-    std::for_each(parts_.bodies.slots().begin(), parts_.bodies.slots().end(), meet);
+    for (const Slot slot : parts_.bodies.slots())
+      if (overlap(bounds(parts_.bodies.shape(slot)), box)) meet(slot);
   return first;
 }
 

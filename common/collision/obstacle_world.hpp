@@ -86,7 +86,7 @@ class ObstacleWorld {
 
   Parts parts_;
   collision::WorldView view_{};
-  collision::Sweep sweep_ = nullptr;
+  collision::SweepKernel sweep_ = nullptr;
 };
 
 }  // namespace sidestep

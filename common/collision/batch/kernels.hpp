@@ -99,12 +99,13 @@ struct WorldView {
 
 /// Whether a disc on its way touches an obstacle. In doubt are ways that are not finite or far away, negative
 /// radii, and, with the linear array, circles touched but for rounding: then all has to be compared exactly.
-using Sweep = Answer (*)(const WorldView& world, const double* from_m, const double* to_m, double radius_m);
+using SweepKernel = Answer (*)(const WorldView& world, const double* from_m, const double* to_m,
+                               double radius_m);
 
 /// The inner loops of collision detection for one instruction set.
 struct Kernels {
   const char* name;
-  Sweep linear, one_word_masks, masks, tree;
+  SweepKernel linear, one_word_masks, masks, tree;
 };
 
 }  // namespace sidestep::collision
