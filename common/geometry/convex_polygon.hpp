@@ -26,8 +26,8 @@ inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
   return inside ? -std::sqrt(nearest2) : std::sqrt(nearest2);
 }
 
-/// The square of the distance from a segment to the convex polygon with these corners, 0 inside. The polygon may be
-/// as thin as a line.
+/// The square of the distance from a segment to the convex polygon with these corners, 0 inside. The polygon
+/// may be as thin as a line.
 inline double squared_distance(const Segment& s, std::span<const Vec2> corners) {
   double nearest2 = std::numeric_limits<double>::infinity();
   bool inside = true;

@@ -14,7 +14,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr std::size_t kQueries = 100'000, kRounds = 9;
+constexpr std::size_t kQueries = 100'000, kRounds = 5;
 constexpr double kCovered = 0.2;
 constexpr std::uint64_t kSeed = 1;
 
@@ -173,7 +173,7 @@ bool compare(std::size_t count, bool circles_only) {
   if (circles_only && count <= 4096) sides.push_back(side("plain vectorised array", false, problem, plain));
   sides.push_back(side("Boost R-tree", false, problem, boost));
   // FCL iterates up to 1e-6 for shapes other than circles, and takes its time.
-  if (circles_only || count <= 1024)
+  if (circles_only || count <= 256)
     sides.push_back(side("FCL dynamic AABB tree", false, problem, fcl, circles_only ? 1e-9 : 1e-6));
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (Side& s : sides) {
