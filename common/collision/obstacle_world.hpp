@@ -66,6 +66,8 @@ class ObstacleWorld {
   std::size_t size() const { return parts_.bodies.slots().size(); }
   bool has(ObstacleId obstacle) const { return parts_.bodies.has(static_cast<Slot>(obstacle)); }
   const Shape& shape(ObstacleId obstacle) const;
+  /// One of the size() obstacles, in no order.
+  ObstacleId obstacle(std::size_t i) const { return ObstacleId{parts_.bodies.slots()[i]}; }
   /// Of all obstacles, in no order; until one is added or removed.
   std::vector<ObstacleId> obstacles() const;
 
