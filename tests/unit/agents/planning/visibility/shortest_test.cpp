@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <queue>
+
+#include "agents/planning/visibility/lazy_visibility.hpp"
+#include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/planning/worlds.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Independent and slow: Dijkstra over a grid whose cells are joined with all others up to three cells away,
+/// by sampling; its ways are at most 1.4 % longer than the shortest that keeps off by the grid's width.
+class SlowGrid {
+ public:
+  SlowGrid(const PlanWorld& world, double step_m, double keep_m) : world_(world), step_m_(step_m) {
+    cells_ = static_cast<int>(world.field.length_m / step_m);
+    PlanWorld grown = world;
+    grown.radius_m += keep_m;
+    free_.resize(static_cast<std::size_t>(cells_ * cells_));
+    for (int i = 0; i < cells_; ++i)
+      for (int j = 0; j < cells_; ++j) free_[index(i, j)] = is_free(grown, centre(i, j));
+  }
+
+  /// Infinite without a way.
+  double length_m(const Vec2& start, const Vec2& goal) const {
+    std::vector<double> length(free_.size(), std::numeric_limits<double>::infinity());
+    using Item = std::tuple<double, int, int>;
+    std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
+    const auto [sx, sy] = cell(start);
+    const auto [gx, gy] = cell(goal);
+    length[index(sx, sy)] = 0;
+    open.push({0, sx, sy});
+    while (!open.empty()) {
+      const auto [d, x, y] = open.top();
+      open.pop();
+      if (x == gx && y == gy) return d;
+      if (d > length[index(x, y)]) continue;
+      for (int dx = -3; dx <= 3; ++dx) {
+        for (int dy = -3; dy <= 3; ++dy) {
+          const int i = x + dx, j = y + dy;
+          if (i < 0 || j < 0 || i >= cells_ || j >= cells_ || !is_open(x, y, i, j)) continue;
+          const double next = d + step_m_ * std::hypot(dx, dy);
+          if (next >= length[index(i, j)]) continue;
+          length[index(i, j)] = next;
+          open.push({next, i, j});
+        }
+      }
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * cells_ + j); }
+  Vec2 centre(int i, int j) const {
+    return {(i + 0.5) * step_m_ - world_.field.length_m / 2, (j + 0.5) * step_m_ - world_.field.width_m / 2};
+  }
+  std::pair<int, int> cell(const Vec2& p) const {
+    return {static_cast<int>((p.x() + world_.field.length_m / 2) / step_m_),
+            static_cast<int>((p.y() + world_.field.width_m / 2) / step_m_)};
+  }
+  bool is_open(int x, int y, int i, int j) const {
+    const int steps = 2 * std::max(std::abs(i - x), std::abs(j - y));
+    for (int k = 1; k <= steps; ++k) {
+      const double part = double(k) / steps;
+      if (!free_[index(static_cast<int>(std::lround(x + part * (i - x))),
+                       static_cast<int>(std::lround(y + part * (j - y))))])
+        return false;
+    }
+    return true;
+  }
+
+  const PlanWorld& world_;
+  double step_m_;
+  int cells_;
+  std::vector<char> free_;
+};
+
+PlanWorld world_of(std::vector<Shape> obstacles) {
+  PlanWorld world;
+  world.obstacles = std::move(obstacles);
+  return world;
+}
+
+struct Shortest {
+  double exact_m, drawn_m, lazy_m;
+};
+
+Shortest plan_both(const PlanWorld& world, const Vec2& start, const Vec2& goal) {
+  const ObstacleWorld obstacles(world.obstacles);
+  TangentGraph graph(obstacles, world.field, world.radius_m);
+  const Plan<Vec2>& plan = graph.plan(start, goal);
+  REQUIRE(plan.arrives());
+  REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+  LazyVisibility lazy;
+  Rng rng(1);
+  const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+  const Plan<Vec2>& lazy_plan = lazy.plan(domain, start, {}, rng);
+  REQUIRE(lazy_plan.arrives());
+  REQUIRE(is_valid_way(world, lazy_plan.states, 0.003, 1e-9));
+  return {graph.shortest_m(), plan.length, lazy_plan.length};
+}
+
+}  // namespace
+
+TEST_CASE("the shortest way round a circle is two tangents and an arc") {
+  // start ---.._  _..--- goal, both 2 m from the middle of a circle of 0.4 m that the robot keeps 0.1 m from
+  const auto [exact, drawn, lazy] = plan_both(world_of({Circle{{0, 0}, 0.4}}), {-2, 0}, {2, 0});
+  const double expected = 2 * std::sqrt(4 - 0.25) + 0.5 * (kPi - 2 * std::acos(0.25));
+  CHECK(exact == Approx(expected).epsilon(1e-6));
+  CHECK(drawn == Approx(expected).epsilon(1e-4));
+  CHECK(lazy == Approx(expected).epsilon(3e-3));
+}
+
+TEST_CASE("the shortest way round a box bends at two corners") {
+  const auto [exact, drawn, lazy] = plan_both(world_of({Box{{-1, -3}, {1, 0.5}}}), {-2, 0}, {2, 0});
+  // To the tangent of a corner's arc, round it, along the edge, and the same again.
+  const double far = std::hypot(1, 0.5), straight = std::sqrt(far * far - 0.01);
+  const double turn = kPi / 2 - (kPi / 2 - std::atan2(0.5, 1)) + std::asin(0.1 / far);
+  const double expected = 2 * straight + 2 + 2 * 0.1 * turn;
+  CHECK(exact == Approx(expected).epsilon(1e-6));
+  CHECK(drawn == Approx(expected).epsilon(1e-4));
+  CHECK(lazy == Approx(expected).epsilon(3e-3));
+}
+
+TEST_CASE("the shortest way round a wall's end turns by half a circle") {
+  const auto [exact, drawn, lazy] =
+      plan_both(world_of({Segment{{0, -5}, {0, 3}}}), {-0.100001, 0}, {0.100001, 0});
+  CHECK(exact == Approx(6 + 0.1 * kPi).epsilon(1e-6));
+  CHECK(drawn == Approx(6 + 0.1 * kPi).epsilon(1e-4));
+  CHECK(lazy == Approx(6 + 0.1 * kPi).epsilon(3e-3));
+}
+
+TEST_CASE("lazy and full visibility graph agree in all worlds") {
+  const auto seed = GENERATE(1u, 2u, 3u);
+  for (const std::string& name : world_names()) {
+    const PlanWorld world = make_world(name, 25, seed);
+    const ObstacleWorld obstacles(world.obstacles);
+    TangentGraph graph(obstacles, world.field, world.radius_m);
+    LazyVisibility lazy;
+    Rng rng(1);
+    for (const PlanQuery& query : world.queries) {
+      CAPTURE(name, seed, query.start_m.transpose(), query.goal_m.transpose());
+      const Plan<Vec2>& exact = graph.plan(query.start_m, query.goal_m);
+      REQUIRE(exact.arrives());
+      REQUIRE(is_valid_way(world, exact.states, 0.003, 1e-9));
+      REQUIRE(exact.length >= graph.shortest_m() - 1e-9);
+      REQUIRE(exact.length <= graph.shortest_m() * 1.0002);
+      const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+      const Plan<Vec2>& plan = lazy.plan(domain, query.start_m, {}, rng);
+      REQUIRE(plan.arrives());
+      REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+      REQUIRE(plan.length >= graph.shortest_m() - 1e-9);
+      REQUIRE(plan.length <= graph.shortest_m() * 1.006);
+    }
+  }
+}
+
+TEST_CASE("the shortest way is no longer than one on a fine grid and not much shorter") {
+  const auto seed = GENERATE(4u, 5u);
+  for (const std::string name : {"circles", "u"}) {
+    const PlanWorld world = make_world(name, 3, seed);
+    const ObstacleWorld obstacles(world.obstacles);
+    TangentGraph graph(obstacles, world.field, world.radius_m);
+    const SlowGrid wide(world, 0.06, 0.06), narrow(world, 0.06, -0.06);
+    for (const PlanQuery& query : world.queries) {
+      CAPTURE(name, seed, query.start_m.transpose(), query.goal_m.transpose());
+      graph.plan(query.start_m, query.goal_m);
+      CHECK(graph.shortest_m() <= wide.length_m(query.start_m, query.goal_m) + 0.1);
+      CHECK(graph.shortest_m() >= narrow.length_m(query.start_m, query.goal_m) / 1.015 - 0.1);
+    }
+  }
+}
+
+TEST_CASE("visibility graphs know that there is no way") {
+  std::vector<Shape> ring;
+  for (int i = 0; i < 24; ++i)
+    ring.push_back(Circle{2 * Vec2(std::cos(i * kPi / 12), std::sin(i * kPi / 12)), 0.2});
+  const PlanWorld world = world_of(ring);
+  const ObstacleWorld obstacles(world.obstacles);
+  TangentGraph graph(obstacles, world.field, world.radius_m);
+  CHECK(graph.plan({0, 0}, {4, 4}).reason == PlanReason::kUnreachable);
+  CHECK(graph.plan({4, 4}, {0, 0}).reason == PlanReason::kUnreachable);
+  LazyVisibility lazy;
+  Rng rng(1);
+  const DiscDomain domain(obstacles, world.field, world.radius_m, {4, 4}, {0, 0});
+  const Plan<Vec2>& plan = lazy.plan(domain, {4, 4}, {}, rng);
+  CHECK(plan.reason == PlanReason::kUnreachable);
+  CHECK(is_valid_way(world, plan.states, 0.003, 1e-9));
+  CHECK(plan.states.back().norm() < 2.5);
+}
