@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "agents/planning/domain/plan.hpp"
+#include "agents/planning/smoothing/leader_follower.hpp"
+
+namespace sidestep {
+
+/// Has another planner plan again and again until the budget is spent, smooths each way, and keeps the
+/// shortest: the first way comes as soon as ever, and what time is left makes it better.
+template <StraightDomain D, typename Planner>
+class Anytime {
+ public:
+  using State = typename D::State;
+
+  explicit Anytime(Planner planner, const SmoothingSettings& settings = {})
+      : planner_(std::move(planner)), smoother_(settings) {}
+
+  /// The result is this planner's, until its next plan.
+  const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
+    best_ = planner_.plan(domain, start, budget, rng);
+    smoother_.smooth(domain, best_);
+    const double straight = domain.distance(start, domain.goal(start));
+    std::size_t samples = best_.samples;
+    Budget rest = budget;
+    while (best_.arrives() && best_.length > straight && samples < budget.samples &&
+           !(budget.clock && budget.clock() >= budget.until)) {
+      rest.samples = budget.samples - samples;
+      next_ = planner_.plan(domain, start, rest, rng);
+      samples += std::max<std::size_t>(next_.samples, 1);
+      smoother_.smooth(domain, next_);
+      if (!next_.arrives() || next_.length >= best_.length) continue;
+      std::swap(best_, next_);
+      best_.reason = PlanReason::kImproved;
+    }
+    best_.samples = samples;
+    return best_;
+  }
+
+  Planner& planner() { return planner_; }
+
+ private:
+  Planner planner_;
+  LeaderFollower<D> smoother_;
+  Plan<State> best_, next_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+
+#include "agents/planning/domain/disc_domain.hpp"
+#include "agents/planning/smoothing/leader_follower.hpp"
+#include "agents/planning/trees/bidirectional_errt.hpp"
+#include "agents/planning/trees/errt.hpp"
+#include "agents/planning/visibility/lazy_visibility.hpp"
+#include "deploy/planning/worlds.hpp"
+#include "tests/counted_allocations.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+/// How many allocations the planner makes for queries that it has planned before, with the same draws.
+template <typename Planner>
+std::size_t allocations_once_warm(Planner plan, const std::string& name) {
+  const PlanWorld world = make_world(name, 10, 1);
+  const ObstacleWorld obstacles(world.obstacles);
+  std::size_t before = 0;
+  for (int round = 0; round < 2; ++round) {
+    Rng rng(1);
+    before = allocations();
+    for (const PlanQuery& query : world.queries)
+      plan(DiscDomain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m), query.start_m,
+           rng);
+  }
+  return allocations() - before;
+}
+
+}  // namespace
+
+TEST_CASE("planners that are warm do not allocate") {
+  const std::string name = GENERATE(from_range(world_names()));
+  CAPTURE(name);
+  const Budget budget{.samples = 2000};
+  Errt<DiscDomain> errt({.cache_capacity = 0});
+  BidirectionalErrt<DiscDomain> two({.cache_capacity = 0, .bridges = 3});
+  LazyVisibility lazy;
+  LeaderFollower<DiscDomain> smoother;
+  CHECK(allocations_once_warm(
+            [&](const DiscDomain& d, const Vec2& s, Rng& rng) { errt.plan(d, s, budget, rng); }, name) == 0);
+  CHECK(allocations_once_warm(
+            [&](const DiscDomain& d, const Vec2& s, Rng& rng) { two.plan(d, s, budget, rng); }, name) == 0);
+  CHECK(allocations_once_warm(
+            [&](const DiscDomain& d, const Vec2& s, Rng& rng) { lazy.plan(d, s, budget, rng); }, name) == 0);
+  Plan<Vec2> plan;
+  plan.states.reserve(1000);
+  CHECK(allocations_once_warm(
+            [&](const DiscDomain& d, const Vec2& s, Rng& rng) {
+              plan = two.plan(d, s, budget, rng);
+              smoother.smooth(d, plan);
+            },
+            name) == 0);
+}

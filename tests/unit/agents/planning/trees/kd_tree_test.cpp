@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/trees/kd_tree.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "agents/planning/trees/linear_nearest.hpp"
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+/// Draws points the way planners keep them: anywhere, in clusters, on lines, or again and again the same.
+template <std::size_t N>
+std::array<double, N> draw(std::uint64_t kind, Rng& rng) {
+  std::array<double, N> point;
+  const double cluster = kind == 1 ? static_cast<double>(rng.below(3)) : 0;
+  for (double& x : point) x = kind == 1 ? cluster + 0.01 * rng.normal() : rng.uniform(-5, 5);
+  if (kind == 2) point[0] = 1;
+  if (kind == 3) {
+    for (double& x : point) x = std::floor(x);
+  }
+  return point;
+}
+
+template <std::size_t N>
+void compare(std::uint64_t seed) {
+  CAPTURE(N, seed);
+  Rng rng(seed);
+  KdTree<N> tree;
+  LinearNearest<N> reference;
+  for (int round = 0; round < 2; ++round) {
+    tree.clear();
+    reference.clear();
+    for (int i = 0; i < 1500; ++i) {
+      const auto point = draw<N>(seed % 4, rng);
+      tree.add(point);
+      reference.add(point);
+      REQUIRE(tree.size() == static_cast<std::size_t>(i + 1));
+      const auto wanted = draw<N>(rng.below(4), rng);
+      REQUIRE(tree.nearest(wanted) == reference.nearest(wanted));
+      REQUIRE(tree.nearest(point) == reference.nearest(point));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the tree finds the neighbour that a comparison with all points finds") {
+  const auto seed = GENERATE(range<std::uint64_t>(0, 8));
+  compare<2>(seed);
+  compare<3>(seed);
+  compare<6>(seed);
+}

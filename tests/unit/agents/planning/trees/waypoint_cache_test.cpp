@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/trees/waypoint_cache.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+using namespace sidestep;
+
+namespace {
+
+std::set<int> contents(const WaypointCache<int>& cache) {
+  std::set<int> states;
+  for (std::size_t i = 0; i < cache.size(); ++i) states.insert(cache[i]);
+  return states;
+}
+
+WaypointCache<int> filled(CacheReplacement replacement, Rng& rng) {
+  WaypointCache<int> cache(4, replacement);
+  cache.store({1, 2}, {}, rng);
+  cache.store({3, 4}, {}, rng);
+  return cache;
+}
+
+}  // namespace
+
+TEST_CASE("a cache that is not full takes every way point") {
+  Rng rng(1);
+  for (const auto replacement :
+       {CacheReplacement::kRandom, CacheReplacement::kOldest, CacheReplacement::kLeastRecentlyUsed})
+    CHECK(contents(filled(replacement, rng)) == std::set{1, 2, 3, 4});
+}
+
+TEST_CASE("a full cache loses its oldest way points") {
+  Rng rng(1);
+  auto cache = filled(CacheReplacement::kOldest, rng);
+  cache.store({5}, {0}, rng);
+  CHECK(contents(cache) == std::set{2, 3, 4, 5});
+  cache.store({6, 7}, {}, rng);
+  CHECK(contents(cache) == std::set{4, 5, 6, 7});
+}
+
+TEST_CASE("a full cache loses the way points that were not used for the longest") {
+  Rng rng(1);
+  auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
+  cache.store({5}, {0}, rng);  // a plan grew towards 1
+  CHECK(contents(cache) == std::set{1, 3, 4, 5});
+  cache.store({6, 7}, {}, rng);
+  CHECK(contents(cache) == std::set{1, 5, 6, 7});
+}
+
+TEST_CASE("a cache of the whole plan holds nothing else") {
+  Rng rng(1);
+  auto cache = filled(CacheReplacement::kWholePlan, rng);
+  CHECK(contents(cache) == std::set{3, 4});
+  cache.store({5, 6, 7}, {}, rng);
+  CHECK(contents(cache) == std::set{5, 6, 7});
+}
+
+TEST_CASE("random replacement keeps each old way point about as often as the others") {
+  Rng rng(3);
+  int kept[4] = {};
+  for (int round = 0; round < 4000; ++round) {
+    auto cache = filled(CacheReplacement::kRandom, rng);
+    cache.store({5}, {}, rng);
+    const auto states = contents(cache);
+    REQUIRE(states.count(5) == 1);
+    for (int i = 0; i < 4; ++i) kept[i] += states.count(i + 1) > 0 ? 1 : 0;
+  }
+  for (const int count : kept) CHECK(count == Approx(3000).margin(150));
+}
+
+TEST_CASE("a cache without room holds nothing") {
+  Rng rng(1);
+  WaypointCache<int> cache(0);
+  cache.store({1, 2, 3}, {}, rng);
+  CHECK(cache.is_empty());
+}
