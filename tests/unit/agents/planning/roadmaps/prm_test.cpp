@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/roadmaps/prm.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "agents/planning/domain/disc_domain.hpp"
+#include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/planning/worlds.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+using Roadmaps = Prm<DiscDomain>;
+
+/// Bellman and Ford over what joins the roadmap's nodes in this world: the shortest way between its last two.
+double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
+  std::vector<double> length(map.size(), std::numeric_limits<double>::infinity());
+  length[map.size() - 2] = 0;
+  for (std::size_t round = 0; round < map.size(); ++round) {
+    bool changed = false;
+    for (const auto& edge : map.edges()) {
+      if (!domain.check(map[edge.a], map[edge.b])) continue;
+      for (const auto& [from, to] : {std::pair{edge.a, edge.b}, std::pair{edge.b, edge.a}}) {
+        if (length[from] + edge.length >= length[to]) continue;
+        length[to] = length[from] + edge.length;
+        changed = true;
+      }
+    }
+    if (!changed) break;
+  }
+  return length.back();
+}
+
+}  // namespace
+
+TEST_CASE("roadmaps find valid ways in all worlds and the same ones from the same seed") {
+  const auto seed = GENERATE(1u, 2u);
+  const PrmSettings radial{.connection = Connection::kRadial, .neighbours = 8};
+  for (const PrmSettings& settings : {PrmSettings{}, one_shot_prm(), dynamic_prm(), radial}) {
+    for (const std::string& name : world_names()) {
+      const PlanWorld world = make_world(name, 12, seed);
+      const ObstacleWorld obstacles(world.obstacles);
+      Roadmaps planner(settings), again(settings);
+      Rng rng(seed), rng_again(seed);
+      int solved = 0;
+      for (const PlanQuery& query : world.queries) {
+        CAPTURE(name, seed, query.start_m.transpose(), query.goal_m.transpose());
+        const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+        const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {.nodes = 2000}, rng);
+        REQUIRE(plan.states == again.plan(domain, query.start_m, {.nodes = 2000}, rng_again).states);
+        REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+        REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
+        REQUIRE(plan.states.front() == query.start_m);
+        if (!plan.arrives()) continue;
+        REQUIRE(plan.states.back() == query.goal_m);
+        ++solved;
+      }
+      CAPTURE(name, seed);
+      CHECK(solved >= 10);
+    }
+  }
+}
+
+TEST_CASE("a roadmap's way is the shortest on it also after obstacles moved") {
+  const auto seed = GENERATE(1u, 2u, 3u);
+  const PlanWorld world = make_world("circles", 30, seed);
+  ObstacleWorld obstacles(world.obstacles);
+  Rng rng(seed);
+  Roadmaps planner(dynamic_prm());
+  PlanWorld now = world;
+  int compared = 0;
+  for (const PlanQuery& query : world.queries) {
+    for (std::uint32_t i = 0; i < now.obstacles.size(); ++i) {
+      const Vec2 by(rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2));
+      now.obstacles[i] = moved(now.obstacles[i], by);
+      obstacles.move(ObstacleId{i}, by);
+    }
+    CAPTURE(seed, query.start_m.transpose(), query.goal_m.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+    if (domain.start_is_blocked() || domain.goal_is_blocked()) continue;
+    const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {.nodes = 2000}, rng);
+    REQUIRE(is_valid_way(now, plan.states, 0.003, 1e-9));
+    if (!plan.arrives() || plan.states.size() == 2) continue;
+    REQUIRE(plan.length == Approx(shortest_on(planner.roadmap(), domain)));
+    ++compared;
+  }
+  CHECK(compared >= 10);
+}
+
+TEST_CASE("radial connection joins a node with one neighbour in each direction") {
+  const ObstacleWorld nothing;
+  const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
+  Rng rng(1);
+  Roadmap<DiscDomain> map;
+  for (int i = 0; i < 200; ++i) map.add(domain, domain.sample(rng), Connection::kNearest, 3, 1);
+  const auto node = map.add(domain, {0.01, 0.02}, Connection::kRadial, 8, 1);
+  CHECK(map.edges_of(node).size() == 8);
+  std::set<int> sectors;
+  for (const auto edge : map.edges_of(node)) {
+    const Vec2 to = map[map.edges()[edge].other(node)] - map[node];
+    sectors.insert(static_cast<int>((std::atan2(to.y(), to.x()) / 6.283185307179586 + 0.5) * 8));
+  }
+  CHECK(sectors.size() == 8);
+}
+
+TEST_CASE("a roadmap that loses its last nodes is as before") {
+  const ObstacleWorld nothing;
+  const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
+  Rng rng(1);
+  Roadmap<DiscDomain> map;
+  for (int i = 0; i < 50; ++i) map.add(domain, domain.sample(rng), Connection::kNearest, 5, 1);
+  const std::size_t edges = map.edges().size();
+  std::vector<std::vector<std::uint32_t>> joins;
+  for (std::uint32_t node = 0; node < 50; ++node) joins.push_back(map.edges_of(node));
+  for (int i = 0; i < 7; ++i) map.add(domain, domain.sample(rng), Connection::kRadial, 8, 1);
+  REQUIRE(map.edges().size() > edges);
+  map.shrink(50);
+  CHECK(map.size() == 50);
+  CHECK(map.edges().size() == edges);
+  for (std::uint32_t node = 0; node < 50; ++node) CHECK(map.edges_of(node) == joins[node]);
+}
