@@ -7,6 +7,7 @@
 #include "common/process/process.hpp"
 #include "deploy/audit/audit_command.hpp"
 #include "deploy/fault/fault_command.hpp"
+#include "deploy/planning/plan_command.hpp"
 #include "deploy/run.hpp"
 #include "deploy/search/seed_search.hpp"
 #include "deploy/simulate.hpp"
@@ -126,6 +127,7 @@ int main(int argc, char** argv) {
   add_fault_command(app, action);
   add_study_command(app, action);
   add_audit_commands(app, action);
+  add_plan_commands(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {
     return action();
