@@ -58,6 +58,21 @@ inline std::optional<Tangent> tangent(const Bend& from, Side from_side, const Be
   return Tangent{(length * between - across * left_of(between)) / distance2, length};
 }
 
+/// Whether no tangent can leave or arrive within a corner's arc, known without a root: the centres' direction
+/// is the tangent's up to what the radii make of it.
+inline bool misses(const Bend& bend, Side side, const Vec2& between, double room_m) {
+  return bend.is_corner &&
+         (sign(side) * between.dot(bend.first) > room_m || sign(side) * between.dot(bend.last) < -room_m);
+}
+inline bool has_no_tangent(const Bend& from, Side from_side, const Bend& to, Side to_side, double slack_m) {
+  const Vec2 between = to.centre_m - from.centre_m;
+  const double across = std::abs(sign(to_side) * to.radius_m - sign(from_side) * from.radius_m);
+  if (between.squaredNorm() < 4 * across * across) return false;
+  // Over the cosine of at most 30 degrees.
+  const double room_m = 1.16 * across + slack_m;
+  return misses(from, from_side, between, room_m) || misses(to, to_side, between, room_m);
+}
+
 /// Where a way that goes along `along` touches a bend on its side.
 inline Vec2 touching_point(const Bend& bend, Side side, const Vec2& along) {
   return bend.centre_m - sign(side) * bend.radius_m * left_of(along);

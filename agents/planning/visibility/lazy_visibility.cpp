@@ -113,6 +113,7 @@ void LazyVisibility::propose_all(std::uint32_t arrival, std::uint32_t first_bend
 void LazyVisibility::propose(std::uint32_t arrival, std::uint32_t bend, Side side) {
   const Arrival& at = arrivals_[arrival];
   const Bend &from = bends_[at.bend], &to = bends_[bend];
+  if (has_no_tangent(from, at.side, to, side, 5 * settings_.stand_off_m)) return;
   const std::optional<Tangent> way = tangent(from, at.side, to, side, settings_.stand_off_m);
   if (!way) return;
   // Who stands closer to an edge than ways keep off it leaves at a small angle.
@@ -192,13 +193,15 @@ bool LazyVisibility::is_free_round(const DiscDomain& domain, const Arrival& at, 
 }
 
 bool LazyVisibility::is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
+  // Most ways that are looked at run into what is known.
+  if (is_known(domain, from, to)) return false;
   if (domain.check(from, to)) return true;
   discover(domain, from, to);
   return false;
 }
 
 void LazyVisibility::discover(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
-  if (found_.size() == domain.world().size() || is_known(domain, from, to)) return;
+  if (found_.size() == domain.world().size()) return;
   const std::optional<Contact> contact = domain.world().first_contact(from, to, domain.radius_m());
   if (!contact) return;
   const Shape& shape = domain.world().shape(contact->obstacle);
@@ -209,16 +212,21 @@ void LazyVisibility::discover(const DiscDomain& domain, const Vec2& from, const 
   for (std::uint32_t arrival = 0; arrival < arrivals_.size(); ++arrival) propose_all(arrival, known);
 }
 
-bool LazyVisibility::is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to) const {
+bool LazyVisibility::is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
   const Segment way{from, to};
   const Box box{from.cwiseMin(to), from.cwiseMax(to)};
-  return std::any_of(found_.begin(), found_.end(), [&](const Found& found) {
+  const auto stops = [&](const Found& found) {
     if (!overlap(box, found.box)) return false;
     const auto* circle = std::get_if<Circle>(found.shape);
     const double reach_m = domain.radius_m() + (circle ? circle->radius_m : 0);
     return (circle ? squared_distance(circle->centre_m, way) : squared_distance(way, *found.shape)) <=
            reach_m * reach_m;
-  });
+  };
+  const auto first = std::find_if(found_.begin(), found_.end(), stops);
+  if (first == found_.end()) return false;
+  // What stopped one way often stops the next.
+  std::swap(*first, found_.front());
+  return true;
 }
 
 void LazyVisibility::write_plan(std::uint32_t arrival) {

@@ -68,8 +68,9 @@ class LazyVisibility {
   bool is_free_round(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
                      double corner_rad);
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  bool is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to) const;
-  /// Takes into account what stops a motion, unless what is known stops it.
+  /// Whether a motion is stopped by an obstacle that was found.
+  bool is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to);
+  /// Takes into account what stops a motion that nothing known does.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   void write_plan(std::uint32_t arrival);
 
