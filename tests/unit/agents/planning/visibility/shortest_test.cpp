@@ -5,6 +5,7 @@
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/planning/worlds.hpp"
+#include "tests/unit/common/collision/random_world.hpp"
 
 using namespace sidestep;
 
@@ -191,4 +192,28 @@ TEST_CASE("visibility graphs know that there is no way") {
   CHECK(plan.reason == PlanReason::kUnreachable);
   CHECK(is_valid_way(world, plan.states, 0.003, 1e-9));
   CHECK(plan.states.back().norm() < 2.5);
+}
+
+TEST_CASE("lazy and full visibility graph agree among random shapes of all kinds and robots of all sizes") {
+  const auto seed = GENERATE(range<std::uint64_t>(1, 60));
+  Rng rng(seed);
+  PlanWorld world = world_of(random_shapes(rng, 1 + rng.below(120), 5));
+  world.radius_m = rng.uniform(0.02, 0.25);
+  const ObstacleWorld obstacles(world.obstacles);
+  TangentGraph graph(obstacles, world.field, world.radius_m);
+  LazyVisibility lazy;
+  for (int i = 0; i < 6; ++i) {
+    const Vec2 start = random_place(rng, 4.8), goal = random_place(rng, 4.8);
+    CAPTURE(seed, world.radius_m, start.transpose(), goal.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+    if (domain.start_is_blocked() || domain.goal_is_blocked()) continue;
+    const Plan<Vec2>& exact = graph.plan(start, goal);
+    const Plan<Vec2>& plan = lazy.plan(domain, start, {}, rng);
+    REQUIRE(plan.arrives() == exact.arrives());
+    REQUIRE(is_valid_way(world, plan.states, 0.005, 1e-9));
+    if (!exact.arrives()) continue;
+    REQUIRE(is_valid_way(world, exact.states, 0.005, 1e-9));
+    REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
+    REQUIRE(plan.length <= graph.shortest_m() * 1.01);
+  }
 }
