@@ -138,7 +138,7 @@ TEST_CASE("the shortest way round a wall's end turns by half a circle") {
 TEST_CASE("lazy and full visibility graph agree in all worlds") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string& name : world_names()) {
-    const PlanWorld world = make_world(name, 25, seed);
+    const PlanWorld world = make_world(name, 12, seed);
     const ObstacleWorld obstacles(world.obstacles);
     TangentGraph graph(obstacles, world.field, world.radius_m);
     LazyVisibility lazy;
