@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/segment.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -15,13 +17,6 @@ constexpr double kStandOff_m = 0.005;
 // A corner this near is behind the robot.
 constexpr double kReached_m = 1e-3;
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
-
-double distance2_to_segment(const Vec2& point, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double part = length2 > 0 ? std::clamp((point - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (a + part * along - point).squaredNorm();
-}
 
 }  // namespace
 
@@ -74,7 +69,7 @@ void VisibilityGraph::measure() {
 
 bool VisibilityGraph::sees(const Vec2& from, const Vec2& to) const {
   for (const Circle& disc : discs_) {
-    if (distance2_to_segment(disc.centre_m, from, to) >= disc.radius_m * disc.radius_m) continue;
+    if (squared_distance(disc.centre_m, Segment{from, to}) >= disc.radius_m * disc.radius_m) continue;
     const Vec2 outwards = from - disc.centre_m;
     const bool leaves = outwards.norm() < disc.radius_m && outwards.dot(to - from) >= 0;
     if (!leaves) return false;

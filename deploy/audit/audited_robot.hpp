@@ -112,6 +112,8 @@ class AuditedRobot {
 
   Known* find(VersionNumber number);
   const Known* find(VersionNumber number) const;
+  /// Whether nothing is known of the version because what was has been given up, as it may have been.
+  bool has_given_up(VersionNumber number) const { return number <= given_up_version && !find(number); }
   /// The version's record, made if it was not there; makes room by giving up what can matter least.
   Known& note(VersionNumber number);
   HeardProposal* proposal(std::uint64_t number, VersionNumber candidate);

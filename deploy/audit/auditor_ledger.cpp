@@ -63,7 +63,7 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   const Known* before = robot.find(verdict.granted());
   // A coordinator that was held up answers a copy of an old proposal as it did before, when what it granted
   // has been given up here.
-  if (!before && verdict.granted() <= robot.given_up_version) return;
+  if (robot.has_given_up(verdict.granted())) return;
   if (before && before->granted_in == verdict.epoch()) {
     robot.find(verdict.granted())->granted_by_ns = std::min(before->granted_by_ns, heard.latest_ns);
     return;
@@ -218,7 +218,7 @@ void Auditor::judge_base(const AuditedRobot& robot, const Known& known) {
   const bool is_absent =
       (robot.fact && robot.fact->is_lifted) || (robot.registered && robot.registered->is_absent);
   if (is_stand && is_absent) return;
-  const bool is_given_up = !base && known.version.base() <= robot.given_up_version;
+  const bool is_given_up = robot.has_given_up(known.version.base());
   if (how_.is_complete && !is_given_up && !(base && (base->is_in(known.granted_in) || base->is_own))) {
     report(AuditRule::kBase, robot.id, &known, known.granted_in,
            fmt::format("its base {} was neither registered nor granted in the epoch", known.version.base()));
@@ -260,7 +260,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     AuditedRobot& robot = robots_[index_[version.robot()]];
     const Known* known = robot.find(version.version_number());
     // A coordinator that hears nothing keeps what was given up here long ago.
-    if (!known && version.version_number() <= robot.given_up_version) continue;
+    if (robot.has_given_up(version.version_number())) continue;
     if (how_.is_complete && is_of_epoch && !(known && (known->is_in(page.epoch()) || known->is_own))) {
       report(AuditRule::kLedgerPage, robot.id, known ? known : &robot.note(version.version_number()),
              page.epoch(), "is in the ledger, and was neither registered nor granted");
