@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/study/plots.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -16,20 +17,27 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-std::string script(const Plot& plot, const std::string& png_file) {
+/// Extremes are drawn where there are some.
+std::string script(const Plot& plot) {
   std::string text = fmt::format(
-      "set terminal pngcairo size 720,440 font 'sans,10' noenhanced\nset output {}\nset title {}\n"
-      "set xlabel {}\nset ylabel {}\nset grid\nset key outside bottom center horizontal\nset yrange [0:*]\n",
-      quoted(png_file), quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label));
+      "set title {}\nset xlabel {} offset 0,0.7\nset ylabel {}\nset yrange [{}:*]\nunset logscale\nunset "
+      "arrow\nset bmargin {}\n",
+      quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label),
+      plot.has_log_y ? "*" : fmt::format("{}", plot.least_y), 4 + (plot.lines.size() + 1) / 2);
   if (plot.has_log_x) text += "set logscale x\n";
+  if (plot.has_log_y) text += "set logscale y\n";
+  if (plot.marked_x)
+    text += fmt::format("set arrow from {0},graph 0 to {0},graph 1 nohead dashtype 2\n", *plot.marked_x);
   std::string lines;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+    const PlotLine& line = plot.lines[i];
     text += fmt::format("$line{} << EOD\n", i);
-    for (const PlotPoint& p : plot.lines[i].points)
-      text += fmt::format("{} {} {} {}\n", p.x, p.middle, p.low, p.high);
+    for (const PlotPoint& p : line.points) text += fmt::format("{} {} {} {}\n", p.x, p.middle, p.low, p.high);
     text += "EOD\n";
-    lines += fmt::format("{}$line{} using 1:2:3:4 with yerrorlines pointtype 7 pointsize 0.7 title {}",
-                         i ? ", " : "", i, quoted(plot.lines[i].title));
+    const bool has_bars = std::any_of(line.points.begin(), line.points.end(),
+                                      [](const PlotPoint& p) { return p.low < p.high; });
+    lines += fmt::format("{}$line{} using {} pointtype 7 pointsize 0.7 title {}", i ? ", " : "", i,
+                         has_bars ? "1:2:3:4 with yerrorlines" : "1:2 with linespoints", quoted(line.title));
   }
   return text + "plot " + lines + "\n";
 }
@@ -41,12 +49,22 @@ void require_gnuplot() {
     throw std::runtime_error("gnuplot, which draws the plots, is missing; install gnuplot-nox");
 }
 
-void draw(const Plot& plot, const std::string& png_file) {
+void draw(const std::vector<Plot>& plots, const std::string& png_file) {
   std::FILE* gnuplot = popen("gnuplot", "w");
   if (!gnuplot) throw std::runtime_error("gnuplot cannot be started");
-  const std::string text = script(plot, png_file);
+  const bool is_one = plots.size() == 1;
+  std::string text = fmt::format(
+      "set terminal pngcairo size {},440 font 'sans,10' noenhanced\nset output {}\nset grid\n"
+      "set key below horizontal samplen 2\nset multiplot layout 1,{}\n",
+      is_one ? 720 : 520 * plots.size(), quoted(png_file), plots.size());
+  for (const Plot& plot : plots) text += script(plot);
   const bool is_written = std::fwrite(text.data(), 1, text.size(), gnuplot) == text.size();
   if (pclose(gnuplot) != 0 || !is_written) throw std::runtime_error("gnuplot could not draw " + png_file);
+}
+
+PlotPoint plot_point(double x, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {x, values[values.size() / 2], values.front(), values.back()};
 }
 
 }  // namespace sidestep

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,19 @@ struct PlotLine {
 
 struct Plot {
   std::string title{}, x_label{}, y_label{};
-  bool has_log_x = false;
+  bool has_log_x = false, has_log_y = false;
+  double least_y = 0;  ///< where a y axis that is not logarithmic begins
   std::vector<PlotLine> lines{};
+  std::optional<double> marked_x{};  ///< by an upright line
 };
 
 /// Throws std::runtime_error, saying what to install, when there is no gnuplot.
 void require_gnuplot();
 
-/// Draws a plot into a PNG file by gnuplot. Throws std::runtime_error when that fails.
-void draw(const Plot& plot, const std::string& png_file);
+/// Draws plots side by side into a PNG file by gnuplot. Throws std::runtime_error when that fails.
+void draw(const std::vector<Plot>& plots, const std::string& png_file);
+
+/// The median, the least and the most of some values, of which there is at least one.
+PlotPoint plot_point(double x, std::vector<double> values);
 
 }  // namespace sidestep

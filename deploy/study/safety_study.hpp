@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include "deploy/study/study_table.hpp"
 
 namespace sidestep {
-
-struct StudyOptions {
-  std::string folder;
-  std::uint64_t seed = 1;
-  int jobs = 2;           ///< processes at work; search times are measured by one
-  bool is_quick = false;  ///< little of everything, for tests
-};
 
 /// The evaluation of the safety search (Bruce, ch. 5): traversals with and without it, margins against the
 /// noise of vision, and the search's time. Writes traversals, margins and search as .csv and .png into the

@@ -2,13 +2,13 @@
 #include "deploy/study/search_time.hpp"
 
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <vector>
 
 #include "agents/navigation/motion_control.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/motion/clearance.hpp"
+#include "deploy/planning/cpu_clock.hpp"
 
 namespace sidestep {
 namespace {
@@ -18,12 +18,6 @@ constexpr int kTries = 8;
 constexpr Time kNow = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle{16'666'667};
 constexpr int kWarmUps = 2;
-
-double processor_us() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e6 + static_cast<double>(time.tv_nsec) * 1e-3;
-}
 
 /// Motions on a jittered grid that keep clear of each other; a robot that finds none stands.
 std::vector<Version> draw_versions(int robots, const FloorRules& rules, Rng& rng) {
@@ -79,11 +73,11 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
   Crowd crowd;
   double begin_us = 0;
   for (int round = 0; round <= kWarmUps; ++round) {
-    begin_us = processor_us();
+    begin_us = cpu_us();
     crowd.assign(versions);
     for (const SearchQuery& query : queries) search.search(query, crowd, rng);
   }
-  return (processor_us() - begin_us) / robots;
+  return (cpu_us() - begin_us) / robots;
 }
 
 }  // namespace sidestep

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/deploy/study/study_files.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace {
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+StudyFolder::StudyFolder()
+    : path_(std::filesystem::temp_directory_path() / ("sidestep-study-" + std::to_string(getpid()))) {}
+
+StudyFolder::~StudyFolder() { std::filesystem::remove_all(path_); }
+
+std::vector<StudyRow> StudyFolder::table(const std::string& study, const std::string& name,
+                                         std::uint64_t seed) const {
+  CAPTURE(study, name, seed);
+  std::ifstream stream(path_ / (name + ".csv"));
+  std::string line;
+  std::getline(stream, line);
+  CHECK(line.starts_with("# sidestep study " + study + " --out "));
+  CHECK(line.find("--seed " + std::to_string(seed)) != std::string::npos);
+  std::getline(stream, line);
+  CHECK(line.starts_with("# commit "));
+  std::getline(stream, line);
+  const std::vector<std::string> names = split(line);
+  std::vector<StudyRow> rows;
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> cells = split(line);
+    REQUIRE(cells.size() == names.size());
+    StudyRow& row = rows.emplace_back();
+    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells[i];
+  }
+  return rows;
+}
+
+bool StudyFolder::has_png(const std::string& name) const {
+  std::ifstream stream(path_ / (name + ".png"), std::ios::binary);
+  char begin[8] = {};
+  stream.read(begin, sizeof begin);
+  return std::string(begin, sizeof begin) == "\x89PNG\r\n\x1a\n";
+}
+
+double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,
+              const std::string& is) {
+  double total = 0;
+  std::size_t count = 0;
+  for (const StudyRow& row : rows) {
+    if (row.at(where) != is) continue;
+    total += std::stod(row.at(column));
+    ++count;
+  }
+  CAPTURE(column, where, is);
+  REQUIRE(count > 0);
+  return total;
+}
