@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "agents/planning/smoothing/leader_follower.hpp"
-#include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/planning/cpu_clock.hpp"
+#include "deploy/planning/ground.hpp"
 #include "deploy/planning/named_planner.hpp"
+#include "deploy/planning/numbers.hpp"
 #include "deploy/planning/ompl_planner.hpp"
-#include "deploy/planning/worlds.hpp"
 
 namespace sidestep {
 namespace {
@@ -18,37 +18,6 @@ namespace {
 constexpr double kStep_m = 0.005, kSlack_m = 1e-9;
 
 Time now() { return time_from_ns(static_cast<std::int64_t>(1e3 * cpu_us())); }
-
-/// A world, and the shortest ways in it.
-struct Ground {
-  explicit Ground(PlanWorld made) : world(std::move(made)), obstacles(world.obstacles) {
-    TangentGraph graph(obstacles, world.field, world.radius_m);
-    for (const PlanQuery& query : world.queries) {
-      graph.plan(query.start_m, query.goal_m);
-      shortest_m.push_back(graph.shortest_m());
-    }
-  }
-  PlanWorld world;
-  ObstacleWorld obstacles;
-  std::vector<double> shortest_m;
-};
-
-/// Sorted numbers of one kind.
-class Numbers {
- public:
-  void add(double number) {
-    numbers_.insert(std::upper_bound(numbers_.begin(), numbers_.end(), number), number);
-  }
-  /// The least that so large a part of them do not exceed; 0 when there are none.
-  double at(double part) const {
-    if (numbers_.empty()) return 0;
-    const auto i = static_cast<std::size_t>(part * static_cast<double>(numbers_.size()));
-    return numbers_[std::min(i, numbers_.size() - 1)];
-  }
-
- private:
-  std::vector<double> numbers_;
-};
 
 struct Row {
   int asked = 0, solved = 0, invalid = 0;
