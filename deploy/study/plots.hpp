@@ -32,6 +32,8 @@ void require_gnuplot();
 /// Draws plots side by side into a PNG file by gnuplot. Throws std::runtime_error when that fails.
 void draw(const std::vector<Plot>& plots, const std::string& png_file);
 
+/// A value alone.
+inline PlotPoint plot_point(double x, double value) { return {x, value, value, value}; }
 /// The median, the least and the most of some values, of which there is at least one.
 PlotPoint plot_point(double x, std::vector<double> values);
 

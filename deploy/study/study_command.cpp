@@ -5,6 +5,7 @@
 #include <charconv>
 #include <memory>
 
+#include "deploy/study/planning_study.hpp"
 #include "deploy/study/safety_study.hpp"
 
 namespace sidestep {
@@ -47,6 +48,11 @@ void add_study_command(CLI::App& root, std::function<int()>& action) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   safety->callback([&action, options] { action = [options] { return study_safety(*options); }; });
+  CLI::App* planning = add_study(
+      *study, "planning",
+      "Planners and collision structures: caches, trees, graphs, roadmaps, from 4 to 16,384 obstacles",
+      *options);
+  planning->callback([&action, options] { action = [options] { return study_planning(*options); }; });
 }
 
 }  // namespace sidestep

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <fmt/format.h>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ template <typename... Values>
 std::vector<std::string> cells(const Values&... values) {
   return {fmt::format("{}", values)...};
 }
+
+/// Is told how far an experiment is.
+using StudyAdvance = std::function<void(std::size_t done, std::size_t of)>;
 
 /// Shows on stderr how far an experiment is: a line that is redrawn in a terminal, a line in five seconds
 /// elsewhere.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/deploy/study/study_files.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
@@ -49,6 +50,57 @@ bool StudyFolder::has_png(const std::string& name) const {
   char begin[8] = {};
   stream.read(begin, sizeof begin);
   return std::string(begin, sizeof begin) == "\x89PNG\r\n\x1a\n";
+}
+
+std::vector<StudyRow> rows_of(const sidestep::StudyTable& table) {
+  std::vector<StudyRow> rows;
+  for (const auto& cells : table.rows) {
+    REQUIRE(cells.size() == table.columns.size());
+    StudyRow& row = rows.emplace_back();
+    for (std::size_t i = 0; i < cells.size(); ++i) row[table.columns[i]] = cells[i];
+  }
+  return rows;
+}
+
+std::vector<StudyRow> without_times(std::vector<StudyRow> rows) {
+  for (StudyRow& row : rows)
+    std::erase_if(
+        row, [](const auto& cell) { return cell.first.ends_with("_us") || cell.first.ends_with("_ns"); });
+  return rows;
+}
+
+double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const std::string& column) {
+  std::vector<double> found;
+  for (const StudyRow& row : rows)
+    if (std::all_of(cells.begin(), cells.end(),
+                    [&](const auto& cell) { return row.at(cell.first) == cell.second; }))
+      found.push_back(std::stod(row.at(column)));
+  CAPTURE(cells, column);
+  REQUIRE(found.size() == 1);
+  return found[0];
+}
+
+void check_experiment(const Experiment& experiment) {
+  std::size_t last = 0, end = 0;
+  const sidestep::StudyTable table = experiment(5, [&](std::size_t done, std::size_t of) {
+    CHECK(done == last + 1);
+    last = done;
+    end = of;
+  });
+  CHECK(last == end);
+  CHECK(last > 0);
+  const auto rows = rows_of(table);
+  CHECK_FALSE(rows.empty());
+  CHECK_FALSE(table.plots.empty());
+  for (const sidestep::Plot& plot : table.plots) {
+    CHECK_FALSE(plot.lines.empty());
+    for (const sidestep::PlotLine& line : plot.lines) CHECK_FALSE(line.points.empty());
+  }
+  const auto again = [&](std::uint64_t seed) {
+    return without_times(rows_of(experiment(seed, [](auto, auto) {})));
+  };
+  CHECK(again(5) == without_times(rows));
+  CHECK(again(6) != without_times(rows));
 }
 
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "deploy/study/study_table.hpp"
+
 /// Cells by the names of their columns.
 using StudyRow = std::map<std::string, std::string>;
 
@@ -26,6 +28,19 @@ class StudyFolder {
  private:
   std::filesystem::path path_;
 };
+
+std::vector<StudyRow> rows_of(const sidestep::StudyTable& table);
+/// Without what depends on the machine.
+std::vector<StudyRow> without_times(std::vector<StudyRow> rows);
+/// A cell of the only row that has these others.
+double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const std::string& column);
+
+/// An experiment, asked for a table by a seed.
+using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const sidestep::StudyAdvance&)>;
+
+/// Checks what holds for any of them: a cell for each column and lines with points; it says how far it is up
+/// to the end; the same seed gives the same but for times, another one another.
+void check_experiment(const Experiment& experiment);
 
 /// The sum of a column over the rows, of which there is at least one, that have this value in that other
 /// column.

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/study/planning/bridges_and_extensions.hpp"
+
+#include "agents/planning/trees/bidirectional_errt.hpp"
+#include "deploy/planning/ground.hpp"
+#include "deploy/study/planning/contestant.hpp"
+
+namespace sidestep {
+namespace {
+
+std::vector<Contestant> contestants_of(const BridgesAndExtensions& settings, std::uint64_t seed) {
+  Rng seeds(seed);
+  std::vector<Contestant> contestants;
+  for (const std::size_t extensions : settings.extensions) {
+    for (const std::size_t bridges : settings.bridges) {
+      const BidirectionalErrtSettings trees{
+          .cache_capacity = 0, .extensions = extensions, .bridges = bridges};
+      contestants.push_back(contestant<BidirectionalErrt<DiscDomain>>("", trees, seeds.bits()));
+    }
+  }
+  return contestants;
+}
+
+}  // namespace
+
+StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uint64_t seed,
+                                  const StudyAdvance& advance) {
+  std::vector<Contestant> contestants = contestants_of(settings, seed);
+  for (std::size_t i = 0; i < settings.worlds; ++i) {
+    const Ground ground(make_world("circles", settings.queries, seed + i));
+    ask_all(contestants, ground, {.step_m = settings.step_m});
+    advance(i + 1, settings.worlds);
+  }
+
+  StudyTable table;
+  table.name = "bridges";
+  table.columns = {"extensions", "bridges",      "queries",       "solved_percent", "median_us",
+                   "p95_us",     "median_nodes", "median_length", "p95_length"};
+  const std::string title = fmt::format("Two trees, steps of {} m, {} queries", settings.step_m,
+                                        settings.worlds * settings.queries);
+  table.plots = {{.title = title,
+                  .x_label = "bridges",
+                  .y_label = "length over the shortest, median",
+                  .has_log_x = true,
+                  .least_y = 1},
+                 {.title = title,
+                  .x_label = "bridges",
+                  .y_label = "time of a plan, median [us]",
+                  .has_log_x = true,
+                  .has_log_y = true}};
+  std::size_t i = 0;
+  for (const std::size_t extensions : settings.extensions) {
+    for (Plot& plot : table.plots)
+      plot.lines.push_back({extensions == 1 ? "one extension" : fmt::format("up to {}", extensions), {}});
+    for (const std::size_t bridges : settings.bridges) {
+      const PlanMeasures& m = contestants[i++].measures();
+      table.rows.push_back(cells(extensions, bridges, m.asked, fmt::format("{:.1f}", m.solved_percent()),
+                                 fmt::format("{:.1f}", m.plan_us.median()),
+                                 fmt::format("{:.1f}", m.plan_us.at(0.95)), m.nodes.median(),
+                                 fmt::format("{:.3f}", m.length.median()),
+                                 fmt::format("{:.3f}", m.length.at(0.95))));
+      const auto x = static_cast<double>(bridges);
+      table.plots[0].lines.back().points.push_back(plot_point(x, m.length.median()));
+      table.plots[1].lines.back().points.push_back(plot_point(x, m.plan_us.median()));
+    }
+  }
+  return table;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/study/planning/cache_replans.hpp"
+
+#include "agents/planning/trees/bidirectional_errt.hpp"
+#include "agents/planning/trees/errt.hpp"
+#include "deploy/planning/replan_course.hpp"
+#include "deploy/study/planning/contestant.hpp"
+
+namespace sidestep {
+namespace {
+
+/// Which part of the numbers is no more than x.
+PlotLine distribution(const std::string& title, const Numbers& numbers, int most_percent) {
+  PlotLine line{title, {}};
+  for (int percent = 0; percent <= most_percent; ++percent)
+    line.points.push_back(plot_point(numbers.at(percent / 100.0), percent));
+  return line;
+}
+
+}  // namespace
+
+StudyTable cache_replans(const CacheReplans& settings, std::uint64_t seed, const StudyAdvance& advance) {
+  using Errt = Errt<DiscDomain>;
+  using Trees = BidirectionalErrt<DiscDomain>;
+  std::vector<Contestant> contestants{
+      contestant<Errt>("one tree", ErrtSettings{.cache_capacity = 0}, seed),
+      contestant<Errt>("one tree with cache", ErrtSettings{}, seed),
+      contestant<Trees>("two trees", BidirectionalErrtSettings{.cache_capacity = 0}, seed),
+      contestant<Trees>("two trees with cache", BidirectionalErrtSettings{}, seed)};
+  std::size_t done = 0;
+  replan_all(contestants, settings.replans, seed, [&] { advance(++done, settings.replans); });
+
+  StudyTable table;
+  table.name = "cache";
+  table.columns = {"planner", "replans",      "solved_percent", "median_us",     "p95_us",    "p99_us",
+                   "mean_us", "median_nodes", "p95_nodes",      "median_length", "p95_length"};
+  table.plots = {{.title = fmt::format("{} replans among 64 moving circles", settings.replans),
+                  .x_label = "time of a replan [us]",
+                  .y_label = "replans that take no more [%]",
+                  .has_log_x = true},
+                 {.title = "Their ways",
+                  .x_label = "length over the shortest",
+                  .y_label = "ways that are no longer [%]"}};
+  for (const Contestant& c : contestants) {
+    const PlanMeasures& m = c.measures();
+    table.rows.push_back(
+        cells(c.name(), m.asked, fmt::format("{:.1f}", m.solved_percent()),
+              fmt::format("{:.1f}", m.plan_us.median()), fmt::format("{:.1f}", m.plan_us.at(0.95)),
+              fmt::format("{:.1f}", m.plan_us.at(0.99)), fmt::format("{:.1f}", m.plan_us.mean()),
+              m.nodes.median(), m.nodes.at(0.95), fmt::format("{:.3f}", m.length.median()),
+              fmt::format("{:.3f}", m.length.at(0.95))));
+    table.plots[0].lines.push_back(distribution(c.name(), m.plan_us, 99));
+    table.plots[1].lines.push_back(distribution(c.name(), m.length, 95));
+  }
+  return table;
+}
+
+}  // namespace sidestep

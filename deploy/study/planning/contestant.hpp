@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "agents/planning/robust.hpp"
+#include "deploy/planning/ground.hpp"
+#include "deploy/planning/numbers.hpp"
+
+namespace sidestep {
+
+/// What some plans were like.
+struct PlanMeasures {
+  std::size_t asked = 0, solved = 0;
+  Numbers plan_us{}, nodes{};
+  Numbers length{};  ///< over the shortest, where solved
+
+  void add(const PlanMeasures& more);
+  double solved_percent() const { return 100.0 * static_cast<double>(solved) / static_cast<double>(asked); }
+};
+
+/// A planner that is measured beside others.
+class Contestant {
+ public:
+  using Ask = std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start_m, const Budget&, Rng&)>;
+
+  Contestant(std::string name, Ask ask, std::uint64_t seed)
+      : name_(std::move(name)), ask_(std::move(ask)), rng_(seed) {}
+
+  /// Plans and measures it. `shortest_m`: the length of the shortest way, 0 when that is not known.
+  const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
+                         double shortest_m);
+
+  const std::string& name() const { return name_; }
+  const PlanMeasures& measures() const { return measures_; }
+
+ private:
+  std::string name_;
+  Ask ask_;
+  Rng rng_;
+  PlanMeasures measures_;
+};
+
+/// A planner of this type with these settings.
+template <typename Planner, typename Settings>
+Contestant contestant(std::string name, const Settings& settings, std::uint64_t seed) {
+  const auto planner = std::make_shared<Planner>(settings);
+  const auto ask = [planner](const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
+                             Rng& rng) -> const Plan<Vec2>& {
+    return plan_robustly(*planner, domain, start_m, budget, rng);
+  };
+  return {std::move(name), ask, seed};
+}
+
+/// Asks all of them all queries of a world, in turn as replan_all does.
+void ask_all(std::vector<Contestant>& contestants, const Ground& ground,
+             const DiscDomainSettings& settings = {});
+
+/// Asks all of them the same questions of a ReplanCourse, each cycle beginning with the next: who comes first
+/// finds the processor's caches cold.
+void replan_all(std::vector<Contestant>& contestants, std::size_t cycles, std::uint64_t seed,
+                const std::function<void()>& after_cycle);
+
+}  // namespace sidestep
