@@ -10,6 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr std::size_t kCircles = 64;
 
 Vec2 random_place(const PlanWorld& world, Rng& rng) {
   const double x = world.field.length_m / 2, y = world.field.width_m / 2;
@@ -28,18 +29,6 @@ Vec2 free_place(const PlanWorld& world, const Box& within, Rng& rng) {
     const Vec2 place(rng.uniform(within.min_m.x(), within.max_m.x()),
                      rng.uniform(within.min_m.y(), within.max_m.y()));
     if (is_free(world, place)) return place;
-  }
-}
-
-/// From one place to another across the field, where there is a way.
-void ask_across(PlanWorld& world, std::size_t queries, Rng& rng) {
-  const ObstacleWorld obstacles(world.obstacles);
-  LazyVisibility planner;
-  while (world.queries.size() < queries) {
-    const Vec2 start = free_place(world, rng), goal = free_place(world, rng);
-    if ((start - goal).norm() < world.field.length_m / 2) continue;
-    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
-    if (planner.plan(domain, start, {}, rng).arrives()) world.queries.push_back({start, goal});
   }
 }
 
@@ -177,8 +166,7 @@ PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t
   if (name == "empty") {
     ask_across(world, queries, rng);
   } else if (name == "circles") {
-    put_circles(world, 64, rng);
-    ask_across(world, queries, rng);
+    return make_circles(kCircles, queries, seed);
   } else if (name == "mixed") {
     put_mixed(world, 12, rng);
     ask_across(world, queries, rng);
@@ -195,6 +183,28 @@ PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t
         fmt::format("no world is called \"{}\": expected one of {}", name, fmt::join(world_names(), ", ")));
   }
   return world;
+}
+
+PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t seed) {
+  Rng rng(seed);
+  PlanWorld world;
+  world.name = "circles";
+  const double scale = std::sqrt(static_cast<double>(circles) / kCircles);
+  world.field = {scale * world.field.length_m, scale * world.field.width_m};
+  put_circles(world, circles, rng);
+  ask_across(world, queries, rng);
+  return world;
+}
+
+void ask_across(PlanWorld& world, std::size_t queries, Rng& rng) {
+  const ObstacleWorld obstacles(world.obstacles);
+  LazyVisibility planner;
+  while (world.queries.size() < queries) {
+    const Vec2 start = free_place(world, rng), goal = free_place(world, rng);
+    if ((start - goal).norm() < world.field.length_m / 2) continue;
+    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+    if (planner.plan(domain, start, {}, rng).arrives()) world.queries.push_back({start, goal});
+  }
 }
 
 bool is_free(const PlanWorld& world, const Vec2& place_m) { return is_valid_way(world, {place_m}, 1, 0); }

@@ -31,6 +31,13 @@ const std::vector<std::string>& world_names();
 /// has a free start and a free goal; throws std::invalid_argument for another name.
 PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t seed);
 
+/// So many circles as dense as the 64 of "circles": the more, the larger the field.
+PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t seed);
+
+/// Adds queries, up to so many, from one free place to another at least half the field's length away where
+/// there is a way.
+void ask_across(PlanWorld& world, std::size_t queries, Rng& rng);
+
 /// Whether the robot stands in the field and touches no obstacle, compared one by one.
 bool is_free(const PlanWorld& world, const Vec2& place_m);
 

@@ -4,6 +4,7 @@
 #include "deploy/study/planning/bridges_and_extensions.hpp"
 #include "deploy/study/planning/cache_replans.hpp"
 #include "deploy/study/planning/cache_strategies.hpp"
+#include "deploy/study/planning/errt_and_visibility.hpp"
 
 namespace sidestep {
 namespace {
@@ -13,8 +14,9 @@ struct Sizes {
   CacheReplans cache;
   CacheStrategies strategies;
   BridgesAndExtensions bridges;
+  ErrtAndVisibility visibility;
 };
-Sizes quick_sizes() { return {{200}, {{0, 0.4}, 1, 100}, {{1, 8}, {1, 4}, 2, 5}}; }
+Sizes quick_sizes() { return {{200}, {{0, 0.4}, 1, 100}, {{1, 8}, {1, 4}, 2, 5}, {{4, 64}, 2, 5}}; }
 
 }  // namespace
 
@@ -29,6 +31,7 @@ int study_planning(const StudyOptions& options) {
   run("cache", cache_replans, sizes.cache);
   run("strategies", cache_strategies, sizes.strategies);
   run("bridges", bridges_and_extensions, sizes.bridges);
+  run("visibility", errt_and_visibility, sizes.visibility);
   return 0;
 }
 

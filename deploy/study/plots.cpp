@@ -2,6 +2,7 @@
 #include "deploy/study/plots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 
 namespace sidestep {
 namespace {
+
+constexpr std::array kColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c", "#222222", "#d62728"};
 
 /// In gnuplot's single quotes, within which only these stand for themselves when doubled.
 std::string quoted(const std::string& text) {
@@ -55,8 +58,10 @@ void draw(const std::vector<Plot>& plots, const std::string& png_file) {
   const bool is_one = plots.size() == 1;
   std::string text = fmt::format(
       "set terminal pngcairo size {},440 font 'sans,10' noenhanced\nset output {}\nset grid\n"
-      "set key below horizontal samplen 2\nset multiplot layout 1,{}\n",
+      "set key below horizontal samplen 2\nset autoscale xfix\nset multiplot layout 1,{}\n",
       is_one ? 720 : 520 * plots.size(), quoted(png_file), plots.size());
+  for (std::size_t i = 0; i < kColours.size(); ++i)
+    text += fmt::format("set linetype {} linecolor rgb '{}'\n", i + 1, kColours[i]);
   for (const Plot& plot : plots) text += script(plot);
   const bool is_written = std::fwrite(text.data(), 1, text.size(), gnuplot) == text.size();
   if (pclose(gnuplot) != 0 || !is_written) throw std::runtime_error("gnuplot could not draw " + png_file);

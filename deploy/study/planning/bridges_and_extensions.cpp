@@ -15,7 +15,7 @@ std::vector<Contestant> contestants_of(const BridgesAndExtensions& settings, std
     for (const std::size_t bridges : settings.bridges) {
       const BidirectionalErrtSettings trees{
           .cache_capacity = 0, .extensions = extensions, .bridges = bridges};
-      contestants.push_back(contestant<BidirectionalErrt<DiscDomain>>("", trees, seeds.bits()));
+      contestants.push_back(contestant<BidirectionalErrt<DiscDomain>>("", seeds.bits(), trees));
     }
   }
   return contestants;
@@ -28,7 +28,12 @@ StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uin
   std::vector<Contestant> contestants = contestants_of(settings, seed);
   for (std::size_t i = 0; i < settings.worlds; ++i) {
     const Ground ground(make_world("circles", settings.queries, seed + i));
-    ask_all(contestants, ground, {.step_m = settings.step_m});
+    for (std::size_t query = 0; query < settings.queries; ++query) {
+      const auto& [start_m, goal_m] = ground.world.queries[query];
+      const DiscDomain domain(ground.obstacles, ground.world.field, ground.world.radius_m, start_m, goal_m,
+                              {.step_m = settings.step_m});
+      ask_all(contestants, query, domain, start_m, {}, ground.shortest_m[query]);
+    }
     advance(i + 1, settings.worlds);
   }
 

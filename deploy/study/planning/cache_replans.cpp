@@ -23,10 +23,10 @@ StudyTable cache_replans(const CacheReplans& settings, std::uint64_t seed, const
   using Errt = Errt<DiscDomain>;
   using Trees = BidirectionalErrt<DiscDomain>;
   std::vector<Contestant> contestants{
-      contestant<Errt>("one tree", ErrtSettings{.cache_capacity = 0}, seed),
-      contestant<Errt>("one tree with cache", ErrtSettings{}, seed),
-      contestant<Trees>("two trees", BidirectionalErrtSettings{.cache_capacity = 0}, seed),
-      contestant<Trees>("two trees with cache", BidirectionalErrtSettings{}, seed)};
+      contestant<Errt>("one tree", seed, ErrtSettings{.cache_capacity = 0}),
+      contestant<Errt>("one tree with cache", seed),
+      contestant<Trees>("two trees", seed, BidirectionalErrtSettings{.cache_capacity = 0}),
+      contestant<Trees>("two trees with cache", seed)};
   std::size_t done = 0;
   replan_all(contestants, settings.replans, seed, [&] { advance(++done, settings.replans); });
 

@@ -29,7 +29,7 @@ std::vector<Contestant> contestants_with(double waypoint_probability, std::uint6
     const ErrtSettings settings{.goal_probability = kGoalProbability,
                                 .waypoint_probability = waypoint_probability,
                                 .replacement = strategy.replacement};
-    contestants.push_back(contestant<Errt<DiscDomain>>(strategy.name, settings, seeds.bits()));
+    contestants.push_back(contestant<Errt<DiscDomain>>(strategy.name, seeds.bits(), settings));
   }
   return contestants;
 }

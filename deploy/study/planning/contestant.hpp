@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "agents/planning/robust.hpp"
-#include "deploy/planning/ground.hpp"
 #include "deploy/planning/numbers.hpp"
 
 namespace sidestep {
@@ -17,6 +16,8 @@ struct PlanMeasures {
   Numbers plan_us{}, nodes{};
   Numbers length{};  ///< over the shortest, where solved
 
+  /// `shortest_m`: the length of the shortest way, 0 when that is not known.
+  void add(const Plan<Vec2>& plan, double us, double shortest_m);
   void add(const PlanMeasures& more);
   double solved_percent() const { return 100.0 * static_cast<double>(solved) / static_cast<double>(asked); }
 };
@@ -29,9 +30,7 @@ class Contestant {
   Contestant(std::string name, Ask ask, std::uint64_t seed)
       : name_(std::move(name)), ask_(std::move(ask)), rng_(seed) {}
 
-  /// Plans and measures it. `shortest_m`: the length of the shortest way, 0 when that is not known.
-  const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
-                         double shortest_m);
+  void plan(const DiscDomain& domain, const Vec2& start_m, const Budget& budget, double shortest_m);
 
   const std::string& name() const { return name_; }
   const PlanMeasures& measures() const { return measures_; }
@@ -44,9 +43,9 @@ class Contestant {
 };
 
 /// A planner of this type with these settings.
-template <typename Planner, typename Settings>
-Contestant contestant(std::string name, const Settings& settings, std::uint64_t seed) {
-  const auto planner = std::make_shared<Planner>(settings);
+template <typename Planner, typename... Settings>
+Contestant contestant(std::string name, std::uint64_t seed, const Settings&... settings) {
+  const auto planner = std::make_shared<Planner>(settings...);
   const auto ask = [planner](const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
                              Rng& rng) -> const Plan<Vec2>& {
     return plan_robustly(*planner, domain, start_m, budget, rng);
@@ -54,12 +53,12 @@ Contestant contestant(std::string name, const Settings& settings, std::uint64_t 
   return {std::move(name), ask, seed};
 }
 
-/// Asks all of them all queries of a world, in turn as replan_all does.
-void ask_all(std::vector<Contestant>& contestants, const Ground& ground,
-             const DiscDomainSettings& settings = {});
+/// Asks all of them the same, each turn beginning with the next: who comes first finds the processor's caches
+/// cold.
+void ask_all(std::vector<Contestant>& contestants, std::size_t turn, const DiscDomain& domain,
+             const Vec2& start_m, const Budget& budget, double shortest_m);
 
-/// Asks all of them the same questions of a ReplanCourse, each cycle beginning with the next: who comes first
-/// finds the processor's caches cold.
+/// Asks all of them the questions of a ReplanCourse.
 void replan_all(std::vector<Contestant>& contestants, std::size_t cycles, std::uint64_t seed,
                 const std::function<void()>& after_cycle);
 
