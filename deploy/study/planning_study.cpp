@@ -5,6 +5,7 @@
 #include "deploy/study/planning/cache_replans.hpp"
 #include "deploy/study/planning/cache_strategies.hpp"
 #include "deploy/study/planning/errt_and_visibility.hpp"
+#include "deploy/study/planning/roadmap_connections.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,8 +16,12 @@ struct Sizes {
   CacheStrategies strategies;
   BridgesAndExtensions bridges;
   ErrtAndVisibility visibility;
+  RoadmapConnections roadmaps;
 };
-Sizes quick_sizes() { return {{200}, {{0, 0.4}, 1, 100}, {{1, 8}, {1, 4}, 2, 5}, {{4, 64}, 2, 5}}; }
+Sizes quick_sizes() {
+  return {
+      {200}, {{0, 0.4}, 1, 100}, {{1, 8}, {1, 4}, 2, 5}, {{4, 64}, 2, 5}, {{8}, {8}, {1.5}, {0, 0.5}, 200, 2, 5}};
+}
 
 }  // namespace
 
@@ -32,6 +37,7 @@ int study_planning(const StudyOptions& options) {
   run("strategies", cache_strategies, sizes.strategies);
   run("bridges", bridges_and_extensions, sizes.bridges);
   run("visibility", errt_and_visibility, sizes.visibility);
+  run("roadmaps", roadmap_connections, sizes.roadmaps);
   return 0;
 }
 

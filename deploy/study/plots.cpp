@@ -55,11 +55,13 @@ void require_gnuplot() {
 void draw(const std::vector<Plot>& plots, const std::string& png_file) {
   std::FILE* gnuplot = popen("gnuplot", "w");
   if (!gnuplot) throw std::runtime_error("gnuplot cannot be started");
-  const bool is_one = plots.size() == 1;
   std::string text = fmt::format(
       "set terminal pngcairo size {},440 font 'sans,10' noenhanced\nset output {}\nset grid\n"
       "set key below horizontal samplen 2\nset autoscale xfix\nset multiplot layout 1,{}\n",
-      is_one ? 720 : 520 * plots.size(), quoted(png_file), plots.size());
+      plots.size() == 1   ? 720
+      : plots.size() == 2 ? 1040
+                          : 400 * plots.size(),
+      quoted(png_file), plots.size());
   for (std::size_t i = 0; i < kColours.size(); ++i)
     text += fmt::format("set linetype {} linecolor rgb '{}'\n", i + 1, kColours[i]);
   for (const Plot& plot : plots) text += script(plot);

@@ -8,9 +8,8 @@ namespace sidestep {
 
 struct PrmSettings {
   std::size_t nodes = 200;  ///< of the roadmap when it is built, and by which it grows where it does not do
-  Connection connection = Connection::kNearest;
-  std::size_t neighbours = 10;  ///< of a new node, or its sectors
-  bool keeps_roadmap = true;    ///< for the next query
+  ConnectionSettings connection = {};
+  bool keeps_roadmap = true;  ///< for the next query
   /// The world may be another for each query: motions are checked anew, each when a way over it promises
   /// most.
   bool is_dynamic = false;
@@ -20,7 +19,7 @@ struct PrmSettings {
 inline PrmSettings one_shot_prm() { return {.nodes = 40, .keeps_roadmap = false}; }
 /// A roadmap in a world whose obstacles move (Bruce 2006, section 4.9).
 inline PrmSettings dynamic_prm() {
-  return {.connection = Connection::kRadial, .neighbours = 8, .is_dynamic = true};
+  return {.connection = {.method = Connection::kRadial, .neighbours = 8}, .is_dynamic = true};
 }
 
 /// The probabilistic roadmap (Kavraki et al. 1996): free states drawn at random, joined by free motions; a
@@ -47,6 +46,12 @@ class Prm {
     return plan_;
   }
 
+  /// Draws the roadmap, if there is none yet, before a query has to.
+  void build(const D& domain, const Budget& budget, Rng& rng) {
+    plan_.samples = 0;
+    if (kept_ == 0) draw_nodes(domain, budget, rng);
+  }
+
   /// The world, or what a query asks for, has become another.
   void forget() {
     map_.clear();
@@ -71,8 +76,7 @@ class Prm {
     while (map_.size() < wanted && !budget.is_spent(map_.size(), plan_.samples)) {
       const State state = domain.sample(rng);
       ++plan_.samples;
-      if (domain.check(state, state))
-        map_.add(domain, state, settings_.connection, settings_.neighbours, version_);
+      if (domain.check(state, state)) map_.add(domain, state, settings_.connection, version_);
     }
     kept_ = map_.size();
   }
@@ -80,8 +84,8 @@ class Prm {
   bool query(const D& domain, const State& start) {
     map_.shrink(kept_);
     const State goal = domain.goal(start);
-    const Node from = map_.add(domain, start, settings_.connection, settings_.neighbours, version_);
-    const Node to = map_.add(domain, goal, settings_.connection, settings_.neighbours, version_);
+    const Node from = map_.add(domain, start, settings_.connection, version_);
+    const Node to = map_.add(domain, goal, settings_.connection, version_);
     plan_.nodes = map_.size();
     const Node reached = search(domain, from, to);
     write_plan(from, reached);

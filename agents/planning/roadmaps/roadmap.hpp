@@ -15,6 +15,13 @@ namespace sidestep {
 enum class Connection {
   kNearest,  ///< those that are nearest (Kavraki et al. 1996)
   kRadial,   ///< in each sector round it, of the first two coordinates, the nearest that it sees
+  kWithin,   ///< all within a radius
+};
+
+struct ConnectionSettings {
+  Connection method = Connection::kNearest;
+  std::size_t neighbours = 10;  ///< of a new node, or its sectors
+  double radius = 1.5;          ///< in which all are neighbours, for kWithin
 };
 
 /// States and motions between them that may be free, in a graph that grows, and loses what it got last.
@@ -48,17 +55,17 @@ class Roadmap {
     return e.is_free;
   }
 
-  /// Adds a state and joins it, by free motions, with up to `count` neighbours: of its sectors with one each.
-  Node add(const D& domain, const State& state, Connection connection, std::size_t count,
-           std::uint32_t version) {
+  /// Adds a state and joins it with its neighbours by free motions.
+  Node add(const D& domain, const State& state, const ConnectionSettings& settings, std::uint32_t version) {
     const Node node = grow(state);
-    find_nearest(domain, node, connection == Connection::kRadial ? kLooks * count : count);
-    sectors_.assign(count, false);
+    const bool is_radial = settings.method == Connection::kRadial;
+    find_neighbours(domain, node, settings);
+    sectors_.assign(settings.neighbours, false);
     for (const Near& near : nearest_) {
-      const std::size_t sector = connection == Connection::kRadial ? sector_of(domain, node, near.node) : 0;
-      if (connection == Connection::kRadial && sectors_[sector]) continue;
+      const std::size_t sector = is_radial ? sector_of(domain, node, near.node) : 0;
+      if (is_radial && sectors_[sector]) continue;
       if (!domain.check(states_[node], states_[near.node])) continue;
-      sectors_[sector] = true;
+      if (is_radial) sectors_[sector] = true;
       join(node, near, version);
     }
     return node;
@@ -98,11 +105,16 @@ class Roadmap {
     edges_.push_back({node, near.node, near.distance, version, true});
   }
 
-  void find_nearest(const D& domain, Node node, std::size_t count) {
+  /// Those that the node may be joined with, the nearest first.
+  void find_neighbours(const D& domain, Node node, const ConnectionSettings& settings) {
+    const bool is_within = settings.method == Connection::kWithin;
     nearest_.clear();
-    for (Node other = 0; other < node; ++other)
-      nearest_.push_back({domain.distance(states_[node], states_[other]), other});
-    const std::size_t kept = std::min(count, nearest_.size());
+    for (Node other = 0; other < node; ++other) {
+      const double distance = domain.distance(states_[node], states_[other]);
+      if (!is_within || distance <= settings.radius) nearest_.push_back({distance, other});
+    }
+    const std::size_t looks = settings.neighbours * (settings.method == Connection::kRadial ? kLooks : 1);
+    const std::size_t kept = is_within ? nearest_.size() : std::min(looks, nearest_.size());
     std::partial_sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(kept), nearest_.end());
     nearest_.resize(kept);
   }

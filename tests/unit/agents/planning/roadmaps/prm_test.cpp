@@ -37,8 +37,9 @@ double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
 
 TEST_CASE("roadmaps find valid ways in all worlds and the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u);
-  const PrmSettings radial{.connection = Connection::kRadial, .neighbours = 8};
-  for (const PrmSettings& settings : {PrmSettings{}, one_shot_prm(), dynamic_prm(), radial}) {
+  const PrmSettings radial{.connection = {.method = Connection::kRadial, .neighbours = 8}};
+  const PrmSettings within{.connection = {.method = Connection::kWithin}};
+  for (const PrmSettings& settings : {PrmSettings{}, one_shot_prm(), dynamic_prm(), radial, within}) {
     for (const std::string& name : world_names()) {
       const PlanWorld world = make_world(name, 12, seed);
       const ObstacleWorld obstacles(world.obstacles);
@@ -94,8 +95,8 @@ TEST_CASE("radial connection joins a node with one neighbour in each direction")
   const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
   Rng rng(1);
   Roadmap<DiscDomain> map;
-  for (int i = 0; i < 200; ++i) map.add(domain, domain.sample(rng), Connection::kNearest, 3, 1);
-  const auto node = map.add(domain, {0.01, 0.02}, Connection::kRadial, 8, 1);
+  for (int i = 0; i < 200; ++i) map.add(domain, domain.sample(rng), {.neighbours = 3}, 1);
+  const auto node = map.add(domain, {0.01, 0.02}, {Connection::kRadial, 8}, 1);
   CHECK(map.edges_of(node).size() == 8);
   std::set<int> sectors;
   for (const auto edge : map.edges_of(node)) {
@@ -105,16 +106,54 @@ TEST_CASE("radial connection joins a node with one neighbour in each direction")
   CHECK(sectors.size() == 8);
 }
 
+TEST_CASE("connection within a radius joins a node with all that it sees there") {
+  const auto seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  const PlanWorld world = make_world("circles", 1, seed);
+  const ObstacleWorld obstacles(world.obstacles);
+  const DiscDomain domain(obstacles, world.field, world.radius_m, {0, 0}, {1, 1});
+  Rng rng(seed);
+  Roadmap<DiscDomain> map;
+  std::size_t joined = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto node = map.add(domain, domain.sample(rng), {.method = Connection::kWithin, .radius = 1.2}, 1);
+    std::set<std::uint32_t> seen, found;
+    for (std::uint32_t other = 0; other < node; ++other)
+      if ((map[node] - map[other]).norm() <= 1.2 && domain.check(map[node], map[other])) seen.insert(other);
+    for (const auto edge : map.edges_of(node)) found.insert(map.edges()[edge].other(node));
+    REQUIRE(found == seen);
+    joined += found.size();
+  }
+  CHECK(joined > 100);
+}
+
+TEST_CASE("a roadmap that is built before its first query is the one that the query would build") {
+  const PlanWorld world = make_world("circles", 1, 3);
+  const ObstacleWorld obstacles(world.obstacles);
+  const auto& [start, goal] = world.queries[0];
+  const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+  REQUIRE_FALSE(domain.check(start, goal));
+  Roadmaps built, queried;
+  Rng built_rng(3), queried_rng(3);
+  built.build(domain, {}, built_rng);
+  CHECK(built.roadmap().size() == PrmSettings{}.nodes);
+  built.build(domain, {}, built_rng);
+  CHECK(built.roadmap().size() == PrmSettings{}.nodes);
+  CHECK(built.plan(domain, start, {}, built_rng).states ==
+        queried.plan(domain, start, {}, queried_rng).states);
+  CHECK(built.roadmap().edges().size() == queried.roadmap().edges().size());
+}
+
 TEST_CASE("a roadmap that loses its last nodes is as before") {
   const ObstacleWorld nothing;
   const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
   Rng rng(1);
   Roadmap<DiscDomain> map;
-  for (int i = 0; i < 50; ++i) map.add(domain, domain.sample(rng), Connection::kNearest, 5, 1);
+  for (int i = 0; i < 50; ++i) map.add(domain, domain.sample(rng), {.neighbours = 5}, 1);
   const std::size_t edges = map.edges().size();
   std::vector<std::vector<std::uint32_t>> joins;
   for (std::uint32_t node = 0; node < 50; ++node) joins.push_back(map.edges_of(node));
-  for (int i = 0; i < 7; ++i) map.add(domain, domain.sample(rng), Connection::kRadial, 8, 1);
+  for (int i = 0; i < 7; ++i) map.add(domain, domain.sample(rng), {Connection::kRadial, 8}, 1);
   REQUIRE(map.edges().size() > edges);
   map.shrink(50);
   CHECK(map.size() == 50);
