@@ -4,6 +4,7 @@
 #include "deploy/study/planning/bridges_and_extensions.hpp"
 #include "deploy/study/planning/cache_replans.hpp"
 #include "deploy/study/planning/cache_strategies.hpp"
+#include "deploy/study/planning/collision_structures.hpp"
 #include "deploy/study/planning/errt_and_visibility.hpp"
 #include "deploy/study/planning/roadmap_connections.hpp"
 
@@ -17,10 +18,17 @@ struct Sizes {
   BridgesAndExtensions bridges;
   ErrtAndVisibility visibility;
   RoadmapConnections roadmaps;
+  CollisionStructures collision;
 };
 Sizes quick_sizes() {
-  return {
-      {200}, {{0, 0.4}, 1, 100}, {{1, 8}, {1, 4}, 2, 5}, {{4, 64}, 2, 5}, {{8}, {8}, {1.5}, {0, 0.5}, 200, 2, 5}};
+  Sizes sizes;
+  sizes.cache = {.replans = 200};
+  sizes.strategies = {.waypoint_probabilities = {0, 0.4}, .courses = 1, .replans = 100};
+  sizes.bridges = {.extensions = {1, 8}, .bridges = {1, 4}, .worlds = 2, .queries = 5};
+  sizes.visibility = {.obstacles = {4, 64}, .worlds = 2, .queries = 5};
+  sizes.roadmaps = {.sectors = {8}, .neighbours = {8}, .radii_m = {1.5}, .worlds = 2, .queries = 5};
+  sizes.collision = {.obstacles = {4, 64, 1024}, .queries = 2000, .rounds = 3};
+  return sizes;
 }
 
 }  // namespace
@@ -38,6 +46,7 @@ int study_planning(const StudyOptions& options) {
   run("bridges", bridges_and_extensions, sizes.bridges);
   run("visibility", errt_and_visibility, sizes.visibility);
   run("roadmaps", roadmap_connections, sizes.roadmaps);
+  run("collision", collision_structures, sizes.collision);
   return 0;
 }
 

@@ -30,7 +30,10 @@ std::string script(const Plot& plot) {
   if (plot.has_log_x) text += "set logscale x\n";
   if (plot.has_log_y) text += "set logscale y\n";
   if (plot.marked_x)
-    text += fmt::format("set arrow from {0},graph 0 to {0},graph 1 nohead dashtype 2\n", *plot.marked_x);
+    text += fmt::format(
+        "set arrow from {0},graph 0 to {0},graph 1 nohead dashtype 2\nset label '{0}' at {0},graph 0.95 "
+        "offset 0.5\n",
+        *plot.marked_x);
   std::string lines;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const PlotLine& line = plot.lines[i];

@@ -4,10 +4,10 @@
 #include <fmt/core.h>
 #include <functional>
 #include <string>
-#include <time.h>
 
 #include "common/collision/obstacle_world.hpp"
-#include "common/random/rng.hpp"
+#include "deploy/study/planning/collision_problem.hpp"
+#include "deploy/study/planning/fcl_tree.hpp"
 #include "tests/bench/collision_peers.hpp"
 
 using namespace sidestep;
@@ -15,85 +15,7 @@ using namespace sidestep;
 namespace {
 
 constexpr std::size_t kQueries = 100'000, kRounds = 5;
-constexpr double kCovered = 0.2;
 constexpr std::uint64_t kSeed = 1;
-
-struct Query {
-  Vec2 from_m, to_m;
-};
-
-/// A shape about as large as a circle of the radius.
-Shape any_shape(Rng& rng, const Vec2& at, double radius_m) {
-  const double half_m = 0.88 * radius_m;
-  switch (rng.below(4)) {
-    case 0:
-      return Box{at - Vec2(half_m, half_m), at + Vec2(half_m, half_m)};
-    case 1:
-      return Segment{at, at + rotated({3 * radius_m, 0}, rng.uniform(0, 6.283))};
-    case 2: {
-      ConvexPolygon polygon;
-      for (int i = 0; i < 5; ++i) polygon.corners_m.push_back(at + rotated({1.1 * radius_m, 0}, i * 1.2566));
-      return polygon;
-    }
-    default:
-      return Circle{at, radius_m};
-  }
-}
-
-/// Obstacles that cover a fifth of the unit square, and short ways of a small robot: sizes go with the
-/// distance between obstacles, so the world only becomes larger as their number grows, and hits stay as
-/// frequent.
-struct Problem {
-  Problem(std::size_t count, bool circles_only) {
-    Rng rng(kSeed);
-    const double spacing_m = 1 / std::sqrt(static_cast<double>(count));
-    const double mean_radius_m = spacing_m * std::sqrt(kCovered / 3.14159265 / (13.0 / 12.0));
-    radius_m = 0.08 * spacing_m;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec2 at(rng.uniform(), rng.uniform());
-      const double size_m = mean_radius_m * rng.uniform(0.5, 1.5);
-      shapes.push_back(circles_only ? Circle{at, size_m} : any_shape(rng, at, size_m));
-    }
-    for (std::size_t i = 0; i < kQueries; ++i) {
-      const Vec2 from(rng.uniform(), rng.uniform());
-      const Vec2 way = rotated({rng.uniform(0, 0.8) * spacing_m, 0}, rng.uniform(0, 6.283));
-      queries.push_back({from, from + way});
-    }
-  }
-  std::vector<Shape> shapes;
-  std::vector<Query> queries;
-  double radius_m;
-};
-
-/// What this thread has had of a processor: others that want it too do not count.
-double cpu_time_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
-/// Asks all queries and says how long one took. Branching: what is done next depends on the answer, as in
-/// planners, so what cannot be foretold is waited for; otherwise answers are counted, and queries overlap.
-template <bool kBranching, typename Ask>
-double time_ns(const Problem& problem, Ask& ask) {
-  std::size_t clear = 0;
-  const double begin_ns = cpu_time_ns();
-  for (const Query& query : problem.queries) {
-    const bool hit = ask(query);
-    if constexpr (kBranching) {
-      if (hit) {
-        asm volatile("nop" ::: "memory");
-        continue;
-      }
-      ++clear;
-    } else {
-      clear += !hit;
-    }
-  }
-  const double end_ns = cpu_time_ns();
-  asm volatile("" : : "r"(clear));
-  return (end_ns - begin_ns) / kQueries;
-}
 
 /// One side of the comparison.
 struct Side {
@@ -106,14 +28,15 @@ struct Side {
 };
 
 template <typename World>
-Side side(std::string name, bool is_ours, const Problem& problem, World& world, double tolerance_m = 1e-9) {
-  const auto ask = [&world, radius_m = problem.radius_m](const Query& query) {
-    return world.touches(query.from_m, query.to_m, radius_m);
+Side side(std::string name, bool is_ours, const CollisionProblem& problem, World& world,
+          double tolerance_m = 1e-9) {
+  const auto ask = [&world, radius_m = problem.radius_m](const Segment& way) {
+    return world.touches(way.from_m, way.to_m, radius_m);
   };
   Side made{std::move(name), is_ours, tolerance_m, {}, {}, {}, {}, {}};
-  for (const Query& query : problem.queries) made.answers.push_back(ask(query));
-  made.count_ns = [&problem, ask] { return time_ns<false>(problem, ask); };
-  made.branch_ns = [&problem, ask] { return time_ns<true>(problem, ask); };
+  for (const Segment& way : problem.ways) made.answers.push_back(ask(way));
+  made.count_ns = [&problem, ask] { return query_ns<AnswerUse::kCounted>(problem, ask); };
+  made.branch_ns = [&problem, ask] { return query_ns<AnswerUse::kBranched>(problem, ask); };
   return made;
 }
 
@@ -124,15 +47,14 @@ double median(std::vector<double> values) {
 }
 
 /// Wrong answers where sides do not agree, but for ways that are within the side's tolerance of touching.
-std::size_t count_wrong(const Problem& problem, const std::vector<Side>& sides) {
+std::size_t count_wrong(const CollisionProblem& problem, const std::vector<Side>& sides) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < kQueries; ++i) {
-    const Query& query = problem.queries[i];
     const auto answers_otherwise = [&](const Side& other) { return other.answers[i] != sides[0].answers[i]; };
     if (std::none_of(sides.begin(), sides.end(), answers_otherwise)) continue;
     double nearest2_m2 = 1;
     for (const Shape& shape : problem.shapes)
-      nearest2_m2 = std::min(nearest2_m2, squared_distance(Segment{query.from_m, query.to_m}, shape));
+      nearest2_m2 = std::min(nearest2_m2, squared_distance(problem.ways[i], shape));
     const double gap_m = std::sqrt(nearest2_m2) - problem.radius_m;
     for (const Side& s : sides) {
       if (std::abs(gap_m) <= s.tolerance_m || s.answers[i] == (gap_m < 0)) continue;
@@ -159,7 +81,7 @@ void print(std::size_t count, const std::vector<Side>& sides) {
 }
 
 bool compare(std::size_t count, bool circles_only) {
-  const Problem problem(count, circles_only);
+  const CollisionProblem problem(count, kQueries, circles_only, kSeed);
   const ObstacleWorld chosen(problem.shapes), linear(problem.shapes, Structure::kLinear);
   const ObstacleWorld masks(problem.shapes, Structure::kMasks), tree(problem.shapes, Structure::kTree);
   std::vector<Side> sides;
@@ -169,7 +91,7 @@ bool compare(std::size_t count, bool circles_only) {
   sides.push_back(side("tree of boxes", true, problem, tree));
   const peers::PlainArray plain(circles_only ? problem.shapes : std::vector<Shape>());
   const peers::BoostRTree boost(problem.shapes);
-  peers::FclTree fcl(problem.shapes);
+  FclTree fcl(problem.shapes);
   if (circles_only && count <= 4096) sides.push_back(side("plain vectorised array", false, problem, plain));
   sides.push_back(side("Boost R-tree", false, problem, boost));
   // FCL iterates up to 1e-6 for shapes other than circles, and takes its time.
@@ -191,7 +113,7 @@ int main() {
   fmt::print(
       "Swept discs against obstacles that cover {:.0f} % of the unit square: ns of processor time per "
       "query,\n",
-      100 * kCovered);
+      100 * CollisionProblem::kCovered);
   fmt::print(
       "medians of {} rounds of {} random queries; gain: how often that goes into the best peer's time.\n",
       kRounds, kQueries);

@@ -30,17 +30,4 @@ class BoostRTree {
   std::unique_ptr<Tree> tree_;
 };
 
-/// FCL's dynamic tree of boxes over spheres and prisms on a plane, asked with a capsule that lies in it: its
-/// own continuous collision iterates, while this is exact and fast.
-class FclTree {
- public:
-  explicit FclTree(const std::vector<Shape>& shapes);
-  ~FclTree();
-  bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m);
-
- private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
-};
-
 }  // namespace sidestep::peers

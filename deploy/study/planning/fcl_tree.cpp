@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deploy/study/planning/fcl_tree.hpp"
+
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/narrowphase/collision.h>
 
 #include "common/collision/fcl/solid_world.hpp"
-#include "tests/bench/collision_peers.hpp"
 
-namespace sidestep::peers {
+namespace sidestep {
 namespace {
 
 bool touch_in_fcl(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
@@ -63,4 +64,4 @@ bool FclTree::touches(const Vec2& from, const Vec2& to, double radius) {
   return found;
 }
 
-}  // namespace sidestep::peers
+}  // namespace sidestep
