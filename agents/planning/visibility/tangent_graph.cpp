@@ -27,6 +27,12 @@ Vec2 TangentGraph::place_of(const Node& node) const {
   return touching_point(bend_of(node.ring), side_of(node.ring), node.along);
 }
 
+bool TangentGraph::is_free(const Vec2& from, const Vec2& to) const {
+  const double radius_m = domain_.radius_m();
+  return domain_.field().contains(from, radius_m) && domain_.field().contains(to, radius_m) &&
+         !domain_.world().touches(from, to, radius_m);
+}
+
 void TangentGraph::join(std::uint32_t a, std::uint32_t b) {
   for (const Side a_side : {Side::kLeft, Side::kRight}) {
     for (const Side b_side : {Side::kLeft, Side::kRight}) {
@@ -45,7 +51,9 @@ void TangentGraph::join(std::uint32_t a, Side a_side, std::uint32_t b, Side b_si
   if (!a_holds || !b_holds) return;
   const Vec2 from = touching_point(bends_[a], a_side, way->along);
   const Vec2 to = touching_point(bends_[b], b_side, way->along);
-  if (!domain_.check(from, to)) return;
+  // What is built for the world knows of no start that may be left though it is blocked.
+  const bool is_of_world = a >= kObstacles && b >= kObstacles;
+  if (is_of_world ? !is_free(from, to) : !domain_.check(from, to)) return;
   add_tangent(ring_of(a, a_side), ring_of(b, b_side), *way);
   const auto other = [](Side side) { return side == Side::kLeft ? Side::kRight : Side::kLeft; };
   if (a == kStart || b == kGoal) return;

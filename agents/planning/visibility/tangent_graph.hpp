@@ -56,6 +56,7 @@ class TangentGraph {
   const Bend& bend_of(std::uint32_t ring) const { return bends_[ring / 2]; }
   Vec2 place_of(const Node& node) const;
 
+  bool is_free(const Vec2& from, const Vec2& to) const;
   /// Joins two bends with the four ways between them.
   void join(std::uint32_t a, std::uint32_t b);
   void join(std::uint32_t a, Side a_side, std::uint32_t b, Side b_side);

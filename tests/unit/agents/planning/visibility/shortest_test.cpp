@@ -194,6 +194,23 @@ TEST_CASE("visibility graphs know that there is no way") {
   CHECK(plan.states.back().norm() < 2.5);
 }
 
+TEST_CASE(
+    "all tangents of a full visibility graph are free also when an obstacle covers the field's middle") {
+  const auto seed = GENERATE(1u, 2u);
+  PlanWorld world = make_world("circles", 1, seed);
+  world.obstacles.push_back(Circle{{0.1, 0}, 0.5});
+  world.obstacles.push_back(Circle{{0.5, 0.3}, 0.4});
+  const ObstacleWorld obstacles(world.obstacles);
+  const TangentGraph graph(obstacles, world.field, world.radius_m);
+  const std::vector<Segment> tangents = graph.tangents();
+  CAPTURE(seed);
+  CHECK(tangents.size() > 100);
+  for (const Segment& tangent : tangents) {
+    CAPTURE(tangent.from_m.transpose(), tangent.to_m.transpose());
+    REQUIRE(is_valid_way(world, {tangent.from_m, tangent.to_m}, 0.01, 1e-9));
+  }
+}
+
 TEST_CASE("lazy and full visibility graph agree among random shapes of all kinds and robots of all sizes") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 60));
   Rng rng(seed);
