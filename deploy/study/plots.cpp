@@ -23,8 +23,8 @@ std::string quoted(const std::string& text) {
 /// Extremes are drawn where there are some.
 std::string script(const Plot& plot) {
   std::string text = fmt::format(
-      "set title {}\nset xlabel {} offset 0,0.7\nset ylabel {}\nset yrange [{}:*]\nunset logscale\nunset "
-      "arrow\nset bmargin {}\n",
+      "set title {}\nset xlabel {} offset 0,0.7\nset ylabel {}\nset yrange [{}:*]\nunset logscale\n"
+      "unset arrow\nunset label\nset bmargin {}\n",
       quoted(plot.title), quoted(plot.x_label), quoted(plot.y_label),
       plot.has_log_y ? "*" : fmt::format("{}", plot.least_y), 4 + (plot.lines.size() + 1) / 2);
   if (plot.has_log_x) text += "set logscale x\n";
@@ -58,13 +58,11 @@ void require_gnuplot() {
 void draw(const std::vector<Plot>& plots, const std::string& png_file) {
   std::FILE* gnuplot = popen("gnuplot", "w");
   if (!gnuplot) throw std::runtime_error("gnuplot cannot be started");
+  const std::size_t width = plots.size() == 1 ? 720 : plots.size() == 2 ? 1040 : 400 * plots.size();
   std::string text = fmt::format(
       "set terminal pngcairo size {},440 font 'sans,10' noenhanced\nset output {}\nset grid\n"
       "set key below horizontal samplen 2\nset autoscale xfix\nset multiplot layout 1,{}\n",
-      plots.size() == 1   ? 720
-      : plots.size() == 2 ? 1040
-                          : 400 * plots.size(),
-      quoted(png_file), plots.size());
+      width, quoted(png_file), plots.size());
   for (std::size_t i = 0; i < kColours.size(); ++i)
     text += fmt::format("set linetype {} linecolor rgb '{}'\n", i + 1, kColours[i]);
   for (const Plot& plot : plots) text += script(plot);

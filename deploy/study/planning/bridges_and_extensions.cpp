@@ -39,8 +39,7 @@ StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uin
 
   StudyTable table;
   table.name = "bridges";
-  table.columns = {"extensions", "bridges",      "queries",       "solved_percent", "median_us",
-                   "p95_us",     "median_nodes", "median_length", "p95_length"};
+  table.columns = plan_columns({"extensions", "bridges"});
   const std::string title = fmt::format("Two trees, steps of {} m, {} queries", settings.step_m,
                                         settings.worlds * settings.queries);
   table.plots = {{.title = title,
@@ -59,11 +58,7 @@ StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uin
       plot.lines.push_back({extensions == 1 ? "one extension" : fmt::format("up to {}", extensions), {}});
     for (const std::size_t bridges : settings.bridges) {
       const PlanMeasures& m = contestants[i++].measures();
-      table.rows.push_back(cells(extensions, bridges, m.asked, fmt::format("{:.1f}", m.solved_percent()),
-                                 fmt::format("{:.1f}", m.plan_us.median()),
-                                 fmt::format("{:.1f}", m.plan_us.at(0.95)), m.nodes.median(),
-                                 fmt::format("{:.3f}", m.length.median()),
-                                 fmt::format("{:.3f}", m.length.at(0.95))));
+      table.rows.push_back(plan_cells(cells(extensions, bridges), m));
       const auto x = static_cast<double>(bridges);
       table.plots[0].lines.back().points.push_back(plot_point(x, m.length.median()));
       table.plots[1].lines.back().points.push_back(plot_point(x, m.plan_us.median()));

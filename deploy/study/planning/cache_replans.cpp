@@ -12,7 +12,7 @@ namespace {
 /// Which part of the numbers is no more than x.
 PlotLine distribution(const std::string& title, const Numbers& numbers, int most_percent) {
   PlotLine line{title, {}};
-  for (int percent = 0; percent <= most_percent; ++percent)
+  for (int percent = 0; percent <= most_percent; percent += 2)
     line.points.push_back(plot_point(numbers.at(percent / 100.0), percent));
   return line;
 }
@@ -32,8 +32,7 @@ StudyTable cache_replans(const CacheReplans& settings, std::uint64_t seed, const
 
   StudyTable table;
   table.name = "cache";
-  table.columns = {"planner", "replans",      "solved_percent", "median_us",     "p95_us",    "p99_us",
-                   "mean_us", "median_nodes", "p95_nodes",      "median_length", "p95_length"};
+  table.columns = plan_columns({"planner"});
   table.plots = {{.title = fmt::format("{} replans among 64 moving circles", settings.replans),
                   .x_label = "time of a replan [us]",
                   .y_label = "replans that take no more [%]",
@@ -43,14 +42,9 @@ StudyTable cache_replans(const CacheReplans& settings, std::uint64_t seed, const
                   .y_label = "ways that are no longer [%]"}};
   for (const Contestant& c : contestants) {
     const PlanMeasures& m = c.measures();
-    table.rows.push_back(
-        cells(c.name(), m.asked, fmt::format("{:.1f}", m.solved_percent()),
-              fmt::format("{:.1f}", m.plan_us.median()), fmt::format("{:.1f}", m.plan_us.at(0.95)),
-              fmt::format("{:.1f}", m.plan_us.at(0.99)), fmt::format("{:.1f}", m.plan_us.mean()),
-              m.nodes.median(), m.nodes.at(0.95), fmt::format("{:.3f}", m.length.median()),
-              fmt::format("{:.3f}", m.length.at(0.95))));
-    table.plots[0].lines.push_back(distribution(c.name(), m.plan_us, 99));
-    table.plots[1].lines.push_back(distribution(c.name(), m.length, 95));
+    table.rows.push_back(plan_cells({c.name()}, m));
+    table.plots[0].lines.push_back(distribution(c.name(), m.plan_us, 98));
+    table.plots[1].lines.push_back(distribution(c.name(), m.length, 94));
   }
   return table;
 }

@@ -40,9 +40,7 @@ StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed,
                             const StudyAdvance& advance) {
   StudyTable table;
   table.name = "strategies";
-  table.columns = {
-      "waypoint_probability", "strategy",  "replans",       "solved_percent", "median_us", "p95_us",
-      "median_nodes",         "p95_nodes", "median_length", "p95_length"};
+  table.columns = plan_columns({"waypoint_probability", "strategy"});
   const std::string title = fmt::format("ERRT, {} courses of {} replans", settings.courses, settings.replans);
   for (const char* quantile : {"median", "95th percentile"})
     table.plots.push_back({.title = title,
@@ -63,11 +61,7 @@ StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed,
     }
     for (std::size_t i = 0; i < kStrategies.size(); ++i) {
       const PlanMeasures& m = all[i];
-      table.rows.push_back(
-          cells(probability, kStrategies[i].name, m.asked, fmt::format("{:.1f}", m.solved_percent()),
-                fmt::format("{:.1f}", m.plan_us.median()), fmt::format("{:.1f}", m.plan_us.at(0.95)),
-                m.nodes.median(), m.nodes.at(0.95), fmt::format("{:.3f}", m.length.median()),
-                fmt::format("{:.3f}", m.length.at(0.95))));
+      table.rows.push_back(plan_cells(cells(probability, kStrategies[i].name), m));
       table.plots[0].lines[i].points.push_back(plot_point(probability, m.plan_us.median()));
       table.plots[1].lines[i].points.push_back(plot_point(probability, m.plan_us.at(0.95)));
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/study/planning/contestant.hpp"
 
+#include <fmt/format.h>
+
 #include "deploy/planning/cpu_clock.hpp"
 #include "deploy/planning/replan_course.hpp"
 
@@ -21,6 +23,22 @@ void PlanMeasures::add(const PlanMeasures& more) {
   plan_us.add(more.plan_us);
   nodes.add(more.nodes);
   length.add(more.length);
+}
+
+std::vector<std::string> plan_columns(std::vector<std::string> key) {
+  for (const char* name : {"queries", "solved_percent", "median_us", "p95_us", "p99_us", "median_nodes",
+                           "p95_nodes", "median_length", "p95_length"})
+    key.emplace_back(name);
+  return key;
+}
+
+std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanMeasures& m) {
+  key.push_back(fmt::format("{}", m.asked));
+  key.push_back(fmt::format("{:.1f}", m.solved_percent()));
+  for (const double part : {0.5, 0.95, 0.99}) key.push_back(fmt::format("{:.1f}", m.plan_us.at(part)));
+  for (const double part : {0.5, 0.95}) key.push_back(fmt::format("{}", m.nodes.at(part)));
+  for (const double part : {0.5, 0.95}) key.push_back(fmt::format("{:.3f}", m.length.at(part)));
+  return key;
 }
 
 void Contestant::plan(const DiscDomain& domain, const Vec2& start_m, const Budget& budget,

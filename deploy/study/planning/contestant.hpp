@@ -22,6 +22,11 @@ struct PlanMeasures {
   double solved_percent() const { return 100.0 * static_cast<double>(solved) / static_cast<double>(asked); }
 };
 
+/// The columns of a table of plans, after those that say which.
+std::vector<std::string> plan_columns(std::vector<std::string> key);
+/// A row of it.
+std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanMeasures& measures);
+
 /// A planner that is measured beside others.
 class Contestant {
  public:

@@ -73,8 +73,7 @@ StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t 
 
   StudyTable table;
   table.name = "visibility";
-  table.columns = {"obstacles", "planner",      "queries",       "solved_percent", "median_us",
-                   "p95_us",    "median_nodes", "median_length", "p95_length"};
+  table.columns = plan_columns({"obstacles", "planner"});
   const std::string title = fmt::format("{} queries at each size", settings.worlds * settings.queries);
   table.plots = {{.title = title,
                   .x_label = "obstacles",
@@ -99,11 +98,7 @@ StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t 
     }
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       const auto& [planner, m] = outcomes[i];
-      table.rows.push_back(cells(obstacles, planner, m.asked, fmt::format("{:.1f}", m.solved_percent()),
-                                 fmt::format("{:.1f}", m.plan_us.median()),
-                                 fmt::format("{:.1f}", m.plan_us.at(0.95)), m.nodes.median(),
-                                 fmt::format("{:.3f}", m.length.median()),
-                                 fmt::format("{:.3f}", m.length.at(0.95))));
+      table.rows.push_back(plan_cells(cells(obstacles, planner), m));
       const auto x = static_cast<double>(obstacles);
       table.plots[0].lines[i].points.push_back(plot_point(x, m.plan_us.median()));
       table.plots[1].lines[i].points.push_back(plot_point(x, m.length.median()));

@@ -100,8 +100,7 @@ StudyTable roadmap_connections(const RoadmapConnections& settings, std::uint64_t
 
   StudyTable table;
   table.name = "roadmaps";
-  table.columns = {"connection",     "parameter", "edges_per_node", "build_us",      "moved_m",   "queries",
-                   "solved_percent", "median_us", "p95_us",         "median_length", "p95_length"};
+  table.columns = plan_columns({"connection", "parameter", "edges_per_node", "build_us", "moved_m"});
   const std::string nodes = fmt::format("{} nodes", settings.nodes);
   table.plots.push_back(
       {.title = nodes, .x_label = "edges per node", .y_label = "time of a query, median [us]"});
@@ -121,11 +120,9 @@ StudyTable roadmap_connections(const RoadmapConnections& settings, std::uint64_t
       const PlanMeasures& m = side.plans[i];
       table.plots[1 + i].lines.back().points.push_back(plot_point(x, m.solved_percent()));
       table.rows.push_back(
-          cells(side.method, side.parameter, fmt::format("{:.2f}", side.edges_per_node.median()),
-                fmt::format("{:.0f}", side.build_us.median()), settings.moved_m[i], m.asked,
-                fmt::format("{:.1f}", m.solved_percent()), fmt::format("{:.1f}", m.plan_us.median()),
-                fmt::format("{:.1f}", m.plan_us.at(0.95)), fmt::format("{:.3f}", m.length.median()),
-                fmt::format("{:.3f}", m.length.at(0.95))));
+          plan_cells(cells(side.method, side.parameter, fmt::format("{:.2f}", x),
+                           fmt::format("{:.0f}", side.build_us.median()), settings.moved_m[i]),
+                     m));
     }
   }
   return table;
