@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "common/random/rng.hpp"
@@ -68,7 +69,8 @@ class WaypointCache {
       case CacheReplacement::kOldest:
         return oldest([](const Entry& e) { return e.stored; });
       case CacheReplacement::kLeastRecentlyUsed:
-        return oldest([](const Entry& e) { return e.used; });
+        // One hard plan uses all: then the order of their coming decides.
+        return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
         return draw(rng);
     }

@@ -48,6 +48,13 @@ TEST_CASE("a full cache loses the way points that were not used for the longest"
   CHECK(contents(cache) == std::set{1, 5, 6, 7});
 }
 
+TEST_CASE("a full cache loses its oldest way points where a plan used them all") {
+  Rng rng(1);
+  auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
+  cache.store({5, 6}, {0, 1, 2, 3}, rng);
+  CHECK(contents(cache) == std::set{3, 4, 5, 6});
+}
+
 TEST_CASE("a cache of the whole plan holds nothing else") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kWholePlan, rng);
