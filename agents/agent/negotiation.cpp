@@ -178,7 +178,7 @@ const Version& Negotiation::base_at(Time start) const {
 }
 
 msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                                   double grown_m) {
+                                   double grown_m, const std::optional<Intent>& intent) {
   contradicted_ = false;
   const bool is_again = asked_count_ > 0 && newest().start() == candidates.front().start();
   asked_for_start_ = is_again ? asked_for_start_ + 1 : 1;
@@ -197,7 +197,7 @@ msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, Versi
   proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
   for (const Trajectory& trajectory : candidates) {
     Version& version = asked.candidates[asked.count];
-    version = {robot_, incarnation_, next_number_++, base, trajectory, grown_m};
+    version = {robot_, incarnation_, next_number_++, base, trajectory, grown_m, intent};
     proposal.candidates()[asked.count++] = encode(version);
   }
   return proposal;

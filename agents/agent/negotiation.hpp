@@ -61,7 +61,7 @@ class Negotiation {
   /// Precondition: 1 to MAX_CANDIDATES candidates that continue `base` at one start time; or a stand on base
   /// 0 for a robot that is absent. `grown_m` is the base's, or 0 from rest.
   msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                        double grown_m = 0);
+                        double grown_m = 0, const std::optional<Intent>& intent = std::nullopt);
 
   /// Closes the cycle that ends now: what was proposed for it and has no verdict is given up, and counted.
   void close_cycle(Time now);

@@ -17,6 +17,34 @@ constexpr std::int64_t kLatestStart_ns = std::int64_t{1} << 62;
 // Written so that a NaN fails it.
 bool within(double value, double bound) { return std::abs(value) <= bound; }
 
+/// A hold that is longer than a phase may be is nobody's.
+std::optional<Intent> decode(const msg::Intent& message) {
+  const Intent intent{{message.vx_mps(), message.vy_mps()},
+                      message.hold_s(),
+                      {message.way_x_m(), message.way_y_m()},
+                      {message.goal_x_m(), message.goal_y_m()}};
+  const auto is_place = [](const Vec2& p) {
+    return within(p.x(), kLargestPosition_m) && within(p.y(), kLargestPosition_m);
+  };
+  const bool sound = within(intent.velocity_mps.x(), kLargestSpeed_mps) &&
+                     within(intent.velocity_mps.y(), kLargestSpeed_mps) && intent.hold_s >= 0 &&
+                     intent.hold_s <= to_seconds(kLongestPhase) && is_place(intent.waypoint_m) &&
+                     is_place(intent.goal_m);
+  return sound ? std::optional(intent) : std::nullopt;
+}
+
+msg::Intent encode(const Intent& intent) {
+  msg::Intent message;
+  message.vx_mps(static_cast<float>(intent.velocity_mps.x()));
+  message.vy_mps(static_cast<float>(intent.velocity_mps.y()));
+  message.hold_s(static_cast<float>(intent.hold_s));
+  message.way_x_m(static_cast<float>(intent.waypoint_m.x()));
+  message.way_y_m(static_cast<float>(intent.waypoint_m.y()));
+  message.goal_x_m(static_cast<float>(intent.goal_m.x()));
+  message.goal_y_m(static_cast<float>(intent.goal_m.y()));
+  return message;
+}
+
 }  // namespace
 
 // Each field is read once: their accessors are calls, and every agent reads many versions in every cycle.
@@ -33,7 +61,11 @@ std::optional<Version> decode(const msg::Version& message) {
   if (!sound) return std::nullopt;
   std::optional<Version> version(Version{robot, message.incarnation(), message.version_number(),
                                          message.base(), Trajectory(time_from_ns(start), {{x, y}, {vx, vy}}),
-                                         grown});
+                                         grown, std::nullopt});
+  if (message.has_intent()) {
+    version->intent = decode(message.intended());
+    if (!version->intent) return std::nullopt;
+  }
   const auto* phase = message.phases().data();
   for (int i = 0; i < phases; ++i, ++phase) {
     const std::int64_t duration = phase->duration_ns();
@@ -59,6 +91,8 @@ msg::Version encode(const Version& version) {
   message.vx_mps(trajectory.at_start().velocity_mps.x());
   message.vy_mps(trajectory.at_start().velocity_mps.y());
   message.grown_m(version.grown_m);
+  message.has_intent(version.intent.has_value());
+  if (version.intent) message.intended(encode(*version.intent));
   message.phase_count(static_cast<std::uint8_t>(trajectory.phases().size()));
   auto slot = message.phases().begin();
   for (const Phase& phase : trajectory.phases()) {

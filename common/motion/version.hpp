@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "common/motion/intent.hpp"
 #include "common/motion/trajectory.hpp"
 
 namespace sidestep {
@@ -36,6 +38,7 @@ struct Version {
   Trajectory trajectory;
   /// How much larger than its radius the robot has to be taken: where it was measured off its reference.
   double grown_m = 0;
+  std::optional<Intent> intent{};
 };
 
 }  // namespace sidestep

@@ -7,13 +7,13 @@ namespace sidestep::batch {
 namespace {
 
 std::vector<Kernels> found() {
-  std::vector<Kernels> kernels{{"baseline", kBaselineComparing, kBaselineChoosing}};
+  std::vector<Kernels> kernels{{"baseline", kBaselineComparing, kBaselineChoosing, kBaselineForecasting}};
 #ifdef __x86_64__
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    kernels.push_back({"avx2", kAvx2Comparing, kAvx2Choosing});
+    kernels.push_back({"avx2", kAvx2Comparing, kAvx2Choosing, kAvx2Forecasting});
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    kernels.push_back({"avx512", kAvx512Comparing, kAvx512Choosing});
+    kernels.push_back({"avx512", kAvx512Comparing, kAvx512Choosing, kAvx512Forecasting});
 #endif
   return kernels;
 }

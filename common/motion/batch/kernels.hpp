@@ -103,11 +103,56 @@ struct ChoosingKernels {
                         const GapBlock* gaps, std::size_t blocks);
 };
 
-/// The inner loops of the safety layer for one instruction set.
+inline constexpr std::size_t kForecastSteps = 16;
+inline constexpr double kForecastStep_s = 0.1;
+inline constexpr std::size_t kForecastSamples = kForecastSteps + 1;
+/// As near to its way point a robot turns to its goal.
+inline constexpr double kPassed_m = 0.2;
+
+/// States, and what their robots mean to do: hold a velocity for so long, then make for a goal past a way
+/// point.
+struct CourseBlock {
+  Row x_m, y_m, vx_mps, vy_mps;
+  Row hold_vx, hold_vy, hold_s;
+  Row way_x, way_y, goal_x, goal_y;
+};
+
+/// Where robots are expected at the ends of steps, and when each has come to its goal.
+struct ForecastBlock {
+  Row x_m[kForecastSamples], y_m[kForecastSamples];
+  Row arrival_s;
+};
+/// One robot's.
+struct Forecast {
+  double x_m[kForecastSamples], y_m[kForecastSamples];
+};
+
+/// What robots can do.
+struct DrivingSettings {
+  double speed_mps, acceleration_mps2, deceleration_mps2;
+};
+
+/// Looking ahead. Every instruction set gives the same bits.
+struct ForecastingKernels {
+  void (*drive)(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
+                ForecastBlock* forecasts);
+  /// Adds, for each step after the sample `from` in which a lane comes nearer to `one` than `keep_m`, the
+  /// step's weight times the square of 1 - (distance / keep_m)²; steps that end later than `after_s` after a
+  /// lane's arrival do not count.
+  void (*meet)(const Forecast& one, std::size_t from, double keep_m, const double* weights, double after_s,
+               const ForecastBlock* lanes, std::size_t blocks, Row* dangers);
+  /// The same for each sample outside a rectangle about the origin, once its weight for each `deep_m`
+  /// outside.
+  void (*leave)(double half_length_m, double half_width_m, double deep_m, const double* weights,
+                const ForecastBlock* lanes, std::size_t blocks, Row* dangers);
+};
+
+/// The inner loops of safety layer and steering for one instruction set.
 struct Kernels {
   const char* name;
   ComparingKernels comparing;
   ChoosingKernels choosing;
+  ForecastingKernels forecasting;
 };
 
 }  // namespace sidestep::batch
