@@ -255,12 +255,15 @@ Report Judge::report() const {
     report.denials += sum(robot.lives, &msg::AgentStatus::denials);
     report.cycles += sum(robot.lives, &msg::AgentStatus::cycles);
     report.missed_cycles += sum(robot.lives, &msg::AgentStatus::missed_cycles);
+    report.plan_changes += sum(robot.lives, &msg::AgentStatus::plan_changes);
     report.invalid_messages += sum(robot.lives, &msg::AgentStatus::invalid);
     report.negotiation.merge(sum(robot.lives, &msg::AgentStatus::negotiation));
     report.plan.merge(sum(robot.lives, &msg::AgentStatus::plan));
     report.search.merge(sum(robot.lives, &msg::AgentStatus::search));
   }
   for (const auto& [life, last] : coordinators_) report.invalid_messages += last.invalid;
+  const double planned_s = static_cast<double>(report.cycles) * to_seconds(scenario_.cycle);
+  if (planned_s > 0) report.plan_changes_per_s = static_cast<double>(report.plan_changes) / planned_s;
   if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
   if (report.arrived == report.robots && granting_since_) report.makespan_s = latest_s;
   if (with_ratio > 0) report.arrival_over_straight = ratio / with_ratio;

@@ -110,6 +110,8 @@ std::string to_json(const Report& r) {
   json["denials"] = r.denials;
   json["cycles"] = r.cycles;
   json["missed_cycles"] = r.missed_cycles;
+  json["plan_changes"] = r.plan_changes;
+  json["plan_changes_per_s"] = rounded(r.plan_changes_per_s);
   json["invalid_messages"] = r.invalid_messages;
   json["firmware_violations"] = r.firmware_violations;
   json["conflicts"] = r.conflicts;
@@ -140,15 +142,17 @@ std::string summary(const Report& r) {
       r.cycles > 0 ? 100.0 * static_cast<double>(r.missed_cycles) / static_cast<double>(r.cycles) : 0;
   std::string text = fmt::format(
       "{} of {} arrived, {} contacts, least clearance {}\n"
-      "makespan {}, mean arrival {} ({} times the straight line alone)\n"
+      "makespan {}, mean arrival {} ({} times the straight line alone), {} changes of plan a second\n"
       "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; firmware violations {}\n"
-      "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us; search p50 {:.0f} us, p99 {:.0f} "
+      "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; search p50 {:.0f} "
+      "us, p99 {:.0f} "
       "us\n",
       r.arrived, r.robots, r.contacts, shown(r.min_clearance_m, "m"), shown(r.makespan_s, "s"),
       shown(r.mean_arrival_s, "s"),
-      r.arrival_over_straight ? fmt::format("{:.2f}", *r.arrival_over_straight) : "?", r.proposals, r.grants,
+      r.arrival_over_straight ? fmt::format("{:.2f}", *r.arrival_over_straight) : "?",
+      r.plan_changes_per_s ? fmt::format("{:.1f}", *r.plan_changes_per_s) : "?", r.proposals, r.grants,
       r.denials, missed, r.firmware_violations, us(r.negotiation, 0.5), us(r.negotiation, 0.99),
-      us(r.plan, 0.5), us(r.search, 0.5), us(r.search, 0.99));
+      us(r.plan, 0.5), us(r.plan, 0.99), us(r.search, 0.5), us(r.search, 0.99));
   if (r.crashes > 0) {
     text += fmt::format(
         "{} crashes with opponents, {} of them moving; fastest {:.2f} m/s, of which the robot {:.2f} m/s\n",

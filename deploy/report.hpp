@@ -47,6 +47,8 @@ struct Report {
   std::uint64_t denials = 0;
   std::uint64_t cycles = 0;
   std::uint64_t missed_cycles = 0;
+  std::uint64_t plan_changes = 0;            ///< of ways round that agents had chosen
+  std::optional<double> plan_changes_per_s;  ///< of each agent that had something to plan
   std::uint64_t invalid_messages = 0;
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>> conflicts;  ///< pairs that something outside brought too near

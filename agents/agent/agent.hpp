@@ -6,8 +6,9 @@
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/seen_obstacles.hpp"
+#include "agents/navigation/evasion.hpp"
 #include "agents/navigation/motion_control.hpp"
-#include "agents/navigation/passing.hpp"
+#include "agents/navigation/steering.hpp"
 #include "agents/planning/visibility_graph.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "agents/safety/safety_search.hpp"
@@ -68,7 +69,14 @@ class Agent {
   /// What a version on this base has to be taken for larger: as the base, until vision has seen the robot at
   /// rest.
   double growth_from(const Version& base, Time start) const;
-  /// The way's direction, turned right by the preference for that side as far as obstacles allow.
+  /// Two robots that begin farther apart than this cannot come near to each other with what they do next.
+  double search_horizon_m() const;
+  /// Of the others who begin farther away than this, an agent need not know.
+  double page_horizon_m() const;
+  /// What to make for from where the robot will be at `start`, among what the others mean to do.
+  Intent steer(const State& there, Time start, const Route& route);
+  MotionWish wish_for(const Intent& intent, const State& there, const Route& route) const;
+  /// The way's direction, turned right to get out of a jam as far as obstacles allow.
   Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
   const RobotSpec robot_;
@@ -80,12 +88,13 @@ class Agent {
   Negotiation negotiation_;
   Neighbours neighbours_;
   SeenObstacles obstacles_;
+  Steering steering_;
   SafetySearch safety_search_;
   Rng rng_;
   std::size_t goal_index_ = 0;
   std::optional<VisibilityGraph> ways_;  // to the current goal
   std::vector<Circle> in_the_way_;       // that ways_ leads round, besides the scenario's obstacles
-  PassingOnTheRight passing_;
+  Evasion evasion_;
   bool arrived_ = false;
   State estimate_;                   // the robot's own,
   double blind_way_m_ = 0;           // and how far from there it may drive without being seen again
@@ -97,7 +106,9 @@ class Agent {
   std::uint64_t invalid_ = 0;        // sights that made no sense
   std::uint64_t off_reference_ = 0;  // times the robot made a stop of its own,
   VersionNumber last_stop_ = 0;      // and the newest
-  VersionNumber base_ = 0;           // of the query that plan() made
+  VersionNumber base_ = 0;           // of the query that plan() made,
+  Intent intent_;                    // and what is wished for with it
+  Time steered_for_{};
 };
 
 }  // namespace sidestep

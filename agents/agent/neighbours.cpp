@@ -87,6 +87,23 @@ Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
   return crowd_;
 }
 
+std::span<const Version* const> Neighbours::newest(const Vec2& here, double horizon) {
+  newest_.clear();
+  for (const Page& page : pages_) {
+    for (const std::uint32_t i : page.held) {
+      if ((page.view->entries[i].place_m - here).squaredNorm() > horizon * horizon) continue;
+      const Version& version = page.view->versions[i];
+      // A page has a robot's versions side by side.
+      const bool is_another = newest_.empty() || newest_.back()->robot != version.robot;
+      if (is_another)
+        newest_.push_back(&version);
+      else if (version.number > newest_.back()->number)
+        newest_.back() = &version;
+    }
+  }
+  return newest_;
+}
+
 std::span<const Vec2> Neighbours::standing(Time since, const Vec2& here, std::size_t most) {
   standing_.clear();
   for (const Page& page : pages_) {

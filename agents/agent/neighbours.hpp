@@ -25,6 +25,8 @@ class Neighbours {
 
   /// Those that begin within `horizon_m` of `here`, to be found by place.
   Crowd& crowd(const Vec2& here_m, double horizon_m);
+  /// The newest version of each of those that begin within `horizon_m`. Valid until the next page, or call.
+  std::span<const Version* const> newest(const Vec2& here_m, double horizon_m);
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at
   /// rest since `since`, at most `most` of them, in the order of their ids. Valid until the next call.
   std::span<const Vec2> standing(Time since, const Vec2& here_m, std::size_t most);
@@ -58,6 +60,7 @@ class Neighbours {
   Crowd crowd_;
   std::vector<Stand> standing_;
   std::vector<Vec2> places_;
+  std::vector<const Version*> newest_;
   std::uint64_t invalid_ = 0;
 };
 

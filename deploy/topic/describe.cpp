@@ -53,6 +53,12 @@ Json phase(const msg::Phase& m) {
   return {{"duration_ns", m.duration_ns()}, {"ax_mps2", m.ax_mps2()}, {"ay_mps2", m.ay_mps2()}};
 }
 
+Json intent(const msg::Intent& m) {
+  return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"hold_s", m.hold_s()},
+          {"way_x_m", m.way_x_m()},  {"way_y_m", m.way_y_m()}, {"goal_x_m", m.goal_x_m()},
+          {"goal_y_m", m.goal_y_m()}};
+}
+
 Json version(const msg::Version& m) {
   return {{"robot", m.robot()},
           {"incarnation", m.incarnation()},
@@ -64,6 +70,8 @@ Json version(const msg::Version& m) {
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
           {"grown_m", m.grown_m()},
+          {"has_intent", m.has_intent()},
+          {"intended", intent(m.intended())},
           {"phase_count", m.phase_count()},
           {"phases", list(m.phases(), m.phase_count(), phase)}};
 }
@@ -254,6 +262,7 @@ Json describe(const msg::AgentStatus& m) {
           {"clock_offset_s", m.clock_offset_s()},
           {"clock_uncertainty_s", m.clock_uncertainty_s()},
           {"off_reference", m.off_reference()},
+          {"plan_changes", m.plan_changes()},
           {"negotiation", quantiles(m.negotiation())},
           {"plan", quantiles(m.plan())},
           {"search", quantiles(m.search())}};

@@ -60,6 +60,8 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "denials",
                                          "cycles",
                                          "missed_cycles",
+                                         "plan_changes",
+                                         "plan_changes_per_s",
                                          "invalid_messages",
                                          "firmware_violations",
                                          "conflicts",

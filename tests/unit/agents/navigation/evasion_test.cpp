@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/evasion.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace sidestep;
+
+namespace {
+Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
+}  // namespace
+
+TEST_CASE("a robot that is blocked and slow turns farther right up to a bound and back once it is free") {
+  const EvasionSettings settings;
+  Evasion evasion(settings);
+  double t = 1;
+  double last = 0;
+  evasion.update(false, 0, at_s(t));
+  CHECK_FALSE(evasion.is_needed());
+  for (int i = 0; i < 200; ++i) {
+    evasion.update(false, 0, at_s(t += 0.0166));
+    CHECK(evasion.angle_rad() >= last);
+    last = evasion.angle_rad();
+    CHECK(evasion.is_needed() == (last > settings.needed_rad));
+  }
+  CHECK(last == settings.most_rad);
+  for (int i = 0; i < 200; ++i) evasion.update(true, 0, at_s(t += 0.0166));
+  CHECK(evasion.angle_rad() == 0);
+}
+
+TEST_CASE("a robot that gets on though not as it wishes does not turn away") {
+  Evasion evasion;
+  for (int i = 0; i < 100; ++i) evasion.update(false, 1.0, at_s(1 + 0.0166 * i));
+  CHECK(evasion.angle_rad() == 0);
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/steering.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr MotionLimits kLimits;
+constexpr double kRadius_m = 0.09, kKeep_m = 0.19;
+constexpr double kCycle_s = 1.0 / 60;
+
+struct Mover {
+  State state;
+  Vec2 goal_m;
+  Intent intent;
+  Steering steering;
+
+  Mover(const Vec2& start, const Vec2& goal, const Field& field)
+      : state{start, Vec2::Zero()},
+        goal_m(goal),
+        intent{Vec2::Zero(), 0, goal, goal},
+        steering(field, kRadius_m, kLimits) {}
+};
+
+/// Goes on for a cycle as an intent says.
+void advance(State& state, const Intent& intent) {
+  const Vec2 to_go = intent.waypoint_m - state.position_m;
+  const double length = to_go.norm() + (intent.goal_m - intent.waypoint_m).norm();
+  const double braking = std::sqrt(2 * kLimits.deceleration_mps2 * 0.8 * length);
+  const Vec2 ahead = std::min(kLimits.speed_mps, braking) * to_go.stableNormalized();
+  Vec2 change = (intent.hold_s > 0 ? intent.velocity_mps : ahead) - state.velocity_mps;
+  const double most = kLimits.acceleration_mps2 * kCycle_s;
+  if (change.norm() > most) change *= most / change.norm();
+  state.position_m += kCycle_s * (state.velocity_mps + 0.5 * change);
+  state.velocity_mps += change;
+}
+
+/// A cycle: one after the other chooses, then all go on as they have said.
+void drive(std::vector<Mover>& movers) {
+  for (Mover& mover : movers) {
+    mover.steering.clear();
+    for (const Mover& other : movers) {
+      if (&other != &mover) mover.steering.add_moving(other.state, other.intent, kKeep_m);
+    }
+    mover.intent = mover.steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s);
+  }
+  for (Mover& mover : movers) advance(mover.state, mover.intent);
+}
+
+double nearest_m(const std::vector<Mover>& movers) {
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      nearest = std::min(nearest, (movers[i].state.position_m - movers[j].state.position_m).norm());
+  }
+  return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("a robot that is alone makes straight for its way point") {
+  const std::uint64_t seed = 3;
+  CAPTURE(seed);
+  Rng rng(seed);
+  Steering steering(Field{}, kRadius_m, kLimits);
+  for (int i = 0; i < 100; ++i) {
+    const double x = rng.uniform(-4, 4), y = rng.uniform(-2, 2);
+    const Vec2 waypoint(rng.uniform(-4, 4), 0), goal(0, rng.uniform(-2, 2));
+    const Intent intent = steering.choose({{x, y}, {0, 0}}, waypoint, goal, 1);
+    CHECK(intent.hold_s == 0);
+    CHECK(intent.waypoint_m == waypoint);
+    CHECK(intent.goal_m == goal);
+  }
+}
+
+TEST_CASE("two that meet head on both turn right and pass") {
+  std::vector<Mover> movers;
+  movers.emplace_back(Vec2(-1.5, 0), Vec2(1.5, 0), Field{});
+  movers.emplace_back(Vec2(1.5, 0), Vec2(-1.5, 0), Field{});
+  double nearest = 1e9, right_of_way = 0;
+  int cycles = 0;
+  while (movers[0].state.position_m.x() < 1.4 && cycles++ < 300) {
+    drive(movers);
+    nearest = std::min(nearest, nearest_m(movers));
+    if (std::abs(movers[0].state.position_m.x()) < 0.1) right_of_way = movers[0].state.position_m.y();
+  }
+  CHECK(cycles < 150);
+  CHECK(nearest > kKeep_m - 0.01);
+  CHECK(right_of_way < -0.02);
+}
+
+TEST_CASE("a crowd that changes sides comes to terms") {
+  const std::uint64_t seed = 5;
+  CAPTURE(seed);
+  Rng rng(seed);
+  std::vector<Mover> movers;
+  for (int i = 0; i < 5; ++i) {
+    const double y = 0.5 * (i - 2);
+    movers.emplace_back(Vec2(-1.5, y), Vec2(1.5, y), Field{});
+    movers.emplace_back(Vec2(1.5, y + 0.1), Vec2(-1.5, y + 0.1), Field{});
+  }
+  double nearest = 1e9;
+  const auto all_there = [&] {
+    return std::ranges::all_of(movers,
+                               [](const Mover& m) { return (m.state.position_m - m.goal_m).norm() < 0.1; });
+  };
+  int cycles = 0;
+  while (!all_there() && cycles++ < 600) {
+    drive(movers);
+    nearest = std::min(nearest, nearest_m(movers));
+  }
+  CHECK(all_there());
+  CHECK(cycles < 240);
+  // Safety does not rest on it: they come near to what they must keep, and no nearer by much.
+  CHECK(nearest > kKeep_m - 0.05);
+}
+
+TEST_CASE("what stands in the way is passed and nobody is led off the field") {
+  const std::uint64_t seed = 6;
+  CAPTURE(seed);
+  Rng rng(seed);
+  const Field field{4, 1};
+  for (int round = 0; round < 50; ++round) {
+    Mover mover({-1.8, rng.uniform(-0.4, 0.4)}, {1.8, rng.uniform(-0.4, 0.4)}, field);
+    const double y = rng.uniform(-0.4, 0.4);
+    const Vec2 stands(0, y);
+    double nearest = 1e9;
+    for (int cycle = 0; cycle < 300 && mover.state.position_m.x() < 1.5; ++cycle) {
+      mover.steering.clear();
+      mover.steering.add_standing(stands, kKeep_m);
+      mover.intent = mover.steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s);
+      advance(mover.state, mover.intent);
+      nearest = std::min(nearest, (mover.state.position_m - stands).norm());
+      REQUIRE(std::abs(mover.state.position_m.y()) < field.width_m / 2 - kRadius_m + 0.05);
+    }
+    CAPTURE(round, y, nearest);
+    CHECK(mover.state.position_m.x() > 1.4);
+    CHECK(nearest > kKeep_m - 0.03);
+  }
+}
+
+TEST_CASE("who has chosen a way round goes on with it") {
+  Mover mover({-1.5, 0}, {1.5, 0}, Field{});
+  double turned_m = 0;
+  for (int cycle = 0; cycle < 300 && mover.state.position_m.x() < 1.4; ++cycle) {
+    mover.steering.clear();
+    mover.steering.add_standing({0, 0.01}, kKeep_m);
+    mover.intent = mover.steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s);
+    advance(mover.state, mover.intent);
+    turned_m = std::min(turned_m, mover.state.position_m.y());
+  }
+  CHECK(mover.state.position_m.x() >= 1.4);
+  CHECK(turned_m < -0.1);
+  // Round it, and straight on again, and a few better ways round.
+  CHECK(mover.steering.changes() >= 2);
+  CHECK(mover.steering.changes() < 12);
+}
