@@ -38,8 +38,16 @@ struct Tangent {
   double length_m = 0;
 };
 
-/// The way that has one bend on one side and then the other on its; none where they overlap. Those with
-/// radius 0 may lie within the other, up to `slack_m` of its radius: they lie on it then.
+/// Where circles overlap, there is no way from one to the other. A point may lie within a circle by up to
+/// `slack_m`: then it lies on it. `across_m`, as far as the way gets nearer to the one circle's centre than
+/// to the other's, is changed accordingly.
+inline bool lies_on(bool is_point, double distance_m, double slack_m, double& across_m) {
+  if (!is_point || std::abs(across_m) - distance_m > slack_m || distance_m == 0) return false;
+  across_m = std::copysign(distance_m, across_m);
+  return true;
+}
+
+/// The way that has one bend on one side and then the other on its; none where they overlap.
 inline std::optional<Tangent> tangent(const Bend& from, Side from_side, const Bend& to, Side to_side,
                                       double slack_m) {
   const Vec2 between = to.centre_m - from.centre_m;
@@ -47,30 +55,13 @@ inline std::optional<Tangent> tangent(const Bend& from, Side from_side, const Be
   double across = sign(to_side) * to.radius_m - sign(from_side) * from.radius_m;
   double length2 = distance2 - across * across;
   if (length2 < 0) {
-    const bool is_point = from.radius_m == 0 || to.radius_m == 0;
-    const double distance = std::sqrt(distance2);
-    if (!is_point || std::abs(across) - distance > slack_m || distance == 0) return std::nullopt;
-    across = std::copysign(distance, across);
+    if (!lies_on(from.radius_m == 0 || to.radius_m == 0, std::sqrt(distance2), slack_m, across))
+      return std::nullopt;
     length2 = 0;
   }
   if (distance2 == 0) return std::nullopt;
   const double length = std::sqrt(length2);
   return Tangent{(length * between - across * left_of(between)) / distance2, length};
-}
-
-/// Whether no tangent can leave or arrive within a corner's arc, known without a root: the centres' direction
-/// is the tangent's up to what the radii make of it.
-inline bool misses(const Bend& bend, Side side, const Vec2& between, double room_m) {
-  return bend.is_corner &&
-         (sign(side) * between.dot(bend.first) > room_m || sign(side) * between.dot(bend.last) < -room_m);
-}
-inline bool has_no_tangent(const Bend& from, Side from_side, const Bend& to, Side to_side, double slack_m) {
-  const Vec2 between = to.centre_m - from.centre_m;
-  const double across = std::abs(sign(to_side) * to.radius_m - sign(from_side) * from.radius_m);
-  if (between.squaredNorm() < 4 * across * across) return false;
-  // Over the cosine of at most 30 degrees.
-  const double room_m = 1.16 * across + slack_m;
-  return misses(from, from_side, between, room_m) || misses(to, to_side, between, room_m);
 }
 
 /// Where a way that goes along `along` touches a bend on its side.

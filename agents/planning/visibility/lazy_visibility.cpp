@@ -3,14 +3,23 @@
 
 #include <algorithm>
 
+#include "agents/planning/visibility/both_sides.hpp"
+
 namespace sidestep {
 namespace {
 
-constexpr std::uint32_t kStart = 0, kGoal = 1;
+constexpr std::uint32_t kStart = 0, kGoal = 1, kObstacles = 2;
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr double kHalf_rad = 3.14159265358979323846;
 // A corner's arc is half a circle at most, or hardly more for who stands closer than ways keep off.
 constexpr double kBack_rad = 3.2, kBack = -0.0584;
+
+/// Hardly less than the angles from a direction, where they are at most right ones: the series of arcs by
+/// their chords.
+BothSides least_turns_rad(const Vec2& from, const BothDirections& to) {
+  const BothSides chord2 = (to.x - from.x()).square() + (to.y - from.y()).square();
+  return chord2.sqrt() * (1 + chord2 * (1.0 / 24 + chord2 * (3.0 / 640 + chord2 * (5.0 / 7168))));
+}
 
 std::size_t place_of(std::uint32_t bend, Side side) { return 2 * bend + (side == Side::kLeft ? 0 : 1); }
 
@@ -61,15 +70,16 @@ void LazyVisibility::plan_out(const DiscDomain& domain, const Vec2& start, const
 }
 
 void LazyVisibility::begin(const DiscDomain& domain, const Vec2& start) {
-  found_.clear();
+  known_.clear(domain.radius_m());
   arrivals_.clear();
   queue_.clear();
   candidates_.clear();
   bends_.assign({Bend{start}, Bend{domain.goal(start)}});
   last_.assign(4, kNone);
+  is_hidden_.assign(kObstacles, false);
   discover(domain, start, domain.goal(start));
   arrivals_.push_back({kStart, Side::kLeft, {1, 0}, 0, 0, 0, 0, kNone});
-  propose_all(0, kGoal);
+  propose_all(domain, 0, kGoal);
 }
 
 /// Whether all ways were looked at.
@@ -79,6 +89,8 @@ bool LazyVisibility::search(const DiscDomain& domain, const Budget& budget) {
     const Promise promise = take();
     Arrival next = candidates_[promise.candidate];
     if (next.corner_rad == 0) {
+      // Most ways that are promising run into something.
+      if (!is_free_straight(domain, next)) continue;
       const double promised_m = promise.cost_m + measure(next);
       if (!queue_.empty() && promised_m > queue_.front().cost_m) {
         candidates_[promise.candidate] = next;
@@ -86,7 +98,7 @@ bool LazyVisibility::search(const DiscDomain& domain, const Budget& budget) {
         continue;
       }
     }
-    if (is_served(domain, next) || !is_free(domain, next)) continue;
+    if (is_served(domain, next) || !is_free_round(domain, next)) continue;
     const auto arrival = static_cast<std::uint32_t>(arrivals_.size());
     std::uint32_t& last = last_[place_of(next.bend, next.side)];
     next.previous = last;
@@ -97,42 +109,53 @@ bool LazyVisibility::search(const DiscDomain& domain, const Budget& budget) {
       write_plan(arrival);
       return true;
     }
-    propose_all(arrival, kGoal);
+    propose_all(domain, arrival, kGoal);
   }
   return true;
 }
 
-void LazyVisibility::propose_all(std::uint32_t arrival, std::uint32_t first_bend) {
+void LazyVisibility::propose_all(const DiscDomain& domain, std::uint32_t arrival, std::uint32_t first_bend) {
+  const Arrival at = arrivals_[arrival];
+  Bend from = bends_[at.bend];
+  // Nobody goes round a corner's back.
+  if (from.is_corner)
+    (at.side == Side::kLeft ? from.first : from.last) = touching_direction(at.side, at.along);
+  likely_.resize(bends_.size() - first_bend);
+  std::size_t count = 0;
   for (std::uint32_t bend = first_bend; bend < bends_.size(); ++bend) {
-    if (bend == arrivals_[arrival].bend) continue;
-    propose(arrival, bend, Side::kLeft);
-    if (bend != kGoal) propose(arrival, bend, Side::kRight);
+    likely_[count] = bend;
+    count += bend != at.bend && is_hidden_[bend] == 0 &&
+             may_have_tangent(from, at.side, bends_[bend], 5 * settings_.stand_off_m);
   }
+  for (std::size_t i = 0; i < count; ++i) propose(domain, arrival, from, likely_[i]);
 }
 
-void LazyVisibility::propose(std::uint32_t arrival, std::uint32_t bend, Side side) {
+void LazyVisibility::propose(const DiscDomain& domain, std::uint32_t arrival, const Bend& from,
+                             std::uint32_t bend) {
   const Arrival& at = arrivals_[arrival];
-  const Bend &from = bends_[at.bend], &to = bends_[bend];
-  if (has_no_tangent(from, at.side, to, side, 5 * settings_.stand_off_m)) return;
-  const std::optional<Tangent> way = tangent(from, at.side, to, side, settings_.stand_off_m);
-  if (!way) return;
+  const Bend& to = bends_[bend];
+  const Tangents ways = tangents(from, at.side, to, settings_.stand_off_m);
+  const BothSides from_sides = BothSides::Constant(sign(at.side));
+  BothSides room = within(from, from_sides, ways.along).min(within(to, kSigns, ways.along)) + 1e-9;
   // Who stands closer to an edge than ways keep off it leaves at a small angle.
-  const double slack = at.bend == kStart || bend == kGoal ? 2 * settings_.stand_off_m / way->length_m : 0;
-  if (!to.holds(touching_direction(side, way->along), slack)) return;
-  double turn = 0;
-  if (at.bend != kStart) {
-    if (!from.holds(touching_direction(at.side, way->along), slack)) return;
-    // The chord is less than the arc; the arc is measured when that is promising.
-    const double across = sign(at.side) * cross(at.along, way->along);
-    const bool is_far = across < (at.along.dot(way->along) > 0 ? -1e-9 : kBack);
-    // Nobody goes round a corner's back.
-    if (from.is_corner && is_far) return;
-    turn = is_far ? kHalf_rad : (way->along - at.along).norm();
+  if (at.bend == kStart || bend == kGoal) room += 2 * settings_.stand_off_m / ways.length_m;
+  const BothSides across = from_sides * cross(at.along, ways.along), ahead = dot(at.along, ways.along);
+  const BothSides turns_rad = least_turns_rad(at.along, ways.along);
+  const BothSides x_m = to.centre_m.x() + kSigns * to.radius_m * ways.along.y;
+  const BothSides y_m = to.centre_m.y() - kSigns * to.radius_m * ways.along.x;
+  const Vec2& goal = bends_[kGoal].centre_m;
+  const BothSides to_goal_m = ((x_m - goal.x()).square() + (y_m - goal.y()).square()).sqrt();
+  for (Eigen::Index lane = 0; lane < (bend == kGoal ? 1 : 2); ++lane) {
+    if (!ways.exist[lane] || !(room[lane] >= 0)) continue;
+    const bool is_far = at.bend != kStart && across[lane] < (ahead[lane] > 0 ? -1e-9 : kBack);
+    if (from.is_corner && is_far) continue;
+    const Vec2 there(x_m[lane], y_m[lane]);
+    if (!domain.field().contains(there, domain.radius_m())) continue;
+    const double turn = is_far ? kHalf_rad : turns_rad[lane];
+    const double cost = at.cost_m + from.radius_m * turn + ways.length_m[lane];
+    put({cost + to_goal_m[lane], static_cast<std::uint32_t>(candidates_.size())});
+    candidates_.push_back({bend, side_of(lane), ways.along.at(lane), cost, turn, 0, arrival, kNone});
   }
-  const double cost = at.cost_m + from.radius_m * turn + way->length_m;
-  const Vec2 there = touching_point(to, side, way->along) - bends_[kGoal].centre_m;
-  put({cost + there.norm(), static_cast<std::uint32_t>(candidates_.size())});
-  candidates_.push_back({bend, side, way->along, cost, turn, 0, arrival, kNone});
 }
 
 double LazyVisibility::measure(Arrival& next) const {
@@ -148,18 +171,18 @@ double LazyVisibility::measure(Arrival& next) const {
 
 void LazyVisibility::put(const Promise& promise) {
   queue_.push_back(promise);
-  std::push_heap(queue_.begin(), queue_.end(), costs_more);
+  std::push_heap(queue_.begin(), queue_.end(), CostsMore());
 }
 
 LazyVisibility::Promise LazyVisibility::take() {
-  std::pop_heap(queue_.begin(), queue_.end(), costs_more);
+  std::pop_heap(queue_.begin(), queue_.end(), CostsMore());
   const Promise promise = queue_.back();
   queue_.pop_back();
   return promise;
 }
 
 bool LazyVisibility::is_served(const DiscDomain& domain, const Arrival& next) {
-  const Bend& bend = bends_[next.bend];
+  const Bend bend = bends_[next.bend];
   std::uint32_t i = last_[place_of(next.bend, next.side)];
   for (; i != kNone; i = arrivals_[i].previous) {
     const double turn = turn_rad(next.side, arrivals_[i].along, next.along);
@@ -170,11 +193,14 @@ bool LazyVisibility::is_served(const DiscDomain& domain, const Arrival& next) {
   return false;
 }
 
-bool LazyVisibility::is_free(const DiscDomain& domain, Arrival& next) {
+bool LazyVisibility::is_free_straight(const DiscDomain& domain, const Arrival& next) {
   const Arrival& at = arrivals_[next.before];
   const Vec2 from = touching_point(bends_[at.bend], at.side, next.along);
-  const Vec2 to = touching_point(bends_[next.bend], next.side, next.along);
-  if (!is_free(domain, from, to)) return false;
+  return is_free(domain, from, touching_point(bends_[next.bend], next.side, next.along));
+}
+
+bool LazyVisibility::is_free_round(const DiscDomain& domain, Arrival& next) {
+  const Arrival& at = arrivals_[next.before];
   if (is_free_round(domain, at, next.turn_rad, next.along, next.corner_rad)) return true;
   // Small corners keep closer to the bend.
   next.corner_rad = settings_.corner_rad / 8;
@@ -193,40 +219,44 @@ bool LazyVisibility::is_free_round(const DiscDomain& domain, const Arrival& at, 
 }
 
 bool LazyVisibility::is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
-  // Most ways that are looked at run into what is known.
-  if (is_known(domain, from, to)) return false;
+  const Segment way{from, to};
+  if (known_.stop_again(way)) return false;
   if (domain.check(from, to)) return true;
-  discover(domain, from, to);
+  if (!known_.stop(way)) discover(domain, from, to);
   return false;
 }
 
 void LazyVisibility::discover(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
-  if (found_.size() == domain.world().size()) return;
+  if (known_.size() == domain.world().size()) return;
   const std::optional<Contact> contact = domain.world().first_contact(from, to, domain.radius_m());
   if (!contact) return;
   const Shape& shape = domain.world().shape(contact->obstacle);
-  const auto known = static_cast<std::uint32_t>(bends_.size());
-  found_.push_back({grown(bounds(shape), domain.radius_m()), &shape});
+  const auto first_bend = static_cast<std::uint32_t>(bends_.size());
   append_bends(shape, domain.radius_m() + settings_.stand_off_m, bends_);
+  known_.add(shape);
+  hide_corners(domain.field(), first_bend);
   last_.resize(bends_.size() * 2, kNone);
-  for (std::uint32_t arrival = 0; arrival < arrivals_.size(); ++arrival) propose_all(arrival, known);
+  for (std::uint32_t arrival = 0; arrival < arrivals_.size(); ++arrival)
+    propose_all(domain, arrival, first_bend);
 }
 
-bool LazyVisibility::is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to) {
-  const Segment way{from, to};
-  const Box box{from.cwiseMin(to), from.cwiseMax(to)};
-  const auto stops = [&](const Found& found) {
-    if (!overlap(box, found.box)) return false;
-    const auto* circle = std::get_if<Circle>(found.shape);
-    const double reach_m = domain.radius_m() + (circle ? circle->radius_m : 0);
-    return (circle ? squared_distance(circle->centre_m, way) : squared_distance(way, *found.shape)) <=
-           reach_m * reach_m;
+void LazyVisibility::hide_corners(const Field& field, std::size_t first_bend) {
+  const std::size_t obstacle = known_.size() - 1;
+  for (std::size_t i = first_bend; i < bends_.size(); ++i) {
+    const Bend& bend = bends_[i];
+    is_hidden_.push_back(bend.is_corner && (known_.hold(bend.centre_m, 0, obstacle) ||
+                                            !field.contains(bend.centre_m, kTouching_m)));
+  }
+  // Of corners at the same place, one counts.
+  const auto is_there_anyway = [&](const Bend& bend) {
+    for (std::size_t i = first_bend; i < bends_.size(); ++i)
+      if (is_hidden_[i] != 0 && (bends_[i].centre_m - bend.centre_m).norm() < 2 * kTouching_m) return true;
+    return false;
   };
-  const auto first = std::find_if(found_.begin(), found_.end(), stops);
-  if (first == found_.end()) return false;
-  // What stopped one way often stops the next.
-  std::swap(*first, found_.front());
-  return true;
+  for (std::size_t i = kObstacles; i < first_bend; ++i)
+    if (bends_[i].is_corner && known_.hold(bends_[i].centre_m, obstacle, obstacle + 1) &&
+        !is_there_anyway(bends_[i]))
+      is_hidden_[i] = true;
 }
 
 void LazyVisibility::write_plan(std::uint32_t arrival) {

@@ -4,6 +4,7 @@
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/domain/plan.hpp"
 #include "agents/planning/visibility/bend.hpp"
+#include "agents/planning/visibility/known_obstacles.hpp"
 
 namespace sidestep {
 
@@ -44,19 +45,16 @@ class LazyVisibility {
     double cost_m;
     std::uint32_t candidate;
   };
-  /// An obstacle that a promising way ran into.
-  struct Found {
-    Box box;  // with the robot's radius
-    const Shape* shape;
+  struct CostsMore {
+    bool operator()(const Promise& a, const Promise& b) const { return a.cost_m > b.cost_m; }
   };
-  static bool costs_more(const Promise& a, const Promise& b) { return a.cost_m > b.cost_m; }
 
   void plan_from(const DiscDomain& domain, const Vec2& start, const Budget& budget);
   void plan_out(const DiscDomain& domain, const Vec2& start, const Budget& budget);
   void begin(const DiscDomain& domain, const Vec2& start);
   bool search(const DiscDomain& domain, const Budget& budget);
-  void propose_all(std::uint32_t arrival, std::uint32_t first_bend);
-  void propose(std::uint32_t arrival, std::uint32_t bend, Side side);
+  void propose_all(const DiscDomain& domain, std::uint32_t arrival, std::uint32_t first_bend);
+  void propose(const DiscDomain& domain, std::uint32_t arrival, const Bend& from, std::uint32_t bend);
   void put(const Promise& promise);
   Promise take();
   /// Arcs instead of their chords; returns by how much the way is longer.
@@ -64,23 +62,29 @@ class LazyVisibility {
   /// Whether who arrived before can go round to where the next would arrive, at no more cost.
   bool is_served(const DiscDomain& domain, const Arrival& next);
   /// Chooses the corners.
-  bool is_free(const DiscDomain& domain, Arrival& next);
+  bool is_free_round(const DiscDomain& domain, Arrival& next);
+  /// Looks at the tangent.
+  bool is_free_straight(const DiscDomain& domain, const Arrival& next);
   bool is_free_round(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
                      double corner_rad);
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  /// Whether a motion is stopped by an obstacle that was found.
-  bool is_known(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   /// Takes into account what stops a motion that nothing known does.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
+  /// No way has to bend at a corner that lies in another obstacle, or outside of the field: it bends at that
+  /// one's corners. Hides those of the last obstacle, whose bends are from `first_bend` on, and those that it
+  /// hides.
+  void hide_corners(const Field& field, std::size_t first_bend);
   void write_plan(std::uint32_t arrival);
 
   LazyVisibilitySettings settings_;
-  std::vector<Bend> bends_;  // the start, the goal, and those of the obstacles found
-  std::vector<Found> found_;
-  std::vector<Arrival> arrivals_;    // that are reached
-  std::vector<std::uint32_t> last_;  // arrival, by bend and side
+  std::vector<Bend> bends_;  // the start, the goal, and those of the obstacles known
+  KnownObstacles known_;
+  std::vector<std::uint8_t> is_hidden_;  // by bend: ways need not touch it
+  std::vector<Arrival> arrivals_;        // that are reached
+  std::vector<std::uint32_t> last_;      // arrival, by bend and side
   std::vector<Arrival> candidates_;
-  std::vector<Promise> queue_;  // a heap
+  std::vector<Promise> queue_;         // a heap
+  std::vector<std::uint32_t> likely_;  // bends
   std::vector<Vec2> corners_;
   std::vector<std::uint32_t> way_;
   Plan<Vec2> plan_;

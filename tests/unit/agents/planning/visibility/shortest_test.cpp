@@ -105,6 +105,52 @@ Shortest plan_both(const PlanWorld& world, const Vec2& start, const Vec2& goal) 
   return {graph.shortest_m(), plan.length, lazy_plan.length};
 }
 
+/// Walls that go on from where others end, begin on others or at the field's border, or lie on others in
+/// part; boxes and triangles with a corner on them.
+std::vector<Shape> joined_walls(Rng& rng, std::size_t count) {
+  std::vector<Segment> walls;
+  std::vector<Shape> shapes;
+  while (walls.size() < count) {
+    const auto how = walls.empty() ? 0 : rng.below(6);
+    const Segment other = walls.empty() ? Segment{} : walls[rng.below(walls.size())];
+    const Vec2 way = rng.chance(0.5) ? random_way(rng, 2) : Vec2(rng.chance(0.5) ? rng.uniform(-2, 2) : 0, 0);
+    const Vec2 on = other.from_m + rng.uniform() * (other.to_m - other.from_m);
+    if (how == 0) walls.push_back({random_place(rng, 5), random_place(rng, 5)});
+    if (how == 1) walls.push_back({other.to_m, other.to_m + way});
+    if (how == 2) walls.push_back({on, on + left_of(way)});
+    if (how == 3) walls.push_back({{rng.chance(0.5) ? 5.0 : -5.0, on.y()}, on});
+    if (how == 4) walls.push_back({on, on + rng.uniform(0, 2) * (other.to_m - other.from_m)});
+    if (how == 5) walls.push_back({other.from_m, other.from_m + way});
+    if (how == 0 && (walls.back().to_m - walls.back().from_m).norm() > 3) walls.pop_back();
+    if (rng.chance(0.9)) continue;
+    shapes.push_back(Box{on, on + Vec2(rng.uniform(0, 1), rng.uniform(0, 1))});
+    shapes.push_back(ConvexPolygon{{on, on + Vec2(-0.4, 0.3), on + Vec2(-0.4, -0.2)}});
+  }
+  shapes.insert(shapes.end(), walls.begin(), walls.end());
+  return shapes;
+}
+
+/// Random queries in which lazy and full visibility graph agree.
+void check_agreement(const PlanWorld& world, Rng& rng, std::size_t queries) {
+  const ObstacleWorld obstacles(world.obstacles);
+  TangentGraph graph(obstacles, world.field, world.radius_m);
+  LazyVisibility lazy;
+  for (std::size_t i = 0; i < queries; ++i) {
+    const Vec2 start = random_place(rng, 4.8), goal = random_place(rng, 4.8);
+    CAPTURE(i, world.radius_m, start.transpose(), goal.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+    if (domain.start_is_blocked() || domain.goal_is_blocked()) continue;
+    const Plan<Vec2>& exact = graph.plan(start, goal);
+    const Plan<Vec2>& plan = lazy.plan(domain, start, {}, rng);
+    REQUIRE(plan.arrives() == exact.arrives());
+    REQUIRE(is_valid_way(world, plan.states, 0.005, 1e-9));
+    if (!exact.arrives()) continue;
+    REQUIRE(is_valid_way(world, exact.states, 0.005, 1e-9));
+    REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
+    REQUIRE(plan.length <= graph.shortest_m() * 1.01);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("the shortest way round a circle is two tangents and an arc") {
@@ -216,21 +262,32 @@ TEST_CASE("lazy and full visibility graph agree among random shapes of all kinds
   Rng rng(seed);
   PlanWorld world = world_of(random_shapes(rng, 1 + rng.below(120), 5));
   world.radius_m = rng.uniform(0.02, 0.25);
-  const ObstacleWorld obstacles(world.obstacles);
-  TangentGraph graph(obstacles, world.field, world.radius_m);
-  LazyVisibility lazy;
-  for (int i = 0; i < 6; ++i) {
-    const Vec2 start = random_place(rng, 4.8), goal = random_place(rng, 4.8);
-    CAPTURE(seed, world.radius_m, start.transpose(), goal.transpose());
-    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
-    if (domain.start_is_blocked() || domain.goal_is_blocked()) continue;
-    const Plan<Vec2>& exact = graph.plan(start, goal);
-    const Plan<Vec2>& plan = lazy.plan(domain, start, {}, rng);
-    REQUIRE(plan.arrives() == exact.arrives());
-    REQUIRE(is_valid_way(world, plan.states, 0.005, 1e-9));
-    if (!exact.arrives()) continue;
-    REQUIRE(is_valid_way(world, exact.states, 0.005, 1e-9));
-    REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
-    REQUIRE(plan.length <= graph.shortest_m() * 1.01);
+  CAPTURE(seed);
+  check_agreement(world, rng, 6);
+}
+
+TEST_CASE("lazy and full visibility graph agree among walls and corners that lie on others") {
+  const auto seed = GENERATE(range<std::uint64_t>(1, 120));
+  Rng rng(seed);
+  PlanWorld world = world_of(joined_walls(rng, 2 + rng.below(30)));
+  world.radius_m = rng.uniform(0.02, 0.25);
+  CAPTURE(seed);
+  check_agreement(world, rng, 6);
+}
+
+TEST_CASE("the shortest way round a bent wall turns once where its parts meet") {
+  // start |
+  //       |____  goal below
+  const Segment upright{{0, 5}, {0, 0}}, level{{0, 0}, {4, 0}};
+  for (const auto& walls : {std::vector<Shape>{upright, level}, std::vector<Shape>{level, upright}}) {
+    const auto [exact, drawn, lazy] = plan_both(world_of(walls), {-0.5, 4}, {3.5, -0.5});
+    // Two tangents to the disc round the common corner, and the arc between them.
+    const double a = std::sqrt(16.25 - 0.01), b = std::sqrt(12.5 - 0.01);
+    const double between = std::acos(Vec2(-0.5, 4).normalized().dot(Vec2(3.5, -0.5).normalized()));
+    const double turn =
+        2 * kPi - between - std::acos(0.1 / std::sqrt(16.25)) - std::acos(0.1 / std::sqrt(12.5));
+    const double expected = a + b + 0.1 * turn;
+    CHECK(exact == Approx(expected).epsilon(1e-4));
+    CHECK(lazy == Approx(expected).epsilon(3e-3));
   }
 }
