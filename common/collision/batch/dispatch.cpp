@@ -2,6 +2,7 @@
 #include "common/collision/batch/dispatch.hpp"
 
 #include "common/collision/batch/levels.hpp"
+#include "common/processor/instruction_set.hpp"
 
 namespace sidestep::collision {
 namespace {
@@ -9,12 +10,8 @@ namespace {
 std::vector<Kernels> found() {
   std::vector<Kernels> kernels{kBaselineKernels};
 #ifdef __x86_64__
-  const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-                        __builtin_cpu_supports("popcnt");
-  if (has_avx2) kernels.push_back(kAvx2Kernels);
-  if (has_avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-    kernels.push_back(kAvx512Kernels);
+  if (best_instruction_set() >= InstructionSet::kAvx2) kernels.push_back(kAvx2Kernels);
+  if (best_instruction_set() >= InstructionSet::kAvx512) kernels.push_back(kAvx512Kernels);
 #endif
   return kernels;
 }

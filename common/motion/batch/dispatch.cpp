@@ -2,6 +2,7 @@
 #include "common/motion/batch/dispatch.hpp"
 
 #include "common/motion/batch/levels.hpp"
+#include "common/processor/instruction_set.hpp"
 
 namespace sidestep::batch {
 namespace {
@@ -9,10 +10,9 @@ namespace {
 std::vector<Kernels> found() {
   std::vector<Kernels> kernels{{"baseline", kBaselineComparing, kBaselineChoosing, kBaselineForecasting}};
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  if (best_instruction_set() >= InstructionSet::kAvx2)
     kernels.push_back({"avx2", kAvx2Comparing, kAvx2Choosing, kAvx2Forecasting});
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
+  if (best_instruction_set() >= InstructionSet::kAvx512)
     kernels.push_back({"avx512", kAvx512Comparing, kAvx512Choosing, kAvx512Forecasting});
 #endif
   return kernels;
