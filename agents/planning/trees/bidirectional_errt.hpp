@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "agents/planning/domain/plan.hpp"
 #include "agents/planning/trees/bridges.hpp"
 #include "agents/planning/trees/waypoint_cache.hpp"
 
@@ -29,10 +28,7 @@ class BidirectionalErrt {
 
   /// The result is this planner's, until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
-    begin_plan(domain, start, plan_);
-    used_.clear();
-    if (!plan_straight(domain, start, plan_)) grow(domain, start, budget, rng);
-    if (plan_.arrives()) cache_.store(plan_.states, used_, rng);
+    plan_and_remember(domain, start, cache_, plan_, rng, [&] { grow(domain, start, budget, rng); });
     return plan_;
   }
 
@@ -91,11 +87,7 @@ class BidirectionalErrt {
   }
 
   State choose(const D& domain, Rng& rng) {
-    if (!cache_.is_empty() && rng.chance(settings_.waypoint_probability)) {
-      const std::size_t drawn = cache_.draw(rng);
-      used_.push_back(static_cast<std::uint32_t>(drawn));
-      return cache_[drawn];
-    }
+    if (!cache_.is_empty() && rng.chance(settings_.waypoint_probability)) return cache_.draw(rng);
     return domain.sample(rng);
   }
 
@@ -112,7 +104,6 @@ class BidirectionalErrt {
   SearchTree<D> trees_[2];
   Bridges<D> bridges_;
   Plan<State> plan_;
-  std::vector<std::uint32_t> used_;
 };
 
 }  // namespace sidestep

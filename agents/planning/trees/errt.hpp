@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "agents/planning/domain/plan.hpp"
 #include "agents/planning/trees/search_tree.hpp"
 #include "agents/planning/trees/waypoint_cache.hpp"
 
@@ -26,10 +25,7 @@ class Errt {
 
   /// The result is this planner's, until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
-    begin_plan(domain, start, plan_);
-    used_.clear();
-    if (!plan_straight(domain, start, plan_)) grow(domain, start, budget, rng);
-    if (plan_.arrives()) cache_.store(plan_.states, used_, rng);
+    plan_and_remember(domain, start, cache_, plan_, rng, [&] { grow(domain, start, budget, rng); });
     return plan_;
   }
 
@@ -65,11 +61,8 @@ class Errt {
   State choose(const D& domain, Node best, Rng& rng) {
     const double chance = rng.uniform();
     if (chance < settings_.goal_probability) return domain.goal(tree_[best]);
-    if (chance < settings_.goal_probability + settings_.waypoint_probability && !cache_.is_empty()) {
-      const std::size_t drawn = cache_.draw(rng);
-      used_.push_back(static_cast<std::uint32_t>(drawn));
-      return cache_[drawn];
-    }
+    if (chance < settings_.goal_probability + settings_.waypoint_probability && !cache_.is_empty())
+      return cache_.draw(rng);
     return domain.sample(rng);
   }
 
@@ -77,7 +70,6 @@ class Errt {
   WaypointCache<State> cache_;
   SearchTree<D> tree_;
   Plan<State> plan_;
-  std::vector<std::uint32_t> used_;
 };
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "agents/planning/domain/plan.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
@@ -34,15 +35,18 @@ class WaypointCache {
   const State& operator[](std::size_t i) const { return entries_[i].state; }
   void clear() { entries_.clear(); }
 
-  /// The number of a way point drawn at random; the cache is not empty.
-  std::size_t draw(Rng& rng) const { return static_cast<std::size_t>(rng.below(entries_.size())); }
+  /// A way point drawn at random, for a plan to grow towards; the cache is not empty.
+  const State& draw(Rng& rng) { return use(any(rng)); }
+  /// The same, chosen.
+  const State& use(std::size_t i) {
+    entries_[i].used = now_ + 1;
+    return entries_[i].state;
+  }
 
-  /// A plan was found: remembers the states on it. `used`: the numbers of the way points that it grew
-  /// towards.
-  void store(const std::vector<State>& plan, const std::vector<std::uint32_t>& used, Rng& rng) {
+  /// A plan was found: remembers the states on it.
+  void store(const std::vector<State>& plan, Rng& rng) {
     if (capacity_ == 0) return;
     ++now_;
-    for (const std::uint32_t i : used) entries_[i].used = now_;
     if (replacement_ == CacheReplacement::kWholePlan) entries_.clear();
     for (const State& state : plan) {
       if (entries_.size() < capacity_) {
@@ -56,8 +60,10 @@ class WaypointCache {
  private:
   struct Entry {
     State state;
-    std::uint64_t stored, used;
+    std::uint64_t stored, used;  // with which plan
   };
+
+  std::size_t any(Rng& rng) const { return static_cast<std::size_t>(rng.below(entries_.size())); }
 
   std::size_t replaced(Rng& rng) const {
     const auto oldest = [&](auto age) {
@@ -72,7 +78,7 @@ class WaypointCache {
         // One hard plan uses all: then the order of their coming decides.
         return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
-        return draw(rng);
+        return any(rng);
     }
   }
 
@@ -81,5 +87,16 @@ class WaypointCache {
   std::vector<Entry> entries_;
   std::uint64_t now_ = 0;
 };
+
+/// The frame of planners that remember: the straight way if it is free, else what `grow` writes into the
+/// plan; the states of plans that arrive are remembered.
+template <PlanningDomain D, typename Grow>
+void plan_and_remember(const D& domain, const typename D::State& start,
+                       WaypointCache<typename D::State>& cache, Plan<typename D::State>& plan, Rng& rng,
+                       const Grow& grow) {
+  begin_plan(domain, start, plan);
+  if (!plan_straight(domain, start, plan)) grow();
+  if (plan.arrives()) cache.store(plan.states, rng);
+}
 
 }  // namespace sidestep

@@ -16,8 +16,8 @@ std::set<int> contents(const WaypointCache<int>& cache) {
 
 WaypointCache<int> filled(CacheReplacement replacement, Rng& rng) {
   WaypointCache<int> cache(4, replacement);
-  cache.store({1, 2}, {}, rng);
-  cache.store({3, 4}, {}, rng);
+  cache.store({1, 2}, rng);
+  cache.store({3, 4}, rng);
   return cache;
 }
 
@@ -33,25 +33,28 @@ TEST_CASE("a cache that is not full takes every way point") {
 TEST_CASE("a full cache loses its oldest way points") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kOldest, rng);
-  cache.store({5}, {0}, rng);
+  cache.use(0);
+  cache.store({5}, rng);
   CHECK(contents(cache) == std::set{2, 3, 4, 5});
-  cache.store({6, 7}, {}, rng);
+  cache.store({6, 7}, rng);
   CHECK(contents(cache) == std::set{4, 5, 6, 7});
 }
 
 TEST_CASE("a full cache loses the way points that were not used for the longest") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
-  cache.store({5}, {0}, rng);  // a plan grew towards 1
+  cache.use(0);  // a plan grew towards 1
+  cache.store({5}, rng);
   CHECK(contents(cache) == std::set{1, 3, 4, 5});
-  cache.store({6, 7}, {}, rng);
+  cache.store({6, 7}, rng);
   CHECK(contents(cache) == std::set{1, 5, 6, 7});
 }
 
 TEST_CASE("a full cache loses its oldest way points where a plan used them all") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
-  cache.store({5, 6}, {0, 1, 2, 3}, rng);
+  for (std::size_t i = 0; i < 4; ++i) cache.use(i);
+  cache.store({5, 6}, rng);
   CHECK(contents(cache) == std::set{3, 4, 5, 6});
 }
 
@@ -59,7 +62,7 @@ TEST_CASE("a cache of the whole plan holds nothing else") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kWholePlan, rng);
   CHECK(contents(cache) == std::set{3, 4});
-  cache.store({5, 6, 7}, {}, rng);
+  cache.store({5, 6, 7}, rng);
   CHECK(contents(cache) == std::set{5, 6, 7});
 }
 
@@ -68,7 +71,7 @@ TEST_CASE("random replacement keeps each old way point about as often as the oth
   int kept[4] = {};
   for (int round = 0; round < 4000; ++round) {
     auto cache = filled(CacheReplacement::kRandom, rng);
-    cache.store({5}, {}, rng);
+    cache.store({5}, rng);
     const auto states = contents(cache);
     REQUIRE(states.count(5) == 1);
     for (int i = 0; i < 4; ++i) kept[i] += states.count(i + 1) > 0 ? 1 : 0;
@@ -79,6 +82,6 @@ TEST_CASE("random replacement keeps each old way point about as often as the oth
 TEST_CASE("a cache without room holds nothing") {
   Rng rng(1);
   WaypointCache<int> cache(0);
-  cache.store({1, 2, 3}, {}, rng);
+  cache.store({1, 2, 3}, rng);
   CHECK(cache.is_empty());
 }
