@@ -35,6 +35,8 @@ constexpr double kThere_m = 0.02;
 // Slower than this a velocity is rest, and slower than a share of what it may a robot waits.
 constexpr double kRest_mps = 0.01;
 constexpr double kWaiting = 0.5;
+// Robots with lower and with higher numbers have the right of way in turns, for so long each.
+constexpr Duration kRightOfWay{10'000'000'000};
 
 /// Where a version's robot will be, and how fast it would still be if it did not stop as the version must.
 State state_going_on(const Trajectory& trajectory, Time t) {
@@ -43,6 +45,13 @@ State state_going_on(const Trajectory& trajectory, Time t) {
   const Time held = trajectory.start() + trajectory.phases().front().duration;
   if (t > held) state.velocity_mps = trajectory.state_at(held).velocity_mps;
   return state;
+}
+
+/// Who makes way for whom has to be the same for all, or choices chase each other; and nobody shall always be
+/// the one who does.
+bool has_right_of_way(RobotId other, RobotId self, Time t) {
+  const bool low_first = t.time_since_epoch() / kRightOfWay % 2 == 0;
+  return (other < self) == low_first;
 }
 
 /// What is left at a time of what a version's robot means to do; nullopt when it will stay where it is.
@@ -139,7 +148,7 @@ Intent Agent::steer(const State& there, Time start, const Route& route) {
     const std::optional<Intent> intent = intent_at(*version, start);
     if (!intent)
       steering_.add_standing(state.position_m, keep);
-    else if (version->robot < robot_.id)  // has the right of way
+    else if (has_right_of_way(version->robot, robot_.id, start))
       steering_.add_moving(state, *intent, keep);
   }
   for (const Circle& obstacle : rules_.obstacles)

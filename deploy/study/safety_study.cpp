@@ -29,7 +29,7 @@ struct Sizes {
   std::vector<int> searchers{2, 5, 10, 20, 50, 100, 200, 500, 1000};
   int search_trials = 100;
 };
-Sizes quick_sizes() { return {{2, 16}, 2, 8, 8, 1, 5, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
+Sizes quick_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
 
 /// One run: the row that it will be, and how to measure it.
 struct Run {

@@ -64,7 +64,7 @@ TEST_CASE("an undisturbed robot never brakes for want of a verdict") {
 }
 
 TEST_CASE("with equal wishes the same robot does not always lose") {
-  // Two robots meet at right angles, at the same time but for a few centimetres.
+  // Two robots meet at right angles, at the same time but for a few centimetres, sooner or later.
   int won[2] = {0, 0};
   Rng rng(1);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -79,9 +79,17 @@ TEST_CASE("with equal wishes the same robot does not always lose") {
                                       text(3 - first_id, "[0, -1.2]", "[0, 1.2]"),
                                   "cross.yaml"),
                    seed);
+    const double begins_s = rng.uniform(0, 40);
+    const auto begin = [&](IdealFloor& floor) {
+      floor.kill_coordinator(0);
+      (void)floor.run(begins_s);
+      floor.start_coordinator(0);
+    };
+    begin(run);
     (void)run.run(10);
     REQUIRE(run.arrived() == 2);
     IdealFloor again(run.scenario, seed);
+    begin(again);
     while (again.arrived() == 0) (void)again.run(0.02);
     for (const RobotSpec& robot : run.scenario.robots) {
       const Vec2 here = again.robots.position_m(robot.id, again.network.now());

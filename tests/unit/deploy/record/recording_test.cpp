@@ -2,9 +2,11 @@
 #include "deploy/record/recording.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
@@ -80,10 +82,24 @@ TEST_CASE("a recording is heard again as it was") {
   CHECK(again.audit.heard + 20 > live.heard);
 }
 
+/// Where blocks end: 8 bytes of magic, then blocks of a size, a check sum and so many bytes.
+std::set<std::size_t> block_ends(const std::vector<char>& whole) {
+  std::set<std::size_t> ends;
+  for (std::size_t at = 8; at + 8 <= whole.size();) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, whole.data() + at, sizeof size);
+    at += 8 + size;
+    ends.insert(at);
+  }
+  return ends;
+}
+
 TEST_CASE("a recording that ends anywhere is used up to there, and said to be cut off") {
   const TemporaryFile file;
   record_run(file.path, 1s);
   const auto whole = contents(file.path);
+  const auto ends = block_ends(whole);
+  REQUIRE(ends.contains(whole.size()));
   std::uint64_t before = 0;
   const std::size_t head = 8 + 8 + 2000;  // magic, frame, and more than the scenario's text would fit
   for (std::size_t size = whole.size() / 10 + head; size < whole.size(); size += whole.size() / 10 + 1) {
@@ -91,7 +107,7 @@ TEST_CASE("a recording that ends anywhere is used up to there, and said to be cu
     write(file.path, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
     const Played heard = play(file.path);
     CHECK(heard.end.messages > before);
-    CHECK(heard.end.damage == "it ends in the middle of a block");
+    CHECK(heard.end.damage == (ends.contains(size) ? "" : "it ends in the middle of a block"));
     CHECK(heard.audit.violations == 0);
     before = heard.end.messages;
   }
