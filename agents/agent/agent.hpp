@@ -9,7 +9,7 @@
 #include "agents/navigation/evasion.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/steering.hpp"
-#include "agents/planning/visibility_graph.hpp"
+#include "agents/navigation/ways.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/config/scenario.hpp"
@@ -92,8 +92,8 @@ class Agent {
   SafetySearch safety_search_;
   Rng rng_;
   std::size_t goal_index_ = 0;
-  std::optional<VisibilityGraph> ways_;  // to the current goal
-  std::vector<Circle> in_the_way_;       // that ways_ leads round, besides the scenario's obstacles
+  std::optional<Ways> ways_;        // to the current goal
+  std::vector<Circle> in_the_way_;  // that ways_ leads round, besides the scenario's obstacles
   Evasion evasion_;
   bool arrived_ = false;
   State estimate_;                   // the robot's own,

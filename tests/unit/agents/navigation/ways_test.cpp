@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "agents/planning/visibility_graph.hpp"
+#include "agents/navigation/ways.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -11,7 +11,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr double kRadius_m = 0.09, kKeep_m = 0.02;
+constexpr double kRadius_m = 0.09, kRoom_m = 0.02;
 const Field kField{4, 4};
 
 /// Independent and slow: Dijkstra on an 8-connected grid of 2 cm; its ways are at most 8.3 % longer than the
@@ -54,8 +54,8 @@ double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, cons
 }  // namespace
 
 TEST_CASE("without obstacles the way is straight") {
-  const VisibilityGraph graph({}, kField, kRadius_m, kKeep_m, {1, 1});
-  const auto route = graph.route_from({-1, -1});
+  Ways ways({}, kField, kRadius_m, kRoom_m, {1, 1});
+  const auto route = ways.route_from({-1, -1});
   REQUIRE(route);
   CHECK(route->waypoint_m == Vec2(1, 1));
   CHECK(route->length_m == Approx(2 * std::sqrt(2.0)));
@@ -71,22 +71,22 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
     obstacles.push_back({centre, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
-  const VisibilityGraph graph(obstacles, kField, kRadius_m, kKeep_m, goal);
-  const double reference = grid_length(obstacles, start, goal, kRadius_m + kKeep_m + 0.02);
+  Ways ways(obstacles, kField, kRadius_m, kRoom_m, goal);
+  const double reference = grid_length(obstacles, start, goal, kRadius_m + kRoom_m + 0.02);
   REQUIRE(reference < 20);
   Vec2 here = start;
   double walked = 0;
-  auto route = graph.route_from(here);
+  auto route = ways.route_from(here);
   REQUIRE(route);
   CHECK(route->length_m <= reference);
   const double promised = route->length_m;
   for (int leg = 0; leg < 50 && (here - goal).norm() > 1e-9; ++leg) {
-    route = graph.route_from(here);
+    route = ways.route_from(here);
     REQUIRE(route);
     for (int k = 0; k <= 100; ++k) {
       const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
       for (const Circle& o : obstacles)
-        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kKeep_m - 1e-9);
+        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kRoom_m - 1e-9);
     }
     walked += (route->waypoint_m - here).norm();
     here = route->waypoint_m;
@@ -97,15 +97,47 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
 TEST_CASE("a goal that is walled in has no way to it") {
   std::vector<Circle> ring;
   for (int i = 0; i < 12; ++i) ring.push_back({0.5 * Vec2(std::cos(i * 0.5236), std::sin(i * 0.5236)), 0.15});
-  const VisibilityGraph graph(ring, kField, kRadius_m, kKeep_m, {0, 0});
-  CHECK_FALSE(graph.route_from({1.5, 0}));
+  Ways ways(ring, kField, kRadius_m, kRoom_m, {0, 0});
+  CHECK_FALSE(ways.route_from({1.5, 0}));
 }
 
 TEST_CASE("a robot that stands too near an obstacle may leave it but not go through it") {
-  const VisibilityGraph graph({{{0, 0}, 0.2}}, kField, kRadius_m, kKeep_m, {1, 0});
+  Ways ways({{{0, 0}, 0.2}}, kField, kRadius_m, kRoom_m, {1, 0});
   const Vec2 near(-0.25, 0);
-  const auto route = graph.route_from(near);
+  const auto route = ways.route_from(near);
   REQUIRE(route);
   CHECK(route->waypoint_m != Vec2(1, 0));
   CHECK((route->waypoint_m - near).dot(near) >= 0);
+}
+
+TEST_CASE("of two ways that are equally long the same is kept while the robot drifts aside") {
+  const Circle middle{{0, 0}, 0.3};
+  Ways ways({middle}, kField, kRadius_m, kRoom_m, {1.5, 0});
+  Vec2 here(-1.5, 1e-3);
+  const auto first = ways.route_from(here);
+  REQUIRE(first);
+  const double side = first->waypoint_m.y();
+  REQUIRE(side != 0);
+  double length = first->length_m;
+  while ((here - Vec2(1.5, 0)).norm() > 0.05) {
+    const auto route = ways.route_from(here);
+    REQUIRE(route);
+    CHECK(route->waypoint_m.y() * side >= 0);
+    CHECK(route->length_m < length + 0.05);
+    length = route->length_m;
+    const Vec2 ahead = (route->waypoint_m - here).normalized();
+    // Wavers across the line where both are equally long.
+    const double wavers = here.x() < -0.8 ? -0.004 * std::copysign(1.0, here.y()) : 0;
+    here += 0.02 * ahead + Vec2(0, wavers);
+  }
+}
+
+TEST_CASE("a way that others push a robot off from is found anew") {
+  Ways ways({{{0, 0}, 0.3}}, kField, kRadius_m, kRoom_m, {1.5, 0});
+  const auto above = ways.route_from({-0.5, 0.3});
+  REQUIRE(above);
+  CHECK(above->waypoint_m.y() > 0);
+  const auto below = ways.route_from({-0.5, -0.3});
+  REQUIRE(below);
+  CHECK(below->waypoint_m.y() < 0);
 }
