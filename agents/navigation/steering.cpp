@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
+using batch::kForecastLanes;
 using batch::kForecastSamples;
-using batch::kLanes;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kTurnsToASide = 9;
@@ -24,9 +24,9 @@ constexpr std::array kBeside{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
 // Nearer bends lead nowhere else.
 constexpr double kNearestBend_m = 1.25 * batch::kPassed_m;
 // What comes so much later than a robot has arrived is not for it to care about.
-constexpr double kAfterArrival_s = 0.2;
+constexpr float kAfterArrival_s = 0.2F;
 // So far outside the field is as bad as in another robot's place.
-constexpr double kDeepOutside_m = 0.1;
+constexpr float kDeepOutside_m = 0.1F;
 
 }  // namespace
 
@@ -35,14 +35,15 @@ Steering::Steering(const Field& field, double radius_m, const MotionLimits& limi
     : kernels_(&kernels),
       settings_(settings),
       speed_mps_(limits.speed_mps),
-      half_length_m_(field.length_m / 2 - radius_m),
-      half_width_m_(field.width_m / 2 - radius_m),
+      half_length_m_(static_cast<float>(field.length_m / 2 - radius_m)),
+      half_width_m_(static_cast<float>(field.width_m / 2 - radius_m)),
       moving_(limits, kernels),
       offered_(limits, kernels) {
   for (std::size_t i = 0; i < kForecastSamples; ++i) {
     const double to_come = 1 - static_cast<double>(i) / static_cast<double>(batch::kForecastSteps);
-    weights_[i] = settings_.danger_s *
-                  (settings_.late_danger + (1 - settings_.late_danger) * std::pow(to_come, settings_.fade));
+    const double late = settings_.late_danger;
+    weights_[i] =
+        static_cast<float>(settings_.danger_s * (late + (1 - late) * std::pow(to_come, settings_.fade)));
   }
 }
 
@@ -59,8 +60,8 @@ void Steering::add_moving(const State& state, const Intent& intent, double keep_
 
 void Steering::add_standing(const Vec2& place, double keep_m) {
   Other& other = others_.emplace_back();
-  std::ranges::fill(other.forecast.x_m, place.x());
-  std::ranges::fill(other.forecast.y_m, place.y());
+  std::ranges::fill(other.forecast.x_m, static_cast<float>(place.x()));
+  std::ranges::fill(other.forecast.y_m, static_cast<float>(place.y()));
   other.keep_m = keep_m + settings_.standing_room_m;
 }
 
@@ -162,17 +163,19 @@ void Steering::weigh(const Vec2& at) {
   const batch::ForecastingKernels& kernels = kernels_->forecasting;
   offered_.drive();
   const std::size_t blocks = offered_.block_count();
-  dangers_.assign(blocks, batch::Row{});
+  dangers_.assign(blocks, batch::ForecastRow{});
   kernels.leave(half_length_m_, half_width_m_, kDeepOutside_m, weights_, offered_.blocks(), blocks,
                 dangers_.data());
   for (const Other& other : others_) {
     const std::size_t from = first_reach(other, at);
-    kernels.meet(other.forecast, from, other.keep_m, weights_, kAfterArrival_s, offered_.blocks(), blocks,
-                 dangers_.data());
+    kernels.meet(other.forecast, from, static_cast<float>(other.keep_m), weights_, kAfterArrival_s,
+                 offered_.blocks(), blocks, dangers_.data());
   }
 }
 
-double Steering::danger_s(std::size_t lane) const { return dangers_[lane / kLanes].lane[lane % kLanes]; }
+double Steering::danger_s(std::size_t lane) const {
+  return dangers_[lane / kForecastLanes].lane[lane % kForecastLanes];
+}
 
 std::size_t Steering::best() const {
   const auto cost = [&](std::size_t lane) {

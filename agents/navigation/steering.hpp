@@ -67,15 +67,16 @@ class Steering {
 
   const batch::Kernels* kernels_;
   SteeringSettings settings_;
-  double speed_mps_, half_length_m_, half_width_m_;
-  double weights_[batch::kForecastSamples];
+  double speed_mps_;
+  float half_length_m_, half_width_m_;
+  float weights_[batch::kForecastSamples];
   Forecasts moving_;
   std::vector<double> keeps_m_;  // as moving_
   std::vector<Other> others_;
   Forecasts offered_;
   std::vector<Intent> intents_;  // as offered_, and what each costs besides time and danger
   std::vector<double> extra_s_;
-  std::vector<batch::Row> dangers_;
+  std::vector<batch::ForecastRow> dangers_;
   std::optional<Intent> last_;  // way round: a velocity that is held, or a bend
   std::uint64_t changes_ = 0;
 };

@@ -109,27 +109,33 @@ inline constexpr std::size_t kForecastSamples = kForecastSteps + 1;
 /// As near to its way point a robot turns to its goal.
 inline constexpr double kPassed_m = 0.2;
 
+/// Looking ahead, which nobody relies on, is done in single precision.
+inline constexpr std::size_t kForecastLanes = 2 * kLanes;
+struct alignas(64) ForecastRow {
+  float lane[kForecastLanes];
+};
+
 /// States, and what their robots mean to do: hold a velocity for so long, then make for a goal past a way
 /// point.
 struct CourseBlock {
-  Row x_m, y_m, vx_mps, vy_mps;
-  Row hold_vx, hold_vy, hold_s;
-  Row way_x, way_y, goal_x, goal_y;
+  ForecastRow x_m, y_m, vx_mps, vy_mps;
+  ForecastRow hold_vx, hold_vy, hold_s;
+  ForecastRow way_x, way_y, goal_x, goal_y;
 };
 
 /// Where robots are expected at the ends of steps, and when each has come to its goal.
 struct ForecastBlock {
-  Row x_m[kForecastSamples], y_m[kForecastSamples];
-  Row arrival_s;
+  ForecastRow x_m[kForecastSamples], y_m[kForecastSamples];
+  ForecastRow arrival_s;
 };
 /// One robot's.
 struct Forecast {
-  double x_m[kForecastSamples], y_m[kForecastSamples];
+  float x_m[kForecastSamples], y_m[kForecastSamples];
 };
 
 /// What robots can do.
 struct DrivingSettings {
-  double speed_mps, acceleration_mps2, deceleration_mps2;
+  float speed_mps, acceleration_mps2, deceleration_mps2;
 };
 
 /// Looking ahead. Every instruction set gives the same bits.
@@ -139,12 +145,12 @@ struct ForecastingKernels {
   /// Adds, for each step after the sample `from` in which a lane comes nearer to `one` than `keep_m`, the
   /// step's weight times the square of 1 - (distance / keep_m)²; steps that end later than `after_s` after a
   /// lane's arrival do not count.
-  void (*meet)(const Forecast& one, std::size_t from, double keep_m, const double* weights, double after_s,
-               const ForecastBlock* lanes, std::size_t blocks, Row* dangers);
+  void (*meet)(const Forecast& one, std::size_t from, float keep_m, const float* weights, float after_s,
+               const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers);
   /// The same for each sample outside a rectangle about the origin, once its weight for each `deep_m`
   /// outside.
-  void (*leave)(double half_length_m, double half_width_m, double deep_m, const double* weights,
-                const ForecastBlock* lanes, std::size_t blocks, Row* dangers);
+  void (*leave)(float half_length_m, float half_width_m, float deep_m, const float* weights,
+                const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers);
 };
 
 /// The inner loops of safety layer and steering for one instruction set.

@@ -85,8 +85,8 @@ TEST_CASE("robots are driven in thought as one by one with every instruction set
       const batch::Forecast forecast = forecasts.of(lane);
       const std::vector<Vec2> places = slowly_driven(courses[lane]);
       for (std::size_t i = 0; i <= kSteps; ++i) {
-        REQUIRE(forecast.x_m[i] == Approx(places[i].x()).margin(1e-9));
-        REQUIRE(forecast.y_m[i] == Approx(places[i].y()).margin(1e-9));
+        REQUIRE(forecast.x_m[i] == Approx(places[i].x()).margin(1e-4));
+        REQUIRE(forecast.y_m[i] == Approx(places[i].y()).margin(1e-4));
       }
     }
   }
@@ -104,12 +104,12 @@ TEST_CASE("every instruction set forecasts the same to the last bit") {
     Forecasts forecasts(kLimits, kernels);
     for (const Course& course : courses) forecasts.add(course.state, course.intent);
     forecasts.drive();
-    const std::vector<double> weights(batch::kForecastSamples, 0.5);
-    std::vector<batch::Row> dangers(forecasts.block_count(), batch::Row{});
+    const std::vector<float> weights(batch::kForecastSamples, 0.5F);
+    std::vector<batch::ForecastRow> dangers(forecasts.block_count(), batch::ForecastRow{});
     const batch::Forecast one = forecasts.of(3);
-    kernels.forecasting.meet(one, 0, 0.5, weights.data(), 0.3, forecasts.blocks(), forecasts.block_count(),
+    kernels.forecasting.meet(one, 0, 0.5F, weights.data(), 0.3F, forecasts.blocks(), forecasts.block_count(),
                              dangers.data());
-    kernels.forecasting.leave(2, 2, 0.1, weights.data(), forecasts.blocks(), forecasts.block_count(),
+    kernels.forecasting.leave(2, 2, 0.1F, weights.data(), forecasts.blocks(), forecasts.block_count(),
                               dangers.data());
     std::vector<double> all;
     for (std::size_t lane = 0; lane < forecasts.size(); ++lane) {
@@ -117,7 +117,7 @@ TEST_CASE("every instruction set forecasts the same to the last bit") {
       all.insert(all.end(), std::begin(forecast.x_m), std::end(forecast.x_m));
       all.insert(all.end(), std::begin(forecast.y_m), std::end(forecast.y_m));
       all.push_back(forecasts.arrival_s(lane));
-      all.push_back(dangers[lane / batch::kLanes].lane[lane % batch::kLanes]);
+      all.push_back(dangers[lane / batch::kForecastLanes].lane[lane % batch::kForecastLanes]);
     }
     if (first.empty()) first = all;
     REQUIRE(std::memcmp(first.data(), all.data(), all.size() * sizeof(double)) == 0);
@@ -135,8 +135,8 @@ TEST_CASE("a robot is expected at its goal about when it gets there") {
     forecasts.add({}, {{0, 0}, 0, goal, goal});
     forecasts.drive();
     CAPTURE(goal.x(), goal.y());
-    REQUIRE(forecasts.arrival_s(0) > fastest_s - 0.15);
-    REQUIRE(forecasts.arrival_s(0) < fastest_s + 0.55);
+    REQUIRE(forecasts.arrival_s(0) > fastest_s - 0.05);
+    REQUIRE(forecasts.arrival_s(0) < fastest_s + 0.15);
   }
 }
 
@@ -144,27 +144,27 @@ TEST_CASE("there is danger where two come nearer than they shall and only there"
   const std::uint64_t seed = 10;
   CAPTURE(seed);
   Rng rng(seed);
-  const std::vector<double> weights(batch::kForecastSamples, 1.0);
+  const std::vector<float> weights(batch::kForecastSamples, 1.0F);
   int dangerous = 0;
   for (int round = 0; round < 300; ++round) {
     Forecasts forecasts(kLimits);
     for (int i = 0; i < 9; ++i) forecasts.add(random_course(rng).state, random_course(rng).intent);
     forecasts.drive();
-    const double keep_m = rng.uniform(0.1, 1);
+    const float keep_m = static_cast<float>(rng.uniform(0.1, 1));
     const batch::Forecast one = forecasts.of(8);
-    std::vector<batch::Row> dangers(forecasts.block_count(), batch::Row{});
-    batch::best_kernels().forecasting.meet(one, 0, keep_m, weights.data(), 1e9, forecasts.blocks(),
+    std::vector<batch::ForecastRow> dangers(forecasts.block_count(), batch::ForecastRow{});
+    batch::best_kernels().forecasting.meet(one, 0, keep_m, weights.data(), 1e9F, forecasts.blocks(),
                                            forecasts.block_count(), dangers.data());
     for (std::size_t lane = 0; lane < 8; ++lane) {
       const batch::Forecast other = forecasts.of(lane);
       double nearest = 1e9;
       for (std::size_t i = 0; i < kSteps; ++i) {
         for (double share = 0; share <= 1; share += 0.002) {
-          const auto at = [&](const double* p) { return p[i] + share * (p[i + 1] - p[i]); };
+          const auto at = [&](const float* p) { return p[i] + share * (p[i + 1] - p[i]); };
           nearest = std::min(nearest, std::hypot(at(one.x_m) - at(other.x_m), at(one.y_m) - at(other.y_m)));
         }
       }
-      const double danger = dangers[lane / batch::kLanes].lane[lane % batch::kLanes];
+      const double danger = dangers[lane / batch::kForecastLanes].lane[lane % batch::kForecastLanes];
       CAPTURE(round, lane, nearest, keep_m, danger);
       if (nearest < keep_m - 1e-3) REQUIRE(danger > 0);
       if (nearest > keep_m + 1e-3) REQUIRE(danger == 0);
