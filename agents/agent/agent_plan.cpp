@@ -116,7 +116,7 @@ void Agent::update_ways(Time now) {
   in_the_way_ = std::move(found);
   std::vector<Circle> obstacles = rules_.obstacles;
   obstacles.insert(obstacles.end(), in_the_way_.begin(), in_the_way_.end());
-  ways_.emplace(obstacles, rules_.field, rules_.radius_m, planning_keep_m() - rules_.radius_m,
+  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m, kPlanningRoom_m,
                 goal().position_m);
 }
 

@@ -2,6 +2,7 @@
 #include "agents/navigation/evasion.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace sidestep {
 namespace {
@@ -19,7 +20,8 @@ void Evasion::update(bool is_free, double speed_mps, Time now) {
   } else if (speed_mps < settings_.slow_mps) {
     angle_rad_ += step;
   }
-  angle_rad_ = std::clamp(angle_rad_, 0.0, settings_.most_rad);
+  // Once round, it begins anew.
+  if (angle_rad_ < 0 || angle_rad_ > 2 * std::numbers::pi) angle_rad_ = 0;
 }
 
 }  // namespace sidestep

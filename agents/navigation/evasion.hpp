@@ -8,12 +8,12 @@ namespace sidestep {
 struct EvasionSettings {
   double slow_mps = 0.3;  ///< a robot that is kept from what it wishes and slower than this is blocked
   double rate_radps = 3;  ///< how fast it turns farther right while blocked, and back when it is free
-  double most_rad = 2.4;
   double needed_rad = 1;  ///< from here on it goes where it has turned to
 };
 
 /// The way out of a jam: a robot that is blocked for long turns farther and farther right, whatever there is
-/// to be gained. All do, so a crowd that is jammed begins to turn round its middle and comes apart.
+/// to be gained, once round if need be. All do, so a crowd that is jammed begins to turn round its middle and
+/// comes apart.
 class Evasion {
  public:
   explicit Evasion(const EvasionSettings& settings = {}) : settings_(settings) {}

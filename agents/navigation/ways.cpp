@@ -19,24 +19,36 @@ std::vector<Shape> grown(const std::vector<Circle>& obstacles, double by_m) {
 
 }  // namespace
 
-Ways::Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double room_m,
-           const Vec2& goal_m)
-    : world_(grown(obstacles, room_m)), field_(field), radius_m_(radius_m), goal_m_(goal_m) {}
+Ways::Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
+           double room_m, const Vec2& goal_m)
+    : roomy_(grown(obstacles, margin_m + room_m)),
+      tight_(grown(obstacles, margin_m)),
+      field_(field),
+      radius_m_(radius_m),
+      goal_m_(goal_m) {}
 
 bool Ways::sees(const Vec2& from, const Vec2& to) const {
-  return DiscDomain(world_, field_, radius_m_, from, to).check(from, to);
+  return DiscDomain(*world_, field_, radius_m_, from, to).check(from, to);
+}
+
+bool Ways::find(const Vec2& start) {
+  const DiscDomain domain(*world_, field_, radius_m_, start, goal_m_);
+  Budget budget;
+  budget.samples = kMostSamples;
+  const Plan<Vec2>& plan = planner_.plan(domain, start, budget, rng_);
+  next_ = 0;
+  points_.clear();
+  if (plan.arrives()) points_.assign(plan.states.begin() + 1, plan.states.end());
+  return !points_.empty();
 }
 
 std::optional<Route> Ways::route_from(const Vec2& start) {
   if (const auto kept = kept_from(start)) return kept;
-  const DiscDomain domain(world_, field_, radius_m_, start, goal_m_);
-  Budget budget;
-  budget.samples = kMostSamples;
-  const Plan<Vec2>& plan = planner_.plan(domain, start, budget, rng_);
-  points_.assign(plan.states.begin() + 1, plan.states.end());
-  next_ = 0;
-  if (!plan.arrives()) points_.clear();
-  if (points_.empty()) return std::nullopt;
+  world_ = &roomy_;
+  if (!find(start)) {
+    world_ = &tight_;
+    if (!find(start)) return std::nullopt;
+  }
   length_m_ = length_from(start);
   return Route{points_.front(), length_m_};
 }

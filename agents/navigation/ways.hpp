@@ -21,9 +21,13 @@ struct Route {
 /// gets shorter, so that nobody wavers between two that are equally long.
 class Ways {
  public:
-  /// `room_m`: so much more than its radius the robot's centre keeps from the discs' edges.
-  Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double room_m,
-       const Vec2& goal_m);
+  Ways(const Ways&) = delete;
+  Ways& operator=(const Ways&) = delete;
+
+  /// `margin_m`: so much more than its radius the robot's centre has to keep from the discs' edges; `room_m`:
+  /// and so much more it keeps where there is a way that does.
+  Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
+       double room_m, const Vec2& goal_m);
 
   /// nullopt when there is no way from here, or none that can be found in a cycle. A start that is too near a
   /// disc may move away from it. Where the goal is too near one, the way leads to the nearest place that is
@@ -33,11 +37,14 @@ class Ways {
   bool sees(const Vec2& from_m, const Vec2& to_m) const;
 
  private:
+  /// Finds a way anew; whether there is one.
+  bool find(const Vec2& start_m);
   /// What is left of the way that was found last, if it is still good.
   std::optional<Route> kept_from(const Vec2& start_m);
   double length_from(const Vec2& start_m) const;
 
-  ObstacleWorld world_;
+  ObstacleWorld roomy_, tight_;
+  const ObstacleWorld* world_ = &roomy_;  // of the last way
   Field field_;
   double radius_m_;
   Vec2 goal_m_;

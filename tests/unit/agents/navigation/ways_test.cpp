@@ -11,7 +11,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr double kRadius_m = 0.09, kRoom_m = 0.02;
+constexpr double kRadius_m = 0.09, kMargin_m = 0.02;
 const Field kField{4, 4};
 
 /// Independent and slow: Dijkstra on an 8-connected grid of 2 cm; its ways are at most 8.3 % longer than the
@@ -54,7 +54,7 @@ double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, cons
 }  // namespace
 
 TEST_CASE("without obstacles the way is straight") {
-  Ways ways({}, kField, kRadius_m, kRoom_m, {1, 1});
+  Ways ways({}, kField, kRadius_m, kMargin_m, 0, {1, 1});
   const auto route = ways.route_from({-1, -1});
   REQUIRE(route);
   CHECK(route->waypoint_m == Vec2(1, 1));
@@ -71,8 +71,8 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
     obstacles.push_back({centre, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
-  Ways ways(obstacles, kField, kRadius_m, kRoom_m, goal);
-  const double reference = grid_length(obstacles, start, goal, kRadius_m + kRoom_m + 0.02);
+  Ways ways(obstacles, kField, kRadius_m, kMargin_m, 0, goal);
+  const double reference = grid_length(obstacles, start, goal, kRadius_m + kMargin_m + 0.02);
   REQUIRE(reference < 20);
   Vec2 here = start;
   double walked = 0;
@@ -86,7 +86,7 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
     for (int k = 0; k <= 100; ++k) {
       const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
       for (const Circle& o : obstacles)
-        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kRoom_m - 1e-9);
+        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kMargin_m - 1e-9);
     }
     walked += (route->waypoint_m - here).norm();
     here = route->waypoint_m;
@@ -97,12 +97,12 @@ TEST_CASE("the way leads round obstacles, clear of them, and is hardly longer th
 TEST_CASE("a goal that is walled in has no way to it") {
   std::vector<Circle> ring;
   for (int i = 0; i < 12; ++i) ring.push_back({0.5 * Vec2(std::cos(i * 0.5236), std::sin(i * 0.5236)), 0.15});
-  Ways ways(ring, kField, kRadius_m, kRoom_m, {0, 0});
+  Ways ways(ring, kField, kRadius_m, kMargin_m, 0, {0, 0});
   CHECK_FALSE(ways.route_from({1.5, 0}));
 }
 
 TEST_CASE("a robot that stands too near an obstacle may leave it but not go through it") {
-  Ways ways({{{0, 0}, 0.2}}, kField, kRadius_m, kRoom_m, {1, 0});
+  Ways ways({{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);
   const auto route = ways.route_from(near);
   REQUIRE(route);
@@ -112,7 +112,7 @@ TEST_CASE("a robot that stands too near an obstacle may leave it but not go thro
 
 TEST_CASE("of two ways that are equally long the same is kept while the robot drifts aside") {
   const Circle middle{{0, 0}, 0.3};
-  Ways ways({middle}, kField, kRadius_m, kRoom_m, {1.5, 0});
+  Ways ways({middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   Vec2 here(-1.5, 1e-3);
   const auto first = ways.route_from(here);
   REQUIRE(first);
@@ -133,11 +133,34 @@ TEST_CASE("of two ways that are equally long the same is kept while the robot dr
 }
 
 TEST_CASE("a way that others push a robot off from is found anew") {
-  Ways ways({{{0, 0}, 0.3}}, kField, kRadius_m, kRoom_m, {1.5, 0});
+  Ways ways({{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   const auto above = ways.route_from({-0.5, 0.3});
   REQUIRE(above);
   CHECK(above->waypoint_m.y() > 0);
   const auto below = ways.route_from({-0.5, -0.3});
   REQUIRE(below);
   CHECK(below->waypoint_m.y() < 0);
+}
+
+TEST_CASE("ways keep room where there is some and do without where there is none") {
+  const double room = 0.05;
+  const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
+  Ways wide(pair, kField, kRadius_m, kMargin_m, room, {1.5, 0.3});
+  const auto roomy = wide.route_from({-1.5, 0.3});
+  REQUIRE(roomy);
+  CHECK((roomy->waypoint_m - pair[0].centre_m).norm() >= 0.2 + kRadius_m + kMargin_m + room);
+
+  // The gap between a wall of discs and one of them is too narrow for room.
+  std::vector<Circle> wall;
+  for (int i = -4; i <= 4; ++i) {
+    if (i != 0) wall.push_back({{0, 0.45 * i + std::copysign(0.08, i)}, 0.3});
+  }
+  const double gap = 2 * (0.45 + 0.08 - 0.3);
+  REQUIRE(gap / 2 > kRadius_m + kMargin_m);
+  REQUIRE(gap / 2 < kRadius_m + kMargin_m + 0.15);
+  Ways narrow(wall, kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
+  const auto tight = narrow.route_from({-1.5, 0.2});
+  REQUIRE(tight);
+  for (const Circle& disc : wall)
+    CHECK((tight->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
 }
