@@ -8,7 +8,8 @@ namespace sidestep {
 struct EvasionSettings {
   double slow_mps = 0.3;  ///< a robot that is kept from what it wishes and slower than this is blocked
   double rate_radps = 3;  ///< how fast it turns farther right while blocked, and back when it is free
-  double needed_rad = 1;  ///< from here on it goes where it has turned to
+  double needed_rad = 1;  ///< from here on it goes where it has turned to,
+  double leaves_s = 0.5;  ///< and for so long once it is free, to make room for others
 };
 
 /// The way out of a jam: a robot that is blocked for long turns farther and farther right, whatever there is
@@ -27,6 +28,7 @@ class Evasion {
  private:
   EvasionSettings settings_;
   double angle_rad_ = 0;
+  double free_s_ = 0;  // since when it has been
   Time last_{};
 };
 

@@ -38,3 +38,19 @@ TEST_CASE("a robot that gets on though not as it wishes does not turn away") {
   for (int i = 0; i < 100; ++i) evasion.update(false, 1.0, at_s(1 + 0.0166 * i));
   CHECK(evasion.angle_rad() == 0);
 }
+
+TEST_CASE("a robot that found a way out of a jam goes on there for a while") {
+  const EvasionSettings settings;
+  Evasion evasion(settings);
+  double t = 1;
+  evasion.update(false, 0, at_s(t));
+  while (!evasion.is_needed()) evasion.update(false, 0, at_s(t += 0.0166));
+  evasion.update(false, 0, at_s(t += 0.0166));
+  const double angle = evasion.angle_rad(), freed = t;
+  while (t - freed < settings.leaves_s - 0.02) {
+    evasion.update(true, 1, at_s(t += 0.0166));
+    CHECK(evasion.angle_rad() == angle);
+  }
+  while (t - freed < settings.leaves_s + 1) evasion.update(true, 1, at_s(t += 0.0166));
+  CHECK(evasion.angle_rad() == 0);
+}
