@@ -57,3 +57,54 @@ TEST_CASE("a version with a number that is none, or beyond all bounds, is refuse
   spoilt.start_ns(std::numeric_limits<std::int64_t>::min());
   CHECK_FALSE(decode(spoilt));
 }
+
+TEST_CASE("what a robot means to do comes out of its message as it went in, to single precision") {
+  const std::uint64_t seed = 3;
+  CAPTURE(seed);
+  Rng rng(seed);
+  Version in{1, 1, 1, 0, random_trajectory(rng)};
+  REQUIRE(decode(encode(in)));
+  CHECK_FALSE(decode(encode(in))->intent);
+  const auto drawn = [&](double most) {
+    const double x = rng.uniform(-most, most);
+    return Vec2(x, rng.uniform(-most, most));
+  };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 velocity = drawn(3), waypoint = drawn(10), goal = drawn(10);
+    in.intent = Intent{velocity, rng.uniform(0, 2), waypoint, goal};
+    const auto out = decode(encode(in));
+    REQUIRE(out);
+    REQUIRE(out->intent);
+    REQUIRE((out->intent->velocity_mps - velocity).norm() < 1e-6);
+    REQUIRE(out->intent->hold_s == Approx(in.intent->hold_s).margin(1e-6));
+    REQUIRE((out->intent->waypoint_m - waypoint).norm() < 2e-6);
+    REQUIRE((out->intent->goal_m - goal).norm() < 2e-6);
+  }
+}
+
+TEST_CASE("a version that means to do what makes no sense is refused") {
+  Rng rng(4);
+  Version version{1, 1, 1, 0, random_trajectory(rng)};
+  version.intent = Intent{{1, 0}, 0.5, {1, 1}, {2, 2}};
+  const auto good = encode(version);
+  REQUIRE(decode(good));
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, inf, -inf, 1e30F}) {
+    for (const auto set :
+         {+[](msg::Intent&m, float v) { m.vx_mps(v); }, +[](msg::Intent&m, float v) { m.vy_mps(v); },
+          +[](msg::Intent&m, float v) { m.hold_s(v); }, +[](msg::Intent&m, float v) { m.way_x_m(v); },
+          +[](msg::Intent&m, float v) { m.way_y_m(v); }, +[](msg::Intent&m, float v) { m.goal_x_m(v); },
+          +[](msg::Intent&m, float v) { m.goal_y_m(v); }}) {
+      auto spoilt = good;
+      set(spoilt.intended(), bad);
+      CAPTURE(bad);
+      CHECK_FALSE(decode(spoilt));
+      // Nobody looks at what is not there.
+      spoilt.has_intent(false);
+      CHECK(decode(spoilt));
+    }
+  }
+  auto spoilt = good;
+  spoilt.intended().hold_s(-0.1F);
+  CHECK_FALSE(decode(spoilt));
+}
