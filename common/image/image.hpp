@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sidestep {
+
+/// How a camera writes pixels down, row by row from the top, each row from the left.
+enum class PixelFormat : std::uint8_t {
+  kYuv422,  ///< U Y V Y for two pixels: U and V are of both (UYVY, ITU-R BT.601 with the full range of a
+            ///< byte)
+  kRgb      ///< R G B for each pixel
+};
+
+constexpr int bytes_per_pixel(PixelFormat format) { return format == PixelFormat::kRgb ? 3 : 2; }
+
+/// Pixels that belong to somebody else. With kYuv422 the width is even.
+struct ImageView {
+  PixelFormat format = PixelFormat::kYuv422;
+  int width_px = 0;
+  int height_px = 0;
+  const std::uint8_t* pixels = nullptr;  ///< rows without gaps between them
+
+  std::size_t row_bytes() const { return static_cast<std::size_t>(width_px * bytes_per_pixel(format)); }
+  std::size_t bytes() const { return row_bytes() * static_cast<std::size_t>(height_px); }
+  const std::uint8_t* row(int y) const { return pixels + row_bytes() * static_cast<std::size_t>(y); }
+};
+
+/// An image of one's own.
+class Image {
+ public:
+  Image() = default;
+  /// All bytes are 0. Precondition: sizes are not negative, and the width is even with kYuv422.
+  Image(PixelFormat format, int width_px, int height_px)
+      : format_(format),
+        width_px_(width_px),
+        height_px_(height_px),
+        pixels_(ImageView{format, width_px, height_px}.bytes()) {}
+
+  ImageView view() const { return {format_, width_px_, height_px_, pixels_.data()}; }
+  std::uint8_t* pixels() { return pixels_.data(); }
+  std::uint8_t* row(int y) { return pixels_.data() + view().row_bytes() * static_cast<std::size_t>(y); }
+
+ private:
+  PixelFormat format_ = PixelFormat::kYuv422;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  std::vector<std::uint8_t> pixels_;
+};
+
+}  // namespace sidestep
