@@ -52,6 +52,8 @@ Firmware::Firmware(RobotId robot, const Vec2& mark_m, double heading_rad, Time n
       decay_(std::exp(-kPhysicsStepSeconds / settings.body.lag_s)),
       // A wish is in force for a whole period, half a period late on average.
       look_ahead_(from_seconds(settings.body.lag_s) + kPhysicsStep / 2),
+      most_lead_m_(settings.body.acceleration_mps2 *
+                   std::pow(settings.velocity_gain_ps / settings.position_gain_ps2, 2)),
       estimator_(mark_m, heading_rad, now, settings.estimator),
       heading_goal_rad_(heading_rad) {}
 
@@ -197,8 +199,13 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   // With a motor lag T, p + T v and v + T a move as a double integrator without any lag under the wish.
   const double lag = settings_.body.lag_s;
   const Motion ahead = planned(now + look_ahead_).motion_at(now + look_ahead_);
-  const Vec2 position_lead = now_wanted.position_m + lag * now_wanted.velocity_mps -
-                             (estimator_.position_m() + lag * estimator_.velocity_mps());
+  Vec2 position_lead = now_wanted.position_m + lag * now_wanted.velocity_mps -
+                       (estimator_.position_m() + lag * estimator_.velocity_mps());
+  // The gains ask for an approach at a speed in proportion to the distance, which brakes in proportion to it
+  // too. What the motors can brake from is the most that it comes to, however far off the robot is: otherwise
+  // it would overshoot, and swing about its reference.
+  if (position_lead.squaredNorm() > most_lead_m_ * most_lead_m_)
+    position_lead *= most_lead_m_ / position_lead.norm();
   const Vec2 velocity_lead = ahead.state.velocity_mps - (estimator_.velocity_mps() + lag * believed);
   Vec2 wanted = ahead.acceleration_mps2 + settings_.position_gain_ps2 * position_lead +
                 settings_.velocity_gain_ps * velocity_lead;

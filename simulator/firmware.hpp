@@ -125,6 +125,7 @@ class Firmware {
   FirmwareSettings settings_;
   double decay_;
   Duration look_ahead_;
+  double most_lead_m_;  ///< distance from which the tracking control's approach brakes as hard as motors can
   PoseEstimator estimator_;
   Actuation last_wish_;
   Actuation believed_;  ///< accelerations by the motor model

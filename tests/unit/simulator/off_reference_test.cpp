@@ -154,6 +154,41 @@ TEST_CASE("a robot that slips breaks off, and lies within what it announces once
   CHECK(floor.world.firmware_violations() == 0);
 }
 
+TEST_CASE("a robot far from what it executes gets back to it without swinging about it") {
+  const Scenario scenario = lonely_robots(1);
+  World world(scenario, kBegin, 1);
+  const Vec2 mark = scenario.robots[0].start_m;
+  Time now = kBegin;
+  const auto see = [&](const Vec2& position_m) {
+    now += milliseconds(17);
+    world.advance(now);
+    msg::Command command;
+    command.head().incarnation(1);
+    command.has_fix(true);
+    command.fix().captured_at_ns(to_ns(now));
+    command.fix().x_m(position_m.x());
+    command.fix().y_m(position_m.y());
+    world.on_command(0, command, now);
+  };
+  // Believing that somebody has moved it, it stops where it seems to be, and will not swear to that.
+  for (int i = 0; i < 10; ++i) see(mark);
+  for (int i = 0; i < 3; ++i) see(mark + Vec2(0.15, 0));
+  const Version stop = world.firmware(0).executing();
+  REQUIRE(stop.grown_m > 0.1);
+  REQUIRE((world.bodies()[0].position_m() - stop.trajectory.rest_position_m()).norm() > 0.1);
+
+  double fastest_mps = 0, beyond_m = 0;
+  for (int i = 0; i < 60 * 3; ++i) {
+    see(world.bodies()[0].position_m());
+    fastest_mps = std::max(fastest_mps, world.bodies()[0].velocity_mps().norm());
+    beyond_m = std::max(beyond_m, world.bodies()[0].position_m().x() - stop.trajectory.rest_position_m().x());
+  }
+  CHECK(world.firmware(0).executing().number == stop.number);
+  CHECK(world.reference_error_m(0) < scenario.tracking_bound_m);
+  CHECK(beyond_m < scenario.tracking_bound_m);
+  CHECK(fastest_mps < 0.2);
+}
+
 TEST_CASE("a robot with a blocked wheel notices by its wheels alone") {
   Floor floor(lonely_robots(1), 1);
   floor.agents[0].drives = false;
