@@ -141,6 +141,10 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
 }
 
 Intent Agent::steer(const State& there, Time start, const Route& route) {
+  if (evasion_.is_needed()) {
+    return {rules_.limits.speed_mps * direction_beside(there.position_m, route), kEvading_s, route.waypoint_m,
+            goal().position_m};
+  }
   steering_.clear();
   for (const Version* version : neighbours_.newest(there.position_m, page_horizon_m())) {
     const State state = state_going_on(version->trajectory, start);
@@ -155,10 +159,7 @@ Intent Agent::steer(const State& there, Time start, const Route& route) {
     steering_.add_standing(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
   const double since = std::max(0.0, to_seconds(start - steered_for_));
   steered_for_ = start;
-  const Intent intent = steering_.choose(there, route.waypoint_m, goal().position_m, since);
-  if (!evasion_.is_needed()) return intent;
-  return {rules_.limits.speed_mps * direction_beside(there.position_m, route), kEvading_s, route.waypoint_m,
-          goal().position_m};
+  return steering_.choose(there, route.waypoint_m, goal().position_m, since);
 }
 
 MotionWish Agent::wish_for(const Intent& intent, const State& there, const Route& route) const {
