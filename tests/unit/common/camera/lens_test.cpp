@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/lens.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+/// The root of s (1 + c s²) = 1 by bisection, on the branch that begins at s = 1 for c = 0.
+double slow_factor(double c) {
+  long double low = c >= 0 ? 0 : 1, high = c >= 0 ? 1 : 1 / std::sqrt(-3.0L * c);
+  for (int i = 0; i < 200; ++i) {
+    const long double middle = (low + high) / 2;
+    (middle * (1 + c * middle * middle) < 1 ? low : high) = middle;
+  }
+  return static_cast<double>(low);
+}
+
+}  // namespace
+
+TEST_CASE("a lens is inverted to the last bits") {
+  const std::uint64_t seed = 17;
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int i = 0; i < 20000; ++i) {
+    const bool is_barrel = rng.chance(0.7);
+    const double c =
+        is_barrel ? std::exp(rng.uniform(std::log(1e-9), std::log(1e6))) : rng.uniform(-0.147, 0);
+    CAPTURE(c);
+    const double s = lens::distorting_factor(c);
+    REQUIRE(s == Approx(slow_factor(c)).epsilon(1e-13).margin(0));
+    // There and back: k r_u² -> k r_d² -> factor.
+    REQUIRE(lens::undistorting_factor(c * s * s) * s == Approx(1).epsilon(1e-13).margin(0));
+  }
+  CHECK(lens::distorting_factor(0) == 1);
+}
+
+TEST_CASE("a lens says where it ends") {
+  CHECK(std::isnan(lens::distorting_factor(-0.1471)));
+  CHECK(std::isnan(lens::distorting_factor(-4.0 / 27)));
+  CHECK(std::isnan(lens::distorting_factor(INFINITY)));
+  CHECK(std::isnan(lens::distorting_factor(NAN)));
+  CHECK(std::isnan(lens::undistorting_factor(-0.3001)));
+  CHECK(std::isnan(lens::undistorting_factor(NAN)));
+  // Both ends are the same point, and dr_u/dr_d is 0.1 there.
+  const double s = lens::distorting_factor(lens::kLeastSightBend);
+  CHECK(s * s * lens::kLeastSightBend == Approx(lens::kLeastBend));
+  CHECK(1 + 3 * lens::kLeastBend == Approx(0.1));
+}

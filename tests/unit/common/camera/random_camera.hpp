@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/camera/hanging_camera.hpp"
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+
+/// Somewhere over the floor, tilted up to 30 degrees or so, with a barrel distortion or none.
+inline HangingCamera random_hanging_camera(Rng& rng) {
+  HangingCamera camera;
+  const Vec2 centre(rng.uniform(-5, 5), rng.uniform(-4, 4));
+  const Vec2 half(rng.uniform(0.5, 3.5), rng.uniform(0.5, 3));
+  camera.view_m = {centre - half, centre + half};
+  camera.height_m = rng.uniform(2.5, 6);
+  camera.aside_m = Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  camera.distortion = rng.chance(0.2) ? 0 : rng.uniform(0, 0.4);
+  if (rng.chance(0.3)) camera.width_px = 2448, camera.height_px = 2048;
+  return camera;
+}
+
+inline Vec2 random_point_in(const Box& box, Rng& rng) {
+  return {rng.uniform(box.min_m.x(), box.max_m.x()), rng.uniform(box.min_m.y(), box.max_m.y())};
+}
+
+}  // namespace sidestep
