@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/marking/layout_file.hpp"
+
+#include <fmt/format.h>
+
+#include "common/config/yaml_document.hpp"
+#include "common/config/yaml_map.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kExpected = "a layout of markings";
+constexpr Range kPlace_m{-1, 1};
+constexpr Range kRadius_m{0.001, 0.5};
+
+Colour colour_from(const YAML::Node& node, const YamlPlace& place) {
+  const std::string name = text_from(node, place);
+  if (const auto colour = colour_named(name)) return *colour;
+  std::string names;
+  for (const NamedColour& colour : kColours) names += (names.empty() ? "" : ", ") + std::string(colour.name);
+  place.refuse(fmt::format("expected one of {}, got \"{}\"", names, name.substr(0, 40)));
+}
+
+MarkingDot read_dot(YamlMap& map) {
+  MarkingDot dot;
+  map.require("radius_m");
+  map.read("radius_m", kRadius_m, dot.radius_m);
+  map.read("position_m", kPlace_m, dot.position_m);
+  return dot;
+}
+
+/// Where the elements of a list stand.
+using Places = std::vector<YamlPlace>;
+
+void read_centre(YamlMap& map, MarkingLayout& layout) {
+  YamlMap centre(map.require("centre"), map.place_of("centre"));
+  layout.centre = read_dot(centre);
+  layout.blue_team = colour_from(centre.require("blue"), centre.place_of("blue"));
+  layout.yellow_team = colour_from(centre.require("yellow"), centre.place_of("yellow"));
+  centre.finish();
+}
+
+Places read_dots(YamlMap& map, MarkingLayout& layout) {
+  Places places;
+  const YAML::Node list = map.require("dots");
+  const YamlPlace place = map.place_of("dots");
+  for (const YAML::Node& element : list_from(list, place, kMaxDots)) {
+    places.push_back(place.of(element, fmt::format("dots[{}]", layout.dots.size())));
+    YamlMap dot(element, places.back());
+    dot.require("position_m");
+    layout.dots.push_back(read_dot(dot));
+    dot.finish();
+  }
+  return places;
+}
+
+Places read_patterns(YamlMap& map, MarkingLayout& layout) {
+  Places places;
+  const YAML::Node list = map.require("patterns");
+  const YamlPlace place = map.place_of("patterns");
+  for (const YAML::Node& element : list_from(list, place, kMaxPatterns)) {
+    places.push_back(place.of(element, fmt::format("patterns[{}]", layout.patterns.size())));
+    YamlMap inner(element, places.back());
+    MarkingPattern pattern;
+    pattern.id = static_cast<std::uint32_t>(
+        integer_from(inner.require("id"), inner.place_of("id"), {0, kMaxRobots - 1.0}));
+    const YamlPlace colours = inner.place_of("colours");
+    for (const YAML::Node& colour : list_from(inner.require("colours"), colours, kMaxDots))
+      pattern.colours.push_back(colour_from(colour, colours.of(colour, colours.what)));
+    inner.finish();
+    layout.patterns.push_back(pattern);
+  }
+  return places;
+}
+
+}  // namespace
+
+MarkingLayout parse_layout(const std::string& text, const std::string& file_name) {
+  const YAML::Node root = parse_yaml(text, file_name, kExpected);
+  const YamlPlace whole{file_name, 1, ""};
+  YamlMap map(root, whole.of(root, ""));
+  MarkingLayout layout;
+  layout.name = text_from(map.require("name"), map.place_of("name"));
+  read_centre(map, layout);
+  const Places dots = read_dots(map, layout);
+  const Places patterns = read_patterns(map, layout);
+  map.finish();
+  if (const auto fault = fault_of(layout)) {
+    using Part = LayoutFault::Part;
+    const Places& places = fault->part == Part::kDots ? dots : patterns;
+    const char* const list = fault->part == Part::kCentre ? "centre"
+                             : fault->part == Part::kDots ? "dots"
+                                                          : "patterns";
+    const bool has_place = fault->part != Part::kCentre && fault->index < places.size();
+    (has_place ? places[fault->index] : map.place_of(list)).refuse(fault->why);
+  }
+  return layout;
+}
+
+MarkingLayout load_layout(const std::string& path) {
+  return parse_layout(read_yaml_file(path, kExpected), path);
+}
+
+}  // namespace sidestep
