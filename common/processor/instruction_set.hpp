@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
+#include <vector>
+
 namespace sidestep {
 
 /// What inner loops are compiled for; each includes the ones before.
 enum class InstructionSet {
-  kBaseline,  ///< what every processor of the architecture has
-  kAvx2,      ///< and FMA, BMI 1 and 2, POPCNT
-  kAvx512,    ///< F, DQ and VL
+  kBaseline,    ///< what every processor of the architecture has
+  kAvx2,        ///< and FMA, BMI 1 and 2, POPCNT
+  kAvx512,      ///< F, DQ and VL
+  kAvx512Bytes  ///< BW and VBMI
 };
 
 /// The best that this processor and its operating system offer. Code that is compiled for an instruction set
@@ -19,9 +23,28 @@ inline InstructionSet best_instruction_set() {
                         __builtin_cpu_supports("popcnt");
   const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                           __builtin_cpu_supports("avx512vl");
-  if (has_avx2) return has_avx512 ? InstructionSet::kAvx512 : InstructionSet::kAvx2;
+  const bool has_bytes = __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vbmi");
+  if (has_avx2 && has_avx512) return has_bytes ? InstructionSet::kAvx512Bytes : InstructionSet::kAvx512;
+  if (has_avx2) return InstructionSet::kAvx2;
 #endif
   return InstructionSet::kBaseline;
+}
+
+/// Inner loops that were compiled for an instruction set.
+template <typename Kernels>
+struct CompiledFor {
+  InstructionSet needed;
+  Kernels kernels;
+};
+
+/// Those that this machine can run, in the order given.
+template <typename Kernels>
+std::vector<Kernels> runnable(std::initializer_list<CompiledFor<Kernels>> all) {
+  std::vector<Kernels> found;
+  for (const CompiledFor<Kernels>& one : all) {
+    if (one.needed <= best_instruction_set()) found.push_back(one.kernels);
+  }
+  return found;
 }
 
 }  // namespace sidestep

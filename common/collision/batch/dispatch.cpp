@@ -5,21 +5,15 @@
 #include "common/processor/instruction_set.hpp"
 
 namespace sidestep::collision {
-namespace {
-
-std::vector<Kernels> found() {
-  std::vector<Kernels> kernels{kBaselineKernels};
-#ifdef __x86_64__
-  if (best_instruction_set() >= InstructionSet::kAvx2) kernels.push_back(kAvx2Kernels);
-  if (best_instruction_set() >= InstructionSet::kAvx512) kernels.push_back(kAvx512Kernels);
-#endif
-  return kernels;
-}
-
-}  // namespace
 
 const std::vector<Kernels>& available_kernels() {
-  static const std::vector<Kernels> kernels = found();
+  static const std::vector<Kernels> kernels = runnable<Kernels>({
+      {InstructionSet::kBaseline, kBaselineKernels},
+#ifdef __x86_64__
+      {InstructionSet::kAvx2, kAvx2Kernels},
+      {InstructionSet::kAvx512, kAvx512Kernels},
+#endif
+  });
   return kernels;
 }
 

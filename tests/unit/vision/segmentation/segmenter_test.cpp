@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/segmentation/segmenter.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/random/rng.hpp"
+#include "tests/counted_allocations.hpp"
+#include "tests/unit/vision/segmentation/flood_fill.hpp"
+#include "vision/segmentation/batch/dispatch.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr SegmentationSettings kAll{1, {0.5, -1}};  // every region, none merged
+
+std::uint8_t byte(Rng& rng) { return static_cast<std::uint8_t>(rng.below(256)); }
+
+Image noise(PixelFormat format, int width_px, int height_px, Rng& rng) {
+  Image image(format, width_px, height_px);
+  for (std::size_t i = 0; i < image.view().bytes(); ++i) image.pixels()[i] = byte(rng);
+  return image;
+}
+
+/// Blocks of equal pixels, so that regions are larger than in noise and take many shapes.
+Image blocks(PixelFormat format, int width_px, int height_px, Rng& rng) {
+  Image image = noise(format, width_px, height_px, rng);
+  const auto step = static_cast<std::size_t>(format == PixelFormat::kRgb ? 3 : 4);
+  for (int y = 0; y < height_px; ++y) {
+    std::uint8_t* row = image.row(y);
+    for (std::size_t i = step; i < image.view().row_bytes(); ++i) {
+      if (!rng.chance(0.15)) row[i] = row[i - step];
+    }
+    if (y > 0 && rng.chance(0.6)) std::copy_n(image.row(y - 1), image.view().row_bytes(), row);
+  }
+  return image;
+}
+
+std::vector<ColourBox> boxes(std::size_t count, Rng& rng) {
+  std::vector<ColourBox> made(count);
+  for (ColourBox& box : made) {
+    const auto draw = [&rng](std::uint8_t& low, std::uint8_t& high) {
+      const std::uint8_t a = byte(rng), b = byte(rng);
+      low = std::min(a, b);
+      high = std::max(a, b);
+    };
+    draw(box.low.y, box.high.y);
+    draw(box.low.u, box.high.u);
+    draw(box.low.v, box.high.v);
+  }
+  return made;
+}
+
+std::vector<Region> found(Segmenter& segmenter, const Image& image) {
+  const auto regions = segmenter.segment(image.view());
+  return {regions.begin(), regions.end()};
+}
+
+/// Red where the text has an X.
+Image drawn(const std::vector<std::string>& rows) {
+  Image image(PixelFormat::kRgb, static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    for (std::size_t x = 0; x < rows[y].size(); ++x) {
+      image.row(static_cast<int>(y))[3 * x] = rows[y][x] == 'X' ? 255 : 0;
+    }
+  }
+  return image;
+}
+
+const ColourBox kRed{{50, 0, 200}, {80, 255, 255}};
+
+}  // namespace
+
+TEST_CASE("all inner loops find the regions that flood filling finds") {
+  const std::uint64_t seed = GENERATE(range(1, 41));
+  Rng rng(seed);
+  const auto format = rng.chance(0.5) ? PixelFormat::kRgb : PixelFormat::kYuv422;
+  const int width_px = 2 * (1 + static_cast<int>(rng.below(150))),
+            height_px = 1 + static_cast<int>(rng.below(60));
+  const ColourClasses classes(boxes(1 + rng.below(kMaxColours), rng));
+  const Image image =
+      rng.chance(0.3) ? noise(format, width_px, height_px, rng) : blocks(format, width_px, height_px, rng);
+  const std::uint32_t least_area_px = rng.chance(0.5) ? 1 : 5;
+  const auto expected = flooded(image.view(), classes, least_area_px);
+  for (const auto& kernels : segmentation::available_kernels()) {
+    CAPTURE(seed, kernels.name, width_px, height_px);
+    Segmenter segmenter(classes, {least_area_px, kAll.merge}, kernels);
+    const auto regions = found(segmenter, image);
+    CHECK(regions == expected);
+    CHECK(found(segmenter, image) == regions);
+  }
+}
+
+TEST_CASE("every colour of an image is told as its numbers are") {
+  // All reds and blues with one green, and all greens with them in another image, in every inner loop.
+  const auto seed = static_cast<std::uint64_t>(GENERATE(range(1, 6)));
+  Rng rng(seed);
+  const ColourClasses classes(boxes(8, rng));
+  Image image(PixelFormat::kRgb, 256, 256);
+  const std::uint8_t green = byte(rng);
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      std::uint8_t* pixel = image.row(y) + 3 * static_cast<std::ptrdiff_t>(x);
+      pixel[0] = static_cast<std::uint8_t>(x);
+      pixel[seed % 2 == 0 ? 1 : 2] = static_cast<std::uint8_t>(y);
+      pixel[seed % 2 == 0 ? 2 : 1] = green;
+    }
+  }
+  const auto expected = flooded(image.view(), classes, 1);
+  for (const auto& kernels : segmentation::available_kernels()) {
+    CAPTURE(seed, kernels.name);
+    Segmenter segmenter(classes, kAll, kernels);
+    CHECK(found(segmenter, image) == expected);
+  }
+}
+
+TEST_CASE("a region that comes together below is one with the middle of all its pixels") {
+  const Image image = drawn({"X...X...X",  //
+                             "X...X...X",  //
+                             "X..X.X..X",  //
+                             ".XX...XX.",  //
+                             ".........",  //
+                             "....X...."});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), kAll);
+  const auto regions = found(segmenter, image);
+  REQUIRE(regions.size() == 2);
+  CHECK(regions[0] == Region{0, 14, 4.0, (0 * 3 + 1 * 3 + 2 * 4 + 3 * 4) / 14.0, 0, 8, 0, 3});
+  CHECK(regions[1] == Region{0, 1, 4, 5, 4, 4, 5, 5});
+}
+
+TEST_CASE("a patch that a line has torn apart is put together") {
+  const Image image = drawn({".XXXXX....",  //
+                             ".XXXXX....",  //
+                             "..........",  //
+                             ".XXXXX....",  //
+                             ".XXXXX...X"});
+  Segmenter torn(ColourClasses(std::vector{kRed}), kAll);
+  CHECK(torn.segment(image.view()).size() == 3);
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.7, 1}});
+  const auto regions = found(segmenter, image);
+  REQUIRE(regions.size() == 2);
+  CHECK(regions[0] == Region{0, 20, 3, 2, 1, 5, 0, 4});
+  CHECK(regions[1].area_px == 1);
+}
+
+TEST_CASE("what was too far from a patch is looked at again when the patch has grown") {
+  const Image image = drawn({"XXXX....XX",  //
+                             "XXXX....XX",  //
+                             "XXXX.XX.XX",  //
+                             "XXXX.XX.XX"});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.65, 1}});
+  const auto regions = found(segmenter, image);
+  REQUIRE(regions.size() == 1);
+  CHECK(regions[0].area_px == 28);
+}
+
+TEST_CASE("patches that do not fill their common box stay apart") {
+  const Image image = drawn({"XX....",  //
+                             "XX....",  //
+                             "......",  //
+                             "..XX..",  //
+                             "..XX.."});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.5, 2}});
+  CHECK(segmenter.segment(image.view()).size() == 2);
+}
+
+TEST_CASE("regions of different colours are never put together") {
+  Image image = drawn({"XXXX",  //
+                       "XXXX"});
+  for (int x = 0; x < 4; ++x) {
+    image.row(1)[3 * static_cast<std::ptrdiff_t>(x)] = 0;
+    image.row(1)[3 * static_cast<std::ptrdiff_t>(x) + 2] = 255;
+  }
+  const ColourBox blue{{50, 200, 0}, {80, 255, 255}};
+  Segmenter segmenter(ColourClasses(std::vector{kRed, blue}), {1, {0.1, 5}});
+  const auto regions = found(segmenter, image);
+  REQUIRE(regions.size() == 2);
+  CHECK(regions[0].colour == 0);
+  CHECK(regions[1].colour == 1);
+}
+
+TEST_CASE("a frame of nothing but specks loses what is beyond the limit and says so") {
+  Image image(PixelFormat::kRgb, 1000, 1000);
+  for (int y = 0; y < 1000; y += 2) {
+    for (int x = 0; x < 1000; x += 2) image.row(y)[3 * static_cast<std::ptrdiff_t>(x)] = 255;
+  }
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), kAll);
+  CHECK(segmenter.segment(image.view()).size() == RegionBuilder::kMaxRegions);
+  CHECK(segmenter.left_out() == 250'000 - RegionBuilder::kMaxRegions);
+}
+
+TEST_CASE("segmenting a second frame allocates nothing") {
+  Rng rng(7);
+  const Image image = blocks(PixelFormat::kYuv422, 640, 100, rng);
+  Segmenter segmenter(ColourClasses(boxes(5, rng)));
+  segmenter.segment(image.view());
+  const auto before = allocations();
+  segmenter.segment(image.view());
+  CHECK(allocations() == before);
+}

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/segmentation/batch/levels.hpp"
+
+#define SIDESTEP_VECTOR_BYTES 64
+#define SIDESTEP_KERNELS kAvx512Kernels
+#define SIDESTEP_LEVEL "avx512"
+#include "vision/segmentation/batch/code.hpp"

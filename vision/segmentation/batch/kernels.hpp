@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Compiled once for each instruction set: nothing here may be an inline function that linkers merge.
+#include <cstddef>
+#include <cstdint>
+
+namespace sidestep::segmentation {
+
+inline constexpr std::size_t kWord = 64;   ///< pixels to a word of bits
+inline constexpr std::size_t kMasks = 32;  ///< most colours
+
+/// One byte, as often as any machine's vectors hold it.
+struct alignas(64) Repeated {
+  std::uint8_t bytes[64];
+};
+
+/// A colour's thresholds: the lowest value, and how far above it the highest lies. Those of U and V stand
+/// side by side too, as they do in a frame.
+struct Thresholds {
+  Repeated y_low, y_span, u_low, u_span, v_low, v_span, uv_low, uv_span;
+};
+
+/// By a number's upper four bits, which colours it may belong to, as far as eight bits tell: colour k has bit
+/// k % 8. Again and again for each 16 bytes of a vector.
+struct Coarse {
+  Repeated y, u, v;
+};
+
+/// What colours a frame is searched for, as tables of bits by value, as thresholds, and as what most pixels
+/// fail.
+struct ClassesView {
+  const std::uint32_t *y, *u, *v;
+  const Thresholds* thresholds;
+  std::size_t colours;
+  const Coarse* coarse;
+};
+
+/// Which pixels of a row have which colour: by word of 64 pixels, bit i for the i-th. A pixel has one colour
+/// at most: the first that fits.
+struct RowMasks {
+  std::uint64_t* any;  ///< by word: pixels of any colour
+  std::uint64_t* of;   ///< by word, kMasks colours each; undefined where no pixel of the word has any colour
+};
+
+using ClassifyRow = void (*)(const ClassesView& classes, const std::uint8_t* row, std::size_t width_px,
+                             const RowMasks& masks);
+
+/// The inner loops of segmentation for one instruction set.
+struct Kernels {
+  const char* name;
+  ClassifyRow rgb, yuv422;
+};
+
+}  // namespace sidestep::segmentation

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vision/segmentation/batch/kernels.hpp"
+
+namespace sidestep::segmentation {
+
+extern const Kernels kBaselineKernels;
+#ifdef __x86_64__
+extern const Kernels kAvx2Kernels, kAvx512Kernels;
+#endif
+
+}  // namespace sidestep::segmentation

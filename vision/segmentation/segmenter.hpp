@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/image/image.hpp"
+#include "vision/segmentation/batch/kernels.hpp"
+#include "vision/segmentation/colour_classes.hpp"
+#include "vision/segmentation/merging.hpp"
+#include "vision/segmentation/region.hpp"
+#include "vision/segmentation/region_builder.hpp"
+
+namespace sidestep {
+
+struct SegmentationSettings {
+  std::uint32_t least_area_px = 3;  ///< smaller regions are noise; counted before regions are merged
+  MergeSettings merge;
+};
+
+/// From a frame to regions of its colours in one pass: each row is classified, cut into runs and put to the
+/// regions above while it is in the cache; what has no colour costs next to nothing. Allocates when a frame
+/// is wider or has more regions than any before.
+class Segmenter {
+ public:
+  explicit Segmenter(const ColourClasses& classes, const SegmentationSettings& settings = {});
+  /// With given inner loops.
+  Segmenter(const ColourClasses& classes, const SegmentationSettings& settings,
+            const segmentation::Kernels& kernels);
+
+  const ColourClasses& classes() const { return classes_; }
+  /// By colour, then from the top. Valid until the next call.
+  std::span<const Region> segment(const ImageView& image);
+  /// Regions left out so far, of frames that were but noise.
+  std::uint64_t left_out() const;
+
+ private:
+  void add_runs(std::size_t words, int y_px);
+
+  ColourClasses classes_;
+  SegmentationSettings settings_;
+  segmentation::Kernels kernels_;
+  std::vector<segmentation::Thresholds> thresholds_;
+  segmentation::Coarse coarse_{};
+  std::vector<std::uint64_t> any_, masks_;
+  std::array<RegionBuilder, kMaxColours> builders_;
+  std::vector<Region> regions_;
+};
+
+}  // namespace sidestep
