@@ -18,6 +18,8 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
       tracking_bound_m_(scenario.tracking_bound_m),
       clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),
       hearing_(hearing.is_complete ? Duration{0} : hearing.fastest),
+      places_m_(scenario.robots.size()),
+      hands_(scenario.robots.size(), scenario.cycle, hearing.is_complete),
       index_(kMostRobots, scenario.robots.size()) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
@@ -25,7 +27,6 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
   }
   whereabouts_.resize(robots_.size());
   sights_.resize(robots_.size());
-  by_hand_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
 }
 

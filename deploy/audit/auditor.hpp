@@ -10,6 +10,7 @@
 #include "common/messaging/bus.hpp"
 #include "deploy/audit/audit_rules.hpp"
 #include "deploy/audit/audited_robot.hpp"
+#include "deploy/audit/hands.hpp"
 #include "deploy/audit/hearing.hpp"
 #include "idl/disturbance.h"
 
@@ -110,9 +111,10 @@ class Auditor {
   void judge_place(AuditedRobot& robot, const msg::Feedback& feedback, const Heard& heard);
   /// `before`: contacts that were told of before.
   void judge_contacts(const msg::GroundTruth& truth, std::uint64_t before);
-  bool is_by_hand(RobotId robot) const;
-  /// Whoever touches one that somebody has pushed is pushed by it, and so on. Whether one of the two was.
-  bool spread_hands(const msg::Touch& touch);
+  /// Where everybody is.
+  void see(const msg::GroundTruth& truth);
+  /// In the roster; nothing for who is not in it.
+  std::optional<std::size_t> place_of(RobotId robot) const;
   static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
                       std::int64_t now_ns);
   bool clock_is_sound(const msg::Feedback& feedback, const Heard& heard) const;
@@ -146,9 +148,9 @@ class Auditor {
   double most_grown_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;
-  /// Of whom somebody has disturbed: so many ground truths more before it may be in place.
-  std::vector<std::optional<std::int64_t>> by_hand_;
-  std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
+  std::vector<std::optional<Vec2>> places_m_;  ///< in the last truth, as robots_
+  Hands hands_;                                ///< only who hears everything judges places
+  std::vector<std::size_t> index_;             ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {
     Incarnation incarnation = 0;

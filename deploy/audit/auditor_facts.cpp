@@ -12,9 +12,8 @@ namespace {
 
 constexpr std::int64_t kKept_ns = 1'500'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
-constexpr std::int64_t kLongestHand_ns = 60'000'000'000;
-// So long after it was let go it may still look as if it were in place.
-constexpr Duration kSettles = std::chrono::seconds(1);
+// Those that touch are not pressed together, and not seen at one instant.
+constexpr double kTouching_m = 0.001;
 constexpr std::size_t kMostLives = 16;
 // A robot looks at its error once a millisecond, and reports where it is in between.
 constexpr double kLookedLater_m = 0.0005;
@@ -265,10 +264,9 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   const double error = std::hypot(seen.x - reference.x, seen.y - reference.y);
   totals_.farthest_m = std::max(totals_.farthest_m, error);
   totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
-  std::optional<std::int64_t>& by_hand = by_hand_[index_of(robot)];
-  if (error <= tracking_bound_m_ + then->version.grown_m() && by_hand && *by_hand <= 0) by_hand.reset();
+  if (error <= tracking_bound_m_ + then->version.grown_m()) hands_.see_in_place(index_of(robot));
   if (error <= scenario_.margin_m + then->version.grown_m()) return;
-  if (is_by_hand(robot.id)) {
+  if (hands_.are_on(index_of(robot))) {
     ++totals_.places_by_hand;
     return;
   }
@@ -283,7 +281,7 @@ void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t before
   bool are_all_by_hand = true;
   for (std::uint64_t k = truth.contacts() - told; k < truth.contacts(); ++k) {
     const msg::Touch& touch = truth.touches()[k % msg::MAX_TOUCHES];
-    if (spread_hands(touch)) {
+    if (hands_.touch(place_of(touch.first()), place_of(touch.second()))) {
       ++totals_.contacts_by_hand;
       continue;
     }
@@ -298,32 +296,21 @@ void Auditor::judge_contacts(const msg::GroundTruth& truth, std::uint64_t before
   if (are_all_by_hand) totals_.contacts_by_hand += more - told;
 }
 
-bool Auditor::spread_hands(const msg::Touch& touch) {
-  const auto place = [&](RobotId robot) {
-    return robot < index_.size() && index_[robot] < robots_.size() ? &by_hand_[index_[robot]] : nullptr;
-  };
-  auto *first = place(touch.first()), *second = place(touch.second());
-  const bool by_first = first && *first, by_second = second && *second;
-  if (by_first && second && !by_second) *second = kSettles / scenario_.cycle;
-  if (by_second && first && !by_first) *first = kSettles / scenario_.cycle;
-  return by_first || by_second;
-}
-
-bool Auditor::is_by_hand(RobotId robot) const {
-  return robot < index_.size() && index_[robot] < robots_.size() && by_hand_[index_[robot]];
+std::optional<std::size_t> Auditor::place_of(RobotId robot) const {
+  if (robot >= index_.size() || index_[robot] == robots_.size()) return std::nullopt;
+  return index_[robot];
 }
 
 void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   now_ = now;
-  if (disturbance.robot() >= index_.size() || index_[disturbance.robot()] == robots_.size()) {
+  const auto place = place_of(disturbance.robot());
+  if (!place) {
     ++totals_.invalid;
     return;
   }
   if (disturbance.disturbance_kind() == msg::DISTURBANCE_CLOCK) return;
-  const Duration lasts(std::clamp<std::int64_t>(disturbance.duration_ns(), 0, kLongestHand_ns));
   // A simulator that stands still takes the order later.
-  std::optional<std::int64_t>& by_hand = by_hand_[index_[disturbance.robot()]];
-  by_hand = std::max(by_hand.value_or(0), (lasts + kSettles) / scenario_.cycle);
+  hands_.move(*place, Duration(disturbance.duration_ns()));
 }
 
 void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
@@ -336,10 +323,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   if (!heard.is_newest) return;
   if (truths_.size() >= kMostLives && !truths_.contains(truth.head().incarnation()))
     truths_.erase(truths_.begin());
-  for (std::optional<std::int64_t>& by_hand : by_hand_) {
-    // Only who hears everything judges places, and so sees that it is back in its own.
-    if (by_hand && --*by_hand <= 0 && !how_.is_complete) by_hand.reset();
-  }
+  see(truth);
   msg::GroundTruth& last = truths_[truth.head().incarnation()];
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
   if (truth.contacts() > last.contacts()) judge_contacts(truth, last.contacts());
@@ -354,12 +338,17 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   last.contacts(truth.contacts());
   last.firmware_violations(truth.firmware_violations());
   last.moving_crashes(truth.moving_crashes());
+}
+
+void Auditor::see(const msg::GroundTruth& truth) {
+  std::ranges::fill(places_m_, std::nullopt);
   for (const msg::TruthRobot& seen : truth.robots()) {
-    if (seen.robot() >= index_.size() || index_[seen.robot()] == robots_.size()) continue;
-    if (!std::isfinite(seen.x_m()) || !std::isfinite(seen.y_m())) continue;
-    Sight& sight = sights_[index_[seen.robot()]];
-    sight = {truth.at_ns(), seen.x_m(), seen.y_m()};
+    const auto place = place_of(seen.robot());
+    if (!place || !std::isfinite(seen.x_m()) || !std::isfinite(seen.y_m())) continue;
+    sights_[*place] = {truth.at_ns(), seen.x_m(), seen.y_m()};
+    places_m_[*place] = Vec2(seen.x_m(), seen.y_m());
   }
+  hands_.step(places_m_, 2 * scenario_.radius_m + kTouching_m);
 }
 
 }  // namespace sidestep
