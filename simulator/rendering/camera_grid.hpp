@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/camera/hanging_camera.hpp"
+#include "common/config/scenario.hpp"
+
+namespace sidestep {
+
+/// The cameras over a scenario's field, in the order of simulator/cameras.hpp: each hangs over its share, and
+/// sees it and the overlap. Height, distortion and image size are those of `like`. Throws
+/// std::invalid_argument as hang() does.
+std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const HangingCamera& like);
+
+}  // namespace sidestep

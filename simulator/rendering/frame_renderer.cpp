@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/rendering/frame_renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "simulator/rendering/carpet.hpp"
+#include "simulator/rendering/pixel_writing.hpp"
+#include "simulator/rendering/round_ball.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Rgb kSide{34, 34, 37};      // of robots
+constexpr double kSideOfBlob = 0.55;  // of the light on a blob's top
+constexpr double kLeastBlur_px = 0.05;
+
+const CameraModel& checked(const CameraModel& camera, const RenderSpec& spec) {
+  if (spec.format == PixelFormat::kYuv422 && camera.parameters().width_px % 2 != 0)
+    throw std::invalid_argument("frames in YUV 4:2:2 need an even width");
+  return camera;
+}
+
+/// Two pixels of YUV 4:2:2 are one piece.
+cv::Rect on_pairs(const cv::Rect& rect) {
+  const int left = rect.x & ~1, right = (rect.br().x + 1) & ~1;
+  return {left, rect.y, right - left, rect.height};
+}
+
+cv::Rect grown(const cv::Rect& rect, int by) {
+  return {rect.x - by, rect.y - by, rect.width + 2 * by, rect.height + 2 * by};
+}
+
+}  // namespace
+
+FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, const MarkingLayout& layout,
+                             const RenderSpec& spec, Rng rng)
+    : camera_(checked(camera, spec)),
+      field_(field),
+      layout_(layout),
+      spec_(spec),
+      rng_(rng),
+      noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
+  if (spec_.blur_px > kLeastBlur_px) blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px)) + 1;
+  grey_floor_ = draw_floor(camera_, field_, spec_, rng_);
+  set_colour_gain(spec_.colour_gain);
+}
+
+void FrameRenderer::set_colour_gain(const Eigen::Vector3d& gain) {
+  spec_.colour_gain = gain;
+  cv::multiply(grey_floor_, cv::Scalar(gain.x(), gain.y(), gain.z()), floor_);
+  floor_.copyTo(canvas_);
+  blurred_.create(canvas_.size());
+  clean_.resize(row_bytes() * static_cast<std::size_t>(canvas_.rows));
+  blur({0, 0, canvas_.cols, canvas_.rows});
+  clean_floor_ = clean_;
+}
+
+Eigen::Vector3d FrameRenderer::gain_at(const Vec2& p) const {
+  return light_at(spec_, field_, p) * spec_.colour_gain;
+}
+
+void FrameRenderer::find_sights(const Scene& scene) {
+  sights_.clear();
+  const auto add = [&](const Vec2& place_m, Sight::Kind kind, std::size_t index) {
+    sights_.push_back({(place_m - camera_.position_m().head<2>()).norm(), kind, index});
+  };
+  for (std::size_t i = 0; i < scene.robots.size(); ++i)
+    add(scene.robots[i].position_m, Sight::Kind::kRobot, i);
+  for (std::size_t i = 0; i < scene.blobs.size(); ++i)
+    add(scene.blobs[i].circle.centre_m, Sight::Kind::kBlob, i);
+  if (scene.ball) add(scene.ball->position_m.head<2>(), Sight::Kind::kBall, 0);
+  std::sort(sights_.begin(), sights_.end(),
+            [](const Sight& a, const Sight& b) { return a.distance_m > b.distance_m; });
+}
+
+cv::Rect FrameRenderer::draw_robot(const SceneRobot& robot) {
+  const Eigen::Vector3d gain = gain_at(robot.position_m);
+  dots_.clear();
+  const auto add = [&](std::size_t number, const MarkingDot& dot, Colour colour) {
+    if ((robot.hidden_dots >> number & 1) == 0)
+      dots_.push_back({dot.position_m, dot.radius_m, lit(named(colour).rgb, gain)});
+  };
+  if (const MarkingPattern* const pattern = layout_.find(robot.pattern)) {
+    add(0, layout_.centre, layout_.team_colour(robot.team));
+    for (std::size_t i = 0; i < layout_.dots.size(); ++i) add(i + 1, layout_.dots[i], pattern->colours[i]);
+  }
+  UprightBody body;
+  body.position_m = robot.position_m;
+  body.heading_rad = robot.heading_rad;
+  body.radius_m = spec_.robot.radius_m;
+  body.front_m = spec_.robot.front_m;
+  body.height_m = spec_.robot.height_m;
+  body.top = lit(named(Colour::kBlack).rgb, gain);
+  body.side = lit(kSide, gain);
+  body.dots = dots_;
+  body.velocity_mps = robot.velocity_mps;
+  body.angular_radps = robot.angular_radps;
+  return draw(body, camera_, spec_.exposure_s, canvas_);
+}
+
+cv::Rect FrameRenderer::draw_blob(const SceneBlob& blob) {
+  UprightBody body;
+  body.position_m = blob.circle.centre_m;
+  body.radius_m = blob.circle.radius_m;
+  body.front_m = 2 * blob.circle.radius_m;
+  body.height_m = blob.height_m;
+  body.top = lit(blob.colour, gain_at(body.position_m));
+  body.side = static_cast<float>(kSideOfBlob) * body.top;
+  body.velocity_mps = blob.velocity_mps;
+  return draw(body, camera_, spec_.exposure_s, canvas_);
+}
+
+cv::Rect FrameRenderer::draw_sight(const Scene& scene, const Sight& sight) {
+  switch (sight.kind) {
+    case Sight::Kind::kRobot:
+      return draw_robot(scene.robots[sight.index]);
+    case Sight::Kind::kBlob:
+      return draw_blob(scene.blobs[sight.index]);
+    case Sight::Kind::kBall:
+      break;
+  }
+  const Light light = lit(named(Colour::kOrange).rgb, gain_at(scene.ball->position_m.head<2>()));
+  return draw(*scene.ball, light, camera_, spec_.exposure_s, canvas_);
+}
+
+void FrameRenderer::blur(const cv::Rect& rect) {
+  cv::Mat seen = blurred_(rect);
+  if (blur_size_ > 1) {
+    cv::GaussianBlur(canvas_(rect), seen, {blur_size_, blur_size_}, spec_.blur_px, spec_.blur_px,
+                     cv::BORDER_REPLICATE);
+  } else {
+    canvas_(rect).copyTo(seen);
+  }
+  for (int y = rect.y; y < rect.br().y; ++y) {
+    std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
+    write_pixels(spec_.format, blurred_[y] + rect.x, rect.width,
+                 row + rect.x * bytes_per_pixel(spec_.format));
+  }
+}
+
+void FrameRenderer::restore(const cv::Rect& rect) {
+  floor_(rect).copyTo(canvas_(rect));
+  const auto begin = static_cast<std::size_t>(rect.x * bytes_per_pixel(spec_.format));
+  const auto bytes = static_cast<std::size_t>(rect.width * bytes_per_pixel(spec_.format));
+  for (int y = rect.y; y < rect.br().y; ++y) {
+    const std::size_t at = row_bytes() * static_cast<std::size_t>(y) + begin;
+    std::memcpy(clean_.data() + at, clean_floor_.data() + at, bytes);
+  }
+}
+
+void FrameRenderer::render(const Scene& scene, std::uint8_t* pixels) {
+  find_sights(scene);
+  changed_.clear();
+  const cv::Rect image(0, 0, canvas_.cols, canvas_.rows);
+  for (const Sight& sight : sights_) {
+    const cv::Rect drawn = draw_sight(scene, sight);
+    if (!drawn.empty()) changed_.push_back(on_pairs(grown(drawn, blur_size_ / 2)) & image);
+  }
+  for (const cv::Rect& rect : changed_) blur(rect);
+  noise_.add(clean_.data(), canvas_.rows, rng_, pixels);
+  for (const cv::Rect& rect : changed_) restore(rect);
+}
+
+Image FrameRenderer::render(const Scene& scene) {
+  Image image(spec_.format, canvas_.cols, canvas_.rows);
+  render(scene, image.pixels());
+  return image;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/rendering/pixel_writing.hpp"
+
+#include <cstring>
+
+namespace sidestep {
+namespace {
+
+/// Of BT.601, times 2^16; the three of y add up to 1, those of u and v to 0.
+constexpr int kShift = 16;
+constexpr int fixed(double value) {
+  return static_cast<int>(value * (1 << kShift) + (value < 0 ? -0.5 : 0.5));
+}
+constexpr int kYRed = fixed(bt601::kRed), kYBlue = fixed(bt601::kBlue),
+              kYGreen = (1 << kShift) - kYRed - kYBlue;
+constexpr int kURed = fixed(-bt601::kU * bt601::kRed), kUGreen = fixed(-bt601::kU * bt601::kGreen);
+constexpr int kUBlue = -kURed - kUGreen;
+constexpr int kVGreen = fixed(-bt601::kV * bt601::kGreen), kVBlue = fixed(-bt601::kV * bt601::kBlue);
+constexpr int kVRed = -kVGreen - kVBlue;
+
+std::uint8_t luma(const cv::Vec3b& c) {
+  return static_cast<std::uint8_t>((kYRed * c[0] + kYGreen * c[1] + kYBlue * c[2] + (1 << (kShift - 1))) >>
+                                   kShift);
+}
+
+/// Of the sum of two pixels' weighted channels.
+std::uint8_t chroma(int sum) {
+  const int value = 128 + ((sum + (1 << kShift)) >> (kShift + 1));
+  return static_cast<std::uint8_t>(value > 255 ? 255 : value);
+}
+
+}  // namespace
+
+void write_pixels(PixelFormat format, const cv::Vec3b* rgb, int count, std::uint8_t* out) {
+  if (format == PixelFormat::kRgb) {
+    std::memcpy(out, rgb, static_cast<std::size_t>(count) * 3);
+    return;
+  }
+  for (int i = 0; i < count; i += 2, out += 4) {
+    const cv::Vec3b &a = rgb[i], &b = rgb[i + 1];
+    const int red = a[0] + b[0], green = a[1] + b[1], blue = a[2] + b[2];
+    out[0] = chroma(kURed * red + kUGreen * green + kUBlue * blue);
+    out[1] = luma(a);
+    out[2] = chroma(kVRed * red + kVGreen * green + kVBlue * blue);
+    out[3] = luma(b);
+  }
+}
+
+}  // namespace sidestep
