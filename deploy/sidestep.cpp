@@ -6,6 +6,8 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
 #include "deploy/audit/audit_command.hpp"
+#include "deploy/camera/frame_command.hpp"
+#include "deploy/camera/pattern_command.hpp"
 #include "deploy/fault/fault_command.hpp"
 #include "deploy/planning/plan_command.hpp"
 #include "deploy/run.hpp"
@@ -128,6 +130,8 @@ int main(int argc, char** argv) {
   add_study_command(app, action);
   add_audit_commands(app, action);
   add_plan_commands(app, action);
+  add_frame_command(app, action);
+  add_pattern_command(app, action);
   if (const int exit_code = parse_options(app, argc, argv); exit_code >= 0) return exit_code;
   try {
     return action();
