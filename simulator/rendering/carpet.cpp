@@ -6,8 +6,8 @@
 
 #include "common/geometry/box.hpp"
 #include "common/marking/colours.hpp"
+#include "simulator/rendering/counting/samples.hpp"
 #include "simulator/rendering/footprint.hpp"
-#include "simulator/rendering/sampling.hpp"
 
 namespace sidestep {
 namespace {

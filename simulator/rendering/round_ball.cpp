@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "simulator/rendering/counting/samples.hpp"
 #include "simulator/rendering/footprint.hpp"
-#include "simulator/rendering/sampling.hpp"
 
 namespace sidestep {
 namespace {

@@ -4,19 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/rendering/counting/kernels.hpp"
 #include "simulator/rendering/footprint.hpp"
-#include "simulator/rendering/sampling.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr int kLargestSquare = 16;
 constexpr float kAll = static_cast<float>(kSamples);
-
-/// Points in the plane of a body's top, in the body's frame.
-struct Samples {
-  SampleAxis x, y;
-};
 
 /// A body as one camera sees it. A pixel's ray meets the plane of the top at p and the floor at p + lean (p -
 /// foot): the pixel shows the body where this line meets the outline, and the top where p lies in it.
@@ -28,6 +23,8 @@ class SeenBody {
     const double camera_m = camera.position_m().z();
     lean_ = body.height_m / (camera_m - body.height_m);
     foot_m_ = heading_ * (camera.position_m().head<2>() - position_m_);
+    outline_ = {float(body.radius_m), float(body.front_m)};
+    lines_ = {float(lean_), float(foot_m_.x()), float(foot_m_.y())};
     const Eigen::Matrix2f by_pixel = (heading_ * metres_per_pixel).cast<float>();
     const Eigen::Vector2f by_time = (heading_ * body.velocity_mps * exposure_s).cast<float>();
     turn_ = static_cast<float>(body.angular_radps * exposure_s);
@@ -68,23 +65,29 @@ class SeenBody {
   /// Paints a pixel by the shares that its samples find.
   void paint(const Vec2& place_m, cv::Vec3b& pixel) const {
     const Vec2 p = in_frame(place_m);
-    Samples plain, moved;
-    take_samples(p, plain);
-    if (motion_m_ > 0) move(plain, moved);
-    const Samples& samples = motion_m_ > 0 ? moved : plain;
+    Points moved;
+    counting::Pixel pixel_points{static_cast<float>(p.x()), static_cast<float>(p.y()), &offsets_};
+    if (motion_m_ > 0) {
+      move(pixel_points, moved);
+      pixel_points.about = &moved;
+    }
     const double reach_m = reach_of(1);
     // How many of them lie within something whose edge is so far from the pixel's centre.
     const auto count = [](double distance_m, double least_m, auto count_samples) {
-      return distance_m > least_m ? 0.0F : distance_m < -least_m ? kAll : count_samples();
+      return distance_m > least_m ? 0.0F : distance_m < -least_m ? kAll : static_cast<float>(count_samples());
     };
-    const float on_body =
-        count(body_distance_m(p), line_reach_m(reach_m), [&] { return count_body(plain, samples); });
-    const float on_top = count(top_distance_m(p), reach_m, [&] { return count_top(samples); });
+    const float on_body = count(body_distance_m(p), line_reach_m(reach_m),
+                                [&] { return kernels_.on_lines(offsets_, pixel_points, lines_, outline_); });
+    const float on_top =
+        count(top_distance_m(p), reach_m, [&] { return kernels_.in_outline(pixel_points, outline_); });
     const float on_side = std::max(0.0F, on_body - on_top);
     Light light = on_side * body_.side + on_top * body_.top;
     for (const TopDot& dot : body_.dots) {
       const double dot_m = (p - dot.position_m).norm() - dot.radius_m;
-      const float on_dot = count(dot_m, reach_m, [&] { return count_dot(samples, dot); });
+      const float on_dot = count(dot_m, reach_m, [&] {
+        return kernels_.in_disc(pixel_points, float(dot.position_m.x()), float(dot.position_m.y()),
+                                float(dot.radius_m));
+      });
       if (on_dot > 0) light += on_dot * (dot.light - body_.top);
     }
     light += (kAll - on_side - on_top) * light_of(pixel);
@@ -116,64 +119,14 @@ class SeenBody {
     return std::max({0.0, nearest.norm() - body_.radius_m, ahead_m});
   }
 
-  void take_samples(const Vec2& centre, Samples& p) const {
-    const float x = static_cast<float>(centre.x()), y = static_cast<float>(centre.y());
+  /// To where a pixel's points were in the body's frame at their instants of the exposure.
+  void move(const counting::Pixel& pixel, Points& moved) const {
     for (std::size_t i = 0; i < kSamples; ++i) {
-      p.x[i] = x + offsets_.x[i];
-      p.y[i] = y + offsets_.y[i];
+      const float x = offsets_.x[i] + shifts_.x[i], y = offsets_.y[i] + shifts_.y[i];
+      const float turn = turn_ * kSamplePattern.time[i];
+      moved.x[i] = x + turn * (y + pixel.y);
+      moved.y[i] = y - turn * (x + pixel.x);
     }
-  }
-
-  /// To where samples were in the body's frame at their instants of the exposure.
-  void move(const Samples& p, Samples& moved) const {
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const float x = p.x[i] + shifts_.x[i], y = p.y[i] + shifts_.y[i], turn = turn_ * kSamplePattern.time[i];
-      moved.x[i] = x + turn * y;
-      moved.y[i] = y - turn * x;
-    }
-  }
-
-  static float count_dot(const Samples& p, const TopDot& dot) {
-    const float cx = static_cast<float>(dot.position_m.x()), cy = static_cast<float>(dot.position_m.y());
-    const float square = static_cast<float>(dot.radius_m * dot.radius_m);
-    int count = 0;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const float dx = p.x[i] - cx, dy = p.y[i] - cy;
-      count += dx * dx + dy * dy <= square ? 1 : 0;
-    }
-    return static_cast<float>(count);
-  }
-
-  float count_top(const Samples& p) const {
-    const float square = static_cast<float>(body_.radius_m * body_.radius_m);
-    const float front = static_cast<float>(body_.front_m);
-    int count = 0;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const bool is_top = (p.x[i] * p.x[i] + p.y[i] * p.y[i] <= square) & (p.x[i] <= front);
-      count += is_top ? 1 : 0;
-    }
-    return static_cast<float>(count);
-  }
-
-  /// As body_distance_m() decides it.
-  float count_body(const Samples& plain, const Samples& p) const {
-    const float square = static_cast<float>(body_.radius_m * body_.radius_m);
-    const float front = static_cast<float>(body_.front_m), lean = static_cast<float>(lean_);
-    const float foot_x = static_cast<float>(foot_m_.x()), foot_y = static_cast<float>(foot_m_.y());
-    int count = 0;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const float dx = lean * (plain.x[i] - foot_x) + 1e-9F, dy = lean * (plain.y[i] - foot_y);
-      const float room = front - p.x[i], at_front = room / dx;
-      const float from = room < 0 ? at_front : 0.0F;
-      const float to = room - dx < 0 ? at_front : 1.0F;
-      float nearest = -(p.x[i] * dx + p.y[i] * dy) / (dx * dx + dy * dy);
-      nearest = nearest < from ? from : nearest;
-      nearest = nearest > to ? to : nearest;
-      const float x = p.x[i] + nearest * dx, y = p.y[i] + nearest * dy;
-      const bool is_behind_front = (room >= 0) | (room - dx >= 0);
-      count += is_behind_front & (x * x + y * y <= square) ? 1 : 0;
-    }
-    return static_cast<float>(count);
   }
 
   static double motion_reach_m(const UprightBody& body, double exposure_s) {
@@ -188,7 +141,10 @@ class SeenBody {
   double pixel_reach_m_ = 0;
   double motion_m_ = 0;
   float turn_ = 0;
-  Samples offsets_, shifts_;
+  const counting::Kernels& kernels_ = counting::best_kernels();
+  counting::Outline outline_;
+  counting::Lines lines_;
+  Points offsets_, shifts_;
 };
 
 /// Paints what a body shows in squares of pixels: whole where they show one thing, else in quarters.

@@ -12,6 +12,11 @@ inline constexpr std::size_t kSamples = 128;
 /// One coordinate of each sample, in -1/2 to 1/2, their mean 0.
 using SampleAxis = std::array<float, kSamples>;
 
+/// Points on the floor or at some height, in metres, in a frame that the code says.
+struct Points {
+  SampleAxis x, y;
+};
+
 /// The points in a pixel and in the exposure: a rank-1 lattice, so that every line, row, column and instant
 /// has its fair share, however an edge lies (Sloan, Joe 1994).
 struct SamplePattern {
