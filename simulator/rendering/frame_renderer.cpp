@@ -16,7 +16,7 @@ namespace {
 
 constexpr Rgb kSide{34, 34, 37};      // of robots
 constexpr double kSideOfBlob = 0.55;  // of the light on a blob's top
-constexpr double kLeastBlur_px = 0.05;
+constexpr double kLeastBlur_px = 0.2;
 
 const CameraModel& checked(const CameraModel& camera, const RenderSpec& spec) {
   if (spec.format == PixelFormat::kYuv422 && camera.parameters().width_px % 2 != 0)
@@ -44,7 +44,9 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
       spec_(spec),
       rng_(rng),
       noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
-  if (spec_.blur_px > kLeastBlur_px) blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px)) + 1;
+  // Three standard deviations to the outer edge of the last pixel.
+  if (spec_.blur_px > kLeastBlur_px)
+    blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
   grey_floor_ = draw_floor(camera_, field_, spec_, rng_);
   set_colour_gain(spec_.colour_gain);
 }
@@ -53,7 +55,6 @@ void FrameRenderer::set_colour_gain(const Eigen::Vector3d& gain) {
   spec_.colour_gain = gain;
   cv::multiply(grey_floor_, cv::Scalar(gain.x(), gain.y(), gain.z()), floor_);
   floor_.copyTo(canvas_);
-  blurred_.create(canvas_.size());
   clean_.resize(row_bytes() * static_cast<std::size_t>(canvas_.rows));
   blur({0, 0, canvas_.cols, canvas_.rows});
   clean_floor_ = clean_;
@@ -128,16 +129,15 @@ cv::Rect FrameRenderer::draw_sight(const Scene& scene, const Sight& sight) {
 }
 
 void FrameRenderer::blur(const cv::Rect& rect) {
-  cv::Mat seen = blurred_(rect);
-  if (blur_size_ > 1) {
-    cv::GaussianBlur(canvas_(rect), seen, {blur_size_, blur_size_}, spec_.blur_px, spec_.blur_px,
+  // OpenCV rounds in the same way on every machine only in matrices of their own.
+  const cv::Rect around = grown(rect, blur_size_ / 2) & cv::Rect(0, 0, canvas_.cols, canvas_.rows);
+  Canvas seen = canvas_(around).clone();
+  if (blur_size_ > 1)
+    cv::GaussianBlur(seen, seen, {blur_size_, blur_size_}, spec_.blur_px, spec_.blur_px,
                      cv::BORDER_REPLICATE);
-  } else {
-    canvas_(rect).copyTo(seen);
-  }
   for (int y = rect.y; y < rect.br().y; ++y) {
     std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
-    write_pixels(spec_.format, blurred_[y] + rect.x, rect.width,
+    write_pixels(spec_.format, seen[y - around.y] + (rect.x - around.x), rect.width,
                  row + rect.x * bytes_per_pixel(spec_.format));
   }
 }

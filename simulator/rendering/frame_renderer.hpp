@@ -61,10 +61,9 @@ class FrameRenderer {
   RenderSpec spec_;
   Rng rng_;
   SensorNoise noise_;
-  Canvas grey_floor_;  ///< the empty floor under light without a colour
-  Canvas floor_;       ///< and under the light as it is
-  Canvas canvas_;      ///< the floor, with what is being drawn on it
-  Canvas blurred_;
+  Canvas grey_floor_;                      ///< the empty floor under light without a colour
+  Canvas floor_;                           ///< and under the light as it is
+  Canvas canvas_;                          ///< the floor, with what is being drawn on it
   int blur_size_ = 1;                      ///< of the kernel, odd
   std::vector<std::uint8_t> clean_floor_;  ///< the frame of the empty floor without noise
   std::vector<std::uint8_t> clean_;        ///< the same with what stands on it

@@ -26,10 +26,10 @@ struct RenderSpec {
   LightFall light_fall = LightFall::kLinear;
   double far_light = 0.85;               ///< share of the full light that is left at the far end
   Eigen::Vector3d colour_gain{1, 1, 1};  ///< of red, green and blue; what a white balance is off by
-  double blur_px = 0.7;                  ///< standard deviation of the lens's Gaussian blur
-  double noise = 2.5;                    ///< standard deviation of each of red, green and blue, of 255
-  double carpet_texture = 0.02;          ///< relative standard deviation of the carpet's brightness
-  double exposure_s = 0;                 ///< the shutter is open for so long about the time of capture
+  double blur_px = 0.7;          ///< standard deviation of the lens's Gaussian blur; below 0.2 there is none
+  double noise = 2.5;            ///< standard deviation of each of red, green and blue, of 255
+  double carpet_texture = 0.02;  ///< relative standard deviation of the carpet's brightness
+  double exposure_s = 0;         ///< the shutter is open for so long about the time of capture
   RobotCylinder robot;
 };
 
