@@ -13,6 +13,11 @@ namespace {
 constexpr int kLargestSquare = 16;
 constexpr float kAll = static_cast<float>(kSamples);
 
+/// How far any point of a body gets from where it is at the time of capture, while the shutter is open.
+double motion_reach_m(const UprightBody& body, double exposure_s) {
+  return (body.velocity_mps.norm() + std::abs(body.angular_radps) * body.radius_m) * exposure_s / 2;
+}
+
 /// A body as one camera sees it. A pixel's ray meets the plane of the top at p and the floor at p + lean (p -
 /// foot): the pixel shows the body where this line meets the outline, and the top where p lies in it.
 class SeenBody {
@@ -129,10 +134,6 @@ class SeenBody {
     }
   }
 
-  static double motion_reach_m(const UprightBody& body, double exposure_s) {
-    return (body.velocity_mps.norm() + std::abs(body.angular_radps) * body.radius_m) * exposure_s / 2;
-  }
-
   const UprightBody& body_;
   Vec2 position_m_;
   Eigen::Matrix2d heading_;  ///< from the world to the body's frame
@@ -188,9 +189,8 @@ class Painter {
 }  // namespace
 
 cv::Rect draw(const UprightBody& body, const CameraModel& camera, double exposure_s, Canvas& canvas) {
-  const double motion_m =
-      (body.velocity_mps.norm() + std::abs(body.angular_radps) * body.radius_m) * exposure_s / 2;
-  const auto rect = footprint(camera, body.position_m, body.radius_m + motion_m, 0, body.height_m);
+  const double reach_m = body.radius_m + motion_reach_m(body, exposure_s);
+  const auto rect = footprint(camera, body.position_m, reach_m, 0, body.height_m);
   if (rect.empty()) return {};
   const auto slope = camera.pixels_per_metre(Vec3(body.position_m.x(), body.position_m.y(), body.height_m));
   if (!slope) return {};
