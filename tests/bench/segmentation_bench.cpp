@@ -82,6 +82,7 @@ std::vector<ColourBox> boxes() {
     for (int i = 0; i < 3; ++i) one.pixels()[i] = static_cast<std::uint8_t>(paint[i]);
     const Yuv yuv = pixel_at(one.view(), 0, 0);
     ColourBox box;
+    box.colour = static_cast<std::uint32_t>(made.size());
     around(yuv.y, 40, box.low.y, box.high.y);
     around(yuv.u, 20, box.low.u, box.high.u);
     around(yuv.v, 20, box.low.v, box.high.v);

@@ -2,33 +2,31 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "common/image/colour_space.hpp"
 #include "common/image/image.hpp"
 #include "vision/segmentation/batch/kernels.hpp"
 
 namespace sidestep {
 
-/// A pixel's brightness, and what it has more of blue and of red than that: for kYuv422 what the frame holds;
-/// for kRgb, where thresholds of red, green and blue would not survive uneven light,
-/// Y = ((R + B + 1) / 2 + G + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, each rounded down.
-struct Yuv {
-  std::uint8_t y = 0;
-  std::uint8_t u = 0;
-  std::uint8_t v = 0;
-  bool operator==(const Yuv&) const = default;
-};
-
-/// The pixel in column x and row y.
+/// A pixel's brightness, and what it has more of blue and of red than that, as thresholds see it: for kYuv422
+/// what the frame holds; for kRgb, where thresholds of red, green and blue would not survive uneven light, Y
+/// = ((R + B + 1) / 2 + G + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, each rounded down.
+/// Precondition: the pixel in column x and row y exists.
 Yuv pixel_at(const ImageView& image, int x, int y);
 
-/// A colour's pixels: all three numbers lie within low and high, both included.
+/// Pixels of a colour: all three numbers lie within low and high, both included. Precondition: none of low is
+/// above high's.
 struct ColourBox {
   Yuv low;
   Yuv high;
+  std::uint32_t colour = 0;  ///< below kMaxColours; several boxes may belong to one
 };
 
 constexpr bool is_within(const ColourBox& box, const Yuv& pixel) {
@@ -42,17 +40,22 @@ inline constexpr std::size_t kMaxColours = segmentation::kMasks;
 /// and the bitwise AND of the three words (CMVision; Bruce, appendix A.2).
 class ColourClasses {
  public:
-  /// Where boxes overlap, the first one counts. Precondition: at most kMaxColours.
+  /// Where boxes overlap, the first one counts. Precondition: at most kMaxColours of them.
   explicit ColourClasses(std::span<const ColourBox> boxes);
 
   std::span<const ColourBox> boxes() const { return boxes_; }
   /// Bit k: whether the pixel lies in box k.
   std::uint32_t bits(const Yuv& pixel) const { return y_[pixel.y] & u_[pixel.u] & v_[pixel.v]; }
-  /// For the inner loops; valid as long as this is, and the thresholds.
-  segmentation::ClassesView view(std::span<const segmentation::Thresholds> thresholds,
-                                 const segmentation::Coarse& coarse) const {
-    return {y_.data(), u_.data(), v_.data(), thresholds.data(), thresholds.size(), &coarse};
+  /// That of the first box that the pixel lies in.
+  std::optional<std::uint32_t> colour_of(const Yuv& pixel) const {
+    const std::uint32_t found = bits(pixel);
+    if (found == 0) return std::nullopt;
+    return boxes_[static_cast<std::size_t>(std::countr_zero(found))].colour;
   }
+  /// By number, which boxes have it within: bit k for box k.
+  std::span<const std::uint32_t, 256> y() const { return y_; }
+  std::span<const std::uint32_t, 256> u() const { return u_; }
+  std::span<const std::uint32_t, 256> v() const { return v_; }
 
  private:
   std::vector<ColourBox> boxes_;

@@ -8,7 +8,7 @@ namespace sidestep {
 /// Pixels of one colour that hang together, corners included. Pixel (0, 0) is the upper left one, and a
 /// pixel's centre has whole numbers.
 struct Region {
-  std::uint32_t colour = 0;   ///< which of the colour classes
+  std::uint32_t colour = 0;   ///< of the boxes that its pixels lie in
   std::uint32_t area_px = 0;  ///< number of pixels
   double x_px = 0;            ///< their mean
   double y_px = 0;

@@ -96,6 +96,10 @@ void RegionBuilder::finish(std::uint32_t colour, std::uint32_t least_area_px, st
                        static_cast<double>(sums.y_px) / area, sums.left_px, sums.right_px, sums.top_px,
                        sums.bottom_px});
   }
+  // They change places from row to row.
+  const std::size_t most = std::max(row_.capacity(), row_above_.capacity());
+  row_.reserve(most);
+  row_above_.reserve(most);
 }
 
 }  // namespace sidestep

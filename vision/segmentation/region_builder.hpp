@@ -11,7 +11,8 @@ namespace sidestep {
 
 /// Puts the runs of one colour together to regions, row by row: a run belongs to the regions of the row above
 /// that it touches, corners included, and union-find makes one of them (CMVision; Bruce, appendix A.2). Keeps
-/// two rows of runs and sums for each region. Allocates when a frame has more regions than any before.
+/// two rows of runs and sums for each region. Allocates when a frame has more runs in a row, or more regions,
+/// than any before.
 class RegionBuilder {
  public:
   /// A frame with more regions than this in one colour is noise: what begins then is left out and counted.

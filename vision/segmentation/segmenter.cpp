@@ -10,6 +10,11 @@ namespace {
 
 using namespace segmentation;
 
+template <typename Do>
+void for_each_bit(std::uint32_t bits, Do what) {
+  for (; bits != 0; bits &= bits - 1) what(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 void repeat(Repeated& row, std::uint8_t even, std::uint8_t odd) {
   for (std::size_t i = 0; i < sizeof row.bytes; ++i) row.bytes[i] = i % 2 == 0 ? even : odd;
 }
@@ -20,6 +25,7 @@ Thresholds thresholds_of(const ColourBox& box) {
   const std::uint8_t y = span_of(box.low.y, box.high.y), u = span_of(box.low.u, box.high.u),
                      v = span_of(box.low.v, box.high.v);
   Thresholds t;
+  t.colour = box.colour;
   repeat(t.y_low, box.low.y, box.low.y);
   repeat(t.y_span, y, y);
   repeat(t.u_low, box.low.u, box.low.u);
@@ -38,8 +44,8 @@ void add_to(Repeated& coarse, std::uint8_t low, std::uint8_t high, std::uint8_t 
   }
 }
 
-void add_to(Coarse& coarse, const ColourBox& box, std::size_t colour) {
-  const auto bit = static_cast<std::uint8_t>(1 << colour % 8);
+void add_to(Coarse& coarse, const ColourBox& box, std::size_t k) {
+  const auto bit = static_cast<std::uint8_t>(1 << k % 8);
   add_to(coarse.y, box.low.y, box.high.y, bit);
   add_to(coarse.u, box.low.u, box.high.u, bit);
   add_to(coarse.v, box.low.v, box.high.v, bit);
@@ -65,21 +71,31 @@ Segmenter::Segmenter(const ColourClasses& classes, const SegmentationSettings& s
     : classes_(classes), settings_(settings), kernels_(kernels) {
   for (const ColourBox& box : classes.boxes()) {
     add_to(coarse_, box, thresholds_.size());
+    colours_ |= std::uint32_t{1} << box.colour;
     thresholds_.push_back(thresholds_of(box));
   }
 }
 
+ClassesView Segmenter::view() const {
+  return {classes_.y().data(),
+          classes_.u().data(),
+          classes_.v().data(),
+          thresholds_.data(),
+          thresholds_.size(),
+          colours_,
+          &coarse_};
+}
+
 void Segmenter::add_runs(std::size_t words, int y_px) {
-  const std::size_t colours = thresholds_.size();
   for (std::size_t word = 0; word < words; ++word) {
     if (any_[word] == 0) continue;
-    for (std::size_t k = 0; k < colours; ++k) {
-      add_runs_of(masks_[word * kMasks + k], static_cast<int>(word * kWord), builders_[k]);
-    }
+    for_each_bit(colours_, [&](std::size_t colour) {
+      add_runs_of(masks_[word * kMasks + colour], static_cast<int>(word * kWord), builders_[colour]);
+    });
   }
-  for (std::size_t k = 0; k < colours; ++k) {
-    if (builders_[k].has_runs()) builders_[k].end_row(y_px);
-  }
+  for_each_bit(colours_, [&](std::size_t colour) {
+    if (builders_[colour].has_runs()) builders_[colour].end_row(y_px);
+  });
 }
 
 std::span<const Region> Segmenter::segment(const ImageView& image) {
@@ -89,17 +105,17 @@ std::span<const Region> Segmenter::segment(const ImageView& image) {
     any_.resize(words);
     masks_.resize(words * kMasks);
   }
-  const ClassesView view = classes_.view(thresholds_, coarse_);
+  const ClassesView classes = view();
   const ClassifyRow classify = image.format == PixelFormat::kRgb ? kernels_.rgb : kernels_.yuv422;
   for (RegionBuilder& builder : builders_) builder.begin_frame();
   for (int y_px = 0; y_px < image.height_px; ++y_px) {
-    classify(view, image.row(y_px), width, {any_.data(), masks_.data()});
+    classify(classes, image.row(y_px), width, {any_.data(), masks_.data()});
     add_runs(words, y_px);
   }
   regions_.clear();
-  for (std::size_t k = 0; k < thresholds_.size(); ++k) {
-    builders_[k].finish(static_cast<std::uint32_t>(k), settings_.least_area_px, regions_);
-  }
+  for_each_bit(colours_, [&](std::size_t colour) {
+    builders_[colour].finish(static_cast<std::uint32_t>(colour), settings_.least_area_px, regions_);
+  });
   merge_by_density(regions_, settings_.merge);
   return regions_;
 }

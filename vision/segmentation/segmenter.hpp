@@ -39,11 +39,14 @@ class Segmenter {
  private:
   void add_runs(std::size_t words, int y_px);
 
+  segmentation::ClassesView view() const;
+
   ColourClasses classes_;
   SegmentationSettings settings_;
   segmentation::Kernels kernels_;
   std::vector<segmentation::Thresholds> thresholds_;
   segmentation::Coarse coarse_{};
+  std::uint32_t colours_ = 0;  ///< bit c: colour c has a box
   std::vector<std::uint64_t> any_, masks_;
   std::array<RegionBuilder, kMaxColours> builders_;
   std::vector<Region> regions_;

@@ -35,11 +35,11 @@ void classify(const ClassesView& classes, const std::uint8_t* row, std::size_t w
       const std::uint32_t bits = pixels.bits(classes, x);
       if (bits == 0) continue;
       if (any == 0) {
-        for (std::size_t k = 0; k < classes.colours; ++k) of[k] = 0;
+        for (std::size_t colour = 0; colour < kMasks; ++colour) of[colour] = 0;
       }
       const std::uint64_t bit = std::uint64_t{1} << (x - begin);
       any |= bit;
-      of[__builtin_ctz(bits)] |= bit;
+      of[classes.thresholds[__builtin_ctz(bits)].colour] |= bit;
     }
     masks.any[word] = any;
   }

@@ -42,29 +42,35 @@ struct Yuv422Pixels {
   }
 };
 
+/// The pixels of one word.
+template <typename Pixels>
+struct Word {
+  static_assert(kWord == 2 * kWidth || kWord == kWidth);
+  Pixels low, high;
+  explicit Word(const std::uint8_t* row) : low(row), high(row + (kWord - kWidth) * Pixels::kBytes) {}
+  bool has_none(const Coarse& c) const { return low.has_none(c) && (kWord == kWidth || high.has_none(c)); }
+  std::uint64_t of(const Thresholds& t) const {
+    if constexpr (kWord == kWidth) {
+      return low.of(t);
+    } else {
+      return low.of(t) | high.of(t) << kWidth;
+    }
+  }
+};
+
 template <typename Pixels>
 inline std::uint64_t classify_word(const ClassesView& classes, const std::uint8_t* row, std::uint64_t valid,
                                    std::uint64_t* of) {
-  static_assert(kWord % kWidth == 0);
-  if constexpr (kWidth == kWord) {
-    const Pixels pixels(row);
-    if (pixels.has_none(*classes.coarse)) return 0;
-    std::uint64_t left = valid;
-    for (std::size_t k = 0; k < classes.colours; ++k) {
-      of[k] = pixels.of(classes.thresholds[k]) & left;
-      left &= ~of[k];
-    }
-    return valid & ~left;
-  } else {
-    const Pixels low(row), high(row + kWidth * Pixels::kBytes);
-    if (low.has_none(*classes.coarse) && high.has_none(*classes.coarse)) return 0;
-    std::uint64_t left = valid;
-    for (std::size_t k = 0; k < classes.colours; ++k) {
-      of[k] = (low.of(classes.thresholds[k]) | high.of(classes.thresholds[k]) << kWidth) & left;
-      left &= ~of[k];
-    }
-    return valid & ~left;
+  const Word<Pixels> word(row);
+  if (word.has_none(*classes.coarse)) return 0;
+  for (std::uint32_t left = classes.colours; left != 0; left &= left - 1) of[__builtin_ctz(left)] = 0;
+  std::uint64_t left = valid;
+  for (std::size_t k = 0; k < classes.boxes; ++k) {
+    const std::uint64_t found = word.of(classes.thresholds[k]) & left;
+    of[classes.thresholds[k].colour] |= found;
+    left &= ~found;
   }
+  return valid & ~left;
 }
 
 template <typename Pixels>

@@ -15,13 +15,14 @@ struct alignas(64) Repeated {
   std::uint8_t bytes[64];
 };
 
-/// A colour's thresholds: the lowest value, and how far above it the highest lies. Those of U and V stand
+/// A box's thresholds: the lowest value, and how far above it the highest lies. Those of U and V stand
 /// side by side too, as they do in a frame.
 struct Thresholds {
   Repeated y_low, y_span, u_low, u_span, v_low, v_span, uv_low, uv_span;
+  std::uint32_t colour;
 };
 
-/// By a number's upper four bits, which colours it may belong to, as far as eight bits tell: colour k has bit
+/// By a number's upper four bits, which boxes it may belong to, as far as eight bits tell: box k has bit
 /// k % 8. Again and again for each 16 bytes of a vector.
 struct Coarse {
   Repeated y, u, v;
@@ -32,15 +33,17 @@ struct Coarse {
 struct ClassesView {
   const std::uint32_t *y, *u, *v;
   const Thresholds* thresholds;
-  std::size_t colours;
+  std::size_t boxes;
+  std::uint32_t colours;  ///< bit c: colour c is one of theirs
   const Coarse* coarse;
 };
 
 /// Which pixels of a row have which colour: by word of 64 pixels, bit i for the i-th. A pixel has one colour
-/// at most: the first that fits.
+/// at most: that of the first box that fits.
 struct RowMasks {
   std::uint64_t* any;  ///< by word: pixels of any colour
-  std::uint64_t* of;   ///< by word, kMasks colours each; undefined where no pixel of the word has any colour
+  std::uint64_t* of;   ///< by word and colour, kMasks to a word; undefined where no pixel of the word has any
+                      ///< colour, and for colours that no box has
 };
 
 using ClassifyRow = void (*)(const ClassesView& classes, const std::uint8_t* row, std::size_t width_px,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +18,7 @@ inline std::vector<Region> flooded(const ImageView& image, const ColourClasses& 
   const auto at = [&](int x, int y) -> int& { return colour[static_cast<std::size_t>(y * width + x)]; };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const std::uint32_t bits = classes.bits(pixel_at(image, x, y));
-      if (bits != 0) at(x, y) = std::countr_zero(bits);
+      if (const auto found = classes.colour_of(pixel_at(image, x, y))) at(x, y) = static_cast<int>(*found);
     }
   }
   struct Pixel {

@@ -47,6 +47,7 @@ std::vector<ColourBox> boxes(std::size_t count, Rng& rng) {
     draw(box.low.y, box.high.y);
     draw(box.low.u, box.high.u);
     draw(box.low.v, box.high.v);
+    box.colour = static_cast<std::uint32_t>(rng.below(kMaxColours));
   }
   return made;
 }
@@ -67,7 +68,7 @@ Image drawn(const std::vector<std::string>& rows) {
   return image;
 }
 
-const ColourBox kRed{{50, 0, 200}, {80, 255, 255}};
+const ColourBox kRed{{50, 0, 200}, {80, 255, 255}, 0};
 
 }  // namespace
 
@@ -171,7 +172,7 @@ TEST_CASE("regions of different colours are never put together") {
     image.row(1)[3 * static_cast<std::ptrdiff_t>(x)] = 0;
     image.row(1)[3 * static_cast<std::ptrdiff_t>(x) + 2] = 255;
   }
-  const ColourBox blue{{50, 200, 0}, {80, 255, 255}};
+  const ColourBox blue{{50, 200, 0}, {80, 255, 255}, 1};
   Segmenter segmenter(ColourClasses(std::vector{kRed, blue}), {1, {0.1, 5}});
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 2);
