@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/patterns/patch.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace sidestep {
+
+std::optional<Patch> patch_of(const Region& region, const CameraModel& camera, double height_m) {
+  const auto position_m = camera.point_at({region.x_px, region.y_px}, height_m);
+  if (!position_m) return std::nullopt;
+  const auto moves = camera.pixels_per_metre({position_m->x(), position_m->y(), height_m});
+  if (!moves) return std::nullopt;
+  const double px2_per_m2 = std::abs(moves->leftCols<2>().determinant());
+  if (!(px2_per_m2 > 0)) return std::nullopt;
+  return Patch{static_cast<Colour>(region.colour), *position_m, region.area_px / px2_per_m2};
+}
+
+}  // namespace sidestep
