@@ -5,6 +5,7 @@
 
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "common/marking/colour_from.hpp"
 
 namespace sidestep {
 namespace {
@@ -12,14 +13,6 @@ namespace {
 constexpr const char* kExpected = "a layout of markings";
 constexpr Range kPlace_m{-1, 1};
 constexpr Range kRadius_m{0.001, 0.5};
-
-Colour colour_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string name = text_from(node, place);
-  if (const auto colour = colour_named(name)) return *colour;
-  std::string names;
-  for (const NamedColour& colour : kColours) names += (names.empty() ? "" : ", ") + std::string(colour.name);
-  place.refuse(fmt::format("expected one of {}, got \"{}\"", names, name.substr(0, 40)));
-}
 
 MarkingDot read_dot(YamlMap& map) {
   MarkingDot dot;

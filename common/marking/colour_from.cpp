@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/marking/colour_from.hpp"
+
+#include <fmt/format.h>
+
+namespace sidestep {
+
+Colour colour_from(const YAML::Node& node, const YamlPlace& place) {
+  const std::string name = text_from(node, place);
+  if (const auto colour = colour_named(name)) return *colour;
+  std::string names;
+  for (const NamedColour& colour : kColours) names += (names.empty() ? "" : ", ") + std::string(colour.name);
+  place.refuse(fmt::format("expected one of {}, got \"{}\"", names, name.substr(0, 40)));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+
+#include "tests/unit/vision/frames/painted_floor.hpp"
+
+using namespace sidestep;
+using namespace sidestep::test;
+
+namespace {
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+constexpr Duration kFrame{16'666'667};
+
+struct Score {
+  std::size_t visible = 0, found = 0, wrong = 0;
+  double position2_m2 = 0, heading2_rad2 = 0;
+
+  void add(const std::vector<Marked>& robots, const msg::DetectionFrame& frame) {
+    visible += robots.size();
+    for (const msg::RobotDetection& seen : frame.robots()) {
+      const auto truth = std::ranges::find_if(
+          robots, [&](const Marked& robot) { return robot.entry.robot == seen.robot(); });
+      const Vec2 error = truth->pose.position_m - Vec2(seen.x_m(), seen.y_m());
+      if (error.norm() > 0.03) {
+        ++wrong;
+        continue;
+      }
+      ++found;
+      position2_m2 += error.squaredNorm();
+      heading2_rad2 += std::pow(wrapped_rad(seen.heading_rad() - truth->pose.heading_rad), 2);
+    }
+  }
+  double share() const { return static_cast<double>(found) / static_cast<double>(visible); }
+  double position_m() const { return std::sqrt(position2_m2 / static_cast<double>(found)); }
+  double heading_rad() const { return std::sqrt(heading2_rad2 / static_cast<double>(found)); }
+};
+
+FrameTask task_for(PaintedFloor& floor, const std::vector<Marked>& robots) {
+  FrameTask task;
+  task.boxes = floor.learned_boxes();
+  task.layout = butterfly();
+  task.roster = roster_of(robots);
+  return task;
+}
+
+/// Frames of robots that take a new place every tenth one and move a little in between.
+Score read_frames(PaintedFloor& floor, std::size_t each, int frames, int hidden) {
+  std::vector<Marked> robots = floor.scattered_robots(each);
+  FrameReader reader(floor.camera, task_for(floor, robots));
+  Score score;
+  msg::DetectionFrame frame;
+  for (int i = 0; i < frames; ++i) {
+    if (i % 10 == 0) robots = floor.scattered_robots(each);
+    const auto expected = expected_of(robots);
+    for (Marked& robot : robots) {
+      robot.pose.position_m += 0.02 * Vec2(floor.rng.uniform(-1, 1), floor.rng.uniform(-1, 1));
+      robot.pose.heading_rad += floor.rng.uniform(-0.1, 0.1);
+    }
+    const Image image = floor.frame(robots, floor.free_place(robots), hidden);
+    reader.read(image.view(), kBegin + i * kFrame, expected, frame);
+    score.add(robots, frame);
+  }
+  return score;
+}
+
+}  // namespace
+
+TEST_CASE("robots in frames are found, named, and placed within a millimetre and a half") {
+  const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
+  const std::size_t each = GENERATE(6, 11);
+  CAPTURE(format, each);
+  RenderSpec spec;
+  spec.format = format;
+  PaintedFloor floor(each, spec);
+  const Score score = read_frames(floor, each, 20, 0);
+  CHECK(score.share() > 0.999);
+  CHECK(score.wrong == 0);
+  CHECK(score.position_m() < 0.0015);
+  CHECK(score.heading_rad() < 0.6 / 57.3);
+}
+
+TEST_CASE("all sixteen patterns of both teams are told apart in frames") {
+  PaintedFloor floor(3);
+  const Score score = read_frames(floor, 16, 10, 0);
+  CHECK(score.share() > 0.999);
+  CHECK(score.wrong == 0);
+}
+
+TEST_CASE("robots with one dot covered are found and never confused") {
+  PaintedFloor floor(4);
+  const Score score = read_frames(floor, 11, 40, 1);
+  CHECK(score.share() > 0.99);
+  CHECK(score.wrong == 0);
+}
+
+TEST_CASE("robots are found where light falls to three fifths and its colour is off by a tenth") {
+  const double drift = GENERATE(0.1, -0.1);
+  CAPTURE(drift);
+  RenderSpec spec;
+  spec.far_light = 0.6;
+  PaintedFloor learned(5, spec);
+  const std::vector<ColourBox> boxes = learned.learned_boxes();
+  spec.colour_gain = {1 + drift, 1, 1 - drift};
+  PaintedFloor floor(6, spec);
+  const std::vector<Marked> robots = floor.scattered_robots(11);
+  FrameTask task;
+  task.boxes = boxes;
+  task.layout = butterfly();
+  task.roster = roster_of(robots);
+  FrameReader reader(floor.camera, task);
+  Score score;
+  msg::DetectionFrame frame;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<Marked> moved = floor.scattered_robots(11);
+    reader.read(floor.frame(moved).view(), kBegin + i * kFrame, expected_of(moved), frame);
+    score.add(moved, frame);
+  }
+  CHECK(score.share() > 0.995);
+  CHECK(score.wrong == 0);
+}
+
+TEST_CASE("a ball is found, and dots are no balls") {
+  PaintedFloor floor(7);
+  const std::vector<Marked> robots = floor.scattered_robots(11);
+  FrameReader reader(floor.camera, task_for(floor, robots));
+  msg::DetectionFrame frame;
+  int others = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Vec2 ball = floor.free_place(robots);
+    reader.read(floor.frame(robots, ball).view(), kBegin + i * kFrame, expected_of(robots), frame);
+    REQUIRE(frame.ball_count() >= 1);
+    others += frame.ball_count() - 1;
+    CHECK((Vec2(frame.balls()[0].x_m(), frame.balls()[0].y_m()) - ball).norm() < 0.01);
+  }
+  CHECK(others == 0);
+  reader.read(floor.frame(robots).view(), kBegin, expected_of(robots), frame);
+  CHECK(frame.ball_count() == 0);
+}
+
+TEST_CASE("what has a colour that nobody wears is an obstacle, as large as it is") {
+  PaintedFloor floor(8);
+  const std::vector<Marked> robots = floor.scattered_robots(3);
+  FrameTask task = task_for(floor, robots);
+  const Rgb red = named(Colour::kRed).rgb;
+  const std::vector<SceneBlob> blobs{{{{0.5, -0.7}, 0.2}, 0.002, red}};
+  // Where it stands is known too: it is learned like the others.
+  ColourLearner learner;
+  const std::array discs{*seen_disc(floor.camera, Colour::kRed, {0.5, -0.7, 0}, 0.2)};
+  learner.add(floor.frame({}, {}, 0, blobs).view(), discs);
+  for (const ColourBox& box : learner.boxes()) task.boxes.push_back(box);
+  FrameReader reader(floor.camera, task);
+  msg::DetectionFrame frame;
+  reader.read(floor.frame({}, {}, 0, blobs).view(), kBegin, {}, frame);
+  REQUIRE(frame.obstacle_count() == 1);
+  CHECK((Vec2(frame.obstacles()[0].x_m(), frame.obstacles()[0].y_m()) - Vec2(0.5, -0.7)).norm() < 0.02);
+  CHECK(frame.obstacles()[0].radius_m() == Approx(0.2).margin(0.02));
+  CHECK(frame.robots().empty());
+}

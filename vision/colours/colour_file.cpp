@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/colours/colour_file.hpp"
+
+#include <fmt/format.h>
+
+#include "common/config/yaml_document.hpp"
+#include "common/config/yaml_map.hpp"
+#include "common/marking/colour_from.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kExpected = "a file of colour thresholds";
+constexpr Range kByte{0, 255};
+
+PixelFormat format_from(const YAML::Node& node, const YamlPlace& place) {
+  const std::string name = text_from(node, place);
+  if (name == "yuv422") return PixelFormat::kYuv422;
+  if (name == "rgb") return PixelFormat::kRgb;
+  place.refuse(fmt::format("expected yuv422 or rgb, got \"{}\"", name.substr(0, 40)));
+}
+
+Yuv yuv_from(const YAML::Node& node, const YamlPlace& place) {
+  numbers_from(node, place, 3, 3, kByte);
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::uint8_t>(integer_from(node[i], place.of(node[i], place.what), kByte));
+  };
+  return {byte(0), byte(1), byte(2)};
+}
+
+ColourBox read_box(YamlMap& map) {
+  ColourBox box;
+  box.colour = static_cast<std::uint32_t>(colour_from(map.require("colour"), map.place_of("colour")));
+  box.low = yuv_from(map.require("low"), map.place_of("low"));
+  box.high = yuv_from(map.require("high"), map.place_of("high"));
+  map.finish();
+  if (box.low.y > box.high.y || box.low.u > box.high.u || box.low.v > box.high.v)
+    map.place_of("low").refuse("expected nothing above high");
+  return box;
+}
+
+}  // namespace
+
+ColourThresholds parse_colours(const std::string& text, const std::string& file_name) {
+  const YAML::Node root = parse_yaml(text, file_name, kExpected);
+  const YamlPlace whole{file_name, 1, ""};
+  YamlMap map(root, whole.of(root, ""));
+  ColourThresholds thresholds;
+  thresholds.format = format_from(map.require("format"), map.place_of("format"));
+  const YAML::Node list = map.require("boxes");
+  const YamlPlace place = map.place_of("boxes");
+  map.finish();
+  for (const YAML::Node& element : list_from(list, place, kMaxColours)) {
+    YamlMap inner(element, place.of(element, fmt::format("boxes[{}]", thresholds.boxes.size())));
+    thresholds.boxes.push_back(read_box(inner));
+  }
+  if (thresholds.boxes.empty()) place.refuse("expected at least one box");
+  return thresholds;
+}
+
+ColourThresholds load_colours(const std::string& path) {
+  return parse_colours(read_yaml_file(path, kExpected), path);
+}
+
+std::string colours_text(const ColourThresholds& thresholds) {
+  const auto numbers = [](const Yuv& yuv) { return fmt::format("[{}, {}, {}]", yuv.y, yuv.u, yuv.v); };
+  std::string text =
+      fmt::format("format: {}\nboxes:\n", thresholds.format == PixelFormat::kRgb ? "rgb" : "yuv422");
+  for (const ColourBox& box : thresholds.boxes) {
+    text += fmt::format("  - {{colour: {}, low: {}, high: {}}}\n", kColours[box.colour].name,
+                        numbers(box.low), numbers(box.high));
+  }
+  return text;
+}
+
+}  // namespace sidestep

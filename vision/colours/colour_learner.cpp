@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/colours/colour_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace sidestep {
+namespace {
+
+constexpr double kInner = 0.6;  // of a disc's radius: the lens blurs its edge
+constexpr double kOuter = 1.6;  // of it, and so many pixels: nothing of the disc is left there
+constexpr double kOuter_px = 3;
+constexpr int kGrey = 128;
+constexpr int kColourful = 20;    // from grey, on U or V; less does not tell a colour
+constexpr int kSpread = 14;       // beyond what was seen, on U and V, of a number that is not colourful
+constexpr double kEdge = 0.4;     // of the way from grey to a colour: there a patch ends
+constexpr double kDarkest = 0.5;  // of the least brightness that was seen
+constexpr double kTrust = 0.5;    // in brightness, against U and V: light is uneven
+constexpr double kOutliers = 0.002, kFloorOutliers = 0.1;
+
+}  // namespace
+
+void ColourLearner::Seen::add(const Yuv& pixel) {
+  ++count;
+  ++of[0][pixel.y];
+  ++of[1][pixel.u];
+  ++of[2][pixel.v];
+}
+
+/// The number that this share of all pixels does not exceed.
+int ColourLearner::Seen::at(std::size_t channel, double share) const {
+  const double wanted = share * static_cast<double>(count);
+  std::uint64_t sum = 0;
+  for (int value = 0; value < 256; ++value) {
+    sum += of[channel][static_cast<std::size_t>(value)];
+    if (static_cast<double>(sum) > wanted) return value;
+  }
+  return 255;
+}
+
+ColourLearner::Ranges ColourLearner::Seen::ranges(double left_out) const {
+  Ranges ranges;
+  for (std::size_t c = 0; c < ranges.size(); ++c) ranges[c] = {at(c, left_out), at(c, 1 - left_out)};
+  return ranges;
+}
+
+void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs) {
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      bool is_near = false;
+      for (const KnownDisc& disc : discs) {
+        const double distance = std::hypot(x - disc.centre_px.x(), y - disc.centre_px.y());
+        if (distance <= kInner * disc.radius_px) {
+          classes_[static_cast<std::size_t>(disc.colour)].add(pixel_at(image, x, y));
+        }
+        is_near |= distance < kOuter * disc.radius_px + kOuter_px;
+      }
+      if (!is_near) background_.add(pixel_at(image, x, y));
+    }
+  }
+}
+
+ColourLearner::Ranges ColourLearner::generous(const Seen& seen) const {
+  const Ranges own = seen.ranges(kOutliers);
+  Ranges box;
+  box[0] = {static_cast<int>(kDarkest * own[0].low), 255};
+  for (std::size_t c = 1; c < 3; ++c) {
+    const int middle = seen.at(c, 0.5) - kGrey, edge = static_cast<int>(kEdge * middle);
+    if (middle <= -kColourful) {
+      box[c] = {0, std::max(own[c].high, kGrey + edge)};
+    } else if (middle >= kColourful) {
+      box[c] = {std::min(own[c].low, kGrey + edge), 255};
+    } else {
+      box[c] = {own[c].low - kSpread, own[c].high + kSpread};
+    }
+  }
+  return box;
+}
+
+/// Room on a channel between what was seen of two colours: below 0 none; positive where `own` lies above.
+int ColourLearner::gap(const Range& own, const Range& other) {
+  const int below = own.low - other.high, above = other.low - own.high;
+  return below >= above ? std::max(0, below) : -std::max(0, above);
+}
+
+void ColourLearner::cut(Range& box, const Range& own, const Range& other) {
+  const int room = gap(own, other);
+  if (room > 0) box.low = std::max(box.low, (own.low + other.high + 1) / 2);
+  if (room < 0) box.high = std::min(box.high, (own.high + other.low) / 2);
+}
+
+bool ColourLearner::overlap(const Ranges& a, const Ranges& b) {
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    if (a[c].high < b[c].low || b[c].high < a[c].low) return false;
+  }
+  return true;
+}
+
+/// Moves the border of a box where there is most room between what was seen of its colour and of another, if
+/// it reaches into the other.
+void ColourLearner::separate(Ranges& box, const Ranges& own, const Ranges& other) {
+  if (!overlap(box, other)) return;
+  const auto room = [&](std::size_t c) { return (c == 0 ? kTrust : 1.0) * std::abs(gap(own[c], other[c])); };
+  std::size_t best = 0;
+  for (std::size_t c = 1; c < own.size(); ++c) {
+    if (room(c) > room(best)) best = c;
+  }
+  cut(box[best], own[best], other[best]);
+}
+
+std::vector<ColourBox> ColourLearner::boxes() const {
+  std::vector<ColourBox> boxes;
+  for (std::size_t k = 0; k < classes_.size(); ++k) {
+    if (classes_[k].count == 0) continue;
+    Ranges box = generous(classes_[k]);
+    const Ranges own = classes_[k].ranges(kOutliers);
+    if (background_.count > 0) {
+      // There is so much of it that every border that can be drawn is.
+      const Ranges floor = background_.ranges(kFloorOutliers);
+      for (std::size_t c = 0; c < box.size(); ++c) cut(box[c], own[c], floor[c]);
+    }
+    for (std::size_t other = 0; other < classes_.size(); ++other) {
+      if (other != k && classes_[other].count > 0) separate(box, own, classes_[other].ranges(kOutliers));
+    }
+    const auto low = [&](std::size_t c) { return static_cast<std::uint8_t>(std::clamp(box[c].low, 0, 255)); };
+    const auto high = [&](std::size_t c) {
+      return static_cast<std::uint8_t>(std::clamp(box[c].high, 0, 255));
+    };
+    boxes.push_back({{low(0), low(1), low(2)}, {high(0), high(1), high(2)}, static_cast<std::uint32_t>(k)});
+  }
+  return boxes;
+}
+
+}  // namespace sidestep
