@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/league/checks.hpp"
+#include "common/league/field_geometry.hpp"
+
+#include "league/vision.pb.h"
+
+namespace sidestep::league {
+
+void write(const Geometry& geometry, wire::vision::Geometry& to);
+Geometry read(const wire::vision::Geometry& from, Checks& checks);
+
+}  // namespace sidestep::league

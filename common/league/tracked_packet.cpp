@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/league/tracked_packet.hpp"
+
+#include "common/league/checks.hpp"
+#include "common/league/wire.hpp"
+
+#include "league/tracked.pb.h"
+
+namespace sidestep::league {
+namespace {
+
+constexpr double kMaxSpeed_mps = 100;
+constexpr double kMaxTurn_radps = 1000;
+constexpr int kMostBalls = 128;
+constexpr int kMostRobots = 256;
+enum TeamColour : std::uint32_t { kUnknown = 0, kYellow = 1, kBlue = 2 };
+
+void write(const Vec2& vector, wire::tracked::Vector2& to) {
+  to.set_x(static_cast<float>(vector.x()));
+  to.set_y(static_cast<float>(vector.y()));
+}
+
+void write(const Vec3& vector, wire::tracked::Vector3& to) {
+  to.set_x(static_cast<float>(vector.x()));
+  to.set_y(static_cast<float>(vector.y()));
+  to.set_z(static_cast<float>(vector.z()));
+}
+
+Vec2 read(const wire::tracked::Vector2& from, double bound, Checks& checks) {
+  return {checks.within(from.x(), bound), checks.within(from.y(), bound)};
+}
+
+Vec3 read(const wire::tracked::Vector3& from, double bound, Checks& checks) {
+  return {checks.within(from.x(), bound), checks.within(from.y(), bound), checks.within(from.z(), bound)};
+}
+
+void write(const TrackedBall& ball, wire::tracked::Ball& to) {
+  write(ball.position_m, *to.mutable_pos());
+  if (ball.velocity_mps) write(*ball.velocity_mps, *to.mutable_vel());
+  if (ball.visibility) to.set_visibility(static_cast<float>(*ball.visibility));
+}
+
+TrackedBall read(const wire::tracked::Ball& from, Checks& checks) {
+  TrackedBall ball;
+  ball.position_m = read(from.pos(), kMaxPosition_m, checks);
+  if (from.has_vel()) ball.velocity_mps = read(from.vel(), kMaxSpeed_mps, checks);
+  if (from.has_visibility()) ball.visibility = checks.probability(from.visibility());
+  return ball;
+}
+
+std::uint32_t colour_of(const std::optional<Team>& team) {
+  if (!team) return kUnknown;
+  return *team == Team::kYellow ? kYellow : kBlue;
+}
+
+std::optional<Team> team_of(std::uint32_t colour, Checks& checks) {
+  checks.require(colour <= kBlue, Refusal::kRobot);
+  if (colour == kYellow) return Team::kYellow;
+  if (colour == kBlue) return Team::kBlue;
+  return std::nullopt;
+}
+
+void write(const TrackedRobot& robot, wire::tracked::Robot& to) {
+  to.mutable_robot_id()->set_id(robot.number);
+  to.mutable_robot_id()->set_team_color(colour_of(robot.team));
+  write(robot.position_m, *to.mutable_pos());
+  to.set_orientation(static_cast<float>(robot.heading_rad));
+  if (robot.velocity_mps) write(*robot.velocity_mps, *to.mutable_vel());
+  if (robot.angular_radps) to.set_vel_angular(static_cast<float>(*robot.angular_radps));
+  if (robot.visibility) to.set_visibility(static_cast<float>(*robot.visibility));
+}
+
+TrackedRobot read(const wire::tracked::Robot& from, Checks& checks) {
+  TrackedRobot robot;
+  checks.require(from.robot_id().id() < kMaxNumbers, Refusal::kRobot);
+  robot.number = from.robot_id().id();
+  robot.team = team_of(from.robot_id().team_color(), checks);
+  robot.position_m = read(from.pos(), kMaxPosition_m, checks);
+  robot.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
+  if (from.has_vel()) robot.velocity_mps = read(from.vel(), kMaxSpeed_mps, checks);
+  if (from.has_vel_angular()) robot.angular_radps = checks.within(from.vel_angular(), kMaxTurn_radps);
+  if (from.has_visibility()) robot.visibility = checks.probability(from.visibility());
+  return robot;
+}
+
+void write(const TrackedFrame& frame, wire::tracked::Frame& to) {
+  to.set_frame_number(frame.frame_number);
+  to.set_timestamp(to_seconds(frame.at));
+  for (const TrackedBall& ball : frame.balls) write(ball, *to.add_balls());
+  for (const TrackedRobot& robot : frame.robots) write(robot, *to.add_robots());
+}
+
+TrackedFrame read(const wire::tracked::Frame& from, Checks& checks) {
+  TrackedFrame frame;
+  checks.at_most(from.balls(), kMostBalls);
+  checks.at_most(from.robots(), kMostRobots);
+  if (!checks.is_sound()) return frame;
+  frame.frame_number = from.frame_number();
+  frame.at = checks.time(from.timestamp());
+  for (const auto& ball : from.balls()) frame.balls.push_back(read(ball, checks));
+  for (const auto& robot : from.robots()) frame.robots.push_back(read(robot, checks));
+  return frame;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const TrackedPacket& packet) {
+  wire::tracked::Packet message;
+  message.set_uuid(packet.uuid);
+  if (packet.source_name) message.set_source_name(*packet.source_name);
+  if (packet.frame) write(*packet.frame, *message.mutable_tracked_frame());
+  return bytes_of(message);
+}
+
+Decoded<TrackedPacket> decode_tracked(std::span<const std::byte> bytes) {
+  wire::tracked::Packet message;
+  if (const Refusal refusal = parse(bytes, message); refusal != Refusal::kNone) return {{}, refusal};
+  Checks checks;
+  TrackedPacket packet;
+  packet.uuid = checks.text(message.uuid());
+  if (message.has_source_name()) packet.source_name = checks.text(message.source_name());
+  if (message.has_tracked_frame()) packet.frame = read(message.tracked_frame(), checks);
+  if (!checks.is_sound()) return {{}, checks.refusal()};
+  return {std::move(packet), Refusal::kNone};
+}
+
+}  // namespace sidestep::league

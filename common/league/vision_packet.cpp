@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/league/vision_packet.hpp"
+
+#include "common/league/checks.hpp"
+#include "common/league/field_wire.hpp"
+#include "common/league/wire.hpp"
+
+#include "league/vision.pb.h"
+
+namespace sidestep::league {
+namespace {
+
+constexpr int kMostBalls = 128;
+constexpr int kMostRobots = 64;  // of a team: a camera may take one robot for several
+constexpr double kMaxPixel = 1e6;
+constexpr double kMaxRobotHeight_m = 2;
+
+float in_mm(double length_m) { return static_cast<float>(length_m * 1e3); }
+
+void write(const SeenBall& ball, wire::vision::Ball& to) {
+  to.set_confidence(static_cast<float>(ball.confidence));
+  if (ball.area) to.set_area(*ball.area);
+  to.set_x(in_mm(ball.position_m.x()));
+  to.set_y(in_mm(ball.position_m.y()));
+  if (ball.height_m) to.set_z(in_mm(*ball.height_m));
+  to.set_pixel_x(static_cast<float>(ball.pixel.x()));
+  to.set_pixel_y(static_cast<float>(ball.pixel.y()));
+}
+
+SeenBall read(const wire::vision::Ball& from, Checks& checks) {
+  SeenBall ball;
+  ball.confidence = checks.probability(from.confidence());
+  if (from.has_area()) ball.area = from.area();
+  ball.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
+                     checks.within(from.y() * 1e-3, kMaxPosition_m)};
+  if (from.has_z()) ball.height_m = checks.within(from.z() * 1e-3, kMaxPosition_m);
+  ball.pixel = {checks.within(from.pixel_x(), kMaxPixel), checks.within(from.pixel_y(), kMaxPixel)};
+  return ball;
+}
+
+void write(const SeenRobot& robot, wire::vision::Robot& to) {
+  to.set_confidence(static_cast<float>(robot.confidence));
+  if (robot.number) to.set_robot_id(*robot.number);
+  to.set_x(in_mm(robot.position_m.x()));
+  to.set_y(in_mm(robot.position_m.y()));
+  if (robot.heading_rad) to.set_orientation(static_cast<float>(*robot.heading_rad));
+  to.set_pixel_x(static_cast<float>(robot.pixel.x()));
+  to.set_pixel_y(static_cast<float>(robot.pixel.y()));
+  if (robot.height_m) to.set_height(in_mm(*robot.height_m));
+}
+
+SeenRobot read(const wire::vision::Robot& from, Checks& checks) {
+  SeenRobot robot;
+  robot.confidence = checks.probability(from.confidence());
+  checks.require(!from.has_robot_id() || from.robot_id() < kMaxNumbers, Refusal::kRobot);
+  if (from.has_robot_id()) robot.number = from.robot_id();
+  robot.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
+                      checks.within(from.y() * 1e-3, kMaxPosition_m)};
+  if (from.has_orientation()) {
+    robot.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
+  }
+  robot.pixel = {checks.within(from.pixel_x(), kMaxPixel), checks.within(from.pixel_y(), kMaxPixel)};
+  if (from.has_height()) robot.height_m = checks.within(from.height() * 1e-3, 0, kMaxRobotHeight_m);
+  return robot;
+}
+
+void write(const Detection& detection, wire::vision::Detection& to) {
+  to.set_frame_number(detection.frame_number);
+  to.set_t_capture(to_seconds(detection.captured));
+  to.set_t_sent(to_seconds(detection.sent));
+  to.set_camera_id(detection.camera);
+  for (const SeenBall& ball : detection.balls) write(ball, *to.add_balls());
+  for (const SeenRobot& robot : detection.yellow) write(robot, *to.add_robots_yellow());
+  for (const SeenRobot& robot : detection.blue) write(robot, *to.add_robots_blue());
+  if (detection.captured_by_camera) to.set_t_capture_camera(to_seconds(*detection.captured_by_camera));
+}
+
+Detection read(const wire::vision::Detection& from, Checks& checks) {
+  Detection detection;
+  checks.at_most(from.balls(), kMostBalls);
+  checks.at_most(from.robots_yellow(), kMostRobots);
+  checks.at_most(from.robots_blue(), kMostRobots);
+  checks.require(from.camera_id() < kMaxCameras, Refusal::kCamera);
+  if (!checks.is_sound()) return detection;
+  detection.frame_number = from.frame_number();
+  detection.camera = from.camera_id();
+  detection.captured = checks.time(from.t_capture());
+  detection.sent = checks.time(from.t_sent());
+  if (from.has_t_capture_camera()) detection.captured_by_camera = checks.time(from.t_capture_camera());
+  for (const auto& ball : from.balls()) detection.balls.push_back(read(ball, checks));
+  for (const auto& robot : from.robots_yellow()) detection.yellow.push_back(read(robot, checks));
+  for (const auto& robot : from.robots_blue()) detection.blue.push_back(read(robot, checks));
+  return detection;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const VisionPacket& packet) {
+  wire::vision::Packet message;
+  if (packet.detection) write(*packet.detection, *message.mutable_detection());
+  if (packet.geometry) write(*packet.geometry, *message.mutable_geometry());
+  if (packet.source) message.set_source(*packet.source);
+  return bytes_of(message);
+}
+
+Decoded<VisionPacket> decode_vision(std::span<const std::byte> bytes) {
+  wire::vision::Packet message;
+  if (const Refusal refusal = parse(bytes, message); refusal != Refusal::kNone) return {{}, refusal};
+  if (!message.has_detection() && !message.has_geometry()) return {{}, Refusal::kEmpty};
+  Checks checks;
+  VisionPacket packet;
+  if (message.has_detection()) packet.detection = read(message.detection(), checks);
+  if (message.has_geometry()) packet.geometry = read(message.geometry(), checks);
+  if (message.has_source()) packet.source = message.source();
+  if (!checks.is_sound()) return {{}, checks.refusal()};
+  return {std::move(packet), Refusal::kNone};
+}
+
+}  // namespace sidestep::league
