@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/league/log_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <sstream>
+#include <unistd.h>
+
+#include "tests/unit/common/league/random_packets.hpp"
+
+namespace sidestep::league {
+namespace {
+
+using Catch::Matchers::Contains;
+using std::chrono::milliseconds;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+class TemporaryFile {
+ public:
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  const std::string& path() const { return path_; }
+  std::string content() const {
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  std::string path_ =
+      (std::filesystem::temp_directory_path() / ("sidestep-log-test-" + std::to_string(getpid()))).string();
+};
+
+/// Vision packets every 10 ms with a tracked one after each second of them.
+std::vector<LogRecord> random_records(Rng& rng, int count) {
+  std::vector<LogRecord> records;
+  for (int i = 0; i < count; ++i) {
+    const Time received = kBegin + milliseconds(10) * i;
+    if (i % 2 == 0) {
+      records.push_back({received, LogType::kVision, encode(test::random_vision_packet(rng))});
+    } else {
+      records.push_back({received, LogType::kTracked, encode(test::random_tracked_packet(rng))});
+    }
+  }
+  return records;
+}
+
+std::string log_of(const std::vector<LogRecord>& records) {
+  TemporaryFile file;
+  LogWriter writer(file.path());
+  for (const LogRecord& record : records) writer.add(record.received, record.type, record.bytes);
+  writer.close();
+  return file.content();
+}
+
+LogReader reader_of(const std::string& content) {
+  return LogReader(std::make_unique<std::istringstream>(content), "x.log");
+}
+
+/// All records, and the reader as they left it.
+std::vector<LogRecord> all_of(LogReader& reader) {
+  std::vector<LogRecord> records;
+  LogRecord record;
+  while (reader.next(record)) records.push_back(record);
+  return records;
+}
+
+void check_same(const std::vector<LogRecord>& a, std::span<const LogRecord> b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].received == b[i].received);
+    CHECK(a[i].type == b[i].type);
+    CHECK(a[i].bytes == b[i].bytes);
+  }
+}
+
+std::string refusal(const std::string& content) {
+  try {
+    (void)reader_of(content);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// One record's head by hand: big-endian.
+std::string head(std::int64_t received_ns, std::int32_t type, std::int32_t size) {
+  std::string bytes;
+  for (int i = 7; i >= 0; --i) bytes += static_cast<char>(received_ns >> 8 * i & 0xff);
+  for (const std::int32_t number : {type, size}) {
+    for (int i = 3; i >= 0; --i) bytes += static_cast<char>(number >> 8 * i & 0xff);
+  }
+  return bytes;
+}
+
+const std::string kFront = std::string("SSL_LOG_FILE") + std::string("\0\0\0\1", 4);
+
+}  // namespace
+
+TEST_CASE("a log that was written is read back as it was") {
+  Rng rng(1);
+  const auto records = random_records(rng, 300);
+  TemporaryFile file;
+  LogWriter writer(file.path());
+  for (const LogRecord& record : records) writer.add(record.received, record.type, record.bytes);
+  CHECK(writer.records() == 300);
+  writer.close();
+  LogReader reader(file.path());
+  check_same(all_of(reader), records);
+  CHECK(reader.end() == LogEnd::kWhole);
+  CHECK(reader.damage().empty());
+}
+
+TEST_CASE("a log is written as the league has it: big-endian behind its name and version") {
+  const std::byte payload[] = {std::byte{0xaa}, std::byte{0xbb}};
+  const std::string content =
+      log_of({{time_from_ns(0x0102030405060708), LogType::kVision, {payload[0], payload[1]}}});
+  CHECK(content == kFront + std::string("\1\2\3\4\5\6\7\10\0\0\0\4\0\0\0\2\xaa\xbb", 18));
+}
+
+TEST_CASE("wherever a log is cut off nothing before is lost") {
+  Rng rng(2);
+  const auto records = random_records(rng, 8);
+  const std::string whole = log_of(records);
+  std::vector<std::size_t> ends{kFront.size()};
+  for (const LogRecord& record : records) ends.push_back(ends.back() + 16 + record.bytes.size());
+  REQUIRE(ends.back() == whole.size());
+  for (std::size_t length = kFront.size(); length <= whole.size(); ++length) {
+    CAPTURE(length);
+    LogReader reader = reader_of(whole.substr(0, length));
+    const auto read = all_of(reader);
+    const auto complete =
+        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), length) - ends.begin()) - 1;
+    REQUIRE(read.size() == complete);
+    if (length % 97 == 0) check_same(read, std::span(records).first(complete));
+    const bool is_whole = ends[complete] == length;
+    REQUIRE(reader.end() == (is_whole ? LogEnd::kWhole : LogEnd::kCutOff));
+    if (!is_whole)
+      REQUIRE_THAT(reader.damage(), Contains("x.log: byte " + std::to_string(ends[complete]) + ": "));
+  }
+}
+
+TEST_CASE("what is no log is refused with the place and what was expected") {
+  CHECK_THAT(refusal(""), Contains("x.log: byte 0: this is no log"));
+  CHECK_THAT(refusal("SSL_LOG_FILX\0\0\0\1"), Contains("x.log: byte 0: this is no log"));
+  CHECK_THAT(refusal("\x1f\x8b and so on, long enough to be one"), Contains("gunzip"));
+  CHECK_THAT(refusal("SSL_LOG_FILE"), Contains("x.log: byte 12: the file ends"));
+  CHECK_THAT(refusal(std::string("SSL_LOG_FILE\0\0\0\2", 16)), Contains("x.log: byte 12: version 2"));
+  CHECK_THAT(refusal(std::string("SSL_LOG_FILE\1\0\0\0", 16)), Contains("version 16777216"));
+  CHECK(refusal(kFront) == "accepted");
+  CHECK_THROWS_WITH(LogReader("/nowhere/x.log"), Contains("/nowhere/x.log: cannot be read: No such file"));
+  CHECK_THROWS_WITH(LogReader("/tmp"), Contains("/tmp: "));
+  CHECK_THROWS_WITH(LogWriter("/nowhere/x.log"), Contains("/nowhere/x.log: cannot be written: No such file"));
+}
+
+TEST_CASE("a record that makes no sense ends the reading with its place") {
+  const std::string first = kFront + head(5, 4, 3) + "abc";
+  const auto damage_after_first = [&](const std::string& more) {
+    LogReader reader = reader_of(first + more);
+    CHECK(all_of(reader).size() == 1);
+    CHECK(reader.end() == LogEnd::kDamaged);
+    LogRecord record;
+    CHECK_FALSE(reader.next(record));
+    CHECK_THAT(reader.damage(), Contains("x.log: byte 35: "));
+    return reader.damage();
+  };
+  CHECK_THAT(damage_after_first(head(6, 4, -1) + "xyz"), Contains("a size of -1, expected 0 to 65507"));
+  CHECK_THAT(damage_after_first(head(6, 4, 65508) + std::string(65508, 'x')), Contains("a size of 65508"));
+  CHECK_THAT(damage_after_first(head(6, 99, -5)), Contains("type 99 has a size of -5"));
+  CHECK_THAT(damage_after_first(head(-6, 4, 0)), Contains("received at -6 ns"));
+  CHECK_THAT(damage_after_first(head(std::int64_t{1} << 62, 4, 0)),
+             Contains("received at 4611686018427387904"));
+}
+
+TEST_CASE("records of types that nobody here knows are skipped however long they are") {
+  LogReader reader = reader_of(kFront + head(1, 6, 200'000) + std::string(200'000, 'x') + head(2, 1, 0) +
+                               head(3, 3, 2) + "ab");
+  const auto records = all_of(reader);
+  REQUIRE(records.size() == 1);
+  CHECK(records[0].type == LogType::kReferee);
+  CHECK(reader.skipped() == 2);
+  CHECK(reader.end() == LogEnd::kWhole);
+  LogReader giant = reader_of(kFront + head(1, 6, 0x7fffffff) + "short");
+  CHECK(all_of(giant).empty());
+  CHECK(giant.end() == LogEnd::kCutOff);
+}
+
+TEST_CASE("seeking goes to the first record that is so long after the first to and fro") {
+  Rng rng(3);
+  const auto records = random_records(rng, 100);
+  LogReader reader = reader_of(log_of(records));
+  LogRecord record;
+  REQUIRE(reader.next(record));
+  for (const int ms : {0, 500, 505, 10, 990, 0}) {
+    CAPTURE(ms);
+    REQUIRE(reader.seek(milliseconds(ms)));
+    check_same(all_of(reader), std::span(records).subspan(static_cast<std::size_t>((ms + 9) / 10)));
+    CHECK(reader.end() == LogEnd::kWhole);
+  }
+  CHECK_FALSE(reader.seek(milliseconds(991)));
+  CHECK(reader.end() == LogEnd::kWhole);
+  CHECK_FALSE(reader.next(record));
+  REQUIRE(reader.seek(milliseconds(20)));
+  REQUIRE(reader.next(record));
+  CHECK(record.received == kBegin + milliseconds(20));
+}
+
+}  // namespace sidestep::league
