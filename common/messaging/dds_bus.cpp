@@ -164,6 +164,9 @@ DdsBus::~DdsBus() = default;
 
 Time DdsBus::now() const { return EventLoop::now(); }
 void DdsBus::at(Time when, std::function<void()> callback) { impl_->loop.at(when, std::move(callback)); }
+void DdsBus::watch(int descriptor, std::function<void()> readable) {
+  impl_->loop.watch(descriptor, std::move(readable));
+}
 void DdsBus::run() { impl_->loop.run_until(Time::max()); }
 void DdsBus::run_until(Time when) { impl_->loop.run_until(when); }
 void DdsBus::stop() { impl_->loop.stop(); }

@@ -32,6 +32,10 @@ class DdsBus : public Bus {
   Time now() const override;
   void at(Time when, std::function<void()> callback) override;
 
+  /// Calls back whenever the descriptor, a socket say, can be read; it may be closed when the bus has
+  /// stopped.
+  void watch(int descriptor, std::function<void()> readable);
+
   /// Calls back until stop().
   void run();
   /// Calls back until then, or stop(); for tests and tools that look between callbacks.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <poll.h>
 #include <sys/eventfd.h>
 #include <system_error>
 #include <time.h>
@@ -43,6 +42,8 @@ Duration host_clock_ahead() {
 
 EventLoop::EventLoop() : event_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   if (event_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+  polled_.push_back({event_fd_, POLLIN, 0});
+  readable_.emplace_back();
 }
 
 EventLoop::~EventLoop() { close(event_fd_); }
@@ -64,9 +65,15 @@ void EventLoop::notify(Source& source) {
   if (std::exchange(sleeping_, false)) wake();
 }
 
+void EventLoop::watch(int descriptor, std::function<void()> readable) {
+  polled_.push_back({descriptor, POLLIN, 0});
+  readable_.push_back(std::move(readable));
+}
+
 void EventLoop::run_until(Time when) {
   while (!stopped()) {
     const bool more = drain_ready();
+    serve_watched();
     fire_due();
     if (now() >= when) return;
     if (!more && !stopped()) sleep_until(timers_.empty() ? when : std::min(when, timers_.front().when));
@@ -98,6 +105,17 @@ bool EventLoop::drain_ready() {
   return more;
 }
 
+void EventLoop::serve_watched() {
+  if (polled_.size() == 1 || stopped() || poll(polled_.data(), polled_.size(), 0) <= 0) return;
+  for (std::size_t i = 1; i < polled_.size() && !stopped(); ++i) {
+    // A descriptor that was closed would wake the loop for ever; poll() passes over a negative one.
+    if (polled_[i].revents & POLLNVAL)
+      polled_[i].fd = -1;
+    else if (polled_[i].revents)
+      readable_[i]();
+  }
+}
+
 void EventLoop::fire_due() {
   const Time due = now();
   const std::uint64_t newest = order_;
@@ -120,8 +138,7 @@ void EventLoop::sleep_until(Time when) {
   const Time from = now();
   const Duration sleep = when > from + kLongestSleep ? kLongestSleep : std::max(when - from, Duration{0});
   const timespec timeout{sleep.count() / 1'000'000'000, sleep.count() % 1'000'000'000};
-  pollfd poll_fd{event_fd_, POLLIN, 0};
-  if (ppoll(&poll_fd, 1, &timeout, nullptr) > 0) {
+  if (ppoll(polled_.data(), polled_.size(), &timeout, nullptr) > 0 && polled_[0].revents) {
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t size = read(event_fd_, &count, sizeof count);
   }

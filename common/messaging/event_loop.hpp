@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <poll.h>
 #include <vector>
 
 #include "common/time/time.hpp"
@@ -44,6 +45,9 @@ class EventLoop {
   void at(Time when, std::function<void()> callback);
   /// From any thread.
   void notify(Source& source);
+  /// Calls back in every turn in which the descriptor can be read, until it is closed or broken, which has to
+  /// wait until the loop's last turn. In the loop's thread, or before it runs.
+  void watch(int descriptor, std::function<void()> readable);
   /// Takes turns until then, or stop(); what is due or ready at the call still gets its turn.
   void run_until(Time when);
   /// Ends run_until() soon, this one and every later one. From any thread, and from a signal handler.
@@ -63,6 +67,7 @@ class EventLoop {
   };
 
   bool drain_ready();
+  void serve_watched();
   void fire_due();
   void sleep_until(Time when);
   void wake();
@@ -70,9 +75,11 @@ class EventLoop {
   int event_fd_ = -1;
   std::atomic<bool> stopped_{false};
   std::uint64_t order_ = 0;
-  std::vector<Timer> timers_;      ///< a heap, the earliest first
-  std::vector<Source*> draining_;  ///< of the loop's thread only
-  std::mutex mutex_;               ///< guards what follows
+  std::vector<pollfd> polled_;                   ///< event_fd_, and what is watched
+  std::vector<std::function<void()>> readable_;  ///< as polled_; none for event_fd_
+  std::vector<Timer> timers_;                    ///< a heap, the earliest first
+  std::vector<Source*> draining_;                ///< of the loop's thread only
+  std::mutex mutex_;                             ///< guards what follows
   std::vector<Source*> ready_;
   bool sleeping_ = false;
 };

@@ -32,7 +32,7 @@ struct Program {
   std::function<std::uint32_t()> fault_target;
   /// Makes the nodes on the bus. What it returns lives until the bus has stopped. May throw;
   /// std::invalid_argument for an option that does not fit the scenario.
-  std::function<std::shared_ptr<void>(Bus&, const Scenario&)> start;
+  std::function<std::shared_ptr<void>(DdsBus&, const Scenario&)> start;
 };
 
 /// The main of a process on DDS: parses, loads the scenario, starts and runs until SIGINT or SIGTERM. Returns

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <ctime>
 #include <signal.h>
 #include <sys/syscall.h>
 #include <thread>
@@ -123,6 +124,58 @@ TEST_CASE("what other threads report is drained, however often and however late 
   loop.run_until(loop.now() + kLong);
   reporter.join();
   CHECK(taken == kReports);
+}
+
+TEST_CASE("a watched descriptor calls back while it can be read, and leaves timers and sources their turn") {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  EventLoop loop;
+  int calls = 0, drained = 0;
+  loop.watch(ends[0], [&] { ++calls; });
+  Counter source([&] {
+    ++drained;
+    return false;
+  });
+  loop.at(loop.now() + 2 * kMillisecond, [&] {
+    CHECK(calls == 0);
+    REQUIRE(write(ends[1], "x", 1) == 1);
+  });
+  std::function<void()> again = [&] {
+    if (calls >= 100) return loop.stop();
+    loop.notify(source);
+    loop.at(loop.now() + kMillisecond, again);
+  };
+  loop.at(loop.now(), again);
+  loop.run_until(loop.now() + kLong);
+  CHECK(calls >= 100);
+  CHECK(drained >= 2);
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST_CASE("a watched descriptor wakes a loop that sleeps, and one that is closed does not keep it awake") {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  EventLoop loop;
+  bool called = false;
+  loop.watch(ends[0], [&] {
+    called = true;
+    loop.stop();
+  });
+  std::thread writer([&] { CHECK(write(ends[1], "x", 1) == 1); });
+  loop.run_until(loop.now() + kLong);
+  writer.join();
+  CHECK(called);
+
+  EventLoop other;
+  int wrong_calls = 0;
+  close(ends[0]);
+  close(ends[1]);
+  other.watch(ends[0], [&] { ++wrong_calls; });
+  const std::clock_t cpu_before = std::clock();
+  other.run_until(other.now() + 100 * kMillisecond);
+  CHECK(wrong_calls == 0);
+  CHECK(std::clock() - cpu_before < CLOCKS_PER_SEC / 20);
 }
 
 TEST_CASE("run_until() returns at its time when nothing happens") {
