@@ -2,6 +2,8 @@
 #include "common/config/scenario.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
+#include <stdexcept>
 
 namespace sidestep {
 
@@ -14,6 +16,24 @@ const RobotSpec* find_robot(const Scenario& scenario, RobotId id) {
   const auto at = std::lower_bound(robots.begin(), robots.end(), id,
                                    [](const RobotSpec& robot, RobotId wanted) { return robot.id < wanted; });
   return at != robots.end() && at->id == id ? &*at : nullptr;
+}
+
+const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number) {
+  const auto at = std::find_if(scenario.robots.begin(), scenario.robots.end(), [&](const RobotSpec& robot) {
+    return robot.team == team && number_of(robot.id) == number;
+  });
+  return at != scenario.robots.end() ? &*at : nullptr;
+}
+
+void require_own_numbers(const Scenario& scenario) {
+  for (const RobotSpec& robot : scenario.robots) {
+    const RobotSpec* const first = find_robot(scenario, robot.team, number_of(robot.id));
+    if (first->id == robot.id) continue;
+    throw std::invalid_argument(fmt::format(
+        "robots {} and {} both have number {} (the id modulo 16) of the {} team and cannot be told apart, "
+        "expected at most one robot of each number in a team",
+        first->id, robot.id, number_of(robot.id), robot.team == Team::kBlue ? "blue" : "yellow"));
+  }
 }
 
 }  // namespace sidestep

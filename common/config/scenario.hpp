@@ -111,4 +111,13 @@ SafetyBudget budget_of(const Scenario& scenario);
 /// The robot with this id, or nullptr.
 const RobotSpec* find_robot(const Scenario& scenario, RobotId id);
 
+/// A robot's number within its team, 0 .. 15: the pattern that it wears, and what the league's packets call
+/// it.
+constexpr std::uint32_t number_of(RobotId id) { return id % 16; }
+/// The first robot with this number in the team, or nullptr.
+const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number);
+/// Throws std::invalid_argument when two robots of one team have one number, so that patterns and packets
+/// cannot tell them apart.
+void require_own_numbers(const Scenario& scenario);
+
 }  // namespace sidestep
