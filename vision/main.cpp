@@ -1,16 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <string>
+
 #include "common/messaging/senders.hpp"
 #include "common/process/process.hpp"
-#include "vision/vision_node.hpp"
+#include "vision/league/league_vision.hpp"
+#include "vision/league/log_commands.hpp"
 
-int main(int argc, char** argv) {
-  sidestep::Program program;
+namespace sidestep {
+namespace {
+
+int run_service(int argc, char** argv) {
+  LeagueOptions league;
+  Program program;
   program.name = "sidestep-vision";
   program.description = "Turns the cameras' detections into one tracked world.";
-  program.fault_target = [] { return static_cast<std::uint32_t>(sidestep::Sender::kVision); };
-  program.start = [](sidestep::Bus& bus, const sidestep::Scenario& scenario) {
-    const auto incarnation = static_cast<sidestep::Incarnation>(sidestep::to_ns(bus.now()));
-    return std::make_shared<sidestep::VisionNode>(bus, scenario, incarnation);
+  program.add_options = [&league](CLI::App& app) {
+    add_league_options(app, league);
+    app.footer("Commands, each with --help: sidestep-vision replay FILE, sidestep-vision record FILE.");
   };
-  return sidestep::run_process(argc, argv, program);
+  program.fault_target = [] { return static_cast<std::uint32_t>(Sender::kVision); };
+  program.start = [&league](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
+    const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
+    return std::make_shared<LeagueVision>(bus, scenario, incarnation, league);
+  };
+  return run_process(argc, argv, program);
+}
+
+}  // namespace
+}  // namespace sidestep
+
+int main(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  if (command == "replay") return sidestep::replay_command(argc - 1, argv + 1);
+  if (command == "record") return sidestep::record_command(argc - 1, argv + 1);
+  return sidestep::run_service(argc, argv);
 }

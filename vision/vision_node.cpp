@@ -14,7 +14,7 @@ std::vector<RobotId> roster_of(const Scenario& scenario) {
 
 }  // namespace
 
-VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation)
+VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source)
     : bus_(bus),
       period_(from_seconds(1 / scenario.vision.rate_hz)),
       next_(bus.now() + period_),
@@ -24,17 +24,23 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
   world_.head().sender(static_cast<std::uint32_t>(Sender::kVision));
   world_.head().incarnation(incarnation);
   world_.robots().reserve(scenario.robots.size());
-  bus_.subscribe<msg::DetectionFrame>(topics::kDetections, [this](const msg::DetectionFrame& message) {
-    frame_.assign(message, bus_.now());
-    tracker_.update(frame_);
-  });
+  if (source == FrameSource::kBus) {
+    bus_.subscribe<msg::DetectionFrame>(topics::kDetections,
+                                        [this](const msg::DetectionFrame& message) { take(message); });
+  }
   bus_.at(next_, [this] { publish(); });
+}
+
+void VisionNode::take(const msg::DetectionFrame& message) {
+  frame_.assign(message, bus_.now());
+  tracker_.update(frame_);
 }
 
 void VisionNode::publish() {
   const Time now = bus_.now();
   tracker_.world_at(now, world_);
   writer_.publish(world_, now);
+  if (listener_) listener_(world_);
   next_ += period_;
   if (next_ < now) next_ = now + period_;
   bus_.at(next_, [this] { publish(); });

@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "vision/tracking/tracker.hpp"
 
 namespace sidestep {
 
+/// Who brings a vision node its frames: the bus's cameras, or somebody else by VisionNode::take().
+enum class FrameSource { kBus, kCaller };
+
 /// The vision service on a bus: frames in, one world state out at the cameras' rate, whether frames come or
 /// not.
 class VisionNode {
  public:
   /// The bus must not call back any more when the node has gone.
-  VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation);
+  VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation,
+             FrameSource source = FrameSource::kBus);
   VisionNode(const VisionNode&) = delete;
   VisionNode& operator=(const VisionNode&) = delete;
+
+  /// A frame that has just come.
+  void take(const msg::DetectionFrame& message);
+  /// Gives the listener every world that is published.
+  void set_listener(std::function<void(const msg::WorldState&)> listener) { listener_ = std::move(listener); }
 
  private:
   void publish();
@@ -26,6 +37,7 @@ class VisionNode {
   Tracker tracker_;
   msg::WorldState world_;
   Writer<msg::WorldState> writer_;
+  std::function<void(const msg::WorldState&)> listener_;
 };
 
 }  // namespace sidestep

@@ -20,6 +20,17 @@ void add_dds_options(CLI::App& app, DdsSettings& settings) {
       ->capture_default_str();
 }
 
+void add_optional_value(CLI::App& app, const std::string& name, std::optional<std::string>& value,
+                        const std::string& default_value, const std::string& description) {
+  const auto take = [&value, default_value](const std::vector<std::string>& given) {
+    const bool is_left_out = given.empty() || given.front().empty();
+    value = is_left_out ? default_value : given.front();
+  };
+  app.add_option_function<std::vector<std::string>>(name, take,
+                                                    fmt::format("{} [{}]", description, default_value))
+      ->expected(0, 1);
+}
+
 int parse_options(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/config/scenario.hpp"
@@ -41,6 +42,10 @@ int run_process(int argc, char** argv, const Program& program);
 
 /// Adds --domain and --interface.
 void add_dds_options(CLI::App& app, DdsSettings& settings);
+
+/// Adds an option that turns something on and whose value may be left out: then it is the default.
+void add_optional_value(CLI::App& app, const std::string& name, std::optional<std::string>& value,
+                        const std::string& default_value, const std::string& description);
 
 /// Parses; an exit code when the program is done with that (--help: 0; wrong usage: kExitUsage), else -1.
 int parse_options(CLI::App& app, int argc, char** argv);

@@ -133,3 +133,28 @@ TEST_CASE("without a single frame the node still gives its sign of life") {
   net.run_until(after_s(1));
   CHECK(count >= 58);
 }
+
+TEST_CASE("a node whose frames somebody else brings takes none from the bus and tells of every world") {
+  SimNetwork net(341, kBegin, {});
+  SimBus camera_bus(net), vision_bus(net);
+  VisionNode node(vision_bus, scenario_of(2), 1, FrameSource::kCaller);
+  msg::WorldState latest;
+  int worlds = 0;
+  node.set_listener([&](const msg::WorldState& world) {
+    latest = world;
+    ++worlds;
+  });
+  Rng rng(341);
+  const TrueMotion motion = TrueMotion::driving(rng, 2);
+  Cameras cameras(camera_bus, motion, Rng(342));
+  for (int i = 0; i < 60; ++i) {
+    net.run_until(kBegin + kFrame * (i + 1));
+    msg::DetectionFrame frame = frame_message(0, net.now());
+    add_robot(frame, 1, {1, 2});
+    node.take(frame);
+  }
+  CHECK(worlds >= 58);
+  REQUIRE(latest.robots().size() == 1);
+  CHECK(latest.robots()[0].robot() == 1);
+  CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
+}

@@ -201,7 +201,7 @@ TEST_CASE("a detection written by another program is read in metres and radians"
   check_close(*detection.blue[0].height_m, 0.15);
 }
 
-TEST_CASE("what is sent has every field that the league requires, in its units") {
+TEST_CASE("what is sent has every field that the league requires in its units") {
   Detection detection;
   detection.frame_number = 3;
   detection.camera = 1;

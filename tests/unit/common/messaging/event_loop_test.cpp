@@ -126,7 +126,7 @@ TEST_CASE("what other threads report is drained, however often and however late 
   CHECK(taken == kReports);
 }
 
-TEST_CASE("a watched descriptor calls back while it can be read, and leaves timers and sources their turn") {
+TEST_CASE("a watched descriptor calls back while it can be read and leaves timers and sources their turn") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -153,7 +153,7 @@ TEST_CASE("a watched descriptor calls back while it can be read, and leaves time
   close(ends[1]);
 }
 
-TEST_CASE("a watched descriptor wakes a loop that sleeps, and one that is closed does not keep it awake") {
+TEST_CASE("a watched descriptor wakes a loop that sleeps and one that is closed does not keep it awake") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;

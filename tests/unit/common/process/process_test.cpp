@@ -2,6 +2,7 @@
 #include "common/process/process.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <signal.h>
 #include <stdexcept>
@@ -86,6 +87,25 @@ TEST_CASE("what is thrown at the start is said on stderr and exits with 1") {
   const Outcome no_interface = run(test_program(), arguments);
   CHECK(no_interface.exit_code == kExitFailure);
   CHECK_THAT(no_interface.err, Contains("192.0.2.1"));
+}
+
+TEST_CASE("an option whose value is left out has its default and one that is not given has none") {
+  const auto parsed = [](std::vector<std::string> arguments) {
+    CLI::App app;
+    std::optional<std::string> value;
+    bool flag = false;
+    add_optional_value(app, "--to", value, "nowhere", "sends it");
+    app.add_flag("--flag", flag);
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+    return value;
+  };
+  CHECK_FALSE(parsed({}));
+  CHECK_FALSE(parsed({"--flag"}));
+  CHECK(parsed({"--to"}) == "nowhere");
+  CHECK(parsed({"--to", "--flag"}) == "nowhere");
+  CHECK(parsed({"--flag", "--to", "there"}) == "there");
+  CHECK_THROWS_AS(parsed({"--to", "there", "elsewhere"}), CLI::ParseError);
 }
 
 TEST_CASE("a signal ends the process in order: the nodes die before the bus, and the exit code is 0") {
