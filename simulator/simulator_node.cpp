@@ -161,6 +161,7 @@ void SimulatorNode::publish_frames() {
     frame.message.head().sender(static_cast<std::uint32_t>(Sender::kSimulator));
     frame.message.head().incarnation(incarnation_);
     detections_.publish(frame.message, now);
+    if (listener_) listener_(frame.message);
     frame.is_waiting = false;
   }
 }

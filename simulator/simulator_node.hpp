@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -23,6 +24,11 @@ class SimulatorNode {
   SimulatorNode& operator=(const SimulatorNode&) = delete;
 
   const World& world() const { return world_; }
+  const Cameras& cameras() const { return cameras_; }
+  /// Gives the listener every frame when it is published.
+  void set_listener(std::function<void(const msg::DetectionFrame&)> listener) {
+    listener_ = std::move(listener);
+  }
   /// Commands that the radio lost.
   std::uint64_t commands_lost() const { return commands_lost_; }
   /// Disturbances that made no sense, or could not be done to that robot.
@@ -67,6 +73,7 @@ class SimulatorNode {
   std::vector<Time> watched_start_;  ///< of each robot's version that a timer waits for
   Writer<msg::DetectionFrame> detections_;
   std::vector<Frame> frames_;
+  std::function<void(const msg::DetectionFrame&)> listener_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;
   Time truth_due_;

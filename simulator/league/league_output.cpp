@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/league/league_output.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/core.h>
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kGeometryPeriod{3'000'000'000};
+
+}  // namespace
+
+LeagueOutput::LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator,
+                           const std::string& endpoint, const std::string& interface)
+    : bus_(bus),
+      frames_(scenario, simulator.cameras().views()),
+      sender_(league::multicast_endpoint(endpoint), interface) {
+  simulator.set_listener(
+      [this](const msg::DetectionFrame& frame) { send(frames_.detection(frame, bus_.now())); });
+  bus_.at(bus_.now(), [this] { send_geometry(); });
+}
+
+void LeagueOutput::send(const league::VisionPacket& packet) {
+  if (sender_.send(encode(packet)) || sender_.failed() < next_report_) return;
+  next_report_ *= 10;
+  fmt::print(stderr, "sidestep-simulator: {} packet(s) could not be sent so far: {}\n", sender_.failed(),
+             std::strerror(errno));
+}
+
+void LeagueOutput::send_geometry() {
+  send(frames_.geometry());
+  bus_.at(bus_.now() + kGeometryPeriod, [this] { send_geometry(); });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/league/multicast.hpp"
+#include "common/messaging/bus.hpp"
+#include "simulator/league/league_frames.hpp"
+#include "simulator/simulator_node.hpp"
+
+namespace sidestep {
+
+/// Sends what a simulator's cameras see to the league's multicast, and the geometry every 3 s. The bus must
+/// not call back any more when this has gone. Throws as MulticastSender, multicast_endpoint() and
+/// LeagueFrames do.
+class LeagueOutput {
+ public:
+  LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, const std::string& endpoint,
+               const std::string& interface);
+  LeagueOutput(const LeagueOutput&) = delete;
+  LeagueOutput& operator=(const LeagueOutput&) = delete;
+
+ private:
+  void send(const league::VisionPacket& packet);
+  void send_geometry();
+
+  Bus& bus_;
+  LeagueFrames frames_;
+  league::MulticastSender sender_;
+  std::uint64_t next_report_ = 1;
+};
+
+}  // namespace sidestep
