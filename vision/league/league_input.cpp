@@ -23,6 +23,8 @@ LeagueInput::LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddr
       take(datagram, sender);
     });
   });
+  fmt::print(stderr, "sidestep-vision: reads the league's packets of {} on {}\n", from.endpoint,
+             from.interface);
   bus.at(bus.now() + kSilence, [this] { report_silence(); });
 }
 
