@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/fuzz/league_inputs.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include "common/league/log_file.hpp"
+#include "tests/unit/common/league/random_packets.hpp"
+#include "vision/league/sender_clock.hpp"
+
+namespace sidestep::fuzz {
+namespace {
+
+enum Reader : unsigned { kVision, kTracked, kLog, kClock, kReaders };
+
+#define SIDESTEP_REQUIRE(condition)                                                      \
+  do {                                                                                   \
+    if (!(condition)) {                                                                  \
+      std::fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                      \
+    }                                                                                    \
+  } while (false)
+
+bool is_within(const Vec2& v, double bound) { return std::abs(v.x()) <= bound && std::abs(v.y()) <= bound; }
+bool is_probability(double p) { return p >= 0 && p <= 1; }
+
+void check(const league::SeenRobot& robot) {
+  SIDESTEP_REQUIRE(is_within(robot.position_m, 100.001));
+  SIDESTEP_REQUIRE(is_probability(robot.confidence));
+  SIDESTEP_REQUIRE(!robot.number || *robot.number < league::kMaxNumbers);
+  SIDESTEP_REQUIRE(!robot.heading_rad || std::abs(*robot.heading_rad) <= 3.1416);
+}
+
+void try_vision(std::span<const std::byte> bytes) {
+  const auto decoded = league::decode_vision(bytes);
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.refusal == league::Refusal::kNone));
+  if (!decoded.packet) return;
+  const league::VisionPacket& packet = *decoded.packet;
+  SIDESTEP_REQUIRE(packet.detection || packet.geometry);
+  if (packet.detection) {
+    SIDESTEP_REQUIRE(packet.detection->camera < league::kMaxCameras);
+    SIDESTEP_REQUIRE(packet.detection->captured >= Duration{0});
+    for (const auto& robot : packet.detection->yellow) check(robot);
+    for (const auto& robot : packet.detection->blue) check(robot);
+    for (const auto& ball : packet.detection->balls) {
+      SIDESTEP_REQUIRE(is_within(ball.position_m, 100.001) && is_probability(ball.confidence));
+    }
+  }
+  // What was accepted is accepted again, but for times at the very end of their range.
+  const auto again = league::decode_vision(encode(packet));
+  SIDESTEP_REQUIRE(again.packet || again.refusal == league::Refusal::kTime);
+  if (!again.packet) return;
+  SIDESTEP_REQUIRE(again.packet->detection.has_value() == packet.detection.has_value());
+  SIDESTEP_REQUIRE(again.packet->geometry.has_value() == packet.geometry.has_value());
+  if (packet.detection)
+    SIDESTEP_REQUIRE(again.packet->detection->blue.size() == packet.detection->blue.size());
+  if (packet.geometry) {
+    SIDESTEP_REQUIRE(again.packet->geometry->cameras.size() == packet.geometry->cameras.size());
+  }
+}
+
+void try_tracked(std::span<const std::byte> bytes) {
+  const auto decoded = league::decode_tracked(bytes);
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.refusal == league::Refusal::kNone));
+  if (!decoded.packet) return;
+  if (decoded.packet->frame) {
+    for (const auto& robot : decoded.packet->frame->robots) {
+      SIDESTEP_REQUIRE(is_within(robot.position_m, 100));
+      SIDESTEP_REQUIRE(robot.number < league::kMaxNumbers);
+      SIDESTEP_REQUIRE(std::abs(robot.heading_rad) <= 3.1416);
+    }
+  }
+  const auto again = league::decode_tracked(encode(*decoded.packet));
+  SIDESTEP_REQUIRE(again.packet || again.refusal == league::Refusal::kTime);
+}
+
+std::size_t read_to_end(league::LogReader& reader) {
+  league::LogRecord record;
+  std::size_t bytes = 0;
+  while (reader.next(record)) {
+    SIDESTEP_REQUIRE(to_ns(record.received) >= 0);
+    SIDESTEP_REQUIRE(record.bytes.size() <= league::kLongestDatagram);
+    bytes += 16 + record.bytes.size();
+  }
+  SIDESTEP_REQUIRE(reader.end() != league::LogEnd::kNotYet);
+  SIDESTEP_REQUIRE(reader.damage().empty() == (reader.end() == league::LogEnd::kWhole));
+  return bytes;
+}
+
+void try_log(std::span<const std::byte> bytes) {
+  std::string text(bytes.size(), '\0');
+  if (!bytes.empty()) std::memcpy(text.data(), bytes.data(), bytes.size());
+  try {
+    league::LogReader reader(std::make_unique<std::istringstream>(text), "input");
+    const std::size_t all = read_to_end(reader);
+    SIDESTEP_REQUIRE(16 + all <= bytes.size());
+    const bool is_there = reader.seek(std::chrono::seconds(1));
+    league::LogRecord record;
+    SIDESTEP_REQUIRE(reader.next(record) == is_there);
+    SIDESTEP_REQUIRE(read_to_end(reader) <= all);
+  } catch (const std::runtime_error&) {
+    // No log: it was said.
+  }
+}
+
+/// Times of capture and sending and how long until the next frame comes, drawn from the input.
+void try_clock(std::span<const std::byte> bytes) {
+  constexpr std::uint64_t kMostCapture_ns = 8'589'934'592'000'000'000;
+  SenderClock clock;
+  Time now = time_from_ns(1'700'000'000'000'000'000);
+  struct Step {
+    std::uint64_t captured_ns, sent_after_ns;
+    std::uint32_t wait_us;
+  };
+  while (bytes.size() >= sizeof(Step)) {
+    Step step{};
+    std::memcpy(&step, bytes.data(), sizeof step);
+    bytes = bytes.subspan(sizeof step);
+    const Duration captured{static_cast<std::int64_t>(step.captured_ns % kMostCapture_ns)};
+    const Duration sent{static_cast<std::int64_t>(step.sent_after_ns % kMostCapture_ns)};
+    now += std::chrono::microseconds(step.wait_us);
+    const auto dated = clock.add(captured, sent, now);
+    if (!dated) continue;
+    SIDESTEP_REQUIRE(*dated <= now + SenderClock::kMostAhead);
+    SIDESTEP_REQUIRE(*dated >= now - 3 * SenderClock::kMostDelay);
+  }
+}
+
+}  // namespace
+
+void try_league_input(std::span<const std::byte> input) {
+  if (input.empty()) return;
+  const std::span<const std::byte> rest = input.subspan(1);
+  switch (std::to_integer<unsigned>(input[0]) % kReaders) {
+    case kVision:
+      return try_vision(rest);
+    case kTracked:
+      return try_tracked(rest);
+    case kLog:
+      return try_log(rest);
+    default:
+      return try_clock(rest);
+  }
+}
+
+std::vector<std::vector<std::byte>> league_seeds(std::uint64_t seed) {
+  Rng rng(seed);
+  std::vector<std::vector<std::byte>> seeds;
+  const auto add = [&](Reader reader, const std::vector<std::byte>& bytes) {
+    seeds.push_back({static_cast<std::byte>(reader)});
+    seeds.back().insert(seeds.back().end(), bytes.begin(), bytes.end());
+  };
+  std::vector<std::byte> log;
+  const auto append = [&](const std::string& text) {
+    for (const char c : text) log.push_back(static_cast<std::byte>(c));
+  };
+  append(std::string("SSL_LOG_FILE\0\0\0\1", 16));
+  for (int i = 0; i < 20; ++i) {
+    const auto vision = encode(league::test::random_vision_packet(rng));
+    add(kVision, vision);
+    add(kTracked, encode(league::test::random_tracked_packet(rng)));
+    if (i < 4) {
+      const std::size_t size = vision.size();
+      append(std::string("\0\0\0\0\x40\0\0\0\0\0\0\4\0\0", 14) + static_cast<char>(size >> 8) +
+             static_cast<char>(size));
+      log.insert(log.end(), vision.begin(), vision.end());
+      add(kLog, log);
+    }
+    std::vector<std::byte> steps(20 * 40);
+    for (std::byte& byte : steps) byte = static_cast<std::byte>(rng.chance(0.3) ? rng.bits() : 0);
+    add(kClock, steps);
+  }
+  return seeds;
+}
+
+}  // namespace sidestep::fuzz

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+
+#include "common/random/rng.hpp"
+#include "tests/fuzz/league_inputs.hpp"
+
+namespace sidestep {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+/// A number that breaks what trusts it.
+void put_giant(Bytes& bytes, std::size_t at, Rng& rng) {
+  for (std::size_t i = at; i < std::min(bytes.size(), at + 4); ++i) {
+    bytes[i] = rng.chance(0.8) ? std::byte{0xff} : std::byte{0x7f};
+  }
+}
+
+Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
+  for (std::uint64_t changes = 1 + rng.below(6); changes > 0 && !bytes.empty(); --changes) {
+    // The first byte says what it is for.
+    const std::size_t at = 1 + rng.below(bytes.size());
+    if (at >= bytes.size()) continue;
+    switch (rng.below(6)) {
+      case 0:
+        bytes[at] ^= static_cast<std::byte>(1 << rng.below(8));
+        break;
+      case 1:
+        bytes[at] = static_cast<std::byte>(rng.bits());
+        break;
+      case 2:
+        bytes.resize(at);
+        break;
+      case 3:
+        put_giant(bytes, at, rng);
+        break;
+      case 4:
+        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at));
+        break;
+      default:
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), other.begin(),
+                     other.begin() + static_cast<std::ptrdiff_t>(rng.below(other.size())));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("sound inputs that are changed at random break nothing that reads packets or logs") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const auto seeds = fuzz::league_seeds(seed);
+  for (const Bytes& sound : seeds) fuzz::try_league_input(sound);
+  for (int i = 0; i < 10'000; ++i) {
+    const Bytes& sound = seeds[rng.below(seeds.size())];
+    fuzz::try_league_input(mutated(sound, seeds[rng.below(seeds.size())], rng));
+  }
+  SUCCEED("50000 inputs");
+}
+
+}  // namespace sidestep
