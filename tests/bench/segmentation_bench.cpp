@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "common/random/rng.hpp"
+#include "tests/unit/vision/frames/painted_floor.hpp"
 #include "vision/segmentation/batch/dispatch.hpp"
 #include "vision/segmentation/segmenter.hpp"
 
@@ -21,75 +21,6 @@ namespace {
 constexpr int kRounds = 41;
 constexpr std::uint64_t kSeed = 1;
 constexpr SegmentationSettings kAll{1, {0.5, -1}};
-
-/// Red, green and blue of orange, yellow, blue, green and pink.
-const std::vector<cv::Scalar> kPaints{
-    {235, 110, 40}, {230, 210, 50}, {40, 70, 210}, {60, 220, 70}, {240, 70, 180}};
-
-/// A field with two teams of eleven, a ball, white lines, and a little noise everywhere.
-Image field(int width_px, int height_px) {
-  Image image(PixelFormat::kRgb, width_px, height_px);
-  cv::Mat canvas(height_px, width_px, CV_8UC3, image.pixels());
-  canvas.setTo(cv::Scalar(60, 100, 50));
-  const double scale = width_px / 640.0;
-  const cv::Scalar white(225, 225, 225), black(25, 25, 25);
-  cv::rectangle(canvas, cv::Rect(width_px / 12, height_px / 12, width_px * 10 / 12, height_px * 10 / 12),
-                white, std::max(1, static_cast<int>(2 * scale)));
-  cv::circle(canvas, {width_px / 2, height_px / 2}, height_px / 8, white,
-             std::max(1, static_cast<int>(2 * scale)));
-  Rng rng(kSeed);
-  const auto dot = [&](double x, double y, double radius, const cv::Scalar& colour) {
-    cv::circle(canvas, cv::Point(static_cast<int>(x), static_cast<int>(y)),
-               std::max(1, static_cast<int>(radius)), colour, cv::FILLED);
-  };
-  for (int robot = 0; robot < 22; ++robot) {
-    const double x = (40 + 56 * (robot % 11)) * scale, y = (robot < 11 ? 0.3 : 0.7) * height_px;
-    dot(x, y, 11 * scale, black);
-    dot(x, y, 3 * scale, kPaints[robot < 11 ? 1 : 2]);
-    for (const auto& [dx, dy] : {std::pair{5, 7}, {5, -7}, {-7, 5}, {-7, -5}}) {
-      dot(x + dx * scale, y + dy * scale, 2.5 * scale, kPaints[3 + rng.below(2)]);
-    }
-  }
-  dot(0.5 * width_px, 0.5 * height_px, 2.5 * scale, kPaints[0]);
-  for (std::size_t i = 0; i < image.view().bytes(); ++i) {
-    const double noisy = image.pixels()[i] + 2.5 * rng.normal();
-    image.pixels()[i] = static_cast<std::uint8_t>(std::clamp(noisy, 0.0, 255.0));
-  }
-  return image;
-}
-
-/// The same in 4:2:2; colours are ours, not those of a standard.
-Image subsampled(const ImageView& rgb) {
-  Image image(PixelFormat::kYuv422, rgb.width_px, rgb.height_px);
-  for (int y = 0; y < rgb.height_px; ++y) {
-    for (int x = 0; x < rgb.width_px; x += 2) {
-      const Yuv left = pixel_at(rgb, x, y), right = pixel_at(rgb, x + 1, y);
-      const std::uint8_t pair[4] = {left.u, left.y, left.v, right.y};
-      std::memcpy(image.row(y) + 2 * static_cast<std::ptrdiff_t>(x), pair, sizeof pair);
-    }
-  }
-  return image;
-}
-
-std::vector<ColourBox> boxes() {
-  std::vector<ColourBox> made;
-  const auto around = [](int value, int reach, std::uint8_t& low, std::uint8_t& high) {
-    low = static_cast<std::uint8_t>(std::max(0, value - reach));
-    high = static_cast<std::uint8_t>(std::min(255, value + reach));
-  };
-  for (const cv::Scalar& paint : kPaints) {
-    Image one(PixelFormat::kRgb, 1, 1);
-    for (int i = 0; i < 3; ++i) one.pixels()[i] = static_cast<std::uint8_t>(paint[i]);
-    const Yuv yuv = pixel_at(one.view(), 0, 0);
-    ColourBox box;
-    box.colour = static_cast<std::uint32_t>(made.size());
-    around(yuv.y, 40, box.low.y, box.high.y);
-    around(yuv.u, 20, box.low.u, box.high.u);
-    around(yuv.v, 20, box.low.v, box.high.v);
-    made.push_back(box);
-  }
-  return made;
-}
 
 cv::Scalar scalar(const Yuv& yuv) { return cv::Scalar(yuv.y, yuv.u, yuv.v); }
 
@@ -109,14 +40,14 @@ using Regions = std::vector<Region>;
 Regions with_components(const cv::Mat& yuv, const std::vector<ColourBox>& colours) {
   Regions regions;
   cv::Mat mask, labels, stats, centroids;
-  for (std::uint32_t k = 0; k < colours.size(); ++k) {
-    cv::inRange(yuv, scalar(colours[k].low), scalar(colours[k].high), mask);
+  for (const ColourBox& box : colours) {
+    cv::inRange(yuv, scalar(box.low), scalar(box.high), mask);
     const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
     for (int i = 1; i < count; ++i) {
       const int *s = stats.ptr<int>(i), left = s[cv::CC_STAT_LEFT], top = s[cv::CC_STAT_TOP];
-      regions.push_back({k, static_cast<std::uint32_t>(s[cv::CC_STAT_AREA]), centroids.at<double>(i, 0),
-                         centroids.at<double>(i, 1), left, left + s[cv::CC_STAT_WIDTH] - 1, top,
-                         top + s[cv::CC_STAT_HEIGHT] - 1});
+      regions.push_back({box.colour, static_cast<std::uint32_t>(s[cv::CC_STAT_AREA]),
+                         centroids.at<double>(i, 0), centroids.at<double>(i, 1), left,
+                         left + s[cv::CC_STAT_WIDTH] - 1, top, top + s[cv::CC_STAT_HEIGHT] - 1});
     }
   }
   return regions;
@@ -128,13 +59,13 @@ Regions with_contours(const cv::Mat& yuv, const std::vector<ColourBox>& colours)
   cv::Mat mask;
   std::vector<std::vector<cv::Point>> contours;
   std::vector<cv::Vec4i> hierarchy;
-  for (std::uint32_t k = 0; k < colours.size(); ++k) {
-    cv::inRange(yuv, scalar(colours[k].low), scalar(colours[k].high), mask);
+  for (const ColourBox& box : colours) {
+    cv::inRange(yuv, scalar(box.low), scalar(box.high), mask);
     cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
     for (std::size_t i = 0; i < contours.size(); ++i) {
       if (hierarchy[i][3] >= 0) continue;  // a hole
-      const cv::Rect box = cv::boundingRect(contours[i]);
-      regions.push_back({k, 0, 0, 0, box.x, box.x + box.width - 1, box.y, box.y + box.height - 1});
+      const cv::Rect at = cv::boundingRect(contours[i]);
+      regions.push_back({box.colour, 0, 0, 0, at.x, at.x + at.width - 1, at.y, at.y + at.height - 1});
     }
   }
   return regions;
@@ -183,10 +114,16 @@ void compare(const std::string& what, std::size_t bytes, std::vector<Side> sides
 }
 
 bool bench(int width_px, int height_px, PixelFormat format) {
-  Image image = field(width_px, height_px);
-  if (format == PixelFormat::kYuv422) image = subsampled(image.view());
+  RenderSpec spec;
+  spec.format = format;
+  HangingCamera camera;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  test::PaintedFloor floor(kSeed, spec, camera);
+  const std::vector<ColourBox> colours = floor.learned_boxes();
+  const std::vector<test::Marked> robots = floor.scattered_robots(11);
+  const Image image = floor.frame(robots, floor.free_place(robots));
   const ImageView view = image.view();
-  const std::vector<ColourBox> colours = boxes();
   const cv::Mat yuv = planes(view);
   const Regions components = sorted(with_components(yuv, colours));
   bool agree = sorted(with_contours(yuv, colours)) == outlines(components);

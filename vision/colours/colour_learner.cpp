@@ -86,7 +86,7 @@ int ColourLearner::gap(const Range& own, const Range& other) {
 
 void ColourLearner::cut(Range& box, const Range& own, const Range& other) {
   const int room = gap(own, other);
-  if (room > 0) box.low = std::max(box.low, (own.low + other.high + 1) / 2);
+  if (room > 0) box.low = std::max(box.low, (own.low + other.high) / 2 + 1);
   if (room < 0) box.high = std::min(box.high, (own.high + other.low) / 2);
 }
 
@@ -97,37 +97,49 @@ bool ColourLearner::overlap(const Ranges& a, const Ranges& b) {
   return true;
 }
 
-/// Moves the border of a box where there is most room between what was seen of its colour and of another, if
-/// it reaches into the other.
-void ColourLearner::separate(Ranges& box, const Ranges& own, const Ranges& other) {
-  if (!overlap(box, other)) return;
-  const auto room = [&](std::size_t c) { return (c == 0 ? kTrust : 1.0) * std::abs(gap(own[c], other[c])); };
+/// Where two boxes overlap, draws the border between them where there is most room between what was seen of
+/// their colours; where there is none they stay as they are.
+void ColourLearner::separate(Ranges& a, const Ranges& seen_a, Ranges& b, const Ranges& seen_b) {
+  if (!overlap(a, b)) return;
+  const auto room = [&](std::size_t c) {
+    return (c == 0 ? kTrust : 1.0) * std::abs(gap(seen_a[c], seen_b[c]));
+  };
   std::size_t best = 0;
-  for (std::size_t c = 1; c < own.size(); ++c) {
+  for (std::size_t c = 1; c < a.size(); ++c) {
     if (room(c) > room(best)) best = c;
   }
-  cut(box[best], own[best], other[best]);
+  cut(a[best], seen_a[best], seen_b[best]);
+  cut(b[best], seen_b[best], seen_a[best]);
 }
 
 std::vector<ColourBox> ColourLearner::boxes() const {
-  std::vector<ColourBox> boxes;
+  struct Learned {
+    std::uint32_t colour;
+    Ranges seen, box;
+  };
+  std::vector<Learned> learned;
   for (std::size_t k = 0; k < classes_.size(); ++k) {
-    if (classes_[k].count == 0) continue;
-    Ranges box = generous(classes_[k]);
-    const Ranges own = classes_[k].ranges(kOutliers);
-    if (background_.count > 0) {
-      // There is so much of it that every border that can be drawn is.
-      const Ranges floor = background_.ranges(kFloorOutliers);
-      for (std::size_t c = 0; c < box.size(); ++c) cut(box[c], own[c], floor[c]);
+    if (classes_[k].count > 0)
+      learned.push_back(
+          {static_cast<std::uint32_t>(k), classes_[k].ranges(kOutliers), generous(classes_[k])});
+  }
+  if (background_.count > 0) {
+    // There is so much of the floor that every border that can be drawn is.
+    const Ranges floor = background_.ranges(kFloorOutliers);
+    for (Learned& one : learned) {
+      for (std::size_t c = 0; c < floor.size(); ++c) cut(one.box[c], one.seen[c], floor[c]);
     }
-    for (std::size_t other = 0; other < classes_.size(); ++other) {
-      if (other != k && classes_[other].count > 0) separate(box, own, classes_[other].ranges(kOutliers));
-    }
-    const auto low = [&](std::size_t c) { return static_cast<std::uint8_t>(std::clamp(box[c].low, 0, 255)); };
-    const auto high = [&](std::size_t c) {
-      return static_cast<std::uint8_t>(std::clamp(box[c].high, 0, 255));
-    };
-    boxes.push_back({{low(0), low(1), low(2)}, {high(0), high(1), high(2)}, static_cast<std::uint32_t>(k)});
+  }
+  for (std::size_t i = 0; i < learned.size(); ++i) {
+    for (std::size_t j = i + 1; j < learned.size(); ++j)
+      separate(learned[i].box, learned[i].seen, learned[j].box, learned[j].seen);
+  }
+  std::vector<ColourBox> boxes;
+  for (const Learned& one : learned) {
+    const auto byte = [](int value) { return static_cast<std::uint8_t>(std::clamp(value, 0, 255)); };
+    const auto& [y, u, v] = one.box;
+    boxes.push_back(
+        {{byte(y.low), byte(u.low), byte(v.low)}, {byte(y.high), byte(u.high), byte(v.high)}, one.colour});
   }
   return boxes;
 }

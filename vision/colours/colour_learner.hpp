@@ -30,9 +30,9 @@ class ColourLearner {
   /// Pixels seen of a colour so far.
   std::uint64_t seen(Colour colour) const { return classes_[static_cast<std::size_t>(colour)].count; }
 
-  /// A box for each colour that was seen. It reaches from half of the colour's distance to grey, so that
-  /// patches keep their size and darker light does no harm, to the end of the range; where that comes upon
-  /// another colour or the floor the border lies half way between what was seen of the two. Colours that
+  /// A box for each colour that was seen. It reaches from two fifths of the way from grey to the colour, so
+  /// that patches keep their size and darker light does no harm, to the end of the range; where that comes
+  /// upon another colour or the floor the border lies half way between what was seen of the two. Colours that
   /// cannot be told apart by a box keep boxes that overlap: then the first counts.
   std::vector<ColourBox> boxes() const;
 
@@ -54,7 +54,7 @@ class ColourLearner {
   static int gap(const Range& own, const Range& other);
   static void cut(Range& box, const Range& own, const Range& other);
   static bool overlap(const Ranges& a, const Ranges& b);
-  static void separate(Ranges& box, const Ranges& own, const Ranges& other);
+  static void separate(Ranges& a, const Ranges& seen_a, Ranges& b, const Ranges& seen_b);
 
   std::array<Seen, kColours.size()> classes_;
   Seen background_;

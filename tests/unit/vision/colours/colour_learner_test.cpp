@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/colours/colour_learner.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+struct Patch {
+  Colour colour;
+  Yuv yuv;
+};
+
+/// Discs of radius 10 on a floor, with so much noise in every number.
+struct Painting {
+  Image image{PixelFormat::kYuv422, 400, 60};
+  std::vector<KnownDisc> discs;
+
+  Painting(const Yuv& floor, const std::vector<Patch>& patches, int noise, Rng& rng) {
+    for (std::size_t i = 0; i < patches.size(); ++i)
+      discs.push_back({patches[i].colour, {30.0 + 50 * static_cast<double>(i), 30}, 10});
+    const auto noisy = [&](std::uint8_t value) {
+      return static_cast<std::uint8_t>(
+          value + static_cast<int>(rng.below(2 * static_cast<std::size_t>(noise) + 1)) - noise);
+    };
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 0; x < 400; x += 2) {
+        Yuv yuv = floor;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+          if (std::hypot(x - discs[i].centre_px.x(), y - 30.0) <= 10) yuv = patches[i].yuv;
+        }
+        std::uint8_t* pair = image.row(y) + 2 * x;
+        pair[0] = noisy(yuv.u);
+        pair[1] = noisy(yuv.y);
+        pair[2] = noisy(yuv.v);
+        pair[3] = noisy(yuv.y);
+      }
+    }
+  }
+};
+
+const ColourBox* box_of(const std::vector<ColourBox>& boxes, Colour colour) {
+  const auto box = std::ranges::find(boxes, static_cast<std::uint32_t>(colour), &ColourBox::colour);
+  return box == boxes.end() ? nullptr : &*box;
+}
+
+bool overlap(const ColourBox& a, const ColourBox& b) {
+  const auto apart = [](std::uint8_t al, std::uint8_t ah, std::uint8_t bl, std::uint8_t bh) {
+    return ah < bl || bh < al;
+  };
+  return !apart(a.low.y, a.high.y, b.low.y, b.high.y) && !apart(a.low.u, a.high.u, b.low.u, b.high.u) &&
+         !apart(a.low.v, a.high.v, b.low.v, b.high.v);
+}
+
+}  // namespace
+
+TEST_CASE("boxes hold what was seen of their colours and no pixel belongs to two of them") {
+  const std::uint64_t seed = GENERATE(range(1, 41));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const int noise = static_cast<int>(rng.below(6));
+  const auto byte = [&](int low, int high) {
+    return static_cast<std::uint8_t>(low + static_cast<int>(rng.below(static_cast<std::size_t>(high - low))));
+  };
+  const std::vector<Patch> patches{{Colour::kOrange, {byte(120, 200), byte(40, 80), byte(185, 215)}},
+                                   {Colour::kYellow, {byte(140, 220), byte(30, 70), byte(140, 165)}},
+                                   {Colour::kBlue, {byte(60, 120), byte(170, 220), byte(60, 100)}},
+                                   {Colour::kPink, {byte(90, 160), byte(130, 160), byte(185, 225)}}};
+  const Painting painting({byte(40, 90), byte(110, 125), byte(100, 120)}, patches, noise, rng);
+  ColourLearner learner;
+  learner.add(painting.image.view(), painting.discs);
+  const std::vector<ColourBox> boxes = learner.boxes();
+  REQUIRE(boxes.size() == patches.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) CHECK_FALSE(overlap(boxes[i], boxes[j]));
+  }
+  for (const Patch& patch : patches) {
+    REQUIRE(box_of(boxes, patch.colour));
+    CHECK(is_within(*box_of(boxes, patch.colour), patch.yuv));
+    CHECK(learner.seen(patch.colour) > 50);
+  }
+}
+
+TEST_CASE("the border between two colours lies half way between what was seen of them") {
+  Rng rng(1);
+  const std::vector<Patch> patches{{Colour::kOrange, {150, 60, 200}}, {Colour::kYellow, {150, 60, 150}}};
+  const Painting painting({60, 120, 110}, patches, 0, rng);
+  ColourLearner learner;
+  learner.add(painting.image.view(), painting.discs);
+  const auto boxes = learner.boxes();
+  CHECK(box_of(boxes, Colour::kOrange)->low.v == 176);
+  CHECK(box_of(boxes, Colour::kYellow)->high.v == 175);
+}
+
+TEST_CASE("a colour that was never seen has no box") {
+  ColourLearner learner;
+  CHECK(learner.boxes().empty());
+}
