@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/colours/known_discs.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "vision/patterns/patch.hpp"
 
 namespace sidestep {
 
 std::optional<KnownDisc> seen_disc(const CameraModel& camera, Colour colour, const Vec3& centre_m,
                                    double radius_m) {
   const auto pixel = camera.pixel_of(centre_m);
-  const auto moves = camera.pixels_per_metre(centre_m);
-  if (!pixel || !moves || !camera.shows(*pixel)) return std::nullopt;
-  return KnownDisc{colour, *pixel, radius_m * std::sqrt(std::abs(moves->leftCols<2>().determinant()))};
+  const auto covered = px2_per_m2(camera, centre_m);
+  if (!pixel || !covered || !camera.shows(*pixel)) return std::nullopt;
+  return KnownDisc{colour, *pixel, radius_m * std::sqrt(*covered)};
 }
 
 std::vector<KnownDisc> seen_dots(const CameraModel& camera, const MarkingLayout& layout, Team team,

@@ -16,6 +16,10 @@ struct Patch {
   double area_m2 = 0;
 };
 
+/// How many square pixels a square metre at a point covers that lies flat. Nothing where the camera cannot
+/// see it.
+std::optional<double> px2_per_m2(const CameraModel& camera, const Vec3& point_m);
+
 /// What a region is, taken to lie at this height. Nothing where the camera cannot see such a thing.
 std::optional<Patch> patch_of(const Region& region, const CameraModel& camera, double height_m);
 
