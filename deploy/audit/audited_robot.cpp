@@ -3,15 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sidestep {
 
-bool Known::is_registered_in(Epoch epoch) const {
-  return epoch != 0 && std::ranges::find(registered_in, epoch) != registered_in.end();
+void EpochMemory::add(Epoch epoch) {
+  if (epoch == 0 || holds(epoch)) return;
+  given_up_ = std::max(given_up_, std::min(epoch, epochs_.back()));
+  epochs_.back() = std::max(epoch, epochs_.back());
+  std::ranges::sort(epochs_, std::greater<>());
+}
+
+bool EpochMemory::holds(Epoch epoch) const {
+  return epoch != 0 && std::ranges::find(epochs_, epoch) != epochs_.end();
 }
 
 bool Known::is_in(Epoch epoch) const {
-  return epoch != 0 && (granted_in == epoch || (!is_own && is_registered_in(epoch)));
+  return epoch != 0 && (granted_in == epoch || (!is_own && registered_in.holds(epoch)));
+}
+
+bool Known::may_be_in(Epoch epoch) const {
+  return is_in(epoch) || (!is_own && registered_in.may_have_held(epoch));
 }
 
 const msg::Version* HeardProposal::find(VersionNumber version) const {
@@ -57,10 +69,6 @@ HeardProposal* AuditedRobot::proposal(std::uint64_t number, VersionNumber candid
     if (number != 0 ? heard.number == number : heard.find(candidate) != nullptr) return &heard;
   }
   return nullptr;
-}
-
-bool AuditedRobot::has_registered(Epoch epoch) const {
-  return std::ranges::find(registered_in, epoch) != registered_in.end();
 }
 
 void AuditedRobot::forget(std::int64_t before_ns) {

@@ -21,6 +21,19 @@ inline constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min()
 /// Why a fact says that a version will never be executed again.
 enum class Excluded : std::uint8_t { kNo, kOlder, kLate, kFenced, kLifted };
 
+/// The epochs in which something was registered: the highest of them, bounded in number.
+class EpochMemory {
+ public:
+  void add(Epoch epoch);
+  bool holds(Epoch epoch) const;
+  /// Whether it may have been one of them: it is, or it has been given up.
+  bool may_have_held(Epoch epoch) const { return holds(epoch) || (epoch != 0 && epoch <= given_up_); }
+
+ private:
+  std::array<Epoch, 16> epochs_{};  ///< descending; 0: none
+  Epoch given_up_ = 0;              ///< the highest that is no longer held
+};
+
 /// What is known of one version. Times of sending are by the auditor's clock.
 struct Known {
   VersionNumber number = 0;
@@ -31,7 +44,7 @@ struct Known {
   Epoch granted_in = 0;                 ///< or, for the firmware's own, whose ledger was seen to hold it
   std::int64_t granted_by_ns = kNever;  ///< the verdict, or that page, was not sent after
   bool is_granted_by_page = false;      ///< its verdict was not heard, but a page that holds it was
-  std::array<Epoch, 8> registered_in{};
+  EpochMemory registered_in;
   std::int64_t sent_ns = kNever;  ///< the first command with it
   Epoch sent_epoch = 0;           ///< the highest that one came with
   bool was_executed = false;
@@ -42,7 +55,8 @@ struct Known {
   bool is_reported_unsent = false;  ///< so that one breach is told once
 
   bool is_in(Epoch epoch) const;
-  bool is_registered_in(Epoch epoch) const;
+  /// The same as far as is known: a coordinator may wake up after more epochs than are remembered.
+  bool may_be_in(Epoch epoch) const;
 };
 
 /// A proposal that was heard, and what is known of its verdict.
@@ -105,8 +119,7 @@ class AuditedRobot {
     bool is_reported = false;
   };
   std::optional<Registered> registered;
-  std::array<Epoch, 8> registered_in{};  ///< the latest epochs that it registered in
-  std::size_t registered_count = 0;
+  EpochMemory registered_in;
   Epoch newest_granted_in = 0;
   VersionNumber newest_granted = 0;
 
@@ -117,7 +130,6 @@ class AuditedRobot {
   /// The version's record, made if it was not there; makes room by giving up what can matter least.
   Known& note(VersionNumber number);
   HeardProposal* proposal(std::uint64_t number, VersionNumber candidate);
-  bool has_registered(Epoch epoch) const;
   /// Gives up what was excluded before then.
   void forget(std::int64_t before_ns);
   /// Sets first_recent: what was excluded before then is no longer compared with others'.

@@ -146,13 +146,9 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     Known* known = learn(*robot, registration.versions()[i]);
     if (!known) return;
     registered.versions.push_back(known->number);
-    if (!known->is_registered_in(epoch)) {
-      std::ranges::rotate(known->registered_in, known->registered_in.end() - 1);
-      known->registered_in.front() = epoch;
-    }
+    known->registered_in.add(epoch);
   }
-  if (!robot->has_registered(epoch))
-    robot->registered_in[robot->registered_count++ % robot->registered_in.size()] = epoch;
+  robot->registered_in.add(epoch);
   if (!robot->registered || epoch >= robot->registered->epoch) robot->registered = std::move(registered);
 }
 

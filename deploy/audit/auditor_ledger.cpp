@@ -124,7 +124,7 @@ void Auditor::judge_epoch(const AuditedRobot& robot, const Known& known, const m
     record.granter = verdict.head().sender();
     record.granter_life = life;
     for (const AuditedRobot& other : robots_) {
-      if (!how_.is_complete || other.has_registered(verdict.epoch())) continue;
+      if (!how_.is_complete || other.registered_in.may_have_held(verdict.epoch())) continue;
       record.is_reported = true;
       report(
           AuditRule::kAllRegistered, other.id, nullptr, verdict.epoch(),
@@ -219,7 +219,7 @@ void Auditor::judge_base(const AuditedRobot& robot, const Known& known) {
       (robot.fact && robot.fact->is_lifted) || (robot.registered && robot.registered->is_absent);
   if (is_stand && is_absent) return;
   const bool is_given_up = robot.has_given_up(known.version.base());
-  if (how_.is_complete && !is_given_up && !(base && (base->is_in(known.granted_in) || base->is_own))) {
+  if (how_.is_complete && !is_given_up && !(base && (base->may_be_in(known.granted_in) || base->is_own))) {
     report(AuditRule::kBase, robot.id, &known, known.granted_in,
            fmt::format("its base {} was neither registered nor granted in the epoch", known.version.base()));
   }
@@ -261,7 +261,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     const Known* known = robot.find(version.version_number());
     // A coordinator that hears nothing keeps what was given up here long ago.
     if (robot.has_given_up(version.version_number())) continue;
-    if (how_.is_complete && is_of_epoch && !(known && (known->is_in(page.epoch()) || known->is_own))) {
+    if (how_.is_complete && is_of_epoch && !(known && (known->may_be_in(page.epoch()) || known->is_own))) {
       report(AuditRule::kLedgerPage, robot.id, known ? known : &robot.note(version.version_number()),
              page.epoch(), "is in the ledger, and was neither registered nor granted");
     }

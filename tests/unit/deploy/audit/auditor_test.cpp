@@ -226,6 +226,44 @@ TEST_CASE("a grant that is said once more long after breaks no rule") {
   CHECK(totals.violations == 0);
 }
 
+TEST_CASE("a coordinator that wakes up after many epochs keeps what was registered with it") {
+  const AuditTotals totals = tampered([](History& h) {
+    // As if coordinators had come and gone: every agent registered with forty more of them.
+    std::vector<HeardMessage> messages;
+    for (const HeardMessage& heard : h.messages) {
+      messages.push_back(heard);
+      const auto* registration = std::get_if<msg::Registration>(&heard.message);
+      if (!registration) continue;
+      for (Epoch before = 1; before <= 40; ++before) {
+        msg::Registration other = *registration;
+        other.epoch(registration->epoch() - before);
+        messages.push_back({heard.at, other});
+      }
+    }
+    REQUIRE(messages.size() >= h.messages.size() + 40);
+    h.messages = std::move(messages);
+  });
+  INFO(lines(totals));
+  CHECK(totals.violations == 0);
+}
+
+TEST_CASE("the highest epochs are remembered and of lower ones that there were some") {
+  EpochMemory memory;
+  CHECK_FALSE(memory.may_have_held(0));
+  CHECK_FALSE(memory.may_have_held(1));
+  for (Epoch epoch = 10; epoch <= 400; epoch += 10) memory.add(epoch);
+  CHECK(memory.holds(400));
+  CHECK(memory.holds(250));
+  CHECK_FALSE(memory.holds(240));
+  CHECK(memory.may_have_held(240));
+  CHECK(memory.may_have_held(10));
+  CHECK_FALSE(memory.may_have_held(255));
+  CHECK_FALSE(memory.may_have_held(410));
+  memory.add(20);
+  CHECK_FALSE(memory.may_have_held(255));
+  CHECK(memory.holds(250));
+}
+
 TEST_CASE("messages that make no sense are counted and tell nothing") {
   const AuditTotals totals = tampered([](History& h) {
     int number = 0;
