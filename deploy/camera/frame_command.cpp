@@ -7,11 +7,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
 #include "common/process/process.hpp"
-#include "simulator/rendering/camera_grid.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 
 namespace sidestep {

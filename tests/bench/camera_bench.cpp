@@ -2,9 +2,9 @@
 #include <benchmark/benchmark.h>
 #include <vector>
 
+#include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/random/rng.hpp"
-#include "simulator/rendering/camera_grid.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 
 using namespace sidestep;

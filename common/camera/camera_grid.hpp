@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// The cameras over a scenario's field, in the order of simulator/cameras.hpp: each hangs over its share, and
-/// sees it and the overlap. Height, distortion and image size are those of `like`. Throws
-/// std::invalid_argument as hang() does.
+/// The cameras over a scenario's field, row by row from its corner of lowest x and y, along x first: each
+/// hangs over its share, and sees it and the overlap. Height, distortion and image size are those of `like`.
+/// Throws std::invalid_argument as hang() does.
 std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const HangingCamera& like);
 
 }  // namespace sidestep

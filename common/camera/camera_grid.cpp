@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/rendering/camera_grid.hpp"
+#include "common/camera/camera_grid.hpp"
 
 namespace sidestep {
 

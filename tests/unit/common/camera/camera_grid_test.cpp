@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/camera_grid.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("cameras in a grid see the field with its overlaps") {
+  const Field field{12, 9};
+  VisionSpec spec;
+  spec.columns = 2;
+  spec.rows = 2;
+  spec.overlap_m = 0.25;
+  const auto cameras = hang_grid(field, spec, HangingCamera{});
+  REQUIRE(cameras.size() == 4);
+  Rng rng(66);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(rng.uniform(-6.2, 6.2), rng.uniform(-4.7, 4.7), rng.uniform(0, 0.15));
+    int seen = 0;
+    for (const CameraModel& camera : cameras) seen += camera.shows(*camera.pixel_of(p));
+    CHECK(seen >= 1);
+    if (p.head<2>().cwiseAbs().maxCoeff() < 0.24) CHECK(seen == 4);
+  }
+  CHECK(cameras[0].position_m().head<2>() == Vec2(-3, -2.25));
+  CHECK(cameras[3].position_m().head<2>() == Vec2(3, 2.25));
+}
