@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "common/image/pixel_writing.hpp"
 #include "simulator/rendering/carpet.hpp"
-#include "simulator/rendering/pixel_writing.hpp"
 #include "simulator/rendering/round_ball.hpp"
 
 namespace sidestep {
@@ -137,7 +137,7 @@ void FrameRenderer::blur(const cv::Rect& rect) {
                      cv::BORDER_REPLICATE);
   for (int y = rect.y; y < rect.br().y; ++y) {
     std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
-    write_pixels(spec_.format, seen[y - around.y] + (rect.x - around.x), rect.width,
+    write_pixels(spec_.format, seen[y - around.y][rect.x - around.x].val, rect.width,
                  row + rect.x * bytes_per_pixel(spec_.format));
   }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/rendering/pixel_writing.hpp"
+#include "common/image/pixel_writing.hpp"
 
 #include <cstring>
+
+#include "common/image/colour_space.hpp"
 
 namespace sidestep {
 namespace {
@@ -18,7 +20,7 @@ constexpr int kUBlue = -kURed - kUGreen;
 constexpr int kVGreen = fixed(-bt601::kV * bt601::kGreen), kVBlue = fixed(-bt601::kV * bt601::kBlue);
 constexpr int kVRed = -kVGreen - kVBlue;
 
-std::uint8_t luma(const cv::Vec3b& c) {
+std::uint8_t luma(const std::uint8_t* c) {
   return static_cast<std::uint8_t>((kYRed * c[0] + kYGreen * c[1] + kYBlue * c[2] + (1 << (kShift - 1))) >>
                                    kShift);
 }
@@ -31,19 +33,25 @@ std::uint8_t chroma(int sum) {
 
 }  // namespace
 
-void write_pixels(PixelFormat format, const cv::Vec3b* rgb, int count, std::uint8_t* out) {
+void write_pixels(PixelFormat format, const std::uint8_t* rgb, int count, std::uint8_t* out) {
   if (format == PixelFormat::kRgb) {
     std::memcpy(out, rgb, static_cast<std::size_t>(count) * 3);
     return;
   }
-  for (int i = 0; i < count; i += 2, out += 4) {
-    const cv::Vec3b &a = rgb[i], &b = rgb[i + 1];
+  for (int i = 0; i < count; i += 2, out += 4, rgb += 6) {
+    const std::uint8_t *const a = rgb, *const b = rgb + 3;
     const int red = a[0] + b[0], green = a[1] + b[1], blue = a[2] + b[2];
     out[0] = chroma(kURed * red + kUGreen * green + kUBlue * blue);
     out[1] = luma(a);
     out[2] = chroma(kVRed * red + kVGreen * green + kVBlue * blue);
     out[3] = luma(b);
   }
+}
+
+Image written_as(PixelFormat format, const ImageView& rgb) {
+  Image image(format, rgb.width_px, rgb.height_px);
+  write_pixels(format, rgb.pixels, rgb.width_px * rgb.height_px, image.pixels());
+  return image;
 }
 
 }  // namespace sidestep
