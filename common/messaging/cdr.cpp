@@ -72,11 +72,11 @@ constexpr Codec codec(const Topic<Message>& topic) {
 }
 
 constexpr Codec kCodecs[] = {
-    codec(topics::kDetections), codec(topics::kWorld),        codec(topics::kCommand),
-    codec(topics::kFeedback),   codec(topics::kRegistration), codec(topics::kProposal),
-    codec(topics::kVerdict),    codec(topics::kLedger),       codec(topics::kCoordinator),
-    codec(topics::kStatus),     codec(topics::kDisturbance),  codec(topics::kNetworkFault),
-    codec(topics::kTruth),
+    codec(topics::kImages),       codec(topics::kDetections), codec(topics::kWorld),
+    codec(topics::kCommand),      codec(topics::kFeedback),   codec(topics::kRegistration),
+    codec(topics::kProposal),     codec(topics::kVerdict),    codec(topics::kLedger),
+    codec(topics::kCoordinator),  codec(topics::kStatus),     codec(topics::kDisturbance),
+    codec(topics::kNetworkFault), codec(topics::kTruth),
 };
 
 const Codec& codec_of(const TopicInfo& topic) {

@@ -9,6 +9,7 @@
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/core.h>
 #include <ifaddrs.h>
@@ -64,7 +65,8 @@ void check(const DdsSettings& settings) {
 }
 
 DomainParticipantQos participant_qos(const DdsSettings& settings,
-                                     const std::shared_ptr<Impairment>& impairment) {
+                                     const std::shared_ptr<Impairment>& impairment,
+                                     std::uint32_t shared_memory_bytes) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -72,6 +74,11 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   udp->receiveBufferSize = kSocketBufferBytes;
   if (settings.interface != "all") udp->interfaceWhiteList.push_back(settings.interface);
   qos.transport().use_builtin_transports = false;
+  if (shared_memory_bytes > 0) {
+    auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+    memory->segment_size(shared_memory_bytes);
+    qos.transport().user_transports.push_back(memory);
+  }
   // Never both: two transports for one kind of locator would each send everything.
   if (impairment)
     qos.transport().user_transports.push_back(fault_transport(udp, impairment));
@@ -106,15 +113,16 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 
 }  // namespace
 
-DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener) {
+DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
+                               std::uint32_t shared_memory_bytes) {
   check(settings);
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_), listener,
-      StatusMask::none());
+      static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_, shared_memory_bytes),
+      listener, StatusMask::none());
   if (participant_ == nullptr) {
     throw std::runtime_error(fmt::format("DDS refuses to create a participant in domain {} on interface {}",
                                          settings.domain, settings.interface));

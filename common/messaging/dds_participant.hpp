@@ -20,8 +20,12 @@ namespace sidestep {
 /// whatever it has created.
 class DdsParticipant {
  public:
-  /// The listener, if any, must outlive the participant. Throws std::runtime_error, saying what is wrong.
-  DdsParticipant(const DdsSettings& settings, eprosima::fastdds::dds::DomainParticipantListener* listener);
+  /// The listener, if any, must outlive the participant. With shared memory, so many bytes for what it
+  /// writes, participants on one host that have some use it, and nothing goes from one to the other by UDP,
+  /// even if their memory is not the same (containers); no fault reaches it. Throws std::runtime_error,
+  /// saying what is wrong.
+  DdsParticipant(const DdsSettings& settings, eprosima::fastdds::dds::DomainParticipantListener* listener,
+                 std::uint32_t shared_memory_bytes = 0);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;

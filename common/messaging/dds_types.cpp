@@ -43,6 +43,7 @@ struct GeneratedType {
 };
 
 constexpr GeneratedType kGeneratedTypes[] = {
+    {"sidestep::msg::CameraImage", make_generated<msg::CameraImagePubSubType>},
     {"sidestep::msg::DetectionFrame", make_generated<msg::DetectionFramePubSubType>},
     {"sidestep::msg::WorldState", make_generated<msg::WorldStatePubSubType>},
     {"sidestep::msg::Command", make_generated<msg::CommandPubSubType>},

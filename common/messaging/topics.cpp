@@ -4,10 +4,10 @@
 namespace sidestep {
 
 std::vector<TopicInfo> all_topics() {
-  return {topics::kDetections,   topics::kWorld,    topics::kCommand,     topics::kFeedback,
-          topics::kRegistration, topics::kProposal, topics::kVerdict,     topics::kLedger,
-          topics::kCoordinator,  topics::kStatus,   topics::kDisturbance, topics::kNetworkFault,
-          topics::kTruth};
+  return {topics::kImages,       topics::kDetections,   topics::kWorld,    topics::kCommand,
+          topics::kFeedback,     topics::kRegistration, topics::kProposal, topics::kVerdict,
+          topics::kLedger,       topics::kCoordinator,  topics::kStatus,   topics::kDisturbance,
+          topics::kNetworkFault, topics::kTruth};
 }
 
 }  // namespace sidestep

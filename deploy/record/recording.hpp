@@ -52,7 +52,8 @@ class RecordingWriter {
   bool has_failed_ = false;
 };
 
-/// Subscribes to every topic, with every robot's channels, and writes what comes until the bus has stopped.
+/// Subscribes to every topic but images, which are a hundred megabytes a second, with every robot's channels,
+/// and writes what comes until the bus has stopped.
 void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer);
 
 /// What came of reading a recording.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -27,6 +28,7 @@ constexpr const char* kReasons[] = {
 constexpr const char* kCoordinatorPhases[] = {"standby", "registering", "granting"};
 constexpr const char* kAgentPhases[] = {"fencing", "registering", "waiting", "driving",
                                         "arrived", "off clock",   "absent"};
+constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
 constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
 
 template <typename Range, typename Describe>
@@ -86,6 +88,16 @@ Json quantiles(const msg::DurationCounts& m) {
 }
 
 }  // namespace
+
+Json describe(const msg::CameraImage& m) {
+  return {{"camera", m.camera()},
+          {"head", head(m.head())},
+          {"captured_at_ns", m.captured_at_ns()},
+          {"image_format", word(m.image_format(), kImageFormats)},
+          {"width_px", m.width_px()},
+          {"height_px", m.height_px()},
+          {"pixels", fmt::format("{} bytes", m.pixels().size())}};
+}
 
 Json describe(const msg::DetectionFrame& m) {
   const auto ball = [](const msg::BallDetection& b) -> Json {

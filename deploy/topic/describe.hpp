@@ -12,7 +12,8 @@
 namespace sidestep {
 
 /// A message for people's eyes: its members by their IDL names and in their order, enumerators as words,
-/// arrays that come with a count only as far as it goes, histograms as quantiles.
+/// arrays that come with a count only as far as it goes, histograms as quantiles, pixels as their number.
+nlohmann::ordered_json describe(const msg::CameraImage& m);
 nlohmann::ordered_json describe(const msg::DetectionFrame& m);
 nlohmann::ordered_json describe(const msg::WorldState& m);
 nlohmann::ordered_json describe(const msg::Command& m);

@@ -71,13 +71,13 @@ int echo_topic(const ListenOptions& options) {
   Echo echo(bus, options.count);
   const std::string& asked = options.topic;
   const bool is_known =
-      echo.subscribe(topics::kDetections, asked) || echo.subscribe(topics::kWorld, asked) ||
-      echo.subscribe(topics::kCommand, asked) || echo.subscribe(topics::kFeedback, asked) ||
-      echo.subscribe(topics::kRegistration, asked) || echo.subscribe(topics::kProposal, asked) ||
-      echo.subscribe(topics::kVerdict, asked) || echo.subscribe(topics::kLedger, asked) ||
-      echo.subscribe(topics::kCoordinator, asked) || echo.subscribe(topics::kStatus, asked) ||
-      echo.subscribe(topics::kTruth, asked) || echo.subscribe(topics::kDisturbance, asked) ||
-      echo.subscribe(topics::kNetworkFault, asked);
+      echo.subscribe(topics::kImages, asked) || echo.subscribe(topics::kDetections, asked) ||
+      echo.subscribe(topics::kWorld, asked) || echo.subscribe(topics::kCommand, asked) ||
+      echo.subscribe(topics::kFeedback, asked) || echo.subscribe(topics::kRegistration, asked) ||
+      echo.subscribe(topics::kProposal, asked) || echo.subscribe(topics::kVerdict, asked) ||
+      echo.subscribe(topics::kLedger, asked) || echo.subscribe(topics::kCoordinator, asked) ||
+      echo.subscribe(topics::kStatus, asked) || echo.subscribe(topics::kTruth, asked) ||
+      echo.subscribe(topics::kDisturbance, asked) || echo.subscribe(topics::kNetworkFault, asked);
   if (!is_known) {
     fmt::print(stderr, "'{}' is none of our topics: {}\n", asked, known_topics());
     return kExitFailure;
