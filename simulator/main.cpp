@@ -4,6 +4,7 @@
 
 #include "common/messaging/senders.hpp"
 #include "common/process/process.hpp"
+#include "simulator/images/image_output.hpp"
 #include "simulator/league/league_output.hpp"
 
 namespace sidestep {
@@ -28,12 +29,14 @@ void add_options(CLI::App& app, Options& options) {
 }
 
 struct Nodes {
-  Nodes(Bus& bus, const Scenario& scenario, const Options& options)
-      : simulator(bus, scenario, static_cast<Incarnation>(to_ns(bus.now())), options.seed) {
-    if (!options.ssl_vision) return;
-    league.emplace(bus, scenario, simulator, *options.ssl_vision, options.league_interface);
+  Nodes(Bus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
+      : simulator(bus, scenario, incarnation, options.seed) {
+    if (scenario.vision.images) images.emplace(bus, scenario, simulator, incarnation, options.seed);
+    if (options.ssl_vision)
+      league.emplace(bus, scenario, simulator, *options.ssl_vision, options.league_interface);
   }
   SimulatorNode simulator;
+  std::optional<ImageOutput> images;
   std::optional<LeagueOutput> league;
 };
 
@@ -49,7 +52,8 @@ int main(int argc, char** argv) {
   program.fault_target = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::Bus& bus,
                              const sidestep::Scenario& scenario) -> std::shared_ptr<void> {
-    return std::make_shared<sidestep::Nodes>(bus, scenario, options);
+    return std::make_shared<sidestep::Nodes>(bus, scenario, options,
+                                             static_cast<sidestep::Incarnation>(sidestep::to_ns(bus.now())));
   };
   return sidestep::run_process(argc, argv, program);
 }

@@ -27,6 +27,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       cycle_(scenario.cycle),
       delay_(scenario.vision.delay),
       command_loss_(scenario.command_loss),
+      publishes_detections_(!scenario.vision.images),
       field_(scenario.field),
       radius_m_(scenario.radius_m),
       incarnation_(incarnation),
@@ -150,6 +151,7 @@ void SimulatorNode::take_frame(Time now) {
   cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs()}, slot->message);
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kStaleFrame < now) return;
+  if (capture_listener_) capture_listener_(slot->message.camera(), captured_at);
   slot->is_waiting = true;
   bus_.at(slot->publish_at, [this] { publish_frames(); });
 }
@@ -160,7 +162,7 @@ void SimulatorNode::publish_frames() {
     if (!frame.is_waiting || frame.publish_at > now) continue;
     frame.message.head().sender(static_cast<std::uint32_t>(Sender::kSimulator));
     frame.message.head().incarnation(incarnation_);
-    detections_.publish(frame.message, now);
+    if (publishes_detections_) detections_.publish(frame.message, now);
     if (listener_) listener_(frame.message);
     frame.is_waiting = false;
   }

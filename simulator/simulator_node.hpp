@@ -15,8 +15,8 @@
 namespace sidestep {
 
 /// The simulator as a process of the system: takes commands over a lossy radio, moves the world to the bus's
-/// time, does to robots what disturbances say, and publishes robots' facts, camera frames, and truth for
-/// judges. Whoever owns the bus stops it before this goes.
+/// time, does to robots what disturbances say, and publishes robots' facts, detections unless the scenario
+/// wants images, and truth for judges. Whoever owns the bus stops it before this goes.
 class SimulatorNode {
  public:
   SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed);
@@ -25,7 +25,11 @@ class SimulatorNode {
 
   const World& world() const { return world_; }
   const Cameras& cameras() const { return cameras_; }
-  /// Gives the listener every frame when it is published.
+  /// Calls back when a camera takes a frame of the world as it is then.
+  void set_capture_listener(std::function<void(std::uint32_t camera, Time captured_at)> listener) {
+    capture_listener_ = std::move(listener);
+  }
+  /// Gives the listener every frame's detections when they are due, published or not.
   void set_listener(std::function<void(const msg::DetectionFrame&)> listener) {
     listener_ = std::move(listener);
   }
@@ -57,6 +61,7 @@ class SimulatorNode {
   Duration cycle_;
   Duration delay_;
   double command_loss_;
+  bool publishes_detections_;
   Field field_;
   double radius_m_;
   Incarnation incarnation_;
@@ -74,6 +79,7 @@ class SimulatorNode {
   Writer<msg::DetectionFrame> detections_;
   std::vector<Frame> frames_;
   std::function<void(const msg::DetectionFrame&)> listener_;
+  std::function<void(std::uint32_t, Time)> capture_listener_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;
   Time truth_due_;

@@ -9,11 +9,24 @@ std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, c
   std::vector<CameraModel> cameras;
   for (int camera = 0; camera < spec.columns * spec.rows; ++camera) {
     const Vec2 low = corner + share.cwiseProduct(Vec2(camera % spec.columns, camera / spec.columns));
-    HangingCamera hanging = like;
-    hanging.view_m = grown(Box{low, low + share}, spec.overlap_m);
-    cameras.push_back(hang(hanging));
+    HangingCamera over = like;
+    over.view_m = grown(Box{low, low + share}, spec.overlap_m);
+    cameras.push_back(hang(over));
   }
   return cameras;
+}
+
+std::vector<CameraModel> hang_grid(const Scenario& scenario) {
+  return hang_grid(scenario.field, scenario.vision, hanging(scenario.vision.images.value_or(ImageSpec())));
+}
+
+HangingCamera hanging(const ImageSpec& images) {
+  HangingCamera camera;
+  camera.height_m = images.camera_height_m;
+  camera.width_px = images.width_px;
+  camera.height_px = images.height_px;
+  camera.distortion = images.distortion;
+  return camera;
 }
 
 }  // namespace sidestep

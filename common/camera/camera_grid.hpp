@@ -12,5 +12,10 @@ namespace sidestep {
 /// hangs over its share, and sees it and the overlap. Height, distortion and image size are those of `like`.
 /// Throws std::invalid_argument as hang() does.
 std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const HangingCamera& like);
+/// The same with what the scenario says of images.
+std::vector<CameraModel> hang_grid(const Scenario& scenario);
+
+/// A camera's size, height and distortion.
+HangingCamera hanging(const ImageSpec& images);
 
 }  // namespace sidestep

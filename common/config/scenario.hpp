@@ -7,6 +7,7 @@
 
 #include "common/geometry/circle.hpp"
 #include "common/geometry/field.hpp"
+#include "common/image/image.hpp"
 #include "common/motion/limits.hpp"
 #include "common/motion/safety_budget.hpp"
 #include "common/motion/version.hpp"
@@ -43,6 +44,15 @@ struct BallSpec {
   Vec2 velocity_mps{0, 0};
 };
 
+/// Images instead of detections: what cameras send, and how they hang.
+struct ImageSpec {
+  PixelFormat format = PixelFormat::kYuv422;
+  int width_px = 780;
+  int height_px = 580;
+  double camera_height_m = 4;
+  double distortion = 0.1;  ///< k of common/camera/lens.hpp
+};
+
 /// The cameras hang over the field in a grid and see overlapping rectangles of it.
 struct VisionSpec {
   double rate_hz = 60;
@@ -54,6 +64,7 @@ struct VisionSpec {
   Duration delay{10'000'000};        ///< from capture to publication
   double missed = 0;                 ///< probability that a visible robot is not in a frame
   double ghosts = 0;  ///< probability that a frame holds a detection of a robot that is not there
+  std::optional<ImageSpec> images;  ///< none: the simulator publishes detections, with the noise above
 };
 
 struct OdometrySpec {

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <stdexcept>
 
 #include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "idl/vision.h"
 
 namespace sidestep {
 namespace {
@@ -67,6 +69,41 @@ void read_budget(YamlMap& map, Scenario& scenario) {
                           budget.clock_bound_s, budget.speed_mps));
 }
 
+void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
+  read_section(map, "images", [&](YamlMap& inner) {
+    ImageSpec& spec = images.emplace();
+    if (const YAML::Node node = inner.find("format"); node.IsDefined()) {
+      const YamlPlace place = inner.place_of("format");
+      const std::string name = text_from(node, place);
+      const auto format = pixel_format_named(name);
+      if (!format) place.refuse("expected yuv422 or rgb, got \"" + name.substr(0, 40) + "\"");
+      spec.format = *format;
+    }
+    inner.read("width_px", {16, 4096}, spec.width_px);
+    inner.read("height_px", {16, 4096}, spec.height_px);
+    inner.read("camera_height_m", {1, 100}, spec.camera_height_m);
+    inner.read("distortion", {0, 2}, spec.distortion);
+    if (spec.format == PixelFormat::kYuv422 && spec.width_px % 2 != 0)
+      inner.place_of("width_px").refuse("expected an even number with yuv422");
+    const ImageView view{spec.format, spec.width_px, spec.height_px};
+    if (view.bytes() > msg::MAX_IMAGE_BYTES) {
+      inner.place_of("width_px")
+          .refuse(fmt::format("{} x {} pixels are {} bytes, {} allowed", spec.width_px, spec.height_px,
+                              view.bytes(), msg::MAX_IMAGE_BYTES));
+    }
+  });
+}
+
+/// Who wears what somebody else wears cannot be told in images.
+void check_patterns(YamlMap& map, const Scenario& scenario) {
+  if (!scenario.vision.images) return;
+  try {
+    require_own_numbers(scenario);
+  } catch (const std::invalid_argument& error) {
+    map.place_of("vision").refuse(std::string("images: ") + error.what());
+  }
+}
+
 void read_disturbances(YamlMap& map, Scenario& scenario) {
   read_section(map, "vision", [&](YamlMap& inner) {
     VisionSpec& vision = scenario.vision;
@@ -79,6 +116,7 @@ void read_disturbances(YamlMap& map, Scenario& scenario) {
     inner.read_ms("delay_ms", {0, 1000}, vision.delay);
     inner.read("missed", kProbability, vision.missed);
     inner.read("ghosts", kProbability, vision.ghosts);
+    read_images(inner, vision.images);
   });
   read_section(map, "odometry", [&](YamlMap& inner) {
     inner.read("scale_error", {0, 0.2}, scenario.odometry.scale_error);
@@ -136,6 +174,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   map.find("streams");
   map.finish();
   read_robots(map, scenario);
+  check_patterns(map, scenario);
   return scenario;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace sidestep {
@@ -13,6 +15,18 @@ enum class PixelFormat : std::uint8_t {
             ///< byte)
   kRgb      ///< R G B for each pixel
 };
+
+/// As files and command lines spell it.
+constexpr std::string_view name_of(PixelFormat format) {
+  return format == PixelFormat::kRgb ? "rgb" : "yuv422";
+}
+/// Nothing for a name that is none of theirs.
+constexpr std::optional<PixelFormat> pixel_format_named(std::string_view name) {
+  for (const PixelFormat format : {PixelFormat::kYuv422, PixelFormat::kRgb}) {
+    if (name == name_of(format)) return format;
+  }
+  return std::nullopt;
+}
 
 constexpr int bytes_per_pixel(PixelFormat format) { return format == PixelFormat::kRgb ? 3 : 2; }
 

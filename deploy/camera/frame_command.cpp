@@ -6,24 +6,24 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
 #include "common/process/process.hpp"
+#include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr Rgb kOpponent{118, 44, 150};
-
 struct FrameOptions {
   std::string scenario_file, picture_file, layout_file;
   std::size_t camera = 0;
   std::uint64_t seed = 1;
-  HangingCamera like;
+  std::optional<int> width_px, height_px;
 };
 
 void write_picture(const Image& image, const std::string& path) {
@@ -43,31 +43,19 @@ void write_picture(const Image& image, const std::string& path) {
 int write_frame(const FrameOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
   const MarkingLayout layout = options.layout_file.empty() ? butterfly() : load_layout(options.layout_file);
-  const std::vector<CameraModel> cameras = hang_grid(scenario.field, scenario.vision, options.like);
+  ImageSpec images = scenario.vision.images.value_or(ImageSpec());
+  images.width_px = options.width_px.value_or(images.width_px);
+  images.height_px = options.height_px.value_or(images.height_px);
+  const std::vector<CameraModel> cameras = hang_grid(scenario.field, scenario.vision, hanging(images));
   if (options.camera >= cameras.size()) {
     fmt::print(stderr, "sidestep: --camera {}: {} has {} cameras, the first is 0\n", options.camera,
                options.scenario_file, cameras.size());
     return kExitUsage;
   }
-  std::vector<SceneRobot> robots;
-  for (const RobotSpec& robot : scenario.robots) {
-    if (robot.is_absent) continue;
-    const std::uint32_t pattern = layout.patterns[robot.id % layout.patterns.size()].id;
-    robots.push_back({robot.team, pattern, robot.start_m, robot.start_heading_rad});
-  }
-  std::vector<SceneBlob> blobs;
-  for (const Circle& circle : scenario.obstacles) blobs.push_back({circle});
-  for (const OpponentSpec& opponent : scenario.opponents)
-    blobs.push_back({{opponent.way_m.front(), opponent.radius_m}, 0.15, kOpponent});
-  Scene scene{robots, blobs};
-  if (scenario.ball) {
-    const Vec2& p = scenario.ball->position_m;
-    scene.ball = SceneBall{Vec3(p.x(), p.y(), SceneBall{}.position_m.z())};
-  }
   RenderSpec spec;
   spec.format = PixelFormat::kRgb;
   FrameRenderer renderer(cameras[options.camera], scenario.field, layout, spec, Rng(options.seed));
-  write_picture(renderer.render(scene), options.picture_file);
+  write_picture(renderer.render(floor_scene(scenario).scene()), options.picture_file);
   return 0;
 }
 
@@ -86,12 +74,10 @@ void add_frame_command(CLI::App& root, std::function<int()>& action) {
       });
   command->add_option("--camera", options->camera, "which of the scenario's")->capture_default_str();
   command->add_option("--layout", options->layout_file, "layout of the robots' markings [the butterfly]");
-  command->add_option("--width", options->like.width_px, "of the frame, in pixels")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
-  command->add_option("--height", options->like.height_px, "of the frame, in pixels")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
+  command->add_option("--width", options->width_px, "of the frame, in pixels [the scenario's]")
+      ->check(CLI::Range(16, 8192));
+  command->add_option("--height", options->height_px, "of the frame, in pixels [the scenario's]")
+      ->check(CLI::Range(16, 8192));
   command->add_option("--seed", options->seed, "of the noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -81,7 +81,7 @@ clock_bound_s: 0.001
 control_rate_hz: 50
 goal_tolerance_m: 0.03
 time_limit_s: 12.5
-vision: {rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
+vision: {images: {format: rgb, width_px: 1001, height_px: 400, camera_height_m: 3.5, distortion: 0.2}, rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
          delay_ms: 12.5, missed: 0.1, ghosts: 0.2}
 odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
 command_loss: 0.25
@@ -121,6 +121,12 @@ robots:
   CHECK(s.vision.delay == std::chrono::microseconds(12500));
   CHECK(s.vision.missed == 0.1);
   CHECK(s.vision.ghosts == 0.2);
+  REQUIRE(s.vision.images);
+  CHECK(s.vision.images->format == PixelFormat::kRgb);
+  CHECK(s.vision.images->width_px == 1001);
+  CHECK(s.vision.images->height_px == 400);
+  CHECK(s.vision.images->camera_height_m == 3.5);
+  CHECK(s.vision.images->distortion == 0.2);
   CHECK(s.odometry.scale_error == 0.01);
   CHECK(s.odometry.velocity_noise_mps == 0.02);
   CHECK(s.command_loss == 0.25);
@@ -160,6 +166,7 @@ TEST_CASE("missing keys leave the struct's defaults") {
   CHECK(given.name == "lone");
   CHECK(given.cycle == usual.cycle);
   CHECK(given.vision.delay == usual.vision.delay);
+  CHECK_FALSE(given.vision.images);
   CHECK(given.margin_m == usual.margin_m);
   CHECK(given.time_limit_s == usual.time_limit_s);
   CHECK_FALSE(given.ball);

@@ -57,6 +57,25 @@ TEST_CASE("opponents that make no sense are refused with their line") {
   check_refused(many, 3, "expected at most 16 elements, got 17");
 }
 
+TEST_CASE("images that make no sense are refused with their line") {
+  const auto images = [](const std::string& keys) { return kRobot + "vision:\n  images: {" + keys + "}\n"; };
+  CHECK(refusal(images("")) == "accepted");
+  CHECK(refusal(images("format: rgb, width_px: 2448, height_px: 2048")) == "accepted");
+  CHECK(refusal(images("format: rgb, width_px: 781")) == "accepted");
+  check_refused(images("format: bayer"), 3, "vision.images.format: expected yuv422 or rgb, got \"bayer\"");
+  check_refused(images("width_px: 15"), 3, "vision.images.width_px: expected 16 to 4096");
+  check_refused(images("width_px: 781"), 3, "expected an even number");
+  check_refused(images("width_px: 4096, height_px: 4096"), 3, "33554432 bytes, 16777216 allowed");
+  check_refused(images("camera_height_m: 0"), 3, "camera_height_m: expected 1 to 100");
+  check_refused(images("distortion: .nan"), 3, "distortion: expected a number from 0 to 2");
+  check_refused(images("colour: red"), 3, "unknown key");
+  const std::string twins =
+      "robots:\n- {id: 1, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 17, start_m: [0, 1], goals_m: [[1, "
+      "1]]}\n";
+  CHECK(refusal(twins) == "accepted");
+  check_refused(twins + "vision: {images: {}}\n", 4, "robots 1 and 17 both have number 1");
+}
+
 TEST_CASE("an absent robot is in nobody's way until it is placed") {
   const auto pair = [](const std::string& how) {
     return "robots:\n- {id: 0, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 1, start_m: [0, 0.1], goals_m: "

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/messaging/bus.hpp"
+#include "simulator/images/floor_scene.hpp"
+#include "simulator/rendering/frame_renderer.hpp"
+#include "simulator/simulator_node.hpp"
+
+namespace sidestep {
+
+/// Publishes what a simulator's cameras see as images, rendered when they are due. The bus must not call back
+/// any more when this has gone.
+class ImageOutput {
+ public:
+  /// The scenario has images. Throws std::invalid_argument when such cameras cannot hang over its field.
+  ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, Incarnation incarnation,
+              std::uint64_t seed);
+  ImageOutput(const ImageOutput&) = delete;
+  ImageOutput& operator=(const ImageOutput&) = delete;
+
+  const std::vector<FrameRenderer>& cameras() const { return renderers_; }
+
+ private:
+  void publish(std::size_t camera, Time captured_at, const FloorScene& floor);
+
+  Bus& bus_;
+  Scenario scenario_;
+  std::vector<FrameRenderer> renderers_;
+  msg::CameraImage image_;
+  Writer<msg::CameraImage> writer_;
+};
+
+}  // namespace sidestep
