@@ -32,11 +32,11 @@ bool is_sane(const msg::ObstacleDetection& d) {
          d.radius_m() <= kMaxObstacle_m;
 }
 
+}  // namespace
+
 bool is_timely(std::int64_t captured_at_ns, Time now) {
   return captured_at_ns >= to_ns(now - kMaxAge) && captured_at_ns <= to_ns(now + kMaxAhead);
 }
-
-}  // namespace
 
 void Frame::clear(const msg::DetectionFrame& message) {
   camera_ = message.camera();

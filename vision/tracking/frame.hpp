@@ -23,6 +23,10 @@ struct ObstacleSight {
   double radius_m = 0;
 };
 
+/// Whether a capture time is one that frames may have which arrive now: from 500 ms ago to 100 ms ahead,
+/// because cameras' clocks differ.
+bool is_timely(std::int64_t captured_at_ns, Time now);
+
 /// A DetectionFrame of which every number has been checked, and nothing else kept.
 class Frame {
  public:
@@ -36,8 +40,7 @@ class Frame {
   /// Detections of the message that are not in here; for a frame that is not usable at least 1.
   std::uint64_t rejected() const { return rejected_; }
 
-  /// Takes over what makes sense: stamps from 500 ms ago to 100 ms ahead (cameras' clocks differ), positions
-  /// within 100 m, confidences in 0..1, robot numbers below kMaxRobots, obstacles' radii up to 10 m.
+  /// Takes over what makes sense: timely stamps, positions within 100 m, confidences in 0..1, robot numbers below kMaxRobots, obstacles' radii up to 10 m.
   /// Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now);
 

@@ -2,6 +2,7 @@
 #include "vision/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sidestep {
 namespace {
@@ -21,16 +22,26 @@ void fill(msg::TrackedRobot& robot, const Estimate& now, const Sight& seen) {
   robot.seen_heading_rad(seen.heading_rad);
 }
 
-msg::TrackedBall tracked_ball(const std::optional<Estimate>& estimate) {
+msg::TrackedBall tracked_ball(const State& state) {
   msg::TrackedBall ball;
-  ball.is_visible(estimate.has_value());
-  if (estimate) {
-    ball.x_m(estimate->position_m.x());
-    ball.y_m(estimate->position_m.y());
-    ball.vx_mps(estimate->velocity_mps.x());
-    ball.vy_mps(estimate->velocity_mps.y());
-  }
+  ball.is_visible(true);
+  ball.x_m(state.position_m.x());
+  ball.y_m(state.position_m.y());
+  ball.vx_mps(state.velocity_mps.x());
+  ball.vy_mps(state.velocity_mps.y());
   return ball;
+}
+
+/// Errors of single dots in images, in pixels, and a robot's of them: what the butterfly's five dots leave
+/// (common/marking/pose_error.hpp).
+constexpr double kDotError_px = 0.19, kDots = 5, kDotsSpread_m = 0.128;
+
+void expect_images(const Scenario& scenario, TrackModel& robot) {
+  const VisionSpec& vision = scenario.vision;
+  const double across_m = scenario.field.length_m / vision.columns + 2 * vision.overlap_m;
+  const double dot_m = kDotError_px * across_m / vision.images->width_px;
+  robot.position_noise_m = dot_m / std::sqrt(kDots);
+  robot.heading_noise_rad = dot_m / kDotsSpread_m;
 }
 
 }  // namespace
@@ -38,7 +49,7 @@ msg::TrackedBall tracked_ball(const std::optional<Estimate>& estimate) {
 TrackModel TrackerSettings::ball_model() {
   TrackModel ball;
   ball.motion = {1, 1};
-  ball.rolling_mps2 = 0.3;
+  ball.rolling_mps2 = BallSettings().friction_mps2;
   ball.start_speed_mps = 4;
   ball.gate_m = 0.5;
   ball.relocate_after = Duration{30'000'000};
@@ -53,10 +64,14 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   TrackerSettings settings;
   settings.robot.position_noise_m = std::max(kBestPosition_m, scenario.vision.position_noise_m);
   settings.robot.heading_noise_rad = std::max(kBestHeading_rad, scenario.vision.heading_noise_rad);
+  if (scenario.vision.images) expect_images(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
   settings.ball.position_noise_m = settings.robot.position_noise_m;
   settings.obstacles.position_noise_m = settings.robot.position_noise_m;
   settings.obstacles.speed_mps = scenario.opponent_speed_mps;
+  settings.field = scenario.field;
+  settings.floor_obstacles = scenario.obstacles;
+  settings.robot_radius_m = scenario.radius_m;
   return settings;
 }
 
@@ -108,7 +123,29 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
   world.frames(frames_);
   world.rejected(rejected);
   obstacles_.world_at(t, world);
-  world.ball(tracked_ball(estimate_at(ball_.state(), t, settings_.ball)));
+  const bool is_known = estimate_at(ball_.state(), t, settings_.ball).has_value();
+  world.ball(is_known ? tracked_ball(ball_at(t, world)) : msg::TrackedBall());
+}
+
+/// `world` holds the robots at that time.
+State Tracker::ball_at(Time t, const msg::WorldState& world) const {
+  constexpr double kStep_s = 0.005;
+  const TrackState& track = ball_.state();
+  RollingBall ball({track.filter.position.position(), track.filter.position.velocity()}, BallSettings());
+  double left_s = to_seconds(t - track.seen.captured_at);
+  while (left_s > 0) {
+    const double step_s = std::min(left_s, kStep_s);
+    left_s -= step_s;
+    ball.roll(step_s);
+    for (const Circle& obstacle : settings_.floor_obstacles) ball.bounce_off(obstacle);
+    for (const msg::TrackedRobot& robot : world.robots()) {
+      const Vec2 velocity_mps(robot.vx_mps(), robot.vy_mps());
+      const Vec2 then_m = Vec2(robot.x_m(), robot.y_m()) - left_s * velocity_mps;
+      ball.bounce_off_robot({then_m, settings_.robot_radius_m}, velocity_mps);
+    }
+    ball.bounce_off_walls(settings_.field);
+  }
+  return ball.state();
 }
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/motion/rolling_ball.hpp"
 #include "idl/vision.h"
 #include "vision/tracking/frame.hpp"
 #include "vision/tracking/obstacle_tracker.hpp"
@@ -18,6 +19,9 @@ struct TrackerSettings {
   TrackModel robot;
   TrackModel ball = ball_model();
   ObstacleSettings obstacles;
+  Field field;                          ///< off whose walls the ball bounces,
+  std::vector<Circle> floor_obstacles;  ///< and off these,
+  double robot_radius_m = 0.09;         ///< and off robots
 
   /// A ball keeps no heading, rolls with friction and is kicked: fast, and suddenly elsewhere.
   static TrackModel ball_model();
@@ -35,11 +39,14 @@ class Tracker {
 
   void update(const Frame& frame);
   /// Fills in valid_at_ns, counters, ball and robots as they are at a time, by extrapolation from their last
-  /// sight, and obstacles as they were at their last sight; ascending by number. Allocates when the message
-  /// has held fewer robots so far.
+  /// sight, and obstacles as they were at their last sight; ascending by number. The ball bounces off what is
+  /// known to be in its way, as long as nobody sees it. Allocates when the message has held fewer robots so
+  /// far.
   void world_at(Time t, msg::WorldState& world) const;
 
  private:
+  State ball_at(Time t, const msg::WorldState& world) const;
+
   static constexpr std::uint16_t kStranger = kMaxRobots;
 
   TrackerSettings settings_;

@@ -199,6 +199,52 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a ball that nobody sees bounces off the wall and off robots") {
+  // From the last sight on it is followed by hand: straight on, braked by friction, and back with what the
+  // bounce leaves.
+  const bool is_robot = GENERATE(false, true);
+  CAPTURE(is_robot);
+  Scenario scenario;
+  scenario.field = {4, 3};
+  TrackerSettings settings = tracker_settings(scenario);
+  const std::vector<RobotId> roster{0};
+  Tracker tracker(settings, roster);
+  const BallSettings ball;
+  const double turn_x_m = is_robot ? 1.2 - scenario.radius_m - ball.radius_m : 2 - ball.radius_m;
+  const double restitution = is_robot ? ball.robot_restitution : ball.wall_restitution;
+  const double seen_until_s = is_robot ? 0.25 : 0.6, speed_mps = 3;
+  const auto rolled_m = [&](double t_s) { return speed_mps * t_s - ball.friction_mps2 * t_s * t_s / 2; };
+  Frame frame;
+  for (double t_s = 0; t_s < seen_until_s; t_s += to_seconds(kFrame)) {
+    msg::DetectionFrame message = frame_message(0, after_s(t_s));
+    add_ball(message, {rolled_m(t_s), 0.3});
+    if (is_robot) {
+      Rng rng(5);
+      see(message, 0, {{1.2, 0.3}, {0, 0}, 0}, {0, 0}, rng);
+    }
+    frame.assign(message, after_s(t_s));
+    tracker.update(frame);
+  }
+  msg::WorldState world;
+  int after_bounce = 0;
+  for (double t_s = seen_until_s; t_s < seen_until_s + 0.4; t_s += 0.01) {
+    tracker.world_at(after_s(t_s), world);
+    REQUIRE(world.ball().is_visible());
+    double expected_m = rolled_m(t_s);
+    if (expected_m > turn_x_m) {
+      const double discriminant = speed_mps * speed_mps - 2 * ball.friction_mps2 * turn_x_m;
+      const double since_s = t_s - (speed_mps - std::sqrt(discriminant)) / ball.friction_mps2;
+      expected_m = turn_x_m - restitution * std::sqrt(discriminant) * since_s +
+                   ball.friction_mps2 * since_s * since_s / 2;
+      ++after_bounce;
+    }
+    CAPTURE(t_s, expected_m);
+    CHECK(std::abs(world.ball().x_m() - expected_m) < 0.03);
+    CHECK(std::abs(world.ball().y_m() - 0.3) < 0.01);
+  }
+  CHECK(after_bounce > 10);
+}
+
 TEST_CASE("a ball is found, followed, kicked and lost, and a second one does not disturb") {
   Rng rng(141);
   Watcher watcher(0);

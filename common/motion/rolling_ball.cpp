@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/motion/rolling_ball.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+
+void RollingBall::roll(double duration_s) {
+  const double speed = state_.velocity_mps.norm();
+  if (speed <= 0) return;
+  const double rolling_s = std::min(duration_s, speed / settings_.friction_mps2);
+  const Vec2 braking = state_.velocity_mps * (-settings_.friction_mps2 / speed);
+  state_ = state_after(state_, braking, rolling_s);
+  if (rolling_s < duration_s) state_.velocity_mps.setZero();
+}
+
+void RollingBall::bounce_off_walls(const Field& field) {
+  const Vec2 most(field.length_m / 2 - settings_.radius_m, field.width_m / 2 - settings_.radius_m);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double side = state_.position_m[axis] < 0 ? -1 : 1;
+    if (side * state_.position_m[axis] <= most[axis]) continue;
+    state_.position_m[axis] = side * most[axis];
+    if (side * state_.velocity_mps[axis] > 0) state_.velocity_mps[axis] *= -settings_.wall_restitution;
+  }
+}
+
+void RollingBall::bounce_off(const Circle& disc, const Vec2& velocity_mps, double restitution) {
+  const Vec2 apart = state_.position_m - disc.centre_m;
+  const double touching = disc.radius_m + settings_.radius_m;
+  const double square = apart.squaredNorm();
+  if (square >= touching * touching) return;
+  const double distance = std::sqrt(square);
+  const Vec2 away = distance > 0 ? Vec2(apart / distance) : Vec2(1, 0);
+  state_.position_m = disc.centre_m + away * touching;
+  const double approach = (velocity_mps - state_.velocity_mps).dot(away);
+  if (approach > 0) state_.velocity_mps += away * (approach * (1 + restitution));
+}
+
+}  // namespace sidestep

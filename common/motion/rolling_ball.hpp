@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/geometry/circle.hpp"
+#include "common/geometry/field.hpp"
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+struct BallSettings {
+  double radius_m = 0.0215;
+  double friction_mps2 = 0.3;
+  double wall_restitution = 0.6;
+  double robot_restitution = 0.2;
+};
+
+/// The physics of a ball that rolls on the floor and bounces off what stands there.
+class RollingBall {
+ public:
+  RollingBall(const State& state, const BallSettings& settings) : state_(state), settings_(settings) {}
+
+  /// Moves on, braked by friction.
+  void roll(double duration_s);
+  /// Keeps within the field's walls.
+  void bounce_off_walls(const Field& field);
+  /// Keeps out of a disc that stands still.
+  void bounce_off(const Circle& obstacle) { bounce_off(obstacle, {0, 0}, settings_.wall_restitution); }
+  /// Keeps out of a robot, which does not notice it.
+  void bounce_off_robot(const Circle& robot, const Vec2& velocity_mps) {
+    bounce_off(robot, velocity_mps, settings_.robot_restitution);
+  }
+
+  const State& state() const { return state_; }
+
+ private:
+  void bounce_off(const Circle& disc, const Vec2& velocity_mps, double restitution);
+
+  State state_;
+  BallSettings settings_;
+};
+
+}  // namespace sidestep
