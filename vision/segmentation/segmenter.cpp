@@ -2,6 +2,7 @@
 #include "vision/segmentation/segmenter.hpp"
 
 #include <bit>
+#include <limits>
 
 #include "vision/segmentation/batch/dispatch.hpp"
 
@@ -37,18 +38,56 @@ Thresholds thresholds_of(const ColourBox& box) {
   return t;
 }
 
-void add_to(Repeated& coarse, std::uint8_t low, std::uint8_t high, std::uint8_t bit) {
+/// The upper halves of the numbers that boxes allow: bit i for i.
+struct UpperHalves {
+  std::array<std::uint32_t, 3> of{};  ///< of Y, U and V
+
+  void add(const ColourBox& box) {
+    const auto range = [](std::uint8_t low, std::uint8_t high) {
+      return (2U << high / 16) - (1U << low / 16);
+    };
+    of[0] |= range(box.low.y, box.high.y);
+    of[1] |= range(box.low.u, box.high.u);
+    of[2] |= range(box.low.v, box.high.v);
+  }
+  /// How many pairs of U and V they allow.
+  int pairs() const { return std::popcount(of[1]) * std::popcount(of[2]); }
+};
+
+/// Puts a box into a group that allows what it does, else into an empty one, and when there is none into that
+/// which thereby allows least more. Returns the group's bit.
+std::uint32_t joined(std::array<UpperHalves, 8>& groups, const ColourBox& box) {
+  std::size_t best = 0;
+  int least = std::numeric_limits<int>::max();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    UpperHalves with = groups[g];
+    with.add(box);
+    const int allowed = groups[g].pairs();
+    const int more = allowed == 0 ? 1 : with.pairs() - allowed;
+    if (more < least) {
+      best = g;
+      least = more;
+    }
+  }
+  groups[best].add(box);
+  return std::uint32_t{1} << best;
+}
+
+void set_bits(Repeated& coarse, std::uint32_t upper_halves, std::uint8_t bit) {
   for (std::size_t i = 0; i < sizeof coarse.bytes; ++i) {
-    const std::size_t upper = i % 16;
-    if (low / 16 <= upper && upper <= high / 16) coarse.bytes[i] |= bit;
+    if ((upper_halves >> i % 16 & 1) != 0) coarse.bytes[i] |= bit;
   }
 }
 
-void add_to(Coarse& coarse, const ColourBox& box, std::size_t k) {
-  const auto bit = static_cast<std::uint8_t>(1 << k % 8);
-  add_to(coarse.y, box.low.y, box.high.y, bit);
-  add_to(coarse.u, box.low.u, box.high.u, bit);
-  add_to(coarse.v, box.low.v, box.high.v, bit);
+Coarse coarse_of(const std::array<UpperHalves, 8>& groups) {
+  Coarse coarse{};
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto bit = static_cast<std::uint8_t>(1 << g);
+    set_bits(coarse.y, groups[g].of[0], bit);
+    set_bits(coarse.u, groups[g].of[1], bit);
+    set_bits(coarse.v, groups[g].of[2], bit);
+  }
+  return coarse;
 }
 
 void add_runs_of(std::uint64_t bits, int begin_px, RegionBuilder& builder) {
@@ -69,11 +108,13 @@ Segmenter::Segmenter(const ColourClasses& classes, const SegmentationSettings& s
 Segmenter::Segmenter(const ColourClasses& classes, const SegmentationSettings& settings,
                      const Kernels& kernels)
     : classes_(classes), settings_(settings), kernels_(kernels) {
+  std::array<UpperHalves, 8> groups;
   for (const ColourBox& box : classes.boxes()) {
-    add_to(coarse_, box, thresholds_.size());
     colours_ |= std::uint32_t{1} << box.colour;
     thresholds_.push_back(thresholds_of(box));
+    thresholds_.back().group = joined(groups, box);
   }
+  coarse_ = coarse_of(groups);
 }
 
 ClassesView Segmenter::view() const {

@@ -19,10 +19,8 @@ struct RgbPixels {
     u = average(b, dark);
     v = average(r, dark);
   }
-  /// Sure that no pixel has any colour.
-  bool has_none(const Coarse& c) const {
-    return is_zero(both(both(coarse(y, c.y), coarse(u, c.u)), coarse(v, c.v)));
-  }
+  /// The groups of boxes that pixels may lie in, somewhere in their bytes.
+  Bytes groups(const Coarse& c) const { return both(both(coarse(y, c.y), coarse(u, c.u)), coarse(v, c.v)); }
   std::uint64_t of(const Thresholds& t) const {
     return within(y, t.y_low, t.y_span) & within(u, t.u_low, t.u_span) & within(v, t.v_low, t.v_span);
   }
@@ -32,9 +30,7 @@ struct Yuv422Pixels {
   static constexpr std::size_t kBytes = 2;
   Bytes y, uv;
   explicit Yuv422Pixels(const std::uint8_t* pixels) { split_yuv422(pixels, y, uv); }
-  bool has_none(const Coarse& c) const {
-    return is_zero(both(coarse(uv, c.u), second_of_pairs(coarse(uv, c.v))));
-  }
+  Bytes groups(const Coarse& c) const { return both(coarse(uv, c.u), second_of_pairs(coarse(uv, c.v))); }
   std::uint64_t of(const Thresholds& t) const {
     const std::uint64_t bits = within(uv, t.uv_low, t.uv_span);
     const std::uint64_t pairs = bits & (bits >> 1) & 0x5555555555555555;
@@ -48,7 +44,13 @@ struct Word {
   static_assert(kWord == 2 * kWidth || kWord == kWidth);
   Pixels low, high;
   explicit Word(const std::uint8_t* row) : low(row), high(row + (kWord - kWidth) * Pixels::kBytes) {}
-  bool has_none(const Coarse& c) const { return low.has_none(c) && (kWord == kWidth || high.has_none(c)); }
+  Bytes groups(const Coarse& c) const {
+    if constexpr (kWord == kWidth) {
+      return low.groups(c);
+    } else {
+      return either(low.groups(c), high.groups(c));
+    }
+  }
   std::uint64_t of(const Thresholds& t) const {
     if constexpr (kWord == kWidth) {
       return low.of(t);
@@ -62,10 +64,13 @@ template <typename Pixels>
 inline std::uint64_t classify_word(const ClassesView& classes, const std::uint8_t* row, std::uint64_t valid,
                                    std::uint64_t* of) {
   const Word<Pixels> word(row);
-  if (word.has_none(*classes.coarse)) return 0;
+  const Bytes may_have = word.groups(*classes.coarse);
+  if (is_zero(may_have)) return 0;
+  const unsigned groups = united(may_have);
   for (std::uint32_t left = classes.colours; left != 0; left &= left - 1) of[__builtin_ctz(left)] = 0;
   std::uint64_t left = valid;
   for (std::size_t k = 0; k < classes.boxes; ++k) {
+    if ((classes.thresholds[k].group & groups) == 0) continue;
     const std::uint64_t found = word.of(classes.thresholds[k]) & left;
     of[classes.thresholds[k].colour] |= found;
     left &= ~found;

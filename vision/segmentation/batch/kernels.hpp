@@ -20,10 +20,11 @@ struct alignas(64) Repeated {
 struct Thresholds {
   Repeated y_low, y_span, u_low, u_span, v_low, v_span, uv_low, uv_span;
   std::uint32_t colour;
+  std::uint32_t group;  ///< the bit of Coarse that it belongs to
 };
 
-/// By a number's upper four bits, which boxes it may belong to, as far as eight bits tell: box k has bit
-/// k % 8. Again and again for each 16 bytes of a vector.
+/// By a number's upper four bits, which of eight groups of boxes it may belong to: bit k for the k-th. Again
+/// and again for each 16 bytes of a vector.
 struct Coarse {
   Repeated y, u, v;
 };
@@ -43,7 +44,7 @@ struct ClassesView {
 struct RowMasks {
   std::uint64_t* any;  ///< by word: pixels of any colour
   std::uint64_t* of;   ///< by word and colour, kMasks to a word; undefined where no pixel of the word has any
-                      ///< colour, and for colours that no box has
+                       ///< colour, and for colours that no box has
 };
 
 using ClassifyRow = void (*)(const ClassesView& classes, const std::uint8_t* row, std::size_t width_px,

@@ -18,6 +18,7 @@ inline Bytes load(const std::uint8_t* bytes) { return _mm512_loadu_si512(bytes);
 inline Bytes average(Bytes a, Bytes b) { return _mm512_avg_epu8(a, b); }
 inline Bytes inverted(Bytes a) { return _mm512_ternarylogic_epi32(a, a, a, 0x55); }
 inline Bytes both(Bytes a, Bytes b) { return _mm512_and_si512(a, b); }
+inline Bytes either(Bytes a, Bytes b) { return _mm512_or_si512(a, b); }
 inline bool is_zero(Bytes a) { return _mm512_test_epi8_mask(a, a) == 0; }
 /// By each byte's upper half, an entry of a table of 16.
 inline Bytes coarse(Bytes a, const Repeated& table) {
@@ -82,6 +83,7 @@ inline Bytes load(const std::uint8_t* bytes) {
 inline Bytes average(Bytes a, Bytes b) { return _mm256_avg_epu8(a, b); }
 inline Bytes inverted(Bytes a) { return _mm256_xor_si256(a, _mm256_set1_epi8(-1)); }
 inline Bytes both(Bytes a, Bytes b) { return _mm256_and_si256(a, b); }
+inline Bytes either(Bytes a, Bytes b) { return _mm256_or_si256(a, b); }
 inline bool is_zero(Bytes a) { return _mm256_testz_si256(a, a); }
 /// By each byte's upper half, an entry of a table of 16.
 inline Bytes coarse(Bytes a, const Repeated& table) {
@@ -142,6 +144,15 @@ inline void split_yuv422(const std::uint8_t* pixels, Bytes& y, Bytes& uv) {
 }
 
 #endif
+
+/// The bits that any byte has.
+inline unsigned united(Bytes a) {
+  unsigned long long bits = 0;
+  for (std::size_t i = 0; i < kWidth / 8; ++i) bits |= static_cast<unsigned long long>(a[i]);
+  bits |= bits >> 32;
+  bits |= bits >> 16;
+  return static_cast<unsigned>(bits | bits >> 8) & 0xff;
+}
 
 }  // namespace
 }  // namespace sidestep::segmentation
