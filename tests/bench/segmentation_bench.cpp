@@ -120,7 +120,9 @@ bool bench(int width_px, int height_px, PixelFormat format) {
   camera.width_px = width_px;
   camera.height_px = height_px;
   test::PaintedFloor floor(kSeed, spec, camera);
-  const std::vector<ColourBox> colours = floor.learned_boxes();
+  const std::vector<ColourBox> all = floor.learned_boxes();
+  std::vector<ColourBox> colours = all;
+  std::erase_if(colours, [](const ColourBox& box) { return box.colour == kOtherColour; });
   const std::vector<test::Marked> robots = floor.scattered_robots(11);
   const Image image = floor.frame(robots, floor.free_place(robots));
   const ImageView view = image.view();
@@ -139,6 +141,8 @@ bool bench(int width_px, int height_px, PixelFormat format) {
   for (std::size_t i = levels.size(); i-- > 0;) {
     sides.push_back({fmt::format("ours, {}", levels[i].name), [&, i] { segmenters[i].segment(view); }});
   }
+  Segmenter with_others{ColourClasses(all), kAll};
+  sides.push_back({"the best, with other colours", [&] { with_others.segment(view); }});
   Image copy = image;
   sides.push_back({"copying the frame", [&] { std::memcpy(copy.pixels(), view.pixels, view.bytes()); }});
   sides.push_back({"OpenCV inRange, contours", [&] { with_contours(yuv, colours); }});

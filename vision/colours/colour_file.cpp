@@ -6,6 +6,7 @@
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
 #include "common/marking/colour_from.hpp"
+#include "vision/colours/colour_learner.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,8 +16,7 @@ constexpr Range kByte{0, 255};
 
 PixelFormat format_from(const YAML::Node& node, const YamlPlace& place) {
   const std::string name = text_from(node, place);
-  if (name == "yuv422") return PixelFormat::kYuv422;
-  if (name == "rgb") return PixelFormat::kRgb;
+  if (const auto format = pixel_format_named(name)) return *format;
   place.refuse(fmt::format("expected yuv422 or rgb, got \"{}\"", name.substr(0, 40)));
 }
 
@@ -28,9 +28,14 @@ Yuv yuv_from(const YAML::Node& node, const YamlPlace& place) {
   return {byte(0), byte(1), byte(2)};
 }
 
+std::uint32_t number_from_name(const YAML::Node& node, const YamlPlace& place) {
+  if (node.IsScalar() && node.Scalar() == name_of_colour(kOtherColour)) return kOtherColour;
+  return static_cast<std::uint32_t>(colour_from(node, place));
+}
+
 ColourBox read_box(YamlMap& map) {
   ColourBox box;
-  box.colour = static_cast<std::uint32_t>(colour_from(map.require("colour"), map.place_of("colour")));
+  box.colour = number_from_name(map.require("colour"), map.place_of("colour"));
   box.low = yuv_from(map.require("low"), map.place_of("low"));
   box.high = yuv_from(map.require("high"), map.place_of("high"));
   map.finish();
@@ -64,10 +69,9 @@ ColourThresholds load_colours(const std::string& path) {
 
 std::string colours_text(const ColourThresholds& thresholds) {
   const auto numbers = [](const Yuv& yuv) { return fmt::format("[{}, {}, {}]", yuv.y, yuv.u, yuv.v); };
-  std::string text =
-      fmt::format("format: {}\nboxes:\n", thresholds.format == PixelFormat::kRgb ? "rgb" : "yuv422");
+  std::string text = fmt::format("format: {}\nboxes:\n", name_of(thresholds.format));
   for (const ColourBox& box : thresholds.boxes) {
-    text += fmt::format("  - {{colour: {}, low: {}, high: {}}}\n", kColours[box.colour].name,
+    text += fmt::format("  - {{colour: {}, low: {}, high: {}}}\n", name_of_colour(box.colour),
                         numbers(box.low), numbers(box.high));
   }
   return text;

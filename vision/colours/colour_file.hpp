@@ -12,7 +12,7 @@ namespace sidestep {
 /// By what numbers colours are told in frames of one format.
 struct ColourThresholds {
   PixelFormat format = PixelFormat::kYuv422;
-  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers
+  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers, and of kOtherColour
 };
 
 /// Reads and checks a file of thresholds; throws ScenarioError ("FILE:LINE: ...") for anything that is wrong.
@@ -21,6 +21,7 @@ struct ColourThresholds {
 /// format: yuv422                                          # or rgb
 /// boxes:
 ///   - {colour: orange, low: [98, 0, 166], high: [255, 94, 255]}
+///   - {colour: other, low: [0, 150, 0], high: [255, 255, 255]}   # what nobody named
 /// ```
 ColourThresholds load_colours(const std::string& path);
 /// The same from text; `file_name` stands in messages.

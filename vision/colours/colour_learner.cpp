@@ -12,12 +12,19 @@ constexpr double kInner = 0.6;  // of a disc's radius: the lens blurs its edge
 constexpr double kOuter = 1.6;  // of it, and so many pixels: nothing of the disc is left there
 constexpr double kOuter_px = 3;
 constexpr int kGrey = 128;
-constexpr int kColourful = 20;    // from grey, on U or V; less does not tell a colour
-constexpr int kSpread = 14;       // beyond what was seen, on U and V, of a number that is not colourful
-constexpr double kEdge = 0.4;     // of the way from grey to a colour: there a patch ends
-constexpr double kDarkest = 0.5;  // of the least brightness that was seen
-constexpr double kTrust = 0.5;    // in brightness, against U and V: light is uneven
+constexpr int kColourful = 20;  // from grey, on U or V; less does not tell a colour
+constexpr int kSpread = 14;     // beyond what was seen, on U and V, of a number that is not colourful
+constexpr double kEdge = 0.4;   // of the way from grey to a colour: there a patch ends
+constexpr double kTrust = 0.5;  // in brightness, against U and V: light is uneven
 constexpr double kOutliers = 0.002, kFloorOutliers = 0.1;
+
+// Of other colours.
+constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // of brightness
+constexpr double kGroundOutliers = 0.001;  // white lines are less than a hundredth of the floor
+constexpr int kClear = 8;                  // from the background that was seen, on U or V
+constexpr double kTint = 0.07;             // of the brightness: what a tenth more red or blue makes of grey
+constexpr int kNoise = 4;                  // and noise, on U or V
+constexpr int kCoarse = 16;                // segmentation rules out a sixteenth of the range at once
 
 }  // namespace
 
@@ -45,18 +52,30 @@ ColourLearner::Ranges ColourLearner::Seen::ranges(double left_out) const {
   return ranges;
 }
 
-void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs) {
+void ColourLearner::add_background(const Yuv& pixel) {
+  background_.add(pixel);
+  std::size_t band = 0;
+  while (pixel.y >= kBandEdges[band + 1]) ++band;
+  by_brightness_[band].add(pixel);
+}
+
+void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs,
+                        std::span<const KnownDisc> unknown) {
+  const auto distance_px = [](int x, int y, const KnownDisc& disc) {
+    return std::hypot(x - disc.centre_px.x(), y - disc.centre_px.y());
+  };
+  const auto is_near = [&](int x, int y, std::span<const KnownDisc> some) {
+    return std::ranges::any_of(some, [&](const KnownDisc& disc) {
+      return distance_px(x, y, disc) < kOuter * disc.radius_px + kOuter_px;
+    });
+  };
   for (int y = 0; y < image.height_px; ++y) {
     for (int x = 0; x < image.width_px; ++x) {
-      bool is_near = false;
+      if (is_near(x, y, unknown)) continue;
       for (const KnownDisc& disc : discs) {
-        const double distance = std::hypot(x - disc.centre_px.x(), y - disc.centre_px.y());
-        if (distance <= kInner * disc.radius_px) {
-          classes_[static_cast<std::size_t>(disc.colour)].add(pixel_at(image, x, y));
-        }
-        is_near |= distance < kOuter * disc.radius_px + kOuter_px;
+        if (distance_px(x, y, disc) <= kInner * disc.radius_px) add(disc.colour, pixel_at(image, x, y));
       }
-      if (!is_near) background_.add(pixel_at(image, x, y));
+      if (!is_near(x, y, discs)) add_background(pixel_at(image, x, y));
     }
   }
 }
@@ -64,7 +83,7 @@ void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs
 ColourLearner::Ranges ColourLearner::generous(const Seen& seen) const {
   const Ranges own = seen.ranges(kOutliers);
   Ranges box;
-  box[0] = {static_cast<int>(kDarkest * own[0].low), 255};
+  box[0] = {static_cast<int>(least_light_ * own[0].low), 255};
   for (std::size_t c = 1; c < 3; ++c) {
     const int middle = seen.at(c, 0.5) - kGrey, edge = static_cast<int>(kEdge * middle);
     if (middle <= -kColourful) {
@@ -112,7 +131,7 @@ void ColourLearner::separate(Ranges& a, const Ranges& seen_a, Ranges& b, const R
   cut(b[best], seen_b[best], seen_a[best]);
 }
 
-std::vector<ColourBox> ColourLearner::boxes() const {
+std::vector<ColourBox> ColourLearner::named_boxes() const {
   struct Learned {
     std::uint32_t colour;
     Ranges seen, box;
@@ -142,6 +161,49 @@ std::vector<ColourBox> ColourLearner::boxes() const {
         {{byte(y.low), byte(u.low), byte(v.low)}, {byte(y.high), byte(u.high), byte(v.high)}, one.colour});
   }
   return boxes;
+}
+
+std::vector<ColourBox> ColourLearner::other_boxes() const {
+  std::vector<ColourBox> boxes;
+  if (background_.count == 0) return boxes;
+  const Ranges floor = background_.ranges(kFloorOutliers), ground = background_.ranges(kGroundOutliers);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const auto darkest = static_cast<std::uint8_t>(kBandEdges[band]);
+    const auto brightest = static_cast<std::uint8_t>(kBandEdges[band + 1] - 1);
+    const int grey = static_cast<int>(kTint * brightest) + kNoise;
+    // The floor shines through at the edges of what is brighter or darker.
+    Ranges none = floor;
+    if (by_brightness_[band].count > 0) {
+      const Ranges seen = by_brightness_[band].ranges(kGroundOutliers);
+      for (std::size_t c = 1; c < 3; ++c)
+        none[c] = {std::min(none[c].low, seen[c].low), std::max(none[c].high, seen[c].high)};
+    }
+    for (std::size_t c = 1; c < 3; ++c) {
+      none[c] = {std::min(none[c].low - kClear, kGrey - grey), std::max(none[c].high + kClear, kGrey + grey)};
+      // Nothing in the floor's sixteenth of the range is another colour, or segmentation would lose its
+      // speed.
+      none[c].low = std::min(none[c].low, ground[c].low / kCoarse * kCoarse);
+      none[c].high = std::max(none[c].high, floor[c].high / kCoarse * kCoarse + kCoarse - 1);
+      const auto add = [&](int low, int high) {
+        ColourBox box{{darkest, 0, 0}, {brightest, 255, 255}, kOtherColour};
+        (c == 1 ? box.low.u : box.low.v) = static_cast<std::uint8_t>(low);
+        (c == 1 ? box.high.u : box.high.v) = static_cast<std::uint8_t>(high);
+        boxes.push_back(box);
+      };
+      if (none[c].low > 0) add(0, none[c].low - 1);
+      if (none[c].high < 255) add(none[c].high + 1, 255);
+    }
+  }
+  return boxes;
+}
+
+std::vector<ColourBox> ColourLearner::boxes() const {
+  std::vector<ColourBox> all = named_boxes();
+  const std::vector<ColourBox> others = other_boxes();
+  const std::size_t room = kMaxColours - all.size();
+  all.insert(all.end(), others.begin(),
+             others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
+  return all;
 }
 
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/colours.hpp"
+#include "vision/colours/colour_learner.hpp"
 
 using namespace sidestep;
 
@@ -30,6 +31,13 @@ TEST_CASE("thresholds come back from a file as they were written") {
   CHECK(read.boxes[0].low == Yuv{98, 0, 166});
   CHECK(read.boxes[0].high == Yuv{255, 94, 255});
   CHECK(colours_text(read) == kGood);
+}
+
+TEST_CASE("a file may have boxes for what nobody named") {
+  const std::string text = replaced(kGood, "pink", "other");
+  const ColourThresholds read = parse_colours(text, "f");
+  CHECK(read.boxes[1].colour == kOtherColour);
+  CHECK(colours_text(read) == text);
 }
 
 TEST_CASE("files of thresholds that make no sense are refused with file and line") {

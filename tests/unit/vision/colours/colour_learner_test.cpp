@@ -72,7 +72,7 @@ TEST_CASE("boxes hold what was seen of their colours and no pixel belongs to two
   const Painting painting({byte(40, 90), byte(110, 125), byte(100, 120)}, patches, noise, rng);
   ColourLearner learner;
   learner.add(painting.image.view(), painting.discs);
-  const std::vector<ColourBox> boxes = learner.boxes();
+  const std::vector<ColourBox> boxes = learner.named_boxes();
   REQUIRE(boxes.size() == patches.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t j = i + 1; j < boxes.size(); ++j) CHECK_FALSE(overlap(boxes[i], boxes[j]));
@@ -90,9 +90,66 @@ TEST_CASE("the border between two colours lies half way between what was seen of
   const Painting painting({60, 120, 110}, patches, 0, rng);
   ColourLearner learner;
   learner.add(painting.image.view(), painting.discs);
-  const auto boxes = learner.boxes();
+  const auto boxes = learner.named_boxes();
   CHECK(box_of(boxes, Colour::kOrange)->low.v == 176);
   CHECK(box_of(boxes, Colour::kYellow)->high.v == 175);
+}
+
+TEST_CASE("what is far from the background has another colour and what was seen of it has none") {
+  const std::uint64_t seed = GENERATE(range(1, 41));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const auto byte = [&](int low, int high) {
+    return static_cast<std::uint8_t>(low + static_cast<int>(rng.below(static_cast<std::size_t>(high - low))));
+  };
+  const Yuv floor{byte(40, 90), byte(105, 150), byte(105, 150)};
+  const std::vector<Patch> patches{{Colour::kPink, {byte(90, 160), byte(130, 160), byte(185, 225)}}};
+  const Painting painting(floor, patches, 3, rng);
+  ColourLearner learner;
+  learner.add(painting.image.view(), painting.discs);
+  const std::vector<ColourBox> boxes = learner.other_boxes();
+  const auto is_other = [&](const Yuv& pixel) {
+    return std::ranges::any_of(boxes, [&](const ColourBox& box) { return is_within(box, pixel); });
+  };
+  for (const ColourBox& box : boxes) CHECK(box.colour == kOtherColour);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      if (std::hypot(x - 30.0, y - 30.0) > 20) REQUIRE_FALSE(is_other(pixel_at(painting.image.view(), x, y)));
+    }
+  }
+  for (int y = 0; y < 256; ++y) {
+    const auto bright = static_cast<std::uint8_t>(y);
+    CAPTURE(y);
+    CHECK_FALSE(is_other({bright, 128, 128}));
+    for (const int far : {-54, 54}) {
+      CHECK(is_other({bright, static_cast<std::uint8_t>(floor.u + far), floor.v}));
+      CHECK(is_other({bright, floor.u, static_cast<std::uint8_t>(floor.v + far)}));
+    }
+  }
+  // White in light that is a tenth too red or too blue.
+  CHECK_FALSE(is_other({233, 111, 140}));
+  CHECK_FALSE(is_other({225, 142, 114}));
+}
+
+TEST_CASE("named colours come before what nobody named") {
+  Rng rng(1);
+  const Painting painting({60, 120, 110}, {{Colour::kOrange, {150, 60, 200}}}, 0, rng);
+  ColourLearner learner;
+  learner.add(painting.image.view(), painting.discs);
+  const ColourClasses classes(learner.boxes());
+  CHECK(classes.colour_of({150, 60, 200}) == static_cast<std::uint32_t>(Colour::kOrange));
+  CHECK(classes.colour_of({150, 200, 60}) == kOtherColour);
+  CHECK_FALSE(classes.colour_of({60, 120, 110}));
+}
+
+TEST_CASE("of discs of unknown colour nothing is learned") {
+  Rng rng(1);
+  const Painting painting({60, 120, 110}, {{Colour::kOrange, {150, 60, 200}}}, 0, rng);
+  ColourLearner learner;
+  learner.add(painting.image.view(), {}, painting.discs);
+  CHECK(learner.seen(Colour::kOrange) == 0);
+  CHECK(learner.named_boxes().empty());
+  CHECK(ColourClasses(learner.boxes()).colour_of({150, 60, 200}) == kOtherColour);
 }
 
 TEST_CASE("a colour that was never seen has no box") {
