@@ -11,8 +11,34 @@ namespace {
 // A ball is lit from above: what has its colour is a part of its disc.
 constexpr double kLeastBall = 0.25, kMostBall = 2.0;
 
+/// Dots of one colour are to stay apart.
+constexpr SegmentationSettings kSegmentation{3, {0.5, 1}};
+
 double confidence_of(const MarkedRobot& robot, const MarkingLayout& layout) {
   return robot.seen / static_cast<double>(layout.dots.size() + 1);
+}
+
+/// The sight of a robot ends so far outside its top, and where it was expected it may be missed by so much.
+constexpr double kEdge_m = 0.01, kMissed_m = 0.04;
+
+std::uint32_t bit(Colour colour) { return std::uint32_t{1} << static_cast<std::uint32_t>(colour); }
+
+std::uint32_t worn_by(const MarkingLayout& layout) {
+  std::uint32_t colours = bit(layout.blue_team) | bit(layout.yellow_team);
+  for (const MarkingPattern& pattern : layout.patterns)
+    for (const Colour colour : pattern.colours) colours |= bit(colour);
+  return colours;
+}
+
+ObstacleRules rules_for(const FrameTask& task) {
+  ObstacleRules rules;
+  rules.ground = (bit(Colour::kField) | bit(Colour::kWhite) | bit(Colour::kBlack)) & ~worn_by(task.layout);
+  rules.largest_dot_m = std::max(task.layout.centre.radius_m, task.ball_radius_m);
+  for (const MarkingDot& dot : task.layout.dots)
+    rules.largest_dot_m = std::max(rules.largest_dot_m, dot.radius_m);
+  rules.least_radius_m = task.least_obstacle_m;
+  rules.robot_height_m = task.robot_height_m;
+  return rules;
 }
 
 }  // namespace
@@ -20,28 +46,30 @@ double confidence_of(const MarkedRobot& robot, const MarkingLayout& layout) {
 FrameReader::FrameReader(const CameraModel& camera, const FrameTask& task)
     : camera_(camera),
       task_(task),
-      segmenter_(ColourClasses(task.boxes)),
+      segmenter_(ColourClasses(task.boxes), kSegmentation),
       finder_(task.layout),
-      identifier_(task.roster) {}
-
-bool FrameReader::is_worn(Colour colour) const {
-  return colour == task_.layout.blue_team || colour == task_.layout.yellow_team ||
-         std::ranges::any_of(task_.layout.patterns, [&](const MarkingPattern& pattern) {
-           return std::ranges::find(pattern.colours, colour) != pattern.colours.end();
-         });
-}
+      identifier_(task.roster),
+      worn_(worn_by(task.layout)),
+      obstacle_finder_(camera, rules_for(task)) {}
 
 void FrameReader::read(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
                        msg::DetectionFrame& frame) {
+  frame.captured_at_ns(to_ns(captured_at));
   regions_ = segmenter_.segment(image);
+  find_robots(captured_at, expected, frame);
+  find_obstacles(image, expected, frame);
+  find_balls(frame);
+}
+
+void FrameReader::find_robots(Time captured_at, std::span<const ExpectedRobot> expected,
+                              msg::DetectionFrame& frame) {
   patches_.clear();
   for (const Region& region : regions_) {
-    const auto colour = static_cast<Colour>(region.colour);
-    if (!is_worn(colour)) continue;
+    if ((worn_ >> region.colour & 1) == 0) continue;
     if (const auto patch = patch_of(region, camera_, task_.robot_height_m)) patches_.push_back(*patch);
   }
-  robots_ = identifier_.identify(captured_at, finder_.find(patches_), expected);
-  frame.captured_at_ns(to_ns(captured_at));
+  marked_ = finder_.find(patches_);
+  robots_ = identifier_.identify(captured_at, marked_, expected);
   frame.robots().clear();
   for (const IdentifiedRobot& robot : robots_) {
     msg::RobotDetection seen;
@@ -52,8 +80,6 @@ void FrameReader::read(const ImageView& image, Time captured_at, std::span<const
     seen.confidence(confidence_of(robot.seen, task_.layout));
     frame.robots().push_back(seen);
   }
-  find_balls(frame);
-  find_obstacles(frame);
 }
 
 /// Whether a patch at the robots' height is a dot of one that was found: in coloured light it may seem to
@@ -73,7 +99,7 @@ bool FrameReader::is_dot(const Patch& patch) const {
 void FrameReader::find_balls(msg::DetectionFrame& frame) {
   balls_.clear();
   for (const Region& region : regions_) {
-    if (static_cast<Colour>(region.colour) != task_.ball) continue;
+    if (static_cast<Colour>(region.colour) != task_.ball || obstacle_finder_.is_part(region)) continue;
     const auto on_top = patch_of(region, camera_, task_.robot_height_m);
     const auto on_floor = patch_of(region, camera_, task_.ball_radius_m);
     if (on_top && on_floor && !is_dot(*on_top)) balls_.push_back(*on_floor);
@@ -94,25 +120,23 @@ void FrameReader::find_balls(msg::DetectionFrame& frame) {
   frame.ball_count(static_cast<std::uint8_t>(balls_.size()));
 }
 
-/// As large on the floor as its bounding box, which nothing of it exceeds.
-void FrameReader::find_obstacles(msg::DetectionFrame& frame) const {
-  std::uint8_t count = 0;
-  for (const Region& region : regions_) {
-    const auto colour = static_cast<Colour>(region.colour);
-    if (count == msg::MAX_OBSTACLES) break;
-    if (is_worn(colour) || colour == task_.ball) continue;
-    const auto low = camera_.point_at({region.left_px - 0.5, region.top_px - 0.5}, 0);
-    const auto high = camera_.point_at({region.right_px + 0.5, region.bottom_px + 0.5}, 0);
-    if (!low || !high) continue;
-    const Vec2 middle = 0.5 * (*low + *high);
-    const double radius_m = 0.5 * (*high - *low).cwiseAbs().maxCoeff();
-    if (radius_m < task_.least_obstacle_m) continue;
-    msg::ObstacleDetection& seen = frame.obstacles()[count++];
-    seen.x_m(middle.x());
-    seen.y_m(middle.y());
-    seen.radius_m(radius_m);
+/// On robots that were found, or are expected though they were not, there are none.
+void FrameReader::find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
+                                 msg::DetectionFrame& frame) {
+  tops_.clear();
+  for (const MarkedRobot& robot : marked_)
+    tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kEdge_m});
+  for (const ExpectedRobot& robot : expected)
+    tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kMissed_m});
+  const auto found = obstacle_finder_.find(image, segmenter_.classes(), regions_, tops_);
+  const std::size_t count = std::min<std::size_t>(found.size(), msg::MAX_OBSTACLES);
+  for (std::size_t i = 0; i < count; ++i) {
+    msg::ObstacleDetection& seen = frame.obstacles()[i];
+    seen.x_m(found[i].centre_m.x());
+    seen.y_m(found[i].centre_m.y());
+    seen.radius_m(found[i].radius_m);
   }
-  frame.obstacle_count(count);
+  frame.obstacle_count(static_cast<std::uint8_t>(count));
 }
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 #include "common/camera/camera_model.hpp"
 #include "common/image/image.hpp"
 #include "idl/vision.h"
+#include "vision/frames/obstacle_finder.hpp"
 #include "vision/patterns/identifier.hpp"
 #include "vision/patterns/pattern_finder.hpp"
 #include "vision/segmentation/segmenter.hpp"
@@ -15,17 +16,18 @@ namespace sidestep {
 
 /// What cameras look for.
 struct FrameTask {
-  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers
+  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers, and of kOtherColour
   MarkingLayout layout;
   std::vector<RosterEntry> roster;
+  double robot_radius_m = 0.09;
   double robot_height_m = 0.15;
   double ball_radius_m = 0.0215;
   Colour ball = Colour::kOrange;
-  double least_obstacle_m = 0.03;  ///< radius below which a patch of an unknown colour is no obstacle
+  double least_obstacle_m = 0.03;  ///< radius below which nothing is an obstacle
 };
 
-/// Reads one camera's frames: robots by their dots, balls, and as obstacles what has a colour that nobody
-/// wears.
+/// Reads one camera's frames: robots by their dots, balls, and as obstacles what else is not the ground
+/// (ObstacleFinder).
 class FrameReader {
  public:
   FrameReader(const CameraModel& camera, const FrameTask& task);
@@ -40,20 +42,25 @@ class FrameReader {
   std::span<const IdentifiedRobot> robots() const { return robots_; }
 
  private:
-  bool is_worn(Colour colour) const;
+  void find_robots(Time captured_at, std::span<const ExpectedRobot> expected, msg::DetectionFrame& frame);
   bool is_dot(const Patch& patch) const;
   void find_balls(msg::DetectionFrame& frame);
-  void find_obstacles(msg::DetectionFrame& frame) const;
+  void find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
+                      msg::DetectionFrame& frame);
 
   CameraModel camera_;
   FrameTask task_;
   Segmenter segmenter_;
   PatternFinder finder_;
   Identifier identifier_;
+  std::uint32_t worn_;  ///< bit c: colour c is on somebody's dots
+  ObstacleFinder obstacle_finder_;
   std::span<const Region> regions_;
+  std::span<const MarkedRobot> marked_;
   std::span<const IdentifiedRobot> robots_;
   std::vector<Patch> patches_;
   std::vector<Patch> balls_;
+  std::vector<Circle> tops_;
 };
 
 }  // namespace sidestep

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/unit/vision/frames/painted_floor.hpp"
+#include "tests/unit/vision/frames/score.hpp"
 
 using namespace sidestep;
 using namespace sidestep::test;
@@ -10,30 +11,6 @@ namespace {
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
-
-struct Score {
-  std::size_t visible = 0, found = 0, wrong = 0;
-  double position2_m2 = 0, heading2_rad2 = 0;
-
-  void add(const std::vector<Marked>& robots, const msg::DetectionFrame& frame) {
-    visible += robots.size();
-    for (const msg::RobotDetection& seen : frame.robots()) {
-      const auto truth = std::ranges::find_if(
-          robots, [&](const Marked& robot) { return robot.entry.robot == seen.robot(); });
-      const Vec2 error = truth->pose.position_m - Vec2(seen.x_m(), seen.y_m());
-      if (error.norm() > 0.03) {
-        ++wrong;
-        continue;
-      }
-      ++found;
-      position2_m2 += error.squaredNorm();
-      heading2_rad2 += std::pow(wrapped_rad(seen.heading_rad() - truth->pose.heading_rad), 2);
-    }
-  }
-  double share() const { return static_cast<double>(found) / static_cast<double>(visible); }
-  double position_m() const { return std::sqrt(position2_m2 / static_cast<double>(found)); }
-  double heading_rad() const { return std::sqrt(heading2_rad2 / static_cast<double>(found)); }
-};
 
 FrameTask task_for(PaintedFloor& floor, const std::vector<Marked>& robots) {
   FrameTask task;
