@@ -7,8 +7,9 @@
 
 #include "agents/agent/agent_node.hpp"
 #include "coordinator/coordinator_node.hpp"
-#include "simulator/simulator_node.hpp"
-#include "vision/vision_node.hpp"
+#include "simulator/images/image_output.hpp"
+#include "vision/images/image_input.hpp"
+#include "vision/images/image_options.hpp"
 
 namespace sidestep {
 namespace {
@@ -16,6 +17,25 @@ namespace {
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr Duration kLook = std::chrono::milliseconds(10);
 constexpr Duration kSettle = std::chrono::milliseconds(500);
+
+/// As the processes' mains do, who have options.
+struct SimulatorProcess {
+  SimulatorProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed)
+      : node(bus, scenario, incarnation, seed) {
+    if (scenario.vision.images) images.emplace(bus, scenario, node, incarnation, seed);
+  }
+  SimulatorNode node;
+  std::optional<ImageOutput> images;
+};
+
+struct VisionProcess {
+  VisionProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation)
+      : node(bus, scenario, incarnation, scenario.vision.images ? FrameSource::kCaller : FrameSource::kBus) {
+    if (scenario.vision.images) images.emplace(bus, image_reader(scenario, {}), node);
+  }
+  VisionNode node;
+  std::optional<ImageInput> images;
+};
 
 }  // namespace
 
@@ -80,9 +100,9 @@ void SimSystem::start(const std::string& name) {
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
   if (name == "simulator")
-    process->node = std::make_shared<SimulatorNode>(bus, scenario_, incarnation, seed_);
+    process->node = std::make_shared<SimulatorProcess>(bus, scenario_, incarnation, seed_);
   else if (name == "vision")
-    process->node = std::make_shared<VisionNode>(bus, scenario_, incarnation);
+    process->node = std::make_shared<VisionProcess>(bus, scenario_, incarnation);
   for (int number = 0; number < scenario_.coordinators; ++number) {
     if (name != coordinator_process(number)) continue;
     const CoordinatorIdentity self{static_cast<CoordinatorNumber>(number), incarnation};

@@ -4,25 +4,27 @@
 
 #include "common/messaging/senders.hpp"
 #include "common/process/process.hpp"
-#include "vision/league/league_vision.hpp"
 #include "vision/league/log_commands.hpp"
+#include "vision/view/view_command.hpp"
+#include "vision/vision_service.hpp"
 
 namespace sidestep {
 namespace {
 
 int run_service(int argc, char** argv) {
-  LeagueOptions league;
+  VisionOptions options;
   Program program;
   program.name = "sidestep-vision";
-  program.description = "Turns the cameras' detections into one tracked world.";
-  program.add_options = [&league](CLI::App& app) {
-    add_league_options(app, league);
-    app.footer("Commands, each with --help: sidestep-vision replay FILE, sidestep-vision record FILE.");
+  program.description = "Turns what the cameras see into one tracked world.";
+  program.add_options = [&options](CLI::App& app) {
+    add_league_options(app, options);
+    add_image_options(app, options.images);
+    app.footer("Commands, each with --help: sidestep-vision view, replay FILE, record FILE.");
   };
   program.fault_target = [] { return static_cast<std::uint32_t>(Sender::kVision); };
-  program.start = [&league](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
+  program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
-    return std::make_shared<LeagueVision>(bus, scenario, incarnation, league);
+    return std::make_shared<VisionService>(bus, scenario, incarnation, options);
   };
   return run_process(argc, argv, program);
 }
@@ -33,6 +35,7 @@ int run_service(int argc, char** argv) {
 int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "replay") return sidestep::replay_command(argc - 1, argv + 1);
+  if (command == "view") return sidestep::view_command(argc - 1, argv + 1);
   if (command == "record") return sidestep::record_command(argc - 1, argv + 1);
   return sidestep::run_service(argc, argv);
 }

@@ -22,6 +22,8 @@ class VisionNode {
   VisionNode(const VisionNode&) = delete;
   VisionNode& operator=(const VisionNode&) = delete;
 
+  /// What was published last.
+  const msg::WorldState& world() const { return world_; }
   /// A frame that has just come.
   void take(const msg::DetectionFrame& message);
   /// Gives the listener every world that is published.

@@ -40,6 +40,22 @@ int parse_options(CLI::App& app, int argc, char** argv) {
   return -1;
 }
 
+int guarded(const std::string& name, const std::function<int()>& work) {
+  const auto said = [&name](const std::exception& error, int exit_code) {
+    fmt::print(stderr, "{}: {}\n", name, error.what());
+    return exit_code;
+  };
+  try {
+    return work();
+  } catch (const ScenarioError& error) {
+    return said(error, kExitUsage);
+  } catch (const std::invalid_argument& error) {
+    return said(error, kExitUsage);
+  } catch (const std::exception& error) {
+    return said(error, kExitFailure);
+  }
+}
+
 int run_process(int argc, char** argv, const Program& program) {
   CLI::App app(program.description, program.name);
   std::string scenario_file;
@@ -51,7 +67,7 @@ int run_process(int argc, char** argv, const Program& program) {
   const int exit_code = parse_options(app, argc, argv);
   if (exit_code >= 0) return exit_code;
 
-  try {
+  return guarded(program.name, [&] {
     const Scenario scenario = load_scenario(scenario_file);
     dds.participant = program.participant ? program.participant() : program.name;
     DdsBus bus(dds);
@@ -62,16 +78,7 @@ int run_process(int argc, char** argv, const Program& program) {
     fmt::print(stderr, "{}: {}\n", dds.participant, budget_line(budget_of(scenario), scenario.margin_m));
     bus.run();
     return 0;
-  } catch (const ScenarioError& error) {
-    fmt::print(stderr, "{}: {}\n", program.name, error.what());
-    return kExitUsage;
-  } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "{}: {}\n", program.name, error.what());
-    return kExitUsage;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", program.name, error.what());
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace sidestep

@@ -47,6 +47,10 @@ void add_dds_options(CLI::App& app, DdsSettings& settings);
 void add_optional_value(CLI::App& app, const std::string& name, std::optional<std::string>& value,
                         const std::string& default_value, const std::string& description);
 
+/// Runs a program's work, and says on stderr what is wrong when it throws: kExitUsage for ScenarioError and
+/// std::invalid_argument, kExitFailure for everything else.
+int guarded(const std::string& name, const std::function<int()>& work);
+
 /// Parses; an exit code when the program is done with that (--help: 0; wrong usage: kExitUsage), else -1.
 int parse_options(CLI::App& app, int argc, char** argv);
 

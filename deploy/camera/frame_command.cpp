@@ -2,19 +2,23 @@
 #include "deploy/camera/frame_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <numbers>
 #include <optional>
 
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
+#include "common/image/picture.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
 #include "common/process/process.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
+#include "vision/colours/default_colours.hpp"
+#include "vision/frames/frame_reader.hpp"
+#include "vision/view/annotation.hpp"
 
 namespace sidestep {
 namespace {
@@ -24,20 +28,40 @@ struct FrameOptions {
   std::size_t camera = 0;
   std::uint64_t seed = 1;
   std::optional<int> width_px, height_px;
+  bool shows_detections = false;
 };
 
-void write_picture(const Image& image, const std::string& path) {
-  const ImageView view = image.view();
-  const cv::Mat rgb(view.height_px, view.width_px, CV_8UC3, const_cast<std::uint8_t*>(view.pixels));
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  bool is_written = false;
-  try {
-    is_written = cv::imwrite(path, bgr);
-  } catch (const cv::Exception&) {
-    // Said below: OpenCV names its own source file.
+const Ink kTruth{255, 255, 255};
+
+/// Where things are, thinly, and on it where vision sees them, after calibration by nobody.
+void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
+             const MarkingLayout& layout, cv::Mat3b& picture) {
+  const FloorScene floor = floor_scene(scenario);
+  FrameTask task;
+  task.boxes = default_colours(image.view().format, layout).boxes;
+  task.layout = layout;
+  task.known_obstacles = scenario.obstacles;
+  for (const RobotSpec& robot : scenario.robots) {
+    if (const MarkingPattern* const pattern = layout.find(number_of(robot.id)))
+      task.roster.push_back({robot.id, robot.team, *pattern});
   }
-  if (!is_written) throw std::runtime_error("cannot write " + path);
+  FrameReader reader(camera, task);
+  msg::DetectionFrame seen;
+  reader.read(image.view(), {}, {}, seen);
+  FloorPen pen(picture, camera);
+  for (const SceneRobot& robot : floor.robots)
+    pen.cross(robot.position_m, task.robot_height_m, scenario.radius_m, kTruth);
+  for (const SceneBlob& blob : floor.blobs) pen.cross(blob.circle.centre_m, 0, blob.circle.radius_m, kTruth);
+  if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), task.ball_radius_m, 0.05, kTruth);
+  draw_detections(seen, scenario, pen);
+  for (const msg::RobotDetection& robot : seen.robots()) {
+    const RobotSpec& truth = *find_robot(scenario, robot.robot());
+    fmt::print("robot {}: off by {:.2f} mm and {:.2f} degrees\n", robot.robot(),
+               1e3 * (truth.start_m - Vec2(robot.x_m(), robot.y_m())).norm(),
+               std::abs(wrapped_rad(robot.heading_rad() - truth.start_heading_rad)) * 180 / std::numbers::pi);
+  }
+  fmt::print("{} robots, {} balls and {} unknown obstacles seen\n", seen.robots().size(), seen.ball_count(),
+             seen.obstacle_count());
 }
 
 int write_frame(const FrameOptions& options) {
@@ -52,10 +76,14 @@ int write_frame(const FrameOptions& options) {
                options.scenario_file, cameras.size());
     return kExitUsage;
   }
+  const CameraModel& camera = cameras[options.camera];
   RenderSpec spec;
-  spec.format = PixelFormat::kRgb;
-  FrameRenderer renderer(cameras[options.camera], scenario.field, layout, spec, Rng(options.seed));
-  write_picture(renderer.render(floor_scene(scenario).scene()), options.picture_file);
+  spec.format = images.format;
+  FrameRenderer renderer(camera, scenario.field, layout, spec, Rng(options.seed));
+  const Image image = renderer.render(floor_scene(scenario).scene());
+  cv::Mat3b picture = bgr_of(image.view());
+  if (options.shows_detections) overlay(image, camera, scenario, layout, picture);
+  write_png(picture, options.picture_file);
   return 0;
 }
 
@@ -78,6 +106,7 @@ void add_frame_command(CLI::App& root, std::function<int()>& action) {
       ->check(CLI::Range(16, 8192));
   command->add_option("--height", options->height_px, "of the frame, in pixels [the scenario's]")
       ->check(CLI::Range(16, 8192));
+  command->add_flag("--detections", options->shows_detections, "draw what vision sees in it, and the truth");
   command->add_option("--seed", options->seed, "of the noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

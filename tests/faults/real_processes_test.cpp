@@ -17,6 +17,15 @@ TEST_CASE("robots as processes cross the floor over DDS and arrive without a con
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
 }
 
+TEST_CASE("robots that are seen in camera images cross the floor and arrive without a contact") {
+  LaunchedRun run(shipped_scenario("crossing-images"));
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  const auto report = run.report();
+  require_untouched(report);
+  CHECK(report["arrived"] == 8);
+}
+
 TEST_CASE("kill -9 of an agent while it moves: its robot stops, nobody touches it, the report names it") {
   LaunchedRun run(shipped_scenario("crossing"));
   REQUIRE(run.until([&] { return run.speed_mps(2) > 0.8; }));

@@ -52,7 +52,8 @@ struct Watched {
 }  // namespace
 
 TEST_CASE("in every shipped scenario everybody arrives and nobody touches") {
-  const std::string name = GENERATE("crossing", "crossing-noisy", "circle-20", "circle-100", "two-teams-22");
+  const std::string name =
+      GENERATE("crossing", "crossing-images", "crossing-noisy", "circle-20", "circle-100", "two-teams-22");
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(name, seed);
   Watched run(shipped(name), seed);

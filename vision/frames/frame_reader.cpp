@@ -128,15 +128,23 @@ void FrameReader::find_obstacles(const ImageView& image, std::span<const Expecte
     tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kEdge_m});
   for (const ExpectedRobot& robot : expected)
     tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kMissed_m});
-  const auto found = obstacle_finder_.find(image, segmenter_.classes(), regions_, tops_);
-  const std::size_t count = std::min<std::size_t>(found.size(), msg::MAX_OBSTACLES);
-  for (std::size_t i = 0; i < count; ++i) {
-    msg::ObstacleDetection& seen = frame.obstacles()[i];
-    seen.x_m(found[i].centre_m.x());
-    seen.y_m(found[i].centre_m.y());
-    seen.radius_m(found[i].radius_m);
+  std::uint8_t count = 0;
+  for (const Circle& found : obstacle_finder_.find(image, segmenter_.classes(), regions_, tops_)) {
+    if (count == msg::MAX_OBSTACLES) break;
+    if (is_known(found)) continue;
+    msg::ObstacleDetection& seen = frame.obstacles()[count++];
+    seen.x_m(found.centre_m.x());
+    seen.y_m(found.centre_m.y());
+    seen.radius_m(found.radius_m);
   }
-  frame.obstacle_count(static_cast<std::uint8_t>(count));
+  frame.obstacle_count(count);
+}
+
+/// What leans against a known obstacle makes one thing with it, which reaches beyond it.
+bool FrameReader::is_known(const Circle& obstacle) const {
+  return std::ranges::any_of(task_.known_obstacles, [&](const Circle& known) {
+    return (known.centre_m - obstacle.centre_m).norm() + obstacle.radius_m <= known.radius_m + kMissed_m;
+  });
 }
 
 }  // namespace sidestep

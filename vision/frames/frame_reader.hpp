@@ -23,7 +23,8 @@ struct FrameTask {
   double robot_height_m = 0.15;
   double ball_radius_m = 0.0215;
   Colour ball = Colour::kOrange;
-  double least_obstacle_m = 0.03;  ///< radius below which nothing is an obstacle
+  double least_obstacle_m = 0.03;       ///< radius below which nothing is an obstacle
+  std::vector<Circle> known_obstacles;  ///< that need not be told
 };
 
 /// Reads one camera's frames: robots by their dots, balls, and as obstacles what else is not the ground
@@ -44,6 +45,7 @@ class FrameReader {
  private:
   void find_robots(Time captured_at, std::span<const ExpectedRobot> expected, msg::DetectionFrame& frame);
   bool is_dot(const Patch& patch) const;
+  bool is_known(const Circle& obstacle) const;
   void find_balls(msg::DetectionFrame& frame);
   void find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
                       msg::DetectionFrame& frame);

@@ -40,19 +40,6 @@ void add_log_options(CLI::App& app, LogOptions& options) {
       ->capture_default_str();
 }
 
-/// Runs a command's work, and says on stderr what is wrong.
-int guarded(const char* name, const std::function<int()>& work) {
-  try {
-    return work();
-  } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return kExitUsage;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return kExitFailure;
-  }
-}
-
 /// A sender for each of the groups.
 class Players {
  public:

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/image/picture.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "common/image/colour_space.hpp"
+
+namespace sidestep {
+namespace {
+
+cv::Vec3b bgr(const Rgb& colour) { return {colour.b, colour.g, colour.r}; }
+
+}  // namespace
+
+cv::Mat3b bgr_of(const ImageView& image) {
+  cv::Mat3b picture(image.height_px, image.width_px);
+  for (int y = 0; y < image.height_px; ++y) {
+    const std::uint8_t* bytes = image.row(y);
+    for (int x = 0; x < image.width_px; ++x) {
+      if (image.format == PixelFormat::kRgb) {
+        picture(y, x) = {bytes[3 * x + 2], bytes[3 * x + 1], bytes[3 * x]};
+      } else {
+        const std::uint8_t* const pair = bytes + 4 * (x / 2);
+        picture(y, x) = bgr(rgb_of({bytes[2 * x + 1], pair[0], pair[2]}));
+      }
+    }
+  }
+  return picture;
+}
+
+void write_png(const cv::Mat3b& bgr, const std::string& path) {
+  bool is_written = false;
+  try {
+    is_written = cv::imwrite(path, bgr);
+  } catch (const cv::Exception&) {
+    // Said below: OpenCV names its own source file.
+  }
+  if (!is_written) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace sidestep

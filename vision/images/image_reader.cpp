@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/images/image_reader.hpp"
+
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "vision/tracking/frame.hpp"
+
+namespace sidestep {
+namespace {
+
+// What the world knew of a robot longer ago says nothing of where it is.
+constexpr double kOldest_s = 0.25;
+
+std::vector<RosterEntry> roster_of(const Scenario& scenario, const MarkingLayout& layout) {
+  std::vector<RosterEntry> roster;
+  for (const RobotSpec& robot : scenario.robots) {
+    const MarkingPattern* const pattern = layout.find(number_of(robot.id));
+    if (!pattern) {
+      throw std::invalid_argument(fmt::format("robot {} has number {}, and the layout {} no such pattern",
+                                              robot.id, number_of(robot.id), layout.name));
+    }
+    roster.push_back({robot.id, robot.team, *pattern});
+  }
+  return roster;
+}
+
+std::optional<PixelFormat> format_of(msg::ImageFormat format) {
+  switch (format) {
+    case msg::IMAGE_YUV422:
+      return PixelFormat::kYuv422;
+    case msg::IMAGE_RGB:
+      return PixelFormat::kRgb;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera) {
+  const auto format = format_of(message.image_format());
+  const CameraParameters& size = camera.parameters();
+  if (!format || message.width_px() != static_cast<std::uint32_t>(size.width_px) ||
+      message.height_px() != static_cast<std::uint32_t>(size.height_px))
+    return std::nullopt;
+  const ImageView view{*format, size.width_px, size.height_px, message.pixels().data()};
+  return message.pixels().size() == view.bytes() ? std::optional(view) : std::nullopt;
+}
+
+ImageReader::ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras,
+                         const ColourThresholds& colours, const MarkingLayout& layout)
+    : cameras_(std::move(cameras)), format_(colours.format) {
+  FrameTask task;
+  task.boxes = colours.boxes;
+  task.layout = layout;
+  task.roster = roster_of(scenario, layout);
+  task.robot_radius_m = scenario.radius_m;
+  task.known_obstacles = scenario.obstacles;
+  for (const CameraModel& camera : cameras_) readers_.emplace_back(camera, task);
+}
+
+bool ImageReader::read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
+                       msg::DetectionFrame& frame) {
+  if (message.camera() >= cameras_.size() || !is_timely(message.captured_at_ns(), now)) return false;
+  const auto view = view_of(message, cameras_[message.camera()]);
+  if (!view || view->format != format_) return false;
+  const Time captured_at = time_from_ns(message.captured_at_ns());
+  const double since_s = to_seconds(captured_at - time_from_ns(world.valid_at_ns()));
+  expected_.clear();
+  if (std::abs(since_s) <= kOldest_s) {
+    for (const msg::TrackedRobot& robot : world.robots()) {
+      const Vec2 position_m(robot.x_m() + since_s * robot.vx_mps(), robot.y_m() + since_s * robot.vy_mps());
+      expected_.push_back(
+          {robot.robot(), {position_m, wrapped_rad(robot.heading_rad() + since_s * robot.angular_radps())}});
+    }
+  }
+  frame.camera(message.camera());
+  readers_[message.camera()].read(*view, captured_at, expected_, frame);
+  return true;
+}
+
+}  // namespace sidestep
