@@ -7,6 +7,7 @@
 
 #include "deploy/study/planning_study.hpp"
 #include "deploy/study/safety_study.hpp"
+#include "deploy/study/vision_study.hpp"
 
 namespace sidestep {
 namespace {
@@ -53,6 +54,9 @@ void add_study_command(CLI::App& root, std::function<int()>& action) {
       "Planners and collision structures: caches, trees, graphs, roadmaps, from 4 to 16,384 obstacles",
       *options);
   planning->callback([&action, options] { action = [options] { return study_planning(*options); }; });
+  CLI::App* vision =
+      add_study(*study, "vision", "Vision in rendered frames: who is found, errors of poses, time", *options);
+  vision->callback([&action, options] { action = [options] { return study_vision(*options); }; });
 }
 
 }  // namespace sidestep

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/study/vision/recognition.hpp"
+
+#include <cmath>
+
+#include "deploy/study/vision/hall.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Field kQuarter{6, 4.5};
+constexpr std::size_t kSceneFrames = 250, kCoverFrames = 50, kBareFrames = 20;
+constexpr double kSame_m = 0.03;  // who is seen farther from where it is is somebody else
+constexpr double kDegrees = 57.29577951308232;
+
+struct Condition {
+  const char* name;
+  std::size_t each;  ///< robots of each team
+  int covered = 0;
+  double far_light = RenderSpec{}.far_light;
+  Eigen::Vector3d colour_gain{1, 1, 1};
+};
+
+const Condition kConditions[] = {
+    {"usual", 6},
+    {"usual", 11},
+    {"one dot covered", 11, 1},
+    {"light falls to 60 %", 11, 0, 0.6},
+    {"colours drift by 10 %", 11, 0, RenderSpec{}.far_light, {1.1, 0.95, 0.9}},
+    {"both", 11, 0, 0.6, {1.1, 0.95, 0.9}},
+};
+
+struct Score {
+  std::size_t robots = 0, found = 0, wrong = 0;
+  double square_m2 = 0, square_rad2 = 0, worst_m = 0;
+
+  void add(const std::vector<SceneRobot>& truth, const msg::DetectionFrame& seen) {
+    robots += truth.size();
+    for (const msg::RobotDetection& detection : seen.robots()) {
+      bool is_right = false;
+      for (const SceneRobot& robot : truth) {
+        const double off_m = (robot.position_m - Vec2(detection.x_m(), detection.y_m())).norm();
+        if (robot_wearing(robot.team, robot.pattern) != detection.robot() || off_m > kSame_m) continue;
+        const double off_rad = wrapped_rad(detection.heading_rad() - robot.heading_rad);
+        is_right = true;
+        square_m2 += off_m * off_m;
+        square_rad2 += off_rad * off_rad;
+        worst_m = std::max(worst_m, off_m);
+      }
+      ++(is_right ? found : wrong);
+    }
+  }
+};
+
+Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
+               const std::function<void()>& advance) {
+  RenderSpec spec;
+  spec.exposure_s = 0.004;
+  spec.far_light = condition.far_light;
+  spec.colour_gain = condition.colour_gain;
+  Hall hall(hall_scenario(kQuarter, 1, 1), spec, rng);
+  Score score;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    if (frame % kSceneFrames == 0) {
+      hall.clear(condition.each);
+      // Everybody is seen once before something is put on the dots.
+      for (std::size_t i = 0; condition.covered > 0 && i < kBareFrames; ++i) {
+        hall.step();
+        hall.see();
+      }
+    }
+    if (frame % kCoverFrames == 0) hall.cover(condition.covered);
+    hall.step();
+    hall.see();
+    score.add(hall.robots(), hall.detections().front());
+    advance();
+  }
+  return score;
+}
+
+}  // namespace
+
+StudyTable recognition(const Recognition& settings, std::uint64_t seed, const StudyAdvance& advance) {
+  StudyTable table;
+  table.name = "recognition";
+  table.columns = {"light", "robots", "frames",   "found_percent",
+                   "wrong", "rms_mm", "worst_mm", "rms_degrees"};
+  std::size_t done = 0;
+  Rng rng(seed);
+  for (const Condition& condition : kConditions) {
+    const Score score = score_of(condition, settings.frames, rng,
+                                 [&] { advance(++done, settings.frames * std::size(kConditions)); });
+    const auto found = static_cast<double>(std::max<std::size_t>(1, score.found));
+    table.rows.push_back(cells(condition.name, 2 * condition.each, settings.frames,
+                               fmt::format("{:.3f}", 100 * found / static_cast<double>(score.robots)),
+                               score.wrong, fmt::format("{:.3f}", 1e3 * std::sqrt(score.square_m2 / found)),
+                               fmt::format("{:.2f}", 1e3 * score.worst_m),
+                               fmt::format("{:.3f}", kDegrees * std::sqrt(score.square_rad2 / found))));
+  }
+  return table;
+}
+
+}  // namespace sidestep
