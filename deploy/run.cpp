@@ -4,7 +4,9 @@
 #include <atomic>
 #include <filesystem>
 #include <fmt/format.h>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
@@ -29,6 +31,11 @@ constexpr Duration kSettle = 500ms;       // all have arrived, and the last stat
 constexpr Duration kStuck = 2s;           // from a death on, until a run without motion is given up
 constexpr auto kPatience = 3000ms;        // for processes to end by themselves
 constexpr std::size_t kShownLines = 8;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
 
 class Launcher {
  public:
@@ -108,8 +115,10 @@ class Launcher {
 
   void start_core() {
     const RestartSpec& restart = scenario_.restart;
-    start("simulator", "sidestep-simulator", false, {"--seed", std::to_string(options_.seed)});
-    start("vision", "sidestep-vision", restart.vision);
+    std::vector<std::string> simulator = words_of(options_.simulator);
+    simulator.insert(simulator.begin(), {"--seed", std::to_string(options_.seed)});
+    start("simulator", "sidestep-simulator", false, simulator);
+    start("vision", "sidestep-vision", restart.vision, words_of(options_.vision));
     if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
     // All begin as standbys, so one that is started again does not take the floor from the one that works.
     for (int number = 0; number < scenario_.coordinators; ++number) {

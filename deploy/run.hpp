@@ -18,6 +18,7 @@ struct RunOptions {
   std::uint64_t seed = 1;         ///< of the simulator's noise
   std::optional<double> seconds;  ///< instead of the scenario's time limit
   bool faults = false;            ///< processes take orders of `sidestep fault network`
+  std::string simulator, vision;  ///< more options for these programs, as in a shell, without quotes
 };
 
 /// Starts every process of the system, watches until all robots have arrived, the time is up or somebody

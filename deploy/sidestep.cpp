@@ -34,6 +34,10 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
   add_dds_options(*command, options.dds);
   command->add_flag("--faults", options.faults,
                     "let `sidestep fault network` disturb what arrives; for tests");
+  command->add_option("--simulator", options.simulator,
+                      "more options for sidestep-simulator, e.g. --simulator=\"--ssl-vision\"");
+  command->add_option("--vision", options.vision,
+                      "more options for sidestep-vision, e.g. --vision=\"--tracked --colours hall.yaml\"");
   command->add_option("--hosts", options.hosts_file, "hosts file, see deploy/hosts/README.md")
       ->excludes(command->get_option("--interface"));
   command->callback([&] { action = [&options] { return run(options); }; });

@@ -168,6 +168,23 @@ class TrackedWatch {
 
 }  // namespace
 
+TEST_CASE("the launcher passes options for the league on to the simulator and to vision") {
+  const OwnEndpoint own;
+  league::MulticastReceiver receiver(own.endpoint(1), league::kLeagueInterface);
+  LaunchedRun run(shipped_scenario("crossing"),
+                  {"--simulator=--ssl-vision " + own.text(0),
+                   "--vision=--source ssl --ssl-vision " + own.text(0) + " --tracked " + own.text(1)});
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  CHECK(run.report()["arrived"] == 8);
+  int frames = 0;
+  receiver.receive([&](std::span<const std::byte> datagram, const league::Endpoint&) {
+    const auto decoded = league::decode_tracked(datagram);
+    frames += decoded.packet && decoded.packet->frame;
+  });
+  CHECK(frames > 10);
+}
+
 TEST_CASE("robots that are seen over the league's packets cross the floor and arrive without a contact") {
   Floor floor;
   Judge judge(floor.scenario());
