@@ -32,6 +32,7 @@ struct FrameOptions {
 };
 
 const Ink kTruth{255, 255, 255};
+constexpr double kCross_m = 0.03;
 
 /// Where things are, thinly, and on it where vision sees them, after calibration by nobody.
 void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
@@ -50,9 +51,9 @@ void overlay(const Image& image, const CameraModel& camera, const Scenario& scen
   reader.read(image.view(), {}, {}, seen);
   FloorPen pen(picture, camera);
   for (const SceneRobot& robot : floor.robots)
-    pen.cross(robot.position_m, task.robot_height_m, scenario.radius_m, kTruth);
+    pen.cross(robot.position_m, task.robot_height_m, kCross_m, kTruth);
   for (const SceneBlob& blob : floor.blobs) pen.cross(blob.circle.centre_m, 0, blob.circle.radius_m, kTruth);
-  if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), task.ball_radius_m, 0.05, kTruth);
+  if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), task.ball_radius_m, kCross_m, kTruth);
   draw_detections(seen, scenario, pen);
   for (const msg::RobotDetection& robot : seen.robots()) {
     const RobotSpec& truth = *find_robot(scenario, robot.robot());

@@ -33,11 +33,8 @@ void write_study_table(const StudyTable& table, const std::string& study, const 
                   options.seed, options.is_quick ? " --quick" : "", kCommit, fmt::join(table.columns, ","));
   for (const auto& row : table.rows) text += fmt::format("{}\n", fmt::join(row, ","));
   write_file((folder / (table.name + ".csv")).string(), text);
-  fmt::print("{}/{}.csv\n", folder.string(), table.name);
-  if (!table.plots.empty()) {
-    draw(table.plots, (folder / (table.name + ".png")).string());
-    fmt::print("{}/{}.png\n", folder.string(), table.name);
-  }
+  draw(table.plots, (folder / (table.name + ".png")).string());
+  fmt::print("{0}/{1}.csv, {0}/{1}.png\n", folder.string(), table.name);
   std::fflush(stdout);
 }
 

@@ -24,7 +24,7 @@ struct StudyTable {
   std::string name{};                            ///< of its files
   std::vector<std::string> columns{};            ///< those that depend on the machine end in _us or _ns
   std::vector<std::vector<std::string>> rows{};  ///< a cell for each column
-  std::vector<Plot> plots{};                     ///< side by side in one picture, if there are any
+  std::vector<Plot> plots{};                     ///< side by side in one picture
 };
 
 /// Values as the cells of a row.

@@ -22,6 +22,7 @@ StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const Stu
     int columns, rows;
   };
   const Grid grids[] = {{1, 1}, {2, 1}, {2, 2}};
+  PlotLine line{"median, least and p99", {}};
   std::size_t done = 0;
   Rng rng(seed);
   for (const auto [columns, rows] : grids) {
@@ -38,12 +39,18 @@ StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const Stu
       advance(++done, settings.rounds * std::size(grids));
     }
     std::ranges::sort(times_us);
+    line.points.push_back({static_cast<double>(columns * rows), times_us[times_us.size() / 2],
+                           times_us.front(), times_us[times_us.size() * 99 / 100]});
     table.rows.push_back(
         cells(columns * rows, settings.rounds,
               fmt::format("{:.2f}", static_cast<double>(seen) / static_cast<double>(settings.rounds)),
               fmt::format("{:.0f}", times_us[times_us.size() / 2]),
               fmt::format("{:.0f}", times_us[times_us.size() * 99 / 100])));
   }
+  table.plots = {{.title = "From frames to the world",
+                  .x_label = "cameras",
+                  .y_label = "processor time (us)",
+                  .lines = {line}}};
   return table;
 }
 

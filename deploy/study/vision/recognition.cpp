@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/study/vision/recognition.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "deploy/study/vision/hall.hpp"
@@ -32,7 +33,8 @@ const Condition kConditions[] = {
 
 struct Score {
   std::size_t robots = 0, found = 0, wrong = 0;
-  double square_m2 = 0, square_rad2 = 0, worst_m = 0;
+  double square_m2 = 0, square_rad2 = 0;
+  std::vector<double> off_m{};
 
   void add(const std::vector<SceneRobot>& truth, const msg::DetectionFrame& seen) {
     robots += truth.size();
@@ -45,12 +47,24 @@ struct Score {
         is_right = true;
         square_m2 += off_m * off_m;
         square_rad2 += off_rad * off_rad;
-        worst_m = std::max(worst_m, off_m);
+        this->off_m.push_back(off_m);
       }
       ++(is_right ? found : wrong);
     }
   }
 };
+
+/// The share of sights that are off by no more.
+PlotLine shares_of(const Condition& condition, const std::vector<double>& ascending_m) {
+  PlotLine line{fmt::format("{}, {} robots", condition.name, 2 * condition.each), {}};
+  constexpr std::size_t kPoints = 50;
+  for (std::size_t i = 0; i <= kPoints && !ascending_m.empty(); ++i) {
+    const std::size_t place = std::min(ascending_m.size() - 1, ascending_m.size() * i / kPoints);
+    line.points.push_back(
+        plot_point(1e3 * ascending_m[place], 100 * static_cast<double>(i) / static_cast<double>(kPoints)));
+  }
+  return line;
+}
 
 Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
                const std::function<void()>& advance) {
@@ -85,18 +99,25 @@ StudyTable recognition(const Recognition& settings, std::uint64_t seed, const St
   table.name = "recognition";
   table.columns = {"light", "robots", "frames",   "found_percent",
                    "wrong", "rms_mm", "worst_mm", "rms_degrees"};
+  Plot plot{.title = "Positions",
+            .x_label = "off by at most (mm)",
+            .y_label = "share of sights (percent)",
+            .lines = {}};
   std::size_t done = 0;
   Rng rng(seed);
   for (const Condition& condition : kConditions) {
-    const Score score = score_of(condition, settings.frames, rng,
-                                 [&] { advance(++done, settings.frames * std::size(kConditions)); });
+    Score score = score_of(condition, settings.frames, rng,
+                           [&] { advance(++done, settings.frames * std::size(kConditions)); });
+    std::ranges::sort(score.off_m);
+    plot.lines.push_back(shares_of(condition, score.off_m));
     const auto found = static_cast<double>(std::max<std::size_t>(1, score.found));
     table.rows.push_back(cells(condition.name, 2 * condition.each, settings.frames,
                                fmt::format("{:.3f}", 100 * found / static_cast<double>(score.robots)),
                                score.wrong, fmt::format("{:.3f}", 1e3 * std::sqrt(score.square_m2 / found)),
-                               fmt::format("{:.2f}", 1e3 * score.worst_m),
+                               fmt::format("{:.2f}", 1e3 * (score.off_m.empty() ? 0 : score.off_m.back())),
                                fmt::format("{:.3f}", kDegrees * std::sqrt(score.square_rad2 / found))));
   }
+  table.plots = {plot};
   return table;
 }
 

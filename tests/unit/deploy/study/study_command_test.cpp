@@ -27,7 +27,7 @@ int study(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST_CASE("a study with wrong arguments is refused before it begins") {
-  const std::string name = GENERATE(as<std::string>(), "safety", "planning");
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
   StudyFolder folder;
   CAPTURE(name);
   CHECK(study({}) == kExitUsage);
@@ -43,7 +43,7 @@ TEST_CASE("a study with wrong arguments is refused before it begins") {
 }
 
 TEST_CASE("a study says which folder it cannot write to before it begins") {
-  const std::string name = GENERATE(as<std::string>(), "safety", "planning");
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";
   CHECK_THROWS_WITH(study({name, "--out", folder.path()}), Catch::Contains(folder.path()));
