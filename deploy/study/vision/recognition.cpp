@@ -34,7 +34,7 @@ const Condition kConditions[] = {
 struct Score {
   std::size_t robots = 0, found = 0, wrong = 0;
   double square_m2 = 0, square_rad2 = 0;
-  std::vector<double> off_m{};
+  std::vector<double> offs_m{};
 
   void add(const std::vector<SceneRobot>& truth, const msg::DetectionFrame& seen) {
     robots += truth.size();
@@ -47,7 +47,7 @@ struct Score {
         is_right = true;
         square_m2 += off_m * off_m;
         square_rad2 += off_rad * off_rad;
-        this->off_m.push_back(off_m);
+        offs_m.push_back(off_m);
       }
       ++(is_right ? found : wrong);
     }
@@ -108,13 +108,13 @@ StudyTable recognition(const Recognition& settings, std::uint64_t seed, const St
   for (const Condition& condition : kConditions) {
     Score score = score_of(condition, settings.frames, rng,
                            [&] { advance(++done, settings.frames * std::size(kConditions)); });
-    std::ranges::sort(score.off_m);
-    plot.lines.push_back(shares_of(condition, score.off_m));
+    std::ranges::sort(score.offs_m);
+    plot.lines.push_back(shares_of(condition, score.offs_m));
     const auto found = static_cast<double>(std::max<std::size_t>(1, score.found));
     table.rows.push_back(cells(condition.name, 2 * condition.each, settings.frames,
                                fmt::format("{:.3f}", 100 * found / static_cast<double>(score.robots)),
                                score.wrong, fmt::format("{:.3f}", 1e3 * std::sqrt(score.square_m2 / found)),
-                               fmt::format("{:.2f}", 1e3 * (score.off_m.empty() ? 0 : score.off_m.back())),
+                               fmt::format("{:.2f}", 1e3 * (score.offs_m.empty() ? 0 : score.offs_m.back())),
                                fmt::format("{:.3f}", kDegrees * std::sqrt(score.square_rad2 / found))));
   }
   table.plots = {plot};
