@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 
 #include "tests/faults/launched_run.hpp"
 #include "tests/needs_root.hpp"
@@ -37,6 +39,26 @@ TEST_CASE("22 robots spread over three hosts that lose one packet in twenty all 
   for (const char* host : {"floor", "east", "west"}) CHECK(run->robots_on(host).size() >= 7);
   CHECK_FALSE(is_any_namespace_of(run->pid()));
   WARN("22 robots, three hosts, 5 % loss: " << figures(report));
+}
+
+TEST_CASE("vision finds the robots in images of cameras on another host") {
+  SIDESTEP_NEEDS_ROOT();
+  std::string hosts = shipped("hosts/three-namespaces.yaml");
+  for (const auto& [from, to] : {std::pair<std::string, std::string>("simulator, vision, ", "simulator, "),
+                                 {"    standbys: rest", "    processes: [vision]\n    standbys: rest"}}) {
+    REQUIRE(hosts.find(from) != std::string::npos);
+    hosts.replace(hosts.find(from), from.size(), to);
+  }
+  const auto file =
+      std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(file) << hosts;
+  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("crossing-images"), {}, file.string());
+  CHECK(run->wait_for_end() == "exit code 0");
+  INFO(run->output());
+  const auto report = run->report();
+  require_untouched(report);
+  CHECK(report["arrived"] == 8);
+  std::filesystem::remove(file);
 }
 
 TEST_CASE("the robots of a host cut off for five seconds rest, the others go on, all arrive") {

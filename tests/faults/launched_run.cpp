@@ -36,11 +36,11 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
 }
 
 std::unique_ptr<LaunchedRun> LaunchedRun::on_three_hosts(const std::string& scenario,
-                                                         const std::vector<std::string>& more_arguments) {
-  std::vector<std::string> arguments{"--hosts", three_hosts_file()};
+                                                         const std::vector<std::string>& more_arguments,
+                                                         const std::string& hosts_file) {
+  std::vector<std::string> arguments{"--hosts", hosts_file};
   arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
-  std::unique_ptr<LaunchedRun> run(
-      new LaunchedRun(scenario, arguments, load_hosts(three_hosts_file()).interface));
+  std::unique_ptr<LaunchedRun> run(new LaunchedRun(scenario, arguments, load_hosts(hosts_file).interface));
   const Time deadline = EventLoop::now() + std::chrono::minutes(1);
   while (!run->printed("started simulator") && !run->exit_ && EventLoop::now() < deadline) {
     for (const ChildEvent& event : run->group_.poll(std::chrono::milliseconds(20))) run->exit_ = event.reason;

@@ -16,6 +16,9 @@
 
 namespace sidestep {
 
+/// The path of the shipped hosts file.
+std::string three_hosts_file();
+
 /// `sidestep run` as a user starts it, in a domain of its own, watched from outside: through what it prints,
 /// the ground truth on the bus, and the report that it leaves. Whatever happens, nothing of it outlives this
 /// object, and a sanitizer's complaint about any process of it fails the test.
@@ -23,10 +26,11 @@ class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments = {});
-  /// On the three hosts of the shipped hosts file. This thread stays in their network as long as the run
-  /// lives. Needs root.
+  /// On the three hosts of a hosts file, the shipped one. This thread stays in their network as long as the
+  /// run lives. Needs root.
   static std::unique_ptr<LaunchedRun> on_three_hosts(const std::string& scenario,
-                                                     const std::vector<std::string>& more_arguments = {});
+                                                     const std::vector<std::string>& more_arguments = {},
+                                                     const std::string& hosts_file = three_hosts_file());
   ~LaunchedRun();
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;
@@ -92,8 +96,6 @@ class LaunchedRun {
   pid_t pid_ = 0;
 };
 
-/// The path of the shipped hosts file.
-std::string three_hosts_file();
 /// A shipped file's text, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
 /// A shipped scenario's text.
