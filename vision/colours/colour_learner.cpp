@@ -8,11 +8,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kInner = 0.6;  // of a disc's radius: the lens blurs its edge
-constexpr double kOuter = 1.6;  // of it, and so many pixels: nothing of the disc is left there
-constexpr double kOuter_px = 3;
 constexpr int kGrey = 128;
-constexpr int kColourful = 20;  // from grey, on U or V; less does not tell a colour
+constexpr int kColourful = 25;  // from grey, on U or V; less does not tell a colour
 constexpr int kSpread = 14;     // beyond what was seen, on U and V, of a number that is not colourful
 constexpr double kEdge = 0.4;   // of the way from grey to a colour: there a patch ends
 constexpr double kTrust = 0.5;  // in brightness, against U and V: light is uneven
@@ -61,21 +58,13 @@ void ColourLearner::add_background(const Yuv& pixel) {
 
 void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs,
                         std::span<const KnownDisc> unknown) {
-  const auto distance_px = [](int x, int y, const KnownDisc& disc) {
-    return std::hypot(x - disc.centre_px.x(), y - disc.centre_px.y());
-  };
-  const auto is_near = [&](int x, int y, std::span<const KnownDisc> some) {
-    return std::ranges::any_of(some, [&](const KnownDisc& disc) {
-      return distance_px(x, y, disc) < kOuter * disc.radius_px + kOuter_px;
-    });
-  };
   for (int y = 0; y < image.height_px; ++y) {
     for (int x = 0; x < image.width_px; ++x) {
-      if (is_near(x, y, unknown)) continue;
+      if (is_near_any(unknown, x, y)) continue;
       for (const KnownDisc& disc : discs) {
-        if (distance_px(x, y, disc) <= kInner * disc.radius_px) add(disc.colour, pixel_at(image, x, y));
+        if (disc.is_inside(x, y)) add(disc.colour, pixel_at(image, x, y));
       }
-      if (!is_near(x, y, discs)) add_background(pixel_at(image, x, y));
+      if (!is_near_any(discs, x, y)) add_background(pixel_at(image, x, y));
     }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -28,7 +29,17 @@ struct KnownDisc {
   Colour colour{};
   Vec2 centre_px{0, 0};
   double radius_px = 0;
+
+  /// Whether a pixel shows nothing else: the lens blurs the disc's edge.
+  bool is_inside(int x, int y) const { return (Vec2(x, y) - centre_px).norm() <= 0.6 * radius_px; }
+  /// Whether a pixel may show something of it.
+  bool is_near(int x, int y) const { return (Vec2(x, y) - centre_px).norm() < 1.6 * radius_px + 3; }
 };
+
+/// Whether a pixel may show something of one of the discs.
+inline bool is_near_any(std::span<const KnownDisc> discs, int x, int y) {
+  return std::ranges::any_of(discs, [&](const KnownDisc& disc) { return disc.is_near(x, y); });
+}
 
 /// Learns from frames in which is known what stands where by what numbers colours are to be told from each
 /// other and from the floor.

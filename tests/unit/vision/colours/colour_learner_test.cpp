@@ -86,13 +86,13 @@ TEST_CASE("boxes hold what was seen of their colours and no pixel belongs to two
 
 TEST_CASE("the border between two colours lies half way between what was seen of them") {
   Rng rng(1);
-  const std::vector<Patch> patches{{Colour::kOrange, {150, 60, 200}}, {Colour::kYellow, {150, 60, 150}}};
+  const std::vector<Patch> patches{{Colour::kOrange, {150, 60, 200}}, {Colour::kYellow, {150, 60, 160}}};
   const Painting painting({60, 120, 110}, patches, 0, rng);
   ColourLearner learner;
   learner.add(painting.image.view(), painting.discs);
   const auto boxes = learner.named_boxes();
-  CHECK(box_of(boxes, Colour::kOrange)->low.v == 176);
-  CHECK(box_of(boxes, Colour::kYellow)->high.v == 175);
+  CHECK(box_of(boxes, Colour::kOrange)->low.v == 181);
+  CHECK(box_of(boxes, Colour::kYellow)->high.v == 180);
 }
 
 TEST_CASE("what is far from the background has another colour and what was seen of it has none") {
