@@ -4,6 +4,7 @@
 
 #include "common/messaging/senders.hpp"
 #include "common/process/process.hpp"
+#include "vision/calibrate/calibrate_command.hpp"
 #include "vision/league/log_commands.hpp"
 #include "vision/view/view_command.hpp"
 #include "vision/vision_service.hpp"
@@ -19,7 +20,9 @@ int run_service(int argc, char** argv) {
   program.add_options = [&options](CLI::App& app) {
     add_league_options(app, options);
     add_image_options(app, options.images);
-    app.footer("Commands, each with --help: sidestep-vision view, replay FILE, record FILE.");
+    app.footer(
+        "Commands, each with --help: sidestep-vision view, calibrate SCENARIO FRAME..., replay FILE, "
+        "record FILE.");
   };
   program.fault_target = [] { return static_cast<std::uint32_t>(Sender::kVision); };
   program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
@@ -36,6 +39,7 @@ int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   if (command == "replay") return sidestep::replay_command(argc - 1, argv + 1);
   if (command == "view") return sidestep::view_command(argc - 1, argv + 1);
+  if (command == "calibrate") return sidestep::calibrate_command(argc - 1, argv + 1);
   if (command == "record") return sidestep::record_command(argc - 1, argv + 1);
   return sidestep::run_service(argc, argv);
 }

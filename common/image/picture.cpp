@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/image/picture.hpp"
 
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
@@ -27,6 +28,28 @@ cv::Mat3b bgr_of(const ImageView& image) {
     }
   }
   return picture;
+}
+
+Image read_picture(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw std::invalid_argument(path + ": no such file");
+  cv::Mat bgr;
+  try {
+    bgr = cv::imread(path, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    // Said below: OpenCV names its own source file.
+  }
+  if (bgr.empty()) throw std::invalid_argument(path + ": expected a picture, such as a PNG file");
+  Image image(PixelFormat::kRgb, bgr.cols, bgr.rows);
+  for (int y = 0; y < bgr.rows; ++y) {
+    std::uint8_t* out = image.row(y);
+    for (int x = 0; x < bgr.cols; ++x, out += 3) {
+      const auto& pixel = bgr.at<cv::Vec3b>(y, x);
+      out[0] = pixel[2];
+      out[1] = pixel[1];
+      out[2] = pixel[0];
+    }
+  }
+  return image;
 }
 
 void write_png(const cv::Mat3b& bgr, const std::string& path) {

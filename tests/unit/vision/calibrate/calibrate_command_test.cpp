@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/calibrate/calibrate_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+#include "common/camera/camera_file.hpp"
+#include "common/image/picture.hpp"
+#include "common/process/process.hpp"
+#include "tests/unit/vision/calibrate/rendered_start.hpp"
+#include "vision/colours/colour_file.hpp"
+
+using namespace sidestep;
+using namespace sidestep::test;
+
+namespace {
+
+const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("calibrate-" + std::to_string(getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+};
+
+int calibrate(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all{"calibrate"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& argument : all) argv.push_back(argument.data());
+  return calibrate_command(static_cast<int>(argv.size()), argv.data());
+}
+
+void save_start(const std::string& scenario_file, std::size_t camera, const std::string& path) {
+  const Scenario scenario = load_scenario(scenario_file);
+  RenderSpec spec;
+  spec.format = PixelFormat::kRgb;
+  write_png(bgr_of(rendered_start(scenario, hang_grid(scenario)[camera], spec, 1).view()), path);
+}
+
+/// Robots found in frames of a scenario's cameras by the thresholds of a file.
+std::size_t found(const std::string& scenario_file, const std::string& colours_file) {
+  const Scenario scenario = load_scenario(scenario_file);
+  const ColourThresholds colours = load_colours(colours_file);
+  RenderSpec spec;
+  spec.format = colours.format;
+  std::size_t sum = 0;
+  for (const CameraModel& camera : hang_grid(scenario)) {
+    FrameReader reader(camera, task_of(scenario, colours.boxes));
+    msg::DetectionFrame frame;
+    reader.read(rendered_start(scenario, camera, spec, 2).view(), {}, {}, frame);
+    sum += found_at_start(scenario, frame);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a picture of the start makes a file by which all robots are found") {
+  const Folder folder;
+  save_start(kFloorFile, 0, folder / "frame.png");
+  const std::string format = GENERATE("yuv422", "rgb");
+  REQUIRE(calibrate({kFloorFile, folder / "frame.png", "--format", format, "--out", folder / "c.yaml"}) == 0);
+  CHECK(name_of(load_colours(folder / "c.yaml").format) == format);
+  CHECK(found(kFloorFile, folder / "c.yaml") == 6);
+}
+
+TEST_CASE("pictures of several cameras make one file") {
+  const Folder folder;
+  save_start(kCrossing, 0, folder / "left.png");
+  save_start(kCrossing, 1, folder / "right.png");
+  REQUIRE(calibrate({kCrossing, folder / "left.png", folder / "right.png", "--camera", "0,1", "--out",
+                     folder / "c.yaml"}) == 0);
+  CHECK(found(kCrossing, folder / "c.yaml") == load_scenario(kCrossing).robots.size());
+}
+
+TEST_CASE("cameras come from a file when there is one") {
+  const Folder folder;
+  save_start(kFloorFile, 0, folder / "frame.png");
+  CameraParameters camera = hang_grid(load_scenario(kFloorFile))[0].parameters();
+  save_cameras({{3, camera}}, folder / "cameras.yaml");
+  const std::vector<std::string> basic{kFloorFile, folder / "frame.png", "--cameras", folder / "cameras.yaml",
+                                       "--out",    folder / "c.yaml"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), basic.begin(), basic.end());
+    return calibrate(more);
+  };
+  CHECK(with({"--camera", "3"}) == 0);
+  CHECK(found(kFloorFile, folder / "c.yaml") == 6);
+  CHECK(with({"--camera", "0"}) == kExitUsage);
+  camera.width_px = 640;
+  save_cameras({{3, camera}}, folder / "cameras.yaml");
+  CHECK(with({"--camera", "3"}) == kExitUsage);
+}
+
+TEST_CASE("what makes no sense is refused and nothing is written") {
+  const Folder folder;
+  save_start(kFloorFile, 0, folder / "frame.png");
+  save_start(kCrossing, 0, folder / "elsewhere.png");
+  std::ofstream(folder / "text.png") << "no picture\n";
+  std::ofstream(folder / "absent.yaml") << "robots: [{id: 0, absent: true, team: blue, start_m: [0, 0], "
+                                           "goals_m: [[1, 0]]}]\n";
+  const std::string out = folder / "c.yaml";
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--out", out});
+    const int exit_code = calibrate(arguments);
+    CHECK_FALSE(std::filesystem::exists(out));
+    return exit_code;
+  };
+  CHECK(run({kFloorFile}) == kExitUsage);
+  CHECK(run({folder / "none.yaml", folder / "frame.png"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "none.png"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "text.png"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "frame.png", "--camera", "1"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "frame.png", "--camera", "0,0"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "frame.png", "--format", "bgr"}) == kExitUsage);
+  CHECK(run({folder / "absent.yaml", folder / "frame.png"}) == kExitUsage);
+  CHECK(run({kFloorFile, folder / "elsewhere.png"}) == kExitFailure);
+  CHECK(calibrate({kFloorFile, folder / "frame.png", "--out", folder / "no/such/folder"}) == kExitFailure);
+}
