@@ -4,6 +4,7 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "vision/colours/known_pixels.hpp"
 #include "vision/segmentation/colour_classes.hpp"
 
 namespace sidestep {
@@ -27,21 +28,19 @@ struct Tally {
   std::uint64_t ground = 0, named = 0;
 
   void add(const KnownImage& known, const ColourClasses& classes) {
-    for (int y = 0; y < known.image.height_px; ++y) {
-      for (int x = 0; x < known.image.width_px; ++x) {
-        if (is_near_any(known.floor.unknown, x, y)) continue;
-        const auto colour = classes.colour_of(pixel_at(known.image, x, y));
-        for (const KnownDisc& disc : known.floor.discs) {
-          if (!disc.is_inside(x, y)) continue;
+    const auto colour_at = [&](int x, int y) { return classes.colour_of(pixel_at(known.image, x, y)); };
+    for_known_pixels(
+        known.image, known.floor.discs, known.floor.unknown,
+        [&](const KnownDisc& disc, int x, int y) {
           const auto own = static_cast<std::size_t>(disc.colour);
           ++pixels[own];
-          told[own] += colour == own ? 1 : 0;
-        }
-        if (is_near_any(known.floor.discs, x, y)) continue;
-        ++ground;
-        named += colour && *colour != kOtherColour ? 1 : 0;
-      }
-    }
+          told[own] += colour_at(x, y) == own ? 1 : 0;
+        },
+        [&](int x, int y) {
+          const auto colour = colour_at(x, y);
+          ++ground;
+          named += colour && *colour != kOtherColour ? 1 : 0;
+        });
   }
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "vision/colours/known_pixels.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -58,15 +60,10 @@ void ColourLearner::add_background(const Yuv& pixel) {
 
 void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs,
                         std::span<const KnownDisc> unknown) {
-  for (int y = 0; y < image.height_px; ++y) {
-    for (int x = 0; x < image.width_px; ++x) {
-      if (is_near_any(unknown, x, y)) continue;
-      for (const KnownDisc& disc : discs) {
-        if (disc.is_inside(x, y)) add(disc.colour, pixel_at(image, x, y));
-      }
-      if (!is_near_any(discs, x, y)) add_background(pixel_at(image, x, y));
-    }
-  }
+  for_known_pixels(
+      image, discs, unknown,
+      [&](const KnownDisc& disc, int x, int y) { add(disc.colour, pixel_at(image, x, y)); },
+      [&](int x, int y) { add_background(pixel_at(image, x, y)); });
 }
 
 ColourLearner::Ranges ColourLearner::generous(const Seen& seen) const {

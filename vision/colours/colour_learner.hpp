@@ -36,11 +36,6 @@ struct KnownDisc {
   bool is_near(int x, int y) const { return (Vec2(x, y) - centre_px).norm() < 1.6 * radius_px + 3; }
 };
 
-/// Whether a pixel may show something of one of the discs.
-inline bool is_near_any(std::span<const KnownDisc> discs, int x, int y) {
-  return std::ranges::any_of(discs, [&](const KnownDisc& disc) { return disc.is_near(x, y); });
-}
-
 /// Learns from frames in which is known what stands where by what numbers colours are to be told from each
 /// other and from the floor.
 class ColourLearner {

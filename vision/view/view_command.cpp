@@ -23,6 +23,7 @@ struct ViewOptions {
   int count = 1;
   double every_s = 0.5;
   double wait_s = 10;
+  bool is_plain = false;
 };
 
 /// Writes pictures of the images that come.
@@ -57,7 +58,7 @@ class Viewer {
     const CameraModel& camera = reader_.cameras()[image.camera()];
     cv::Mat3b picture = bgr_of(view_of(image, camera).value());
     FloorPen pen(picture, camera);
-    draw_detections(seen_, scenario_, pen);
+    if (!options_.is_plain) draw_detections(seen_, scenario_, pen);
     const std::string file =
         fmt::format("{}/camera-{}-{:04}.png", options_.folder, image.camera(), taken.count);
     write_png(picture, file);
@@ -111,6 +112,7 @@ int view_command(int argc, char** argv) {
   app.add_option("--wait-s", options.wait_s, "for so long for images")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
+  app.add_flag("--plain", options.is_plain, "draw nothing on them, for sidestep-vision calibrate");
   add_image_options(app, options.images);
   add_dds_options(app, options.dds);
   const int exit_code = parse_options(app, argc, argv);

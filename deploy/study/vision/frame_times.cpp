@@ -5,6 +5,7 @@
 
 #include "deploy/planning/cpu_clock.hpp"
 #include "deploy/study/vision/hall.hpp"
+#include "vision/colours/default_colours.hpp"
 
 namespace sidestep {
 namespace {
@@ -26,7 +27,7 @@ StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const Stu
   std::size_t done = 0;
   Rng rng(seed);
   for (const auto [columns, rows] : grids) {
-    Hall hall(hall_scenario(kDivisionA, columns, rows), {}, rng);
+    Hall hall(hall_scenario(kDivisionA, columns, rows), {}, default_colours(RenderSpec().format), rng);
     std::vector<double> times_us;
     std::size_t seen = 0;
     for (std::size_t round = 0; round < settings.rounds; ++round) {

@@ -5,7 +5,9 @@
 
 #include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
-#include "vision/images/image_options.hpp"
+#include "vision/calibrate/learn_colours.hpp"
+#include "vision/colours/default_colours.hpp"
+#include "vision/colours/known_discs.hpp"
 
 namespace sidestep {
 namespace {
@@ -35,8 +37,8 @@ Scenario hall_scenario(const Field& field, int columns, int rows) {
   return scenario;
 }
 
-Hall::Hall(const Scenario& scenario, const RenderSpec& spec, Rng& rng)
-    : rng_(rng.fork()), scenario_(scenario), reader_(image_reader(scenario, {})) {
+Hall::Hall(const Scenario& scenario, const RenderSpec& spec, const ColourThresholds& colours, Rng& rng)
+    : rng_(rng.fork()), scenario_(scenario), reader_(scenario, hang_grid(scenario), colours, butterfly()) {
   for (const CameraModel& camera : hang_grid(scenario))
     renderers_.emplace_back(camera, scenario.field, butterfly(), spec, Rng(rng_.bits()));
   const ImageSpec& images = scenario.vision.images.value();
@@ -70,7 +72,8 @@ void Hall::step() {
   time_s_ += kPeriod_s;
   robots_ = swaying_->robots_at(time_s_);
   for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i].hidden_dots = hidden_[i];
-  const Scene scene{robots_, {}, swaying_->ball_at(time_s_)};
+  ball_ = swaying_->ball_at(time_s_);
+  const Scene scene{robots_, {}, ball_};
   for (std::size_t camera = 0; camera < renderers_.size(); ++camera) {
     renderers_[camera].render(scene, images_[camera].pixels().data());
     images_[camera].captured_at_ns(to_ns(Time(from_seconds(time_s_))));
@@ -85,6 +88,36 @@ void Hall::see() {
     tracker_->update(frame_);
   }
   tracker_->world_at(time_from_ns(images_.front().captured_at_ns()), world_);
+}
+
+ColourThresholds learned_colours(const Scenario& scenario, const RenderSpec& spec, Rng& rng) {
+  constexpr std::size_t kScenes = 5, kEach = 11;
+  Hall hall(scenario, spec, default_colours(spec.format), rng);
+  std::vector<msg::CameraImage> images;
+  std::vector<KnownFloor> floors;
+  for (std::size_t i = 0; i < kScenes; ++i) {
+    hall.clear(kEach);
+    hall.step();
+    for (const msg::CameraImage& image : hall.images()) {
+      KnownFloor& floor = floors.emplace_back();
+      for (const SceneRobot& robot : hall.robots()) {
+        const auto dots =
+            seen_dots(hall.camera(image.camera()), butterfly(), robot.team, *butterfly().find(robot.pattern),
+                      {robot.position_m, robot.heading_rad}, RobotCylinder().height_m);
+        floor.discs.insert(floor.discs.end(), dots.begin(), dots.end());
+      }
+      const SceneBall& ball = hall.ball();
+      const auto disc =
+          seen_disc(hall.camera(image.camera()), Colour::kOrange, ball.position_m, ball.position_m.z());
+      if (disc) floor.discs.push_back(*disc);
+      images.push_back(image);
+    }
+  }
+  std::vector<KnownImage> known;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    known.push_back({view_of(images[i], hall.camera(images[i].camera())).value(), floors[i]});
+  const Colour expected[] = {Colour::kBlue, Colour::kYellow, Colour::kPink, Colour::kGreen, Colour::kOrange};
+  return learn_colours(known, expected).thresholds;
 }
 
 }  // namespace sidestep

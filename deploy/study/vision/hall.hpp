@@ -21,10 +21,10 @@ constexpr RobotId robot_wearing(Team team, std::uint32_t pattern) {
 /// A field with cameras over it and all 32 robots of two teams on its roster.
 Scenario hall_scenario(const Field& field, int columns, int rows);
 
-/// Cameras over swaying robots, and vision behind them, by default without any calibration.
+/// Cameras over swaying robots, and vision behind them.
 class Hall {
  public:
-  Hall(const Scenario& scenario, const RenderSpec& spec, Rng& rng);
+  Hall(const Scenario& scenario, const RenderSpec& spec, const ColourThresholds& colours, Rng& rng);
 
   /// Other robots, so many of each team, later; what was tracked is forgotten.
   void clear(std::size_t each);
@@ -35,6 +35,7 @@ class Hall {
 
   /// The truth when they were taken.
   const std::vector<SceneRobot>& robots() const { return robots_; }
+  const SceneBall& ball() const { return ball_; }
   std::size_t camera_count() const { return renderers_.size(); }
   const CameraModel& camera(std::size_t number) const { return renderers_[number].camera(); }
   const std::vector<msg::CameraImage>& images() const { return images_; }
@@ -53,11 +54,15 @@ class Hall {
   std::optional<Tracker> tracker_;
   double time_s_ = 1000;
   std::vector<SceneRobot> robots_;
+  SceneBall ball_;
   std::vector<msg::CameraImage> images_;
   std::vector<msg::DetectionFrame> detections_;
   Frame frame_;
   msg::WorldState world_;
   std::vector<std::uint32_t> hidden_;  ///< of each robot, as SceneRobot::hidden_dots
 };
+
+/// Thresholds from some images in this light, as somebody would learn them who knows where robots stand.
+ColourThresholds learned_colours(const Scenario& scenario, const RenderSpec& spec, Rng& rng);
 
 }  // namespace sidestep

@@ -48,12 +48,14 @@ Vec2 centroid_of(const MarkingLayout& layout) {
   return sum / static_cast<double>(layout.dots.size() + 1);
 }
 
+/// Of the largest patch there: beside it noise makes small ones.
 std::optional<Vec2> error_at(const std::vector<Patch>& patches, Colour colour, const Vec2& at_m) {
+  const Patch* found = nullptr;
   for (const Patch& patch : patches) {
-    const Vec2 off_m = patch.position_m - at_m;
-    if (patch.colour == colour && off_m.norm() < kNear_m) return off_m;
+    const bool is_there = patch.colour == colour && (patch.position_m - at_m).norm() < kNear_m;
+    if (is_there && (!found || patch.area_m2 > found->area_m2)) found = &patch;
   }
-  return std::nullopt;
+  return found ? std::optional<Vec2>(found->position_m - at_m) : std::nullopt;
 }
 
 /// The errors of a robot's dots; nothing when one of them is not seen.
@@ -106,10 +108,11 @@ StudyTable patch_errors(const PatchErrors& settings, std::uint64_t seed, const S
   PlotLine predicted_centroids{"s / sqrt(n)", {}}, predicted_headings{"s / sqrt(sum r^2)", {}};
   std::size_t done = 0;
   Rng rng(seed);
+  const Scenario scenario = hall_scenario(kQuarter, 1, 1);
   for (const double noise : settings.noises) {
     RenderSpec spec;
     spec.noise = noise;
-    Hall hall(hall_scenario(kQuarter, 1, 1), spec, rng);
+    Hall hall(scenario, spec, learned_colours(scenario, spec, rng), rng);
     Errors errors;
     for (std::size_t frame = 0; frame < settings.frames; ++frame) {
       if (frame % kSceneFrames == 0) hall.clear(kEach);

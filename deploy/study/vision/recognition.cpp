@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "deploy/study/vision/hall.hpp"
+#include "vision/colours/default_colours.hpp"
 
 namespace sidestep {
 namespace {
@@ -20,6 +21,7 @@ struct Condition {
   int covered = 0;
   double far_light = RenderSpec{}.far_light;
   Eigen::Vector3d colour_gain{1, 1, 1};
+  bool is_learned = true;  ///< thresholds, before colours drift; else they are the default ones
 };
 
 const Condition kConditions[] = {
@@ -29,7 +31,11 @@ const Condition kConditions[] = {
     {"light falls to 60 %", 11, 0, 0.6},
     {"colours drift by 10 %", 11, 0, RenderSpec{}.far_light, {1.1, 0.95, 0.9}},
     {"both", 11, 0, 0.6, {1.1, 0.95, 0.9}},
+    {"usual", 11, 0, RenderSpec{}.far_light, {1, 1, 1}, false},
+    {"both", 11, 0, 0.6, {1.1, 0.95, 0.9}, false},
 };
+
+const char* colours_of(const Condition& condition) { return condition.is_learned ? "learned" : "default"; }
 
 struct Score {
   std::size_t robots = 0, found = 0, wrong = 0;
@@ -56,7 +62,9 @@ struct Score {
 
 /// The share of sights that are off by no more.
 PlotLine shares_of(const Condition& condition, const std::vector<double>& ascending_m) {
-  PlotLine line{fmt::format("{}, {} robots", condition.name, 2 * condition.each), {}};
+  PlotLine line{
+      fmt::format("{}, {} robots, {} colours", condition.name, 2 * condition.each, colours_of(condition)),
+      {}};
   constexpr std::size_t kPoints = 50;
   for (std::size_t i = 0; i <= kPoints && !ascending_m.empty(); ++i) {
     const std::size_t place = std::min(ascending_m.size() - 1, ascending_m.size() * i / kPoints);
@@ -68,11 +76,14 @@ PlotLine shares_of(const Condition& condition, const std::vector<double>& ascend
 
 Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
                const std::function<void()>& advance) {
+  const Scenario scenario = hall_scenario(kQuarter, 1, 1);
   RenderSpec spec;
   spec.exposure_s = 0.004;
   spec.far_light = condition.far_light;
-  spec.colour_gain = condition.colour_gain;
-  Hall hall(hall_scenario(kQuarter, 1, 1), spec, rng);
+  const ColourThresholds colours =
+      condition.is_learned ? learned_colours(scenario, spec, rng) : default_colours(spec.format);
+  spec.colour_gain = condition.colour_gain;  // drifts after that
+  Hall hall(scenario, spec, colours, rng);
   Score score;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     if (frame % kSceneFrames == 0) {
@@ -97,8 +108,8 @@ Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
 StudyTable recognition(const Recognition& settings, std::uint64_t seed, const StudyAdvance& advance) {
   StudyTable table;
   table.name = "recognition";
-  table.columns = {"light", "robots", "frames",   "found_percent",
-                   "wrong", "rms_mm", "worst_mm", "rms_degrees"};
+  table.columns = {"colours", "light",  "robots",   "frames",     "found_percent",
+                   "wrong",   "rms_mm", "worst_mm", "rms_degrees"};
   Plot plot{.title = "Positions",
             .x_label = "off by at most (mm)",
             .y_label = "share of sights (percent)",
@@ -111,7 +122,7 @@ StudyTable recognition(const Recognition& settings, std::uint64_t seed, const St
     std::ranges::sort(score.offs_m);
     plot.lines.push_back(shares_of(condition, score.offs_m));
     const auto found = static_cast<double>(std::max<std::size_t>(1, score.found));
-    table.rows.push_back(cells(condition.name, 2 * condition.each, settings.frames,
+    table.rows.push_back(cells(colours_of(condition), condition.name, 2 * condition.each, settings.frames,
                                fmt::format("{:.3f}", 100 * found / static_cast<double>(score.robots)),
                                score.wrong, fmt::format("{:.3f}", 1e3 * std::sqrt(score.square_m2 / found)),
                                fmt::format("{:.2f}", 1e3 * (score.offs_m.empty() ? 0 : score.offs_m.back())),

@@ -24,9 +24,9 @@ TEST_CASE("what is seen in frames comes from their seed") {
 
 TEST_CASE("robots in frames are found by their names and where they are") {
   const auto rows = rows_of(recognition({.frames = 100}, 3, [](auto, auto) {}));
-  REQUIRE(rows.size() == 6);
+  REQUIRE(rows.size() == 8);
   for (const StudyRow& row : rows) {
-    CAPTURE(row.at("light"), row.at("robots"));
+    CAPTURE(row.at("colours"), row.at("light"), row.at("robots"));
     CHECK(std::stod(row.at("found_percent")) >= (row.at("light") == "one dot covered" ? 99 : 99.5));
     CHECK(row.at("wrong") == "0");
     CHECK(std::stod(row.at("rms_mm")) < 1.5);
