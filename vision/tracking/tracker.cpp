@@ -35,6 +35,8 @@ msg::TrackedBall tracked_ball(const State& state) {
 /// Errors of single dots in images, in pixels, and a robot's of them: what the butterfly's five dots leave
 /// (common/marking/pose_error.hpp).
 constexpr double kDotError_px = 0.19, kDots = 5, kDotsSpread_m = 0.128;
+/// Cameras see an obstacle's outline from different sides, and where it ends is a matter of thresholds.
+constexpr double kOutlineError_m = 0.008;
 
 void expect_images(const Scenario& scenario, TrackModel& robot) {
   const VisionSpec& vision = scenario.vision;
@@ -67,7 +69,8 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   if (scenario.vision.images) expect_images(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
   settings.ball.position_noise_m = settings.robot.position_noise_m;
-  settings.obstacles.position_noise_m = settings.robot.position_noise_m;
+  settings.obstacles.position_noise_m =
+      scenario.vision.images ? kOutlineError_m : settings.robot.position_noise_m;
   settings.obstacles.speed_mps = scenario.opponent_speed_mps;
   settings.field = scenario.field;
   settings.floor_obstacles = scenario.obstacles;
