@@ -43,7 +43,6 @@ NumberedCamera read_camera(YamlMap& map) {
   camera.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
   const auto t = required_numbers(map, "translation_m", 3, kPlace_m);
   camera.translation_m = Vec3(t[0], t[1], t[2]);
-  map.finish();
   if (const std::string fault = fault_of(camera); !fault.empty()) map.place_of("rotation_xyzw").refuse(fault);
   return result;
 }
@@ -51,21 +50,15 @@ NumberedCamera read_camera(YamlMap& map) {
 }  // namespace
 
 std::vector<NumberedCamera> parse_cameras(const std::string& text, const std::string& file_name) {
-  const YAML::Node root = parse_yaml(text, file_name, kExpected);
-  const YamlPlace whole{file_name, 1, ""};
-  YamlMap map(root, whole.of(root, ""));
-  const YAML::Node list = map.require("cameras");
-  const YamlPlace place = map.place_of("cameras");
-  map.finish();
+  YamlMap map = document_map(text, file_name, kExpected);
   std::vector<NumberedCamera> cameras;
   std::set<std::uint32_t> ids;
-  for (const YAML::Node& element : list_from(list, place, kMaxCameras)) {
-    YamlMap inner(element, place.of(element, fmt::format("cameras[{}]", cameras.size())));
+  read_list(map, "cameras", kMaxCameras, [&](YamlMap& inner) {
     cameras.push_back(read_camera(inner));
     if (!ids.insert(cameras.back().id).second)
       inner.place_of("id").refuse(fmt::format("another camera has the id {}", cameras.back().id));
-  }
-  if (cameras.empty()) place.refuse("expected at least one camera");
+  });
+  map.finish();
   return cameras;
 }
 

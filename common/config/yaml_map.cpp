@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/config/yaml_document.hpp"
 
 namespace sidestep {
 namespace {
@@ -179,6 +180,11 @@ void YamlMap::finish() const {
         .refuse(fmt::format("unknown key \"{}\", expected one of: {}", entry.first.Scalar().substr(0, 40),
                             fmt::join(known_, ", ")));
   }
+}
+
+YamlMap document_map(const std::string& text, const std::string& file_name, const std::string& expected) {
+  const YAML::Node root = parse_yaml(text, file_name, expected);
+  return {root, YamlPlace{file_name, 1, ""}.of(root, "")};
 }
 
 }  // namespace sidestep

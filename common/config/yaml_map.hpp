@@ -67,6 +67,23 @@ class YamlMap {
   std::vector<std::string> known_;
 };
 
+/// The mapping that a YAML text is. `expected` ("a layout of markings") and `file_name` stand in messages.
+YamlMap document_map(const std::string& text, const std::string& file_name, const std::string& expected);
+
+/// Calls `read` on each mapping of the list under a key, of which there are at least one and at most `most`,
+/// and refuses the keys that it does not ask for.
+template <typename Read>
+void read_list(YamlMap& map, const std::string& key, std::size_t most, Read read) {
+  const YamlPlace place = map.place_of(key);
+  const std::vector<YAML::Node> elements = list_from(map.require(key), place, most);
+  if (elements.empty()) place.refuse("expected at least one element");
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    YamlMap inner(elements[i], place.of(elements[i], key + "[" + std::to_string(i) + "]"));
+    read(inner);
+    inner.finish();
+  }
+}
+
 /// Calls `read` on the mapping under a key when it is there, and refuses the keys that it does not ask for.
 template <typename Read>
 void read_section(YamlMap& map, const std::string& key, Read read) {

@@ -35,43 +35,33 @@ void read_centre(YamlMap& map, MarkingLayout& layout) {
 
 Places read_dots(YamlMap& map, MarkingLayout& layout) {
   Places places;
-  const YAML::Node list = map.require("dots");
-  const YamlPlace place = map.place_of("dots");
-  for (const YAML::Node& element : list_from(list, place, kMaxDots)) {
-    places.push_back(place.of(element, fmt::format("dots[{}]", layout.dots.size())));
-    YamlMap dot(element, places.back());
+  read_list(map, "dots", kMaxDots, [&](YamlMap& dot) {
+    places.push_back(dot.place());
     dot.require("position_m");
     layout.dots.push_back(read_dot(dot));
-    dot.finish();
-  }
+  });
   return places;
 }
 
 Places read_patterns(YamlMap& map, MarkingLayout& layout) {
   Places places;
-  const YAML::Node list = map.require("patterns");
-  const YamlPlace place = map.place_of("patterns");
-  for (const YAML::Node& element : list_from(list, place, kMaxPatterns)) {
-    places.push_back(place.of(element, fmt::format("patterns[{}]", layout.patterns.size())));
-    YamlMap inner(element, places.back());
+  read_list(map, "patterns", kMaxPatterns, [&](YamlMap& inner) {
+    places.push_back(inner.place());
     MarkingPattern pattern;
     pattern.id = static_cast<std::uint32_t>(
         integer_from(inner.require("id"), inner.place_of("id"), {0, kMaxRobots - 1.0}));
     const YamlPlace colours = inner.place_of("colours");
     for (const YAML::Node& colour : list_from(inner.require("colours"), colours, kMaxDots))
       pattern.colours.push_back(colour_from(colour, colours.of(colour, colours.what)));
-    inner.finish();
     layout.patterns.push_back(pattern);
-  }
+  });
   return places;
 }
 
 }  // namespace
 
 MarkingLayout parse_layout(const std::string& text, const std::string& file_name) {
-  const YAML::Node root = parse_yaml(text, file_name, kExpected);
-  const YamlPlace whole{file_name, 1, ""};
-  YamlMap map(root, whole.of(root, ""));
+  YamlMap map = document_map(text, file_name, kExpected);
   MarkingLayout layout;
   layout.name = text_from(map.require("name"), map.place_of("name"));
   read_centre(map, layout);

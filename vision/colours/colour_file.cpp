@@ -38,7 +38,6 @@ ColourBox read_box(YamlMap& map) {
   box.colour = number_from_name(map.require("colour"), map.place_of("colour"));
   box.low = yuv_from(map.require("low"), map.place_of("low"));
   box.high = yuv_from(map.require("high"), map.place_of("high"));
-  map.finish();
   if (box.low.y > box.high.y || box.low.u > box.high.u || box.low.v > box.high.v)
     map.place_of("low").refuse("expected nothing above high");
   return box;
@@ -47,19 +46,11 @@ ColourBox read_box(YamlMap& map) {
 }  // namespace
 
 ColourThresholds parse_colours(const std::string& text, const std::string& file_name) {
-  const YAML::Node root = parse_yaml(text, file_name, kExpected);
-  const YamlPlace whole{file_name, 1, ""};
-  YamlMap map(root, whole.of(root, ""));
+  YamlMap map = document_map(text, file_name, kExpected);
   ColourThresholds thresholds;
   thresholds.format = format_from(map.require("format"), map.place_of("format"));
-  const YAML::Node list = map.require("boxes");
-  const YamlPlace place = map.place_of("boxes");
+  read_list(map, "boxes", kMaxColours, [&](YamlMap& box) { thresholds.boxes.push_back(read_box(box)); });
   map.finish();
-  for (const YAML::Node& element : list_from(list, place, kMaxColours)) {
-    YamlMap inner(element, place.of(element, fmt::format("boxes[{}]", thresholds.boxes.size())));
-    thresholds.boxes.push_back(read_box(inner));
-  }
-  if (thresholds.boxes.empty()) place.refuse("expected at least one box");
   return thresholds;
 }
 
