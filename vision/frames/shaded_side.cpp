@@ -33,8 +33,8 @@ class Hue {
       const Vec2 place = camera_.position_m().head<2>() + distance_m * rotated(thing_.ahead, bearing_rad);
       const auto pixel = camera_.pixel_of({place.x(), place.y(), 0});
       if (!pixel || !camera_.shows(*pixel)) continue;
-      const Yuv seen = pixel_at(image_, static_cast<int>(std::lround(pixel->x())),
-                                static_cast<int>(std::lround(pixel->y())));
+      const Yuv seen = pixel_at(image_, static_cast<int>(std::floor(pixel->x() + 0.5)),
+                                static_cast<int>(std::floor(pixel->y() + 0.5)));
       sum += Vec2(seen.u - kGrey, seen.v - kGrey).dot(thing_.colour);
       ++count;
     }
