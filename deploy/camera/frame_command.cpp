@@ -68,7 +68,7 @@ void overlay(const Image& image, const CameraModel& camera, const Scenario& scen
 int write_frame(const FrameOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
   const MarkingLayout layout = options.layout_file.empty() ? butterfly() : load_layout(options.layout_file);
-  ImageSpec images = scenario.vision.images.value_or(ImageSpec());
+  ImageSpec images = scenario.vision.images.value_or(ImageSpec{.format = PixelFormat::kRgb});
   images.width_px = options.width_px.value_or(images.width_px);
   images.height_px = options.height_px.value_or(images.height_px);
   const std::vector<CameraModel> cameras = hang_grid(scenario.field, scenario.vision, hanging(images));

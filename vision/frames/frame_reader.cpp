@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace sidestep {
@@ -20,6 +21,9 @@ double confidence_of(const MarkedRobot& robot, const MarkingLayout& layout) {
 
 /// The sight of a robot ends so far outside its top, and where it was expected it may be missed by so much.
 constexpr double kEdge_m = 0.01, kMissed_m = 0.04;
+
+/// Tint moves a colour so far out of its thresholds; the other team's is so many times as far.
+constexpr double kTint = 24, kFar = 3;
 
 std::uint32_t bit(Colour colour) { return std::uint32_t{1} << static_cast<std::uint32_t>(colour); }
 
@@ -56,19 +60,53 @@ void FrameReader::read(const ImageView& image, Time captured_at, std::span<const
                        msg::DetectionFrame& frame) {
   frame.captured_at_ns(to_ns(captured_at));
   regions_ = segmenter_.segment(image);
-  find_robots(captured_at, expected, frame);
+  find_robots(image, captured_at, expected, frame);
   find_obstacles(image, expected, frame);
   find_balls(frame);
 }
 
-void FrameReader::find_robots(Time captured_at, std::span<const ExpectedRobot> expected,
-                              msg::DetectionFrame& frame) {
+/// Of U and V from what thresholds call this colour.
+double FrameReader::distance_from(Colour colour, const Vec2& uv) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ColourBox& box : task_.boxes) {
+    if (box.colour != static_cast<std::uint32_t>(colour)) continue;
+    const Vec2 low(box.low.u, box.low.v), high(box.high.u, box.high.v);
+    least = std::min(least, (uv - uv.cwiseMax(low).cwiseMin(high)).norm());
+  }
+  return least;
+}
+
+/// The team of a robot whose other dots were found, and whose centre has neither team's colour, as light's
+/// tint may have it: the one whose colour it nearly has, when the other's is far.
+std::optional<Team> FrameReader::team_at(const ImageView& image, const Vec2& centre_m) const {
+  const auto at = camera_.pixel_of({centre_m.x(), centre_m.y(), task_.robot_height_m});
+  if (!at) return std::nullopt;
+  const auto x = static_cast<int>(std::lround(at->x())), y = static_cast<int>(std::lround(at->y()));
+  if (x < 1 || y < 1 || x + 1 >= image.width_px || y + 1 >= image.height_px) return std::nullopt;
+  Vec2 uv(0, 0);
+  for (int i = 0; i < 9; ++i) {
+    const Yuv pixel = pixel_at(image, x - 1 + i % 3, y - 1 + i / 3);
+    uv += Vec2(pixel.u, pixel.v) / 9;
+  }
+  const double blue = distance_from(task_.layout.blue_team, uv);
+  const double yellow = distance_from(task_.layout.yellow_team, uv);
+  if (std::min(blue, yellow) > kTint || std::max(blue, yellow) < kFar * std::min(blue, yellow))
+    return std::nullopt;
+  return blue < yellow ? Team::kBlue : Team::kYellow;
+}
+
+void FrameReader::find_robots(const ImageView& image, Time captured_at,
+                              std::span<const ExpectedRobot> expected, msg::DetectionFrame& frame) {
   patches_.clear();
   for (const Region& region : regions_) {
     if ((worn_ >> region.colour & 1) == 0) continue;
     if (const auto patch = patch_of(region, camera_, task_.robot_height_m)) patches_.push_back(*patch);
   }
-  marked_ = finder_.find(patches_);
+  const auto found = finder_.find(patches_);
+  marked_.assign(found.begin(), found.end());
+  for (MarkedRobot& robot : marked_) {
+    if (!robot.team) robot.team = team_at(image, robot.pose.to_world(task_.layout.centre.position_m));
+  }
   robots_ = identifier_.identify(captured_at, marked_, expected);
   frame.robots().clear();
   for (const IdentifiedRobot& robot : robots_) {

@@ -43,7 +43,10 @@ class FrameReader {
   std::span<const IdentifiedRobot> robots() const { return robots_; }
 
  private:
-  void find_robots(Time captured_at, std::span<const ExpectedRobot> expected, msg::DetectionFrame& frame);
+  void find_robots(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
+                   msg::DetectionFrame& frame);
+  double distance_from(Colour colour, const Vec2& uv) const;
+  std::optional<Team> team_at(const ImageView& image, const Vec2& centre_m) const;
   bool is_dot(const Patch& patch) const;
   bool is_known(const Circle& obstacle) const;
   void find_balls(msg::DetectionFrame& frame);
@@ -58,7 +61,7 @@ class FrameReader {
   std::uint32_t worn_;  ///< bit c: colour c is on somebody's dots
   ObstacleFinder obstacle_finder_;
   std::span<const Region> regions_;
-  std::span<const MarkedRobot> marked_;
+  std::vector<MarkedRobot> marked_;
   std::span<const IdentifiedRobot> robots_;
   std::vector<Patch> patches_;
   std::vector<Patch> balls_;
