@@ -14,7 +14,7 @@ struct Sizes {
   PatchErrors errors;
   FrameTimes times;
 };
-Sizes quick_sizes() { return {{.frames = 100}, {.frames = 20, .noises = {2, 10}}, {.rounds = 100}}; }
+Sizes quick_sizes() { return {{.frames = 100}, {.frames = 20, .noises = {2, 6}}, {.rounds = 100}}; }
 
 }  // namespace
 

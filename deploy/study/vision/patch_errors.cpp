@@ -58,7 +58,7 @@ std::optional<Vec2> error_at(const std::vector<Patch>& patches, Colour colour, c
   return found ? std::optional<Vec2>(found->position_m - at_m) : std::nullopt;
 }
 
-/// The errors of a robot's dots; nothing when one of them is not seen.
+/// The errors of a robot's dots, all of which the pose has to be from; nothing when one of them is not seen.
 std::optional<std::vector<Vec2>> dot_errors(const std::vector<Patch>& patches, const SceneRobot& robot) {
   const MarkingLayout& layout = butterfly();
   const Pose truth{robot.position_m, robot.heading_rad};
@@ -85,7 +85,7 @@ void add_frame(const Hall& hall, Errors& errors) {
     const auto of_dots = dot_errors(patches, robot);
     if (!of_dots) continue;
     for (const msg::RobotDetection& seen : hall.detections().front().robots()) {
-      if (seen.robot() != robot_wearing(robot.team, robot.pattern)) continue;
+      if (seen.robot() != robot_wearing(robot.team, robot.pattern) || seen.confidence() < 1) continue;
       const Pose truth{robot.position_m, robot.heading_rad};
       const Pose pose{{seen.x_m(), seen.y_m()}, seen.heading_rad()};
       const double off_rad = wrapped_rad(pose.heading_rad - truth.heading_rad);
@@ -109,10 +109,11 @@ StudyTable patch_errors(const PatchErrors& settings, std::uint64_t seed, const S
   std::size_t done = 0;
   Rng rng(seed);
   const Scenario scenario = hall_scenario(kQuarter, 1, 1);
+  const ColourThresholds colours = learned_colours(scenario, {}, rng);
   for (const double noise : settings.noises) {
     RenderSpec spec;
     spec.noise = noise;
-    Hall hall(scenario, spec, learned_colours(scenario, spec, rng), rng);
+    Hall hall(scenario, spec, colours, rng);
     Errors errors;
     for (std::size_t frame = 0; frame < settings.frames; ++frame) {
       if (frame % kSceneFrames == 0) hall.clear(kEach);

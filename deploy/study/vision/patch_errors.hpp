@@ -8,12 +8,12 @@
 namespace sidestep {
 
 struct PatchErrors {
-  std::size_t frames = 300;                      ///< of each row
-  std::vector<double> noises{2, 6, 10, 14, 18};  ///< of the sensor, in red, green and blue, of 255
+  std::size_t frames = 300;                     ///< of each row
+  std::vector<double> noises{1, 2.5, 4, 6, 8};  ///< of the sensor, in red, green and blue, of 255
 };
 
-/// What errors of single dots do to a robot's pose, in frames with more and more noise: the dots' centroid
-/// and the heading, measured, and predicted from the dots' own errors as s/sqrt(n) and s/sqrt(sum r²)
+/// What errors of single dots do to a robot's pose, in frames with more and more noise: the dots' centroid and
+/// the heading, measured, and predicted from the dots' own errors as s/sqrt(n) and s/sqrt(sum r²)
 /// (common/marking/pose_error.hpp). Errors that all frames share are a matter of calibration and left out.
 StudyTable patch_errors(const PatchErrors& settings, std::uint64_t seed, const StudyAdvance& advance);
 
