@@ -52,7 +52,8 @@ TEST_CASE("vision finds the robots in images of cameras on another host") {
   const auto file =
       std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << hosts;
-  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("crossing-images"), {}, file.string());
+  const auto run =
+      LaunchedRun::on_three_hosts(shipped_scenario("crossing-images"), {"--seconds", "120"}, file.string());
   CHECK(run->wait_for_end() == "exit code 0");
   INFO(run->output());
   const auto report = run->report();

@@ -28,8 +28,8 @@ const Condition kConditions[] = {
     {"usual", 6},
     {"usual", 11},
     {"one dot covered", 11, 1},
-    {"light falls to 60 %", 11, 0, 0.6},
-    {"colours drift by 10 %", 11, 0, RenderSpec{}.far_light, {1.1, 0.95, 0.9}},
+    {"light to 60 %", 11, 0, 0.6},
+    {"drift by 10 %", 11, 0, RenderSpec{}.far_light, {1.1, 0.95, 0.9}},
     {"both", 11, 0, 0.6, {1.1, 0.95, 0.9}},
     {"usual", 11, 0, RenderSpec{}.far_light, {1, 1, 1}, false},
     {"both", 11, 0, 0.6, {1.1, 0.95, 0.9}, false},
@@ -63,7 +63,7 @@ struct Score {
 /// The share of sights that are off by no more.
 PlotLine shares_of(const Condition& condition, const std::vector<double>& ascending_m) {
   PlotLine line{
-      fmt::format("{}, {} robots, {} colours", condition.name, 2 * condition.each, colours_of(condition)),
+      fmt::format("{}{}, {}", condition.is_learned ? "" : "default: ", condition.name, 2 * condition.each),
       {}};
   constexpr std::size_t kPoints = 50;
   for (std::size_t i = 0; i <= kPoints && !ascending_m.empty(); ++i) {
