@@ -2,6 +2,7 @@
 #include "common/marking/layout.hpp"
 
 #include <fmt/format.h>
+#include <stdexcept>
 
 #include "common/marking/symmetry.hpp"
 
@@ -73,6 +74,12 @@ const MarkingPattern* MarkingLayout::find(std::uint32_t id) const {
   for (const MarkingPattern& pattern : patterns)
     if (pattern.id == id) return &pattern;
   return nullptr;
+}
+
+const MarkingPattern& pattern_of(const MarkingLayout& layout, RobotId robot) {
+  if (const MarkingPattern* const pattern = layout.find(number_of(robot))) return *pattern;
+  throw std::invalid_argument(fmt::format("robot {} has number {}, and the layout {} no such pattern", robot,
+                                          number_of(robot), layout.name));
 }
 
 std::optional<LayoutFault> fault_of(const MarkingLayout& layout) {

@@ -38,6 +38,9 @@ struct MarkingLayout {
   const MarkingPattern* find(std::uint32_t id) const;
 };
 
+/// What a robot wears: the pattern of its number. Throws std::invalid_argument when the layout has none.
+const MarkingPattern& pattern_of(const MarkingLayout& layout, RobotId robot);
+
 /// The part of a layout that is wrong, and why.
 struct LayoutFault {
   enum class Part { kCentre, kDots, kPatterns } part = Part::kCentre;

@@ -26,22 +26,24 @@ void DdsStrangers::expect(const std::string& channel, const std::string& type) {
 std::optional<Time> DdsStrangers::writer_since(const std::string& channel) const {
   const std::lock_guard lock(mutex_);
   std::optional<Time> latest;
-  if (const auto writers = writers_.find(channel); writers != writers_.end()) {
+  const auto own = types_.find(channel);
+  if (own == types_.end()) return latest;
+  if (const auto writers = writers_.find(*own); writers != writers_.end()) {
     for (const auto& [guid, since] : writers->second) latest = std::max(latest.value_or(since), since);
   }
   return latest;
 }
 
 void DdsStrangers::on_publisher_discovery(DomainParticipant*, WriterDiscoveryInfo&& info) {
-  const std::string channel = info.info.topicName().to_string();
+  const std::string channel = info.info.topicName().to_string(), type = info.info.typeName().to_string();
   std::ostringstream guid;
   guid << info.info.guid();
   const std::lock_guard lock(mutex_);
   if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
-    writers_[channel].erase(guid.str());
+    writers_[{channel, type}].erase(guid.str());
   } else if (info.status == WriterDiscoveryInfo::DISCOVERED_WRITER) {
-    writers_[channel].emplace(guid.str(), EventLoop::now());
-    compare("writer", channel, info.info.typeName().to_string());
+    writers_[{channel, type}].emplace(guid.str(), EventLoop::now());
+    compare("writer", channel, type);
   }
 }
 
@@ -90,21 +92,18 @@ DdsReader::DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participan
       callback_(std::move(callback)),
       type_(make_dds_type(topic.type).release()),
       sample_(static_cast<GuardedType::Sample*>(type_.create_data())),
-      reader_(create()) {}
+      reader_(participant_->create_reader(channel, type_, dds_reader_qos(topic.qos), this)) {}
 
 DdsReader::~DdsReader() {
   participant_->delete_reader(reader_);
   type_.delete_data(sample_);
 }
 
-DataReader* DdsReader::create() {
-  return participant_->create_reader(channel_, type_, dds_reader_qos(qos_), this);
-}
-
 void DdsReader::move_to(std::shared_ptr<DdsParticipant> participant) {
+  DataReader* const next = participant->create_reader(channel_, type_, dds_reader_qos(qos_), this);
   participant_->delete_reader(reader_);
   participant_ = std::move(participant);
-  reader_ = create();
+  reader_ = next;
 }
 
 bool DdsReader::drain() {

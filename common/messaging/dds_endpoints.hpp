@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/messaging/bus.hpp"
 #include "common/messaging/dds_participant.hpp"
@@ -24,7 +25,8 @@ namespace sidestep {
 class DdsStrangers : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   void expect(const std::string& channel, const std::string& type);
-  /// When the channel's latest writer that still writes came to be known; nothing when nobody writes.
+  /// When the channel's latest writer of our type that still writes came to be known; nothing when nobody
+  /// writes.
   std::optional<Time> writer_since(const std::string& channel) const;
 
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
@@ -37,7 +39,8 @@ class DdsStrangers : public eprosima::fastdds::dds::DomainParticipantListener {
 
   mutable std::mutex mutex_;
   std::map<std::string, std::string> types_;
-  std::map<std::string, std::map<std::string, Time>> writers_;  ///< of each channel, by their GUIDs
+  /// Of each channel and type, by their GUIDs.
+  std::map<std::pair<std::string, std::string>, std::map<std::string, Time>> writers_;
 };
 
 /// A bus's writer of one channel.
@@ -68,7 +71,8 @@ class DdsReader : public EventLoop::Source, public eprosima::fastdds::dds::DataR
             const std::string& channel, std::function<void(const void*)> callback);
   ~DdsReader() override;
 
-  /// Reads by another participant from now on; what has not been handed over yet is lost.
+  /// Reads by another participant from now on; what has not been handed over yet is lost. Goes on as before
+  /// when that throws, as create_reader() does.
   void move_to(std::shared_ptr<DdsParticipant> participant);
 
   bool drain() override;
@@ -81,7 +85,6 @@ class DdsReader : public EventLoop::Source, public eprosima::fastdds::dds::DataR
       const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
 
  private:
-  eprosima::fastdds::dds::DataReader* create();
   void count_refused();
 
   EventLoop& loop_;

@@ -19,7 +19,7 @@ namespace {
 constexpr Duration kSilence{1'000'000'000}, kLongestSilence{16'000'000'000};
 constexpr std::uint32_t kImagesBytes = 32 << 20;  ///< of all images that wait for their readers
 constexpr std::uint32_t kReaderBytes = 1 << 18;   ///< who reads images says little
-constexpr std::time_t kMaking_s = 5;
+constexpr std::chrono::seconds kMaking{5};        ///< who is just making some has no lock on it yet
 constexpr Duration kLook{250'000'000};
 
 std::shared_ptr<DdsParticipant> make(const DdsSettings& settings, std::uint32_t shared_memory_bytes) {
@@ -28,29 +28,8 @@ std::shared_ptr<DdsParticipant> make(const DdsSettings& settings, std::uint32_t 
   return std::make_shared<DdsParticipant>(named, nullptr, shared_memory_bytes);
 }
 
-/// What a process leaves when it is killed stays until somebody removes it. Its lock is free then.
-void remove_abandoned_memory() {
-  constexpr std::string_view kBegin = "fastrtps_", kEnd = "_el";
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) continue;
-    const int lock = open(entry.path().c_str(), O_RDONLY);
-    if (lock < 0) continue;
-    struct stat facts {};
-    // Somebody who is just making it has no lock yet.
-    const bool is_old = fstat(lock, &facts) == 0 && std::time(nullptr) - facts.st_ctime > kMaking_s;
-    if (is_old && flock(lock, LOCK_EX | LOCK_NB) == 0) {
-      const std::string path = entry.path().string();
-      std::filesystem::remove(path.substr(0, path.size() - kEnd.size()), ignored);
-      std::filesystem::remove(path, ignored);
-    }
-    close(lock);
-  }
-}
-
 std::shared_ptr<DdsParticipant> make_sharing(const DdsSettings& settings, std::uint32_t bytes) {
-  remove_abandoned_memory();
+  remove_abandoned_memory("/dev/shm", kMaking);
   try {
     return make(settings, bytes);
   } catch (const std::runtime_error&) {
@@ -61,6 +40,25 @@ std::shared_ptr<DdsParticipant> make_sharing(const DdsSettings& settings, std::u
 }
 
 }  // namespace
+
+void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::seconds least_age) {
+  constexpr std::string_view kBegin = "fastrtps_", kEnd = "_el";
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) continue;
+    const int lock = open(entry.path().c_str(), O_RDONLY);
+    if (lock < 0) continue;
+    struct stat facts {};
+    const bool is_old = fstat(lock, &facts) == 0 && std::time(nullptr) - facts.st_ctime >= least_age.count();
+    if (is_old && flock(lock, LOCK_EX | LOCK_NB) == 0) {
+      const std::string path = entry.path().string();
+      std::filesystem::remove(path.substr(0, path.size() - kEnd.size()), ignored);
+      std::filesystem::remove(path, ignored);
+    }
+    close(lock);
+  }
+}
 
 std::shared_ptr<DdsParticipant> image_writing_participant(const DdsSettings& settings) {
   return make_sharing(settings, kImagesBytes);

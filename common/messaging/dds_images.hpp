@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +10,10 @@
 #include "common/messaging/dds_endpoints.hpp"
 
 namespace sidestep {
+
+/// Removes what killed processes left in a folder of shared memory, whose locks are free, as long as it is so
+/// old.
+void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::seconds least_age);
 
 /// The participant that writes images: by shared memory to those on this host who listen there, by UDP to all
 /// others. Where there is no shared memory, by UDP alone, which it says on stderr.

@@ -17,7 +17,7 @@
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 #include "vision/colours/default_colours.hpp"
-#include "vision/frames/frame_reader.hpp"
+#include "vision/images/image_reader.hpp"
 #include "vision/view/annotation.hpp"
 
 namespace sidestep {
@@ -38,14 +38,7 @@ constexpr double kCross_m = 0.03;
 void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
              const MarkingLayout& layout, cv::Mat3b& picture) {
   const FloorScene floor = floor_scene(scenario);
-  FrameTask task;
-  task.boxes = default_colours(image.view().format, layout).boxes;
-  task.layout = layout;
-  task.known_obstacles = scenario.obstacles;
-  for (const RobotSpec& robot : scenario.robots) {
-    if (const MarkingPattern* const pattern = layout.find(number_of(robot.id)))
-      task.roster.push_back({robot.id, robot.team, *pattern});
-  }
+  const FrameTask task = frame_task(scenario, default_colours(image.view().format, layout).boxes, layout);
   FrameReader reader(camera, task);
   msg::DetectionFrame seen;
   reader.read(image.view(), {}, {}, seen);

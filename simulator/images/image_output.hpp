@@ -21,8 +21,6 @@ class ImageOutput {
   ImageOutput(const ImageOutput&) = delete;
   ImageOutput& operator=(const ImageOutput&) = delete;
 
-  const std::vector<FrameRenderer>& cameras() const { return renderers_; }
-
  private:
   void publish(std::size_t camera, Time captured_at, const FloorScene& floor);
 

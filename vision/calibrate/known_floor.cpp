@@ -2,9 +2,7 @@
 #include "vision/calibrate/known_floor.hpp"
 
 #include <cmath>
-#include <fmt/format.h>
 #include <set>
-#include <stdexcept>
 
 #include "vision/colours/known_discs.hpp"
 #include "vision/frames/frame_reader.hpp"
@@ -15,14 +13,6 @@ namespace {
 
 /// As high as everything on the floor is taken to be.
 const double kTop_m = FrameTask{}.robot_height_m;
-
-const MarkingPattern& worn(const MarkingLayout& layout, const RobotSpec& robot) {
-  const std::uint32_t number = number_of(robot.id);
-  const MarkingPattern* const pattern = layout.find(number);
-  if (pattern) return *pattern;
-  throw std::invalid_argument(fmt::format("robot {} has number {}, and the layout {} no such pattern",
-                                          robot.id, number, layout.name));
-}
 
 /// Something upright, from its foot to its top; also when its middle is outside the image.
 void hide(const CameraModel& camera, const Circle& circle, std::vector<KnownDisc>& discs) {
@@ -41,7 +31,7 @@ KnownFloor floor_at_start(const Scenario& scenario, const MarkingLayout& layout,
   for (const RobotSpec& robot : scenario.robots) {
     if (robot.is_absent) continue;
     const Pose pose{robot.start_m, robot.start_heading_rad};
-    const auto dots = seen_dots(camera, layout, robot.team, worn(layout, robot), pose, kTop_m);
+    const auto dots = seen_dots(camera, layout, robot.team, pattern_of(layout, robot.id), pose, kTop_m);
     floor.discs.insert(floor.discs.end(), dots.begin(), dots.end());
   }
   if (scenario.ball) {
@@ -60,7 +50,7 @@ std::vector<Colour> colours_at_start(const Scenario& scenario, const MarkingLayo
   std::set<Colour> colours;
   for (const RobotSpec& robot : scenario.robots) {
     if (robot.is_absent) continue;
-    const MarkingPattern& pattern = worn(layout, robot);
+    const MarkingPattern& pattern = pattern_of(layout, robot.id);
     colours.insert(layout.team_colour(robot.team));
     colours.insert(pattern.colours.begin(), pattern.colours.end());
   }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/images/image_reader.hpp"
 
-#include <fmt/format.h>
-#include <stdexcept>
-
 #include "vision/tracking/frame.hpp"
 
 namespace sidestep {
@@ -11,19 +8,6 @@ namespace {
 
 // What the world knew of a robot longer ago says nothing of where it is.
 constexpr double kOldest_s = 0.25;
-
-std::vector<RosterEntry> roster_of(const Scenario& scenario, const MarkingLayout& layout) {
-  std::vector<RosterEntry> roster;
-  for (const RobotSpec& robot : scenario.robots) {
-    const MarkingPattern* const pattern = layout.find(number_of(robot.id));
-    if (!pattern) {
-      throw std::invalid_argument(fmt::format("robot {} has number {}, and the layout {} no such pattern",
-                                              robot.id, number_of(robot.id), layout.name));
-    }
-    roster.push_back({robot.id, robot.team, *pattern});
-  }
-  return roster;
-}
 
 std::optional<PixelFormat> format_of(msg::ImageFormat format) {
   switch (format) {
@@ -36,6 +20,18 @@ std::optional<PixelFormat> format_of(msg::ImageFormat format) {
 }
 
 }  // namespace
+
+FrameTask frame_task(const Scenario& scenario, const std::vector<ColourBox>& boxes,
+                     const MarkingLayout& layout) {
+  FrameTask task;
+  task.boxes = boxes;
+  task.layout = layout;
+  for (const RobotSpec& robot : scenario.robots)
+    task.roster.push_back({robot.id, robot.team, pattern_of(layout, robot.id)});
+  task.robot_radius_m = scenario.radius_m;
+  task.known_obstacles = scenario.obstacles;
+  return task;
+}
 
 std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera) {
   const auto format = format_of(message.image_format());
@@ -50,12 +46,7 @@ std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraMo
 ImageReader::ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras,
                          const ColourThresholds& colours, const MarkingLayout& layout)
     : cameras_(std::move(cameras)), format_(colours.format) {
-  FrameTask task;
-  task.boxes = colours.boxes;
-  task.layout = layout;
-  task.roster = roster_of(scenario, layout);
-  task.robot_radius_m = scenario.radius_m;
-  task.known_obstacles = scenario.obstacles;
+  const FrameTask task = frame_task(scenario, colours.boxes, layout);
   for (const CameraModel& camera : cameras_) readers_.emplace_back(camera, task);
 }
 

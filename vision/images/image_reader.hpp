@@ -15,11 +15,15 @@ namespace sidestep {
 /// The image that a message holds; nothing when its size or format does not fit its bytes or the camera.
 std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera);
 
+/// What a scenario's cameras look for. Its robots wear the layout's pattern of their number; throws
+/// std::invalid_argument when a robot's number has none.
+FrameTask frame_task(const Scenario& scenario, const std::vector<ColourBox>& boxes,
+                     const MarkingLayout& layout);
+
 /// Reads the images of all cameras of a scenario.
 class ImageReader {
  public:
-  /// `cameras` go by their numbers in messages. The scenario's robots wear the layout's pattern of their
-  /// number. Throws std::invalid_argument when a robot's number has no pattern.
+  /// `cameras` go by their numbers in messages. Throws as frame_task() does.
   ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras, const ColourThresholds& colours,
               const MarkingLayout& layout);
 

@@ -40,8 +40,8 @@ class Frame {
   /// Detections of the message that are not in here; for a frame that is not usable at least 1.
   std::uint64_t rejected() const { return rejected_; }
 
-  /// Takes over what makes sense: timely stamps, positions within 100 m, confidences in 0..1, robot numbers below kMaxRobots, obstacles' radii up to 10 m.
-  /// Allocates nothing.
+  /// Takes over what makes sense: timely stamps, positions within 100 m, confidences in 0..1, robot numbers
+  /// below kMaxRobots, obstacles' radii up to 10 m. Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now);
 
  private:

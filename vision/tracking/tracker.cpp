@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/tracker.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "common/camera/camera_grid.hpp"
+#include "common/marking/butterfly.hpp"
+#include "common/marking/pose_error.hpp"
 
 namespace sidestep {
 namespace {
@@ -32,18 +37,18 @@ msg::TrackedBall tracked_ball(const State& state) {
   return ball;
 }
 
-/// Errors of single dots in images, in pixels, and a robot's of them: what the butterfly's five dots leave
-/// (common/marking/pose_error.hpp).
-constexpr double kDotError_px = 0.19, kDots = 5, kDotsSpread_m = 0.128;
+constexpr double kDotError_px = 0.19;  // of single dots in images, as sidestep study vision measures
+constexpr double kTop_m = 0.15;        // height of the dots
 /// Cameras see an obstacle's outline from different sides, and where it ends is a matter of thresholds.
 constexpr double kOutlineError_m = 0.008;
 
 void expect_images(const Scenario& scenario, TrackModel& robot) {
-  const VisionSpec& vision = scenario.vision;
-  const double across_m = scenario.field.length_m / vision.columns + 2 * vision.overlap_m;
-  const double dot_m = kDotError_px * across_m / vision.images->width_px;
-  robot.position_noise_m = dot_m / std::sqrt(kDots);
-  robot.heading_noise_rad = dot_m / kDotsSpread_m;
+  const CameraModel camera = hang_grid(scenario).front();
+  const Vec3 middle_m(camera.position_m().x(), camera.position_m().y(), kTop_m);
+  const double px2_per_m2 = std::abs(camera.pixels_per_metre(middle_m)->leftCols<2>().determinant());
+  const PoseError error = predicted_pose_error(butterfly(), kDotError_px / std::sqrt(px2_per_m2));
+  robot.position_noise_m = std::max(error.ahead_m, error.aside_m);
+  robot.heading_noise_rad = error.heading_rad;
 }
 
 }  // namespace

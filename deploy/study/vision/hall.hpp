@@ -36,7 +36,6 @@ class Hall {
   /// The truth when they were taken.
   const std::vector<SceneRobot>& robots() const { return robots_; }
   const SceneBall& ball() const { return ball_; }
-  std::size_t camera_count() const { return renderers_.size(); }
   const CameraModel& camera(std::size_t number) const { return renderers_[number].camera(); }
   const std::vector<msg::CameraImage>& images() const { return images_; }
   const FrameReader& reader(std::size_t number) const { return reader_.camera(number); }

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds_images.hpp"
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
 #include <sched.h>
 #include <set>
+#include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/wait.h>
 
@@ -118,6 +124,31 @@ TEST_CASE("images arrive where shared memory is not the writer's") {
   const Camera camera(true);
   CHECK(run_until([&] { return watcher.count >= 4; }, watcher.bus));
   CHECK(watcher.wrong == 0);
+}
+
+TEST_CASE("memory that a killed process left is removed and nothing else") {
+  const auto folder = std::filesystem::temp_directory_path() / ("sidestep-shm-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const auto path = [&](const std::string& name) { return (folder / name).string(); };
+  for (const char* name : {"fastrtps_0a", "fastrtps_0a_el", "fastrtps_0b", "fastrtps_0b_el", "other",
+                           "other_el", "fastrtps_port7410"})
+    std::ofstream(path(name)) << "x";
+  const int held = open(path("fastrtps_0b_el").c_str(), O_RDONLY);
+  REQUIRE(flock(held, LOCK_EX | LOCK_NB) == 0);
+  const auto count = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+  };
+  remove_abandoned_memory(folder, std::chrono::hours(1));
+  CHECK(count() == 7);
+  remove_abandoned_memory(folder, std::chrono::seconds(0));
+  CHECK(count() == 5);
+  CHECK_FALSE(std::filesystem::exists(path("fastrtps_0a")));
+  CHECK_FALSE(std::filesystem::exists(path("fastrtps_0a_el")));
+  close(held);
+  remove_abandoned_memory(folder, std::chrono::seconds(0));
+  CHECK(count() == 3);
+  remove_abandoned_memory(folder / "none", std::chrono::seconds(0));
+  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("a camera that is killed is followed by the next one") {

@@ -12,6 +12,7 @@
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 #include "vision/images/image_options.hpp"
+#include "vision/tracking/tracker.hpp"
 
 namespace sidestep {
 namespace {
@@ -122,6 +123,48 @@ TEST_CASE("an image that no camera makes is refused and changes nothing") {
   CHECK(is_refused([](auto& image) { image.pixels().push_back(0); }));
   CHECK(is_refused([](auto& image) { image.pixels().clear(); }));
   CHECK_FALSE(is_refused([](auto&) {}));
+}
+
+TEST_CASE("the tracker expects the errors that images really have") {
+  // Wide and narrow fields, so that the image's longer side lies along either of the field's.
+  const Field field = GENERATE(Field{6, 4.5}, Field{3, 4.5}, Field{9, 3});
+  CAPTURE(field.length_m, field.width_m);
+  Scenario scenario = parse_scenario(kFloor, "floor.yaml");
+  scenario.vision.columns = 1;
+  scenario.vision.overlap_m = 0;
+  scenario.field = field;
+  scenario.ball.reset();
+  Rng rng(9);
+  FrameRenderer renderer(hang_grid(scenario)[0], field, butterfly(), {}, Rng(3));
+  ImageReader reader = image_reader(scenario, {});
+  double square_m2 = 0, square_rad2 = 0;
+  int seen_count = 0;
+  for (int i = 0; i < 60; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      RobotSpec& robot = scenario.robots[k];
+      const double share = (static_cast<double>(k) + rng.uniform(0.2, 0.8)) / 3 - 0.5;
+      robot.start_m = {share * (field.length_m - 0.4), rng.uniform(-0.4, 0.4) * field.width_m};
+      robot.start_heading_rad = rng.uniform(-3, 3);
+    }
+    const Image image = renderer.render(floor_scene(scenario).scene());
+    msg::CameraImage message;
+    message.captured_at_ns(5'000'000'000);
+    message.width_px(780);
+    message.height_px(580);
+    message.pixels().assign(image.view().pixels, image.view().pixels + image.view().bytes());
+    msg::DetectionFrame frame;
+    REQUIRE(reader.read(message, kNow, {}, frame));
+    for (const msg::RobotDetection& seen : frame.robots()) {
+      const RobotSpec& truth = *find_robot(scenario, seen.robot());
+      square_m2 += (Vec2(seen.x_m(), seen.y_m()) - truth.start_m).squaredNorm() / 2;
+      square_rad2 += std::pow(wrapped_rad(seen.heading_rad() - truth.start_heading_rad), 2);
+      ++seen_count;
+    }
+  }
+  REQUIRE(seen_count > 150);
+  const TrackModel robot = tracker_settings(scenario).robot;
+  CHECK(robot.position_noise_m == Approx(std::sqrt(square_m2 / seen_count)).epsilon(0.35));
+  CHECK(robot.heading_noise_rad == Approx(std::sqrt(square_rad2 / seen_count)).epsilon(0.35));
 }
 
 TEST_CASE("any pixels are read") {
