@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/league/league_geometry.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "common/camera/hanging_camera.hpp"
+#include "common/geometry/field_marking.hpp"
 
 namespace sidestep {
 namespace {
-
-struct Division {
-  double goal_width_m, goal_depth_m, area_width_m, area_depth_m, penalty_mark_m;
-};
-constexpr Division kDivisionA{1.8, 0.18, 3.6, 1.8, 8};
-constexpr Division kDivisionB{1, 0.18, 2, 1, 6};
-constexpr double kShortestA_m = 10.5;
-constexpr double kCentreCircle_m = 0.5, kLine_m = 0.01;
 
 enum ShapeType : std::uint32_t {
   kCentreCircle = 1,
@@ -33,11 +25,11 @@ enum ShapeType : std::uint32_t {
   kRightFieldRightPenaltyStretch
 };
 
-void mark(league::FieldSize& field) {
+void mark(league::FieldSize& field, const FieldMarking& marking) {
   const double x = field.length_m / 2, y = field.width_m / 2;
-  const double area_x = x - *field.penalty_area_depth_m, area_y = *field.penalty_area_width_m / 2;
+  const double area_x = x - marking.area_depth_m, area_y = marking.area_width_m / 2;
   const auto line = [&](const char* name, const Vec2& from_m, const Vec2& to_m, ShapeType type) {
-    field.lines.push_back({name, from_m, to_m, kLine_m, type});
+    field.lines.push_back({name, from_m, to_m, marking.line_m, type});
   };
   line("TopTouchLine", {-x, y}, {x, y}, kTopTouchLine);
   line("BottomTouchLine", {-x, -y}, {x, -y}, kBottomTouchLine);
@@ -53,32 +45,32 @@ void mark(league::FieldSize& field) {
   line("RightFieldRightPenaltyStretch", {x, -area_y}, {area_x, -area_y}, kRightFieldRightPenaltyStretch);
   field.arcs.push_back({"CenterCircle",
                         {0, 0},
-                        *field.centre_circle_radius_m,
+                        marking.centre_circle_radius_m,
                         0,
                         2 * std::numbers::pi,
-                        kLine_m,
+                        marking.line_m,
                         kCentreCircle});
 }
 
 }  // namespace
 
 league::FieldSize league_field(const Field& field) {
-  const Division& division = field.length_m >= kShortestA_m ? kDivisionA : kDivisionB;
+  const FieldMarking marking(field);
   league::FieldSize size;
   size.length_m = field.length_m;
   size.width_m = field.width_m;
-  size.goal_width_m = std::min(division.goal_width_m, field.width_m / 3);
-  size.goal_depth_m = division.goal_depth_m;
+  size.goal_width_m = marking.goal_width_m;
+  size.goal_depth_m = marking.goal_depth_m;
+  size.goal_height_m = marking.goal_height_m;
   size.boundary_width_m = 0;
-  size.penalty_area_depth_m = std::min(division.area_depth_m, field.length_m / 4);
-  size.penalty_area_width_m = std::min(division.area_width_m, field.width_m / 2);
-  size.centre_circle_radius_m = std::min(kCentreCircle_m, field.width_m / 4);
-  size.line_thickness_m = kLine_m;
-  size.goal_centre_to_penalty_mark_m = std::min(division.penalty_mark_m, field.length_m * 2 / 3);
-  size.goal_height_m = 0.155;
+  size.penalty_area_depth_m = marking.area_depth_m;
+  size.penalty_area_width_m = marking.area_width_m;
+  size.centre_circle_radius_m = marking.centre_circle_radius_m;
+  size.line_thickness_m = marking.line_m;
+  size.goal_centre_to_penalty_mark_m = marking.penalty_mark_m;
   size.ball_radius_m = 0.0215;
   size.max_robot_radius_m = 0.09;
-  mark(size);
+  mark(size, marking);
   return size;
 }
 

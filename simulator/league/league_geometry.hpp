@@ -10,8 +10,7 @@
 
 namespace sidestep {
 
-/// The field as the league marks it: goals, defence areas and centre circle of division A from 10.5 m of
-/// length on, below it those of division B, smaller where the floor is. The floor ends at its lines.
+/// The field with its FieldMarking. The floor ends at its lines.
 league::FieldSize league_field(const Field& field);
 
 /// The camera that would see this part of the floor, up to the robots' tops: 780 x 580 pixels, without

@@ -12,10 +12,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kLineWidth_m = 0.01;
 constexpr double kMargin_m = 0.3;  // of carpet outside the lines
 constexpr Rgb kBeyond{58, 56, 54};
-constexpr double kDivisionA_m = 10.5;  // fields at least this long have the proportions of division A
 
 double border_distance_m(const Vec2& p, const Box& box) { return std::abs(signed_distance(p, box)); }
 
@@ -61,21 +59,16 @@ class FloorShares {
 
 }  // namespace
 
-FieldLines::FieldLines(const Field& field) : field_(field) {
-  const bool is_division_a = field.length_m >= kDivisionA_m;
-  area_m_ = Vec2(field.length_m * (is_division_a ? 0.15 : 1.0 / 9),
-                 field.width_m * (is_division_a ? 0.4 : 1.0 / 3));
-  circle_m_ = field.length_m / (is_division_a ? 24 : 18);
-}
-
 double FieldLines::distance_m(const Vec2& p) const {
   const Vec2 half(field_.length_m / 2, field_.width_m / 2);
   const Vec2 q = p.cwiseAbs();  // all lines lie symmetrically
-  double middle_m = std::min(border_distance_m(q, {-half, half}), std::abs(q.norm() - circle_m_));
+  double middle_m =
+      std::min(border_distance_m(q, {-half, half}), std::abs(q.norm() - marking_.centre_circle_radius_m));
   const double outside_m = signed_distance(q, Box{-half, half});
   middle_m = std::min({middle_m, std::max(q.x(), outside_m), std::max(q.y(), outside_m)});
-  const Box area{{half.x() - area_m_.x(), -area_m_.y() / 2}, {half.x(), area_m_.y() / 2}};
-  return std::min(middle_m, border_distance_m(q, area)) - kLineWidth_m / 2;
+  const Box area{{half.x() - marking_.area_depth_m, -marking_.area_width_m / 2},
+                 {half.x(), marking_.area_width_m / 2}};
+  return std::min(middle_m, border_distance_m(q, area)) - marking_.line_m / 2;
 }
 
 double light_at(const RenderSpec& spec, const Field& field, const Vec2& p) {

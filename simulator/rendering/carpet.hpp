@@ -3,6 +3,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/geometry/field.hpp"
+#include "common/geometry/field_marking.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/rendering/canvas.hpp"
 #include "simulator/rendering/render_spec.hpp"
@@ -12,14 +13,13 @@ namespace sidestep {
 /// The white lines of the league's field, scaled to this one.
 class FieldLines {
  public:
-  explicit FieldLines(const Field& field);
+  explicit FieldLines(const Field& field) : field_(field), marking_(field) {}
   /// From a point to the next line's edge, negative on a line.
   double distance_m(const Vec2& p) const;
 
  private:
   Field field_;
-  Vec2 area_m_;      ///< depth and width of the defence areas
-  double circle_m_;  ///< radius of the centre circle
+  FieldMarking marking_;
 };
 
 /// The share of the full light at a place of the floor; never less than the far end's.

@@ -7,6 +7,7 @@
 
 #include "common/random/rng.hpp"
 #include "simulator/league/league_geometry.hpp"
+#include "simulator/rendering/carpet.hpp"
 
 namespace sidestep {
 namespace {
@@ -114,7 +115,7 @@ TEST_CASE("pixels are where the camera of the geometry sees them") {
 
 TEST_CASE("the geometry is the scenario's field with markings on it") {
   for (const auto& [field, goal_width_m] :
-       {std::pair{Field{12, 9}, 1.8}, {Field{9, 6}, 1.0}, {Field{1.2, 0.9}, 0.3}}) {
+       {std::pair{Field{12, 9}, 1.8}, {Field{9, 6}, 1.0}, {Field{1.2, 0.9}, 0.15}, {Field{6, 0.9}, 0.15}}) {
     CAPTURE(field.length_m);
     Scenario scenario = two_teams();
     scenario.field = field;
@@ -134,6 +135,22 @@ TEST_CASE("the geometry is the scenario's field with markings on it") {
       CHECK(field.contains(line.to_m, -1e-6));
       CHECK((line.from_m - line.to_m).norm() > 0.1);
     }
+  }
+}
+
+TEST_CASE("images show the lines that the geometry tells of") {
+  for (const Field& field : {Field{12, 9}, Field{9, 6}, Field{4.5, 3.5}, Field{14, 4}}) {
+    CAPTURE(field.length_m, field.width_m);
+    const league::FieldSize size = league_field(field);
+    const FieldLines lines(field);
+    const double on_line_m = -size.line_thickness_m.value() / 2;
+    for (const league::LineMarking& line : size.lines) {
+      CAPTURE(line.name);
+      for (const double share : {0.0, 0.3, 1.0})
+        CHECK(lines.distance_m(line.from_m + share * (line.to_m - line.from_m)) == Approx(on_line_m));
+    }
+    REQUIRE(size.arcs.size() == 1);
+    CHECK(lines.distance_m(rotated({size.arcs[0].radius_m, 0}, 0.7)) == Approx(on_line_m));
   }
 }
 
