@@ -19,7 +19,7 @@ double confidence_of(const MarkedRobot& robot, const MarkingLayout& layout) {
   return robot.seen / static_cast<double>(layout.dots.size() + 1);
 }
 
-/// The sight of a robot ends so far outside its top, and where it was expected it may be missed by so much.
+/// The sight of a robot ends so far outside it, and where it was expected it may be missed by so much.
 constexpr double kEdge_m = 0.01, kMissed_m = 0.04;
 
 /// Tint moves a colour so far out of its thresholds; the other team's is so many times as far.
@@ -42,6 +42,7 @@ ObstacleRules rules_for(const FrameTask& task) {
     rules.largest_dot_m = std::max(rules.largest_dot_m, dot.radius_m);
   rules.least_radius_m = task.least_obstacle_m;
   rules.robot_height_m = task.robot_height_m;
+  rules.known = task.known_obstacles;
   return rules;
 }
 
@@ -161,28 +162,22 @@ void FrameReader::find_balls(msg::DetectionFrame& frame) {
 /// On robots that were found, or are expected though they were not, there are none.
 void FrameReader::find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
                                  msg::DetectionFrame& frame) {
-  tops_.clear();
+  feet_.clear();
   for (const MarkedRobot& robot : marked_)
-    tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kEdge_m});
-  for (const ExpectedRobot& robot : expected)
-    tops_.push_back({robot.pose.position_m, task_.robot_radius_m + kMissed_m});
+    feet_.push_back({robot.pose.position_m, task_.robot_radius_m + kEdge_m});
+  for (const ExpectedRobot& robot : expected) {
+    if (std::ranges::find(robots_, robot.robot, &IdentifiedRobot::robot) == robots_.end())
+      feet_.push_back({robot.pose.position_m, task_.robot_radius_m + kMissed_m});
+  }
   std::uint8_t count = 0;
-  for (const Circle& found : obstacle_finder_.find(image, segmenter_.classes(), regions_, tops_)) {
+  for (const Circle& found : obstacle_finder_.find(image, segmenter_.classes(), regions_, feet_)) {
     if (count == msg::MAX_OBSTACLES) break;
-    if (is_known(found)) continue;
     msg::ObstacleDetection& seen = frame.obstacles()[count++];
     seen.x_m(found.centre_m.x());
     seen.y_m(found.centre_m.y());
     seen.radius_m(found.radius_m);
   }
   frame.obstacle_count(count);
-}
-
-/// What leans against a known obstacle makes one thing with it, which reaches beyond it.
-bool FrameReader::is_known(const Circle& obstacle) const {
-  return std::ranges::any_of(task_.known_obstacles, [&](const Circle& known) {
-    return (known.centre_m - obstacle.centre_m).norm() + obstacle.radius_m <= known.radius_m + kMissed_m;
-  });
 }
 
 }  // namespace sidestep

@@ -48,7 +48,6 @@ class FrameReader {
   double distance_from(Colour colour, const Vec2& uv) const;
   std::optional<Team> team_at(const ImageView& image, const Vec2& centre_m) const;
   bool is_dot(const Patch& patch) const;
-  bool is_known(const Circle& obstacle) const;
   void find_balls(msg::DetectionFrame& frame);
   void find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
                       msg::DetectionFrame& frame);
@@ -65,7 +64,7 @@ class FrameReader {
   std::span<const IdentifiedRobot> robots_;
   std::vector<Patch> patches_;
   std::vector<Patch> balls_;
-  std::vector<Circle> tops_;
+  std::vector<Circle> feet_;
 };
 
 }  // namespace sidestep

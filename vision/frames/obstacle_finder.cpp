@@ -19,6 +19,9 @@ constexpr double kMostDot = 3;           // times the largest dot's area: what i
 constexpr double kSolid = 0.6;           // of what lies between its sides has its colour
 constexpr double kNearlyBelow = 0.7;     // sine of half the angle that it is wide, seen from below the camera
 
+// A known obstacle may seem to reach so far beyond where it is known to be, and is taken for so high.
+constexpr double kBeyond_m = 0.04, kHigh_m = 0.3;
+
 constexpr int kGrey = 128;
 
 double disc_m2(double radius_m) { return std::numbers::pi * radius_m * radius_m; }
@@ -27,14 +30,12 @@ bool has(std::uint32_t colours, std::uint32_t colour) { return (colours >> colou
 
 }  // namespace
 
-bool ObstacleFinder::is_on_robot(const Vec2& pixel, std::span<const Circle> robots) const {
-  const auto at_m = camera_.point_at(pixel, rules_.robot_height_m);
-  return at_m && std::ranges::any_of(robots, [&](const Circle& robot) {
-           return (robot.centre_m - *at_m).norm() <= robot.radius_m;
-         });
+bool ObstacleFinder::is_on_robot(const Vec2& pixel, const Uprights& robots) const {
+  const auto floor_m = camera_.point_at(pixel, 0);
+  return floor_m && hide(robots, *floor_m, camera_);
 }
 
-bool ObstacleFinder::is_of_robot(const Region& region, std::span<const Circle> robots) const {
+bool ObstacleFinder::is_of_robot(const Region& region, const Uprights& robots) const {
   return is_on_robot({region.x_px, region.y_px}, robots) &&
          is_on_robot({region.left_px, region.y_px}, robots) &&
          is_on_robot({region.right_px, region.y_px}, robots) &&
@@ -42,7 +43,7 @@ bool ObstacleFinder::is_of_robot(const Region& region, std::span<const Circle> r
          is_on_robot({region.x_px, region.bottom_px}, robots);
 }
 
-void ObstacleFinder::gather(std::span<const Region> regions, std::span<const Circle> robots) {
+void ObstacleFinder::gather(std::span<const Region> regions, const Uprights& robots) {
   const auto touch = [](const Blob& a, const Blob& b) {
     return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) <= kGap_px &&
            std::max(a.top_px, b.top_px) - std::min(a.bottom_px, b.bottom_px) <= kGap_px;
@@ -83,7 +84,7 @@ bool ObstacleFinder::is_large(const Blob& blob) const {
 }
 
 bool ObstacleFinder::find_outline(const Blob& blob, const ImageView& image, const ColourClasses& classes,
-                                  std::span<const Circle> robots) {
+                                  const Uprights& robots) {
   outline_.clear();
   colour_ = Vec2(0, 0);
   int rows = 0;
@@ -111,9 +112,25 @@ bool ObstacleFinder::find_outline(const Blob& blob, const ImageView& image, cons
   return !outline_.empty() && blob.area_px >= kSolid * static_cast<double>(within_px);
 }
 
+/// Whether the outline lies in a known obstacle's shadow, which is all that can be seen of it.
+bool ObstacleFinder::is_outline_known() const {
+  return std::ranges::any_of(rules_.known, [&](const Circle& known) {
+    const Circle grown{known.centre_m, known.radius_m + kBeyond_m};
+    const Uprights upright{{&grown, 1}, kHigh_m};
+    return std::ranges::all_of(outline_, [&](const Vec2& point) { return hide(upright, point, camera_); });
+  });
+}
+
+/// Of whatever height.
+bool ObstacleFinder::is_known(const Circle& circle) const {
+  return std::ranges::any_of(rules_.known, [&](const Circle& known) {
+    return (known.centre_m - circle.centre_m).norm() + circle.radius_m <= known.radius_m + kBeyond_m;
+  });
+}
+
 /// From below the camera, where all uprights run away from, the two lines of sight that touch it and its
 /// nearest point say the circle. What is nearly below the camera is seen as it is.
-Circle ObstacleFinder::circle_of_outline(const ImageView& image) const {
+Circle ObstacleFinder::circle_of_outline(const ImageView& image, const Uprights& robots) const {
   const Vec2 below_m = camera_.position_m().head<2>();
   Vec2 low = outline_[0], high = outline_[0];
   for (const Vec2& point : outline_) {
@@ -134,7 +151,7 @@ Circle ObstacleFinder::circle_of_outline(const ImageView& image) const {
   if ((middle - below_m).norm() <= around_m || half > kNearlyBelow) return {middle, around_m};
   const SeenThing thing{rotated(ahead, 0.5 * (least_rad + most_rad)), near_m, 0.5 * (most_rad - least_rad),
                         colour_};
-  near_m = near_with_shade_m(thing, camera_, image);
+  near_m = near_with_shade_m(thing, camera_, image, robots);
   const double radius_m = near_m * half / (1 - half);
   return {below_m + (near_m + radius_m) * thing.ahead, radius_m};
 }
@@ -142,16 +159,21 @@ Circle ObstacleFinder::circle_of_outline(const ImageView& image) const {
 std::span<const Circle> ObstacleFinder::find(const ImageView& image, const ColourClasses& classes,
                                              std::span<const Region> regions,
                                              std::span<const Circle> robots) {
+  const Uprights hidden{robots, rules_.robot_height_m};
   found_.clear();
   obstacles_.clear();
-  gather(regions, robots);
+  gather(regions, hidden);
   std::ranges::sort(blobs_, std::greater{}, &Blob::area_px);
   for (const Blob& blob : blobs_) {
-    if (!is_large(blob) || !find_outline(blob, image, classes, robots)) continue;
-    const Circle circle = circle_of_outline(image);
+    if (!is_large(blob) || !find_outline(blob, image, classes, hidden)) continue;
+    if (is_outline_known()) {
+      found_.push_back(blob);
+      continue;
+    }
+    const Circle circle = circle_of_outline(image, hidden);
     if (circle.radius_m < rules_.least_radius_m) continue;
     found_.push_back(blob);
-    obstacles_.push_back(circle);
+    if (!is_known(circle)) obstacles_.push_back(circle);
   }
   return obstacles_;
 }

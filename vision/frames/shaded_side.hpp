@@ -3,6 +3,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/image/image.hpp"
+#include "vision/frames/upright.hpp"
 
 namespace sidestep {
 
@@ -15,7 +16,9 @@ struct SeenThing {
 };
 
 /// How near a thing comes whose upright side is in the shade, and so too dark for its colour to be told from
-/// the ground's: as far as there is more of its hue than beside it. near_m where the ground has that hue.
-double near_with_shade_m(const SeenThing& thing, const CameraModel& camera, const ImageView& image);
+/// the ground's: as far as there is more of its hue than beside it, up to where robots or the image's edge
+/// hide it. near_m where the ground has that hue or is not in view, or where the hue does not end.
+double near_with_shade_m(const SeenThing& thing, const CameraModel& camera, const ImageView& image,
+                         const Uprights& robots);
 
 }  // namespace sidestep

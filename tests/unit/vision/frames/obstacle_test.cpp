@@ -26,8 +26,9 @@ struct Watched {
     spec.colour_gain = {1 + drift, 1, 1 - drift};
     return spec;
   }
-  static FrameTask task_of(PixelFormat format) {
+  static FrameTask task_of(PixelFormat format, std::vector<Circle> known = {}) {
     FrameTask task;
+    task.known_obstacles = std::move(known);
     task.boxes = default_colours(format).boxes;
     task.layout = butterfly();
     Rng rng(1);
@@ -161,6 +162,102 @@ TEST_CASE("a robot beside an obstacle is found and so is the obstacle") {
     CHECK((found[0].centre_m - blobs[0].circle.centre_m).norm() < 0.12);
     CHECK(found[0].radius_m > 0.09);
     CHECK(found[0].radius_m < 0.13);
+  }
+}
+
+TEST_CASE("a known obstacle is not told whatever robots and the edge hide of it") {
+  const double height_m = GENERATE(0.002, 0.15, 0.3);
+  const double far_light = GENERATE(0.85, 0.6);
+  Watched watched(18, PixelFormat::kYuv422, far_light);
+  FrameReader& knows_nothing = watched.reader;
+  Rng& rng = watched.floor.rng;
+  int seen = 0, displaced = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Circle stands{{rng.uniform(-3.2, 3.2), rng.uniform(-2.4, 2.4)}, rng.uniform(0.05, 0.2)};
+    std::vector<Marked> robots = watched.floor.scattered_robots(1);
+    for (Marked& robot : robots) {
+      const double away_m = stands.radius_m + 0.09 + rng.uniform(0.005, 0.1);
+      do robot.pose.position_m = stands.centre_m + rotated({away_m, 0}, rng.uniform(-3.2, 3.2));
+      while ((robots[0].pose.position_m - robots[1].pose.position_m).norm() < 0.185);
+    }
+    const std::array blobs{SceneBlob{stands, height_m}};
+    const Image image = watched.floor.frame(robots, {}, i % 3, blobs);
+    const auto expected = expected_of(robots);
+    knows_nothing.read(image.view(), kBegin + i * kFrame, expected, watched.frame);
+    for (const Circle& found : watched.obstacles()) {
+      ++seen;
+      displaced += (found.centre_m - stands.centre_m).norm() > 0.05;
+    }
+    const Circle known{stands.centre_m + rotated({0.02, 0}, rng.uniform(-3, 3)), stands.radius_m};
+    FrameReader reader(watched.floor.camera, Watched::task_of(PixelFormat::kYuv422, {known}));
+    reader.read(image.view(), kBegin, expected, watched.frame);
+    CAPTURE(height_m, far_light, i, stands.centre_m.x(), stands.centre_m.y(), stands.radius_m);
+    CHECK(watched.obstacles().empty());
+  }
+  CHECK(seen > 60);
+  CHECK(displaced > 3);
+}
+
+TEST_CASE("a known obstacle is not told however high it is") {
+  Watched watched(20);
+  for (int i = 0; i < 20; ++i) {
+    const double radius_m = watched.floor.rng.uniform(0.05, 0.2);
+    const Circle known{watched.place_for(radius_m + 0.3, {}), radius_m};
+    FrameReader reader(watched.floor.camera, Watched::task_of(PixelFormat::kYuv422, {known}));
+    const std::array blobs{SceneBlob{known, 0.8}};
+    reader.read(watched.floor.frame({}, {}, 0, blobs).view(), kBegin, {}, watched.frame);
+    CAPTURE(i, known.centre_m.x(), known.centre_m.y(), radius_m);
+    CHECK(watched.obstacles().empty());
+  }
+}
+
+TEST_CASE("an obstacle whose foot a robot hides does not seem to stand nearer") {
+  Watched watched(21);
+  Rng& rng = watched.floor.rng;
+  const Vec2 foot_m = watched.floor.camera.position_m().head<2>();
+  int seen = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::vector<Marked> robots = watched.floor.scattered_robots(1);
+    robots.resize(1);
+    const Vec2 outwards = rotated({1, 0}, rng.uniform(-3.2, 3.2));
+    robots[0].pose.position_m = foot_m + rng.uniform(0.8, 1.8) * outwards;
+    const Circle stands{robots[0].pose.position_m + rotated(0.22 * outwards, rng.uniform(-0.6, 0.6)), 0.12};
+    const std::array blobs{SceneBlob{stands}};
+    watched.read(robots, blobs);
+    CAPTURE(i, stands.centre_m.x(), stands.centre_m.y());
+    for (const Circle& found : watched.obstacles()) {
+      ++seen;
+      CAPTURE(found.centre_m.x(), found.centre_m.y(), found.radius_m);
+      CHECK((found.centre_m - foot_m).norm() - found.radius_m >
+            (stands.centre_m - foot_m).norm() - stands.radius_m - 0.03);
+    }
+  }
+  CHECK(seen > 90);
+}
+
+TEST_CASE("something else beside or behind a known obstacle is told") {
+  Watched watched(19);
+  Rng& rng = watched.floor.rng;
+  const Vec2 foot_m = watched.floor.camera.position_m().head<2>();
+  for (int i = 0; i < 60; ++i) {
+    Circle known{{rng.uniform(-1.5, 1.5), rng.uniform(-1, 1)}, 0.12};
+    if (i == 0) known.centre_m = foot_m;
+    // What is behind, and touches it as it is seen, is narrower than it and so is hidden.
+    const bool is_behind = i % 2 == 0;
+    const double away_m = known.radius_m + 0.1 + (is_behind ? 0.15 : 0) + rng.uniform(0, 0.2);
+    const Vec2 outwards =
+        known.centre_m == foot_m ? Vec2(1, 0) : Vec2((known.centre_m - foot_m).normalized());
+    const double aside_rad = is_behind ? 0 : std::copysign(rng.uniform(0.8, 3.14), rng.uniform(-1, 1));
+    const Vec2 direction = rotated(outwards, aside_rad);
+    const Circle other{known.centre_m + away_m * direction, 0.1};
+    FrameReader reader(watched.floor.camera, Watched::task_of(PixelFormat::kYuv422, {known}));
+    const std::array blobs{SceneBlob{known, 0.15}, SceneBlob{other, 0.15, named(Colour::kPurple).rgb}};
+    reader.read(watched.floor.frame({}, {}, 0, blobs).view(), kBegin, {}, watched.frame);
+    CAPTURE(i, known.centre_m.x(), known.centre_m.y(), other.centre_m.x(), other.centre_m.y());
+    const auto found = watched.obstacles();
+    REQUIRE(found.size() == 1);
+    // What touches the known one makes one thing with it.
+    CHECK((found[0].centre_m - other.centre_m).norm() < found[0].radius_m);
   }
 }
 
