@@ -2,7 +2,6 @@
 #include "vision/league/tracked_output.hpp"
 
 #include <catch2/catch.hpp>
-#include <regex>
 
 namespace sidestep {
 namespace {
@@ -70,8 +69,7 @@ TEST_CASE("a sender is named uniquely for each of its lives") {
   msg::WorldState world;
   TrackedOutput first(two_robots(), 77), second(two_robots(), 78);
   const std::string name = first.packet_of(world).uuid;
-  CHECK(std::regex_match(name,
-                         std::regex("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")));
+  CHECK_THAT(name, Catch::Matches("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
   CHECK(first.packet_of(world).uuid == name);
   CHECK(second.packet_of(world).uuid != name);
 }
