@@ -52,8 +52,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host") {
   const auto file =
       std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << hosts;
-  const auto run =
-      LaunchedRun::on_three_hosts(shipped_scenario("crossing-images"), {"--seconds", "120"}, file.string());
+  const auto run = LaunchedRun::on_three_hosts(crossing_images(), {"--seconds", "120"}, file.string());
   CHECK(run->wait_for_end() == "exit code 0");
   INFO(run->output());
   const auto report = run->report();

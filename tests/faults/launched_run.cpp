@@ -206,6 +206,16 @@ std::string shipped(const std::string& file) {
 
 std::string shipped_scenario(const std::string& name) { return shipped("scenarios/" + name + ".yaml"); }
 
+std::string crossing_images() {
+  std::string text = shipped_scenario("crossing-images");
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  const std::string key = "vision: {images: {";
+  REQUIRE(text.find(key) != std::string::npos);
+  text.replace(text.find(key), key.size(), "vision: {rate_hz: 10, images: {width_px: 390, height_px: 290");
+#endif
+  return text;
+}
+
 std::string shuttles(int times, const std::string& more) {
   std::string text =
       "name: shuttles\nfield: {length_m: 9, width_m: 6}\ntime_limit_s: 100\n" + more + "robots:\n";

@@ -100,6 +100,8 @@ class LaunchedRun {
 std::string shipped(const std::string& file);
 /// A shipped scenario's text.
 std::string shipped_scenario(const std::string& name);
+/// crossing-images; with a sanitizer, which makes rendering many times as slow, fewer and smaller frames.
+std::string crossing_images();
 /// Six robots that shuttle along lanes of their own and two that cross all lanes, each so many times; `more`
 /// are further keys of the scenario.
 std::string shuttles(int times, const std::string& more);

@@ -18,7 +18,7 @@ TEST_CASE("robots as processes cross the floor over DDS and arrive without a con
 }
 
 TEST_CASE("robots that are seen in camera images cross the floor and arrive without a contact") {
-  LaunchedRun run(shipped_scenario("crossing-images"), {"--seconds", "120"});
+  LaunchedRun run(crossing_images(), {"--seconds", "120"});
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
