@@ -36,7 +36,8 @@ struct Stage {
   ~Stage() {
     setenv("PATH", old_path.c_str(), 1);
     unsetenv("TMPDIR");
-    fs::remove_all(folder);
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
   }
   std::string path(const std::string& name) const { return (folder / name).string(); }
   void write(const std::string& name, const std::string& text) const {
@@ -47,11 +48,14 @@ struct Stage {
     std::ifstream file(path(name));
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  bool wait_for(ProcessGroup& group, const std::string& name) const {
+  /// Waits until a file is there, or is no longer.
+  bool wait_for(ProcessGroup& group, const std::string& file, bool there = true) const {
     const Time deadline = EventLoop::now() + std::chrono::seconds(30);
-    while (!fs::exists(path(name)) && EventLoop::now() < deadline) group.poll(std::chrono::milliseconds(5));
-    return fs::exists(path(name));
+    while (fs::exists(file) != there && EventLoop::now() < deadline) group.poll(std::chrono::milliseconds(5));
+    return fs::exists(file) == there;
   }
+  /// The folder that the scenario was copied into, on the host where the agent runs.
+  std::string far_folder() const { return fs::path(read("where")).parent_path().string(); }
 
   fs::path folder;
   std::string old_path = std::getenv("PATH");
@@ -93,7 +97,7 @@ TEST_CASE("over ssh the scenario comes along, and the process ends when the laun
   host.programs = stage.folder.string();
   ProcessGroup group(stage.path("log"));
   group.start(child_on_host(agent_call(stage), host, ""));
-  REQUIRE(stage.wait_for(group, "arguments"));
+  REQUIRE(stage.wait_for(group, stage.path("arguments")));
   CHECK(stage.read("target") == "robot@far\n");
   CHECK(stage.read("scenario") == "robots: all of them\n");
   const std::string where = stage.read("where");
@@ -102,7 +106,7 @@ TEST_CASE("over ssh the scenario comes along, and the process ends when the laun
   CHECK(where.find("it's a scenario.yaml") != std::string::npos);
   CHECK(group.terminate(std::chrono::seconds(20)).empty());
   CHECK(stage.read("end") == "ended\n");
-  CHECK_FALSE(fs::exists(where.substr(0, where.size() - 1)));
+  CHECK_FALSE(fs::exists(stage.far_folder()));
 }
 
 TEST_CASE("over ssh the process ends when the connection does") {
@@ -112,8 +116,9 @@ TEST_CASE("over ssh the process ends when the connection does") {
   {
     ProcessGroup group(stage.path("log"));
     group.start(child_on_host(agent_call(stage), host, ""));
-    REQUIRE(stage.wait_for(group, "arguments"));
+    REQUIRE(stage.wait_for(group, stage.path("arguments")));
   }  // kills what stands for ssh, and with it goes the other end of the pipe
   ProcessGroup nobody(stage.path("log"));
-  CHECK(stage.wait_for(nobody, "end"));
+  CHECK(stage.wait_for(nobody, stage.path("end")));
+  CHECK(stage.wait_for(nobody, stage.far_folder(), false));
 }
