@@ -76,6 +76,7 @@ class World {
     Duration clock_offset;         ///< the robot's clock goes ahead of the host's by so much,
     Time clock;                    ///< but never back
     VersionNumber known_stop = 0;  ///< number of the latest stop of its own that the judge knows
+    std::optional<Time> let_go = std::nullopt;  ///< when the last hand's doing to its body ends
     bool has_news = false;
   };
   /// Something that lasts, or waits for its moment.
@@ -89,6 +90,7 @@ class World {
   void step();
   void end_effects();
   bool put_down(const Effect& wish);
+  void note_hand(std::size_t robot, Time until);
   void start_effect(const Effect& effect);
   void stop_effects(std::size_t robot, msg::DisturbanceKind kind);
   void lift(std::size_t robot, Time now);

@@ -20,14 +20,17 @@ bool World::disturb(std::size_t index, const msg::Disturbance& what, Time now) {
     case msg::DISTURBANCE_PUSH:
       if (!body.is_on_floor()) return false;
       body.shove({what.vx_mps(), what.vy_mps()});
+      note_hand(index, now);
       return true;
     case msg::DISTURBANCE_SLIP:
       body.set_grip(what.grip());
       start_effect({index, kind, until, Vec2(0, 0), 0});
+      note_hand(index, until);
       return true;
     case msg::DISTURBANCE_BLOCK:
       body.set_blocked(what.heading_rad());
       start_effect({index, kind, until, Vec2(0, 0), 0});
+      note_hand(index, until);
       return true;
     case msg::DISTURBANCE_LIFT:
       lift(index, now);
@@ -43,6 +46,7 @@ bool World::disturb(std::size_t index, const msg::Disturbance& what, Time now) {
         robot.firmware.reboot();
         robot.judge.rebooted();
       }
+      note_hand(index, now);
       return true;
     case msg::DISTURBANCE_CLOCK:
       robot_time(index, now);
@@ -62,7 +66,13 @@ void World::lift(std::size_t index, Time now) {
   robots_[index].wish = {};
   contacts_.search_again();
   opponents_.search_again();
+  note_hand(index, now);
   note_news(index);
+}
+
+void World::note_hand(std::size_t index, Time until) {
+  std::optional<Time>& let_go = robots_[index].let_go;
+  let_go = std::max(let_go.value_or(until), until);
 }
 
 void World::start_effect(const Effect& effect) {
@@ -94,6 +104,7 @@ bool World::put_down(const Effect& wish) {
   bodies_[wish.robot].put_down(place_m, wish.heading_rad);
   robot.firmware.put_down(wish.heading_rad, robot_time(wish.robot, time_));
   robot.judge.put_down();
+  note_hand(wish.robot, time_);
   robot.last_position_m = bodies_[wish.robot].rolled_to_m();
   robot.last_heading_rad = wish.heading_rad;
   contacts_.search_again();

@@ -19,7 +19,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
       clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),
       hearing_(hearing.is_complete ? Duration{0} : hearing.fastest),
       places_m_(scenario.robots.size()),
-      hands_(scenario.robots.size(), scenario.cycle, hearing.is_complete),
+      hands_(scenario.robots.size(), hearing.is_complete),
       index_(kMostRobots, scenario.robots.size()) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
@@ -221,7 +221,6 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     hear(topics::kVerdict, robot.id, &Auditor::on_verdict);
     hear(topics::kCommand, robot.id, &Auditor::on_command);
     hear(topics::kFeedback, robot.id, &Auditor::on_feedback);
-    hear(topics::kDisturbance, robot.id, &Auditor::on_disturbance);
   }
 }
 

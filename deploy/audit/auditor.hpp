@@ -40,10 +40,9 @@ class Auditor {
   void on_ledger(const msg::LedgerPage& page, Time now);
   void on_command(const msg::Command& command, Time now);
   void on_feedback(const msg::Feedback& feedback, Time now);
+  /// Whoever was moved by a hand may touch others, and be where it ought not to be, until it is seen in its
+  /// place again.
   void on_truth(const msg::GroundTruth& truth, Time now);
-  /// Whoever is pushed may touch others, and be where it ought not to be, until it is seen in its place
-  /// again.
-  void on_disturbance(const msg::Disturbance& disturbance, Time now);
 
   AuditTotals totals() const;
   /// Calls back for each violation as it is found.

@@ -301,18 +301,6 @@ std::optional<std::size_t> Auditor::place_of(RobotId robot) const {
   return index_[robot];
 }
 
-void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
-  now_ = now;
-  const auto place = place_of(disturbance.robot());
-  if (!place) {
-    ++totals_.invalid;
-    return;
-  }
-  if (disturbance.disturbance_kind() == msg::DISTURBANCE_CLOCK) return;
-  // A simulator that stands still takes the order later.
-  hands_.move(*place, Duration(disturbance.duration_ns()));
-}
-
 void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   now_ = now;
   const Heard heard = note(kTruthKind, truth.simulator(), truth.head());
@@ -341,14 +329,16 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
 }
 
 void Auditor::see(const msg::GroundTruth& truth) {
+  const Time at = time_from_ns(truth.at_ns());
   std::ranges::fill(places_m_, std::nullopt);
   for (const msg::TruthRobot& seen : truth.robots()) {
     const auto place = place_of(seen.robot());
     if (!place || !std::isfinite(seen.x_m()) || !std::isfinite(seen.y_m())) continue;
     sights_[*place] = {truth.at_ns(), seen.x_m(), seen.y_m()};
     places_m_[*place] = Vec2(seen.x_m(), seen.y_m());
+    if (seen.let_go_ns() >= 0) hands_.move(*place, time_from_ns(seen.let_go_ns()), at);
   }
-  hands_.step(places_m_, 2 * scenario_.radius_m + kTouching_m);
+  hands_.step(at, places_m_, 2 * scenario_.radius_m + kTouching_m);
 }
 
 }  // namespace sidestep

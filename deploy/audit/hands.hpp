@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,35 +12,39 @@
 namespace sidestep {
 
 /// Whom somebody has moved, and whom those push who were moved: what they touch, and where they are, is not
-/// the protocol's doing. Robots by their places in the roster.
+/// the protocol's doing. Robots by their places in the roster; times are the simulator's.
 class Hands {
  public:
-  /// `period`: of ground truths. Who does not see whether robots are back in their places takes them to be
-  /// after a while.
-  Hands(std::size_t robots, Duration period, bool sees_places);
+  /// Who does not see whether robots are back in their places takes them to be after a while.
+  Hands(std::size_t robots, bool sees_places);
 
-  /// Somebody moves a robot, for so long.
-  void move(std::size_t robot, Duration lasts);
-  /// Two robots begin to touch; nothing: what is no robot. Whether one of them was moved: then it pushes the
-  /// other one, for as long as they touch.
-  bool touch(std::optional<std::size_t> first, std::optional<std::size_t> second);
+  /// A ground truth of now says that somebody has moved a robot, and lets go of it then. Said again and again,
+  /// it counts once.
+  void move(std::size_t robot, Time let_go, Time now);
   /// Another ground truth: where robots are; nothing for a robot that is not in it. Those that touch are not
   /// farther apart than `touching_m`.
-  void step(const std::vector<std::optional<Vec2>>& places_m, double touching_m);
+  void step(Time now, const std::vector<std::optional<Vec2>>& places_m, double touching_m);
+  /// Two robots began to touch; nothing: what is no robot. Whether one of them was moved: then it pushes the
+  /// other one, for as long as they touch.
+  bool touch(std::optional<std::size_t> first, std::optional<std::size_t> second);
   /// A robot is where it ought to be.
   void see_in_place(std::size_t robot);
 
-  bool are_on(std::size_t robot) const { return left_[robot].has_value(); }
+  bool are_on(std::size_t robot) const { return held_[robot].until.has_value(); }
 
  private:
+  struct Held {
+    std::optional<Time> let_go;  ///< as told last
+    std::optional<Time> until;   ///< before it nobody can say that the robot is back in its place
+  };
   struct Push {
     std::size_t by, of;
   };
-  void begin(std::size_t robot, Duration lasts);
+  void hold(std::size_t robot, Time let_go);
 
-  Duration period_;
   bool sees_places_;
-  std::vector<std::optional<std::int64_t>> left_;  ///< so many ground truths more before it may be in place
+  Time now_{};
+  std::vector<Held> held_;
   std::vector<Push> pushes_;
 };
 

@@ -288,7 +288,8 @@ Json describe(const msg::GroundTruth& m) {
             {"heading_rad", r.heading_rad()},
             {"vx_mps", r.vx_mps()},
             {"vy_mps", r.vy_mps()},
-            {"reference_error_m", r.reference_error_m()}};
+            {"reference_error_m", r.reference_error_m()},
+            {"let_go_ns", r.let_go_ns()}};
   };
   const auto touch = [](const msg::Touch& t) -> Json {
     return {{"first", t.first()}, {"second", t.second()}};

@@ -223,6 +223,31 @@ TEST_CASE("a robot's facts are by its own clock, which waits when it is set back
   CHECK(world.firmware_violations() == 0);
 }
 
+TEST_CASE("ground truth says until when a hand moves a robot") {
+  World world(lonely_robots(1), kBegin, 1);
+  Time now = kBegin;
+  const auto let_go_ns = [&] {
+    msg::GroundTruth truth;
+    world.fill(truth);
+    return truth.robots().at(0).let_go_ns();
+  };
+  world.advance(now += milliseconds(100));
+  CHECK(let_go_ns() < 0);
+  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);  // moves nothing
+  clock.clock_offset_ns(Duration(milliseconds(5)).count());
+  REQUIRE(world.disturb(0, clock, now));
+  CHECK(let_go_ns() < 0);
+  auto slip = disturbance(0, msg::DISTURBANCE_SLIP);
+  slip.duration_ns(Duration(milliseconds(500)).count());
+  REQUIRE(world.disturb(0, slip, now));
+  CHECK(let_go_ns() == to_ns(now + milliseconds(500)));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
+  CHECK(let_go_ns() == to_ns(now + milliseconds(500)));
+  world.advance(now += milliseconds(600));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
+  CHECK(let_go_ns() == to_ns(now));
+}
+
 TEST_CASE("what no hand can do is refused") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Field field{9, 6};

@@ -129,12 +129,7 @@ TEST_CASE("what truth says against the promise is named") {
           if (robot.robot() == moved) robot.x_m(robot.x_m() + 0.02);
         }
       });
-      if (robot_pushed < 0) return;
-      msg::Disturbance hand;
-      hand.robot(static_cast<RobotId>(robot_pushed));
-      hand.disturbance_kind(msg::DISTURBANCE_PUSH);
-      const auto place = std::ranges::find_if(h.messages, [&](const auto& m) { return m.at >= push; });
-      h.messages.insert(place, {push, hand});
+      if (robot_pushed >= 0) h.push(static_cast<RobotId>(robot_pushed), push);
     });
     INFO(lines(totals));
     CHECK((count(totals, AuditRule::kPlace) > 0) == is_named);
@@ -145,11 +140,7 @@ TEST_CASE("what truth says against the promise is named") {
     CAPTURE(hears_all);
     History history = crossing();
     const Time push = history.messages.front().at + 500ms;
-    msg::Disturbance hand;
-    hand.robot(2);
-    hand.disturbance_kind(msg::DISTURBANCE_PUSH);
-    const auto place = std::ranges::find_if(history.messages, [&](const auto& m) { return m.at >= push; });
-    history.messages.insert(place, {push, hand});
+    history.push(2, push);
     history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
       if (at < push + 2s) return;
       truth.contacts(1);
@@ -166,11 +157,7 @@ TEST_CASE("what truth says against the promise is named") {
     CAPTURE(first, second);
     const AuditTotals totals = tampered([a = first, b = second](History& h) {
       const Time push = h.messages.front().at + 1500ms;
-      msg::Disturbance hand;
-      hand.robot(2);
-      hand.disturbance_kind(msg::DISTURBANCE_PUSH);
-      const auto place = std::ranges::find_if(h.messages, [&](const auto& m) { return m.at >= push; });
-      h.messages.insert(place, {push, hand});
+      h.push(2, push);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
         if (at < push + 100ms) return;
         truth.contacts(3);

@@ -23,6 +23,15 @@ void History::each_version(const std::function<void(msg::Version&)>& use) {
   }
 }
 
+void History::push(RobotId pushed, Time at) {
+  each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time heard_at) {
+    if (heard_at < at) return;
+    for (msg::TruthRobot& robot : truth.robots()) {
+      if (robot.robot() == pushed) robot.let_go_ns(to_ns(at));
+    }
+  });
+}
+
 void History::each_mention(RobotId robot, VersionNumber number,
                            const std::function<void(msg::Version&)>& use) {
   each_version([&](msg::Version& version) {
@@ -67,7 +76,6 @@ AuditTotals audit_of(const History& history, const AuditHearing& hearing) {
     void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
     void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
     void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
-    void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
   };
   for (const HeardMessage& heard : history.messages) std::visit(Hear{auditor, heard.at}, heard.message);
   return auditor.totals();

@@ -12,7 +12,7 @@ namespace sidestep {
 
 using AuditedMessage =
     std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
-                 msg::Command, msg::Feedback, msg::GroundTruth, msg::Disturbance>;
+                 msg::Command, msg::Feedback, msg::GroundTruth>;
 
 struct HeardMessage {
   Time at;
@@ -38,6 +38,8 @@ struct History {
       return message && is_gone(*message);
     });
   }
+  /// From then on ground truth says that a hand has moved this robot then.
+  void push(RobotId robot, Time at);
   /// Every mention of a version in any message.
   void each_mention(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
   /// Every version in any message.
