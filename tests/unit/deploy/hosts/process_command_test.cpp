@@ -25,10 +25,12 @@ struct Stage {
     folder = name;
     write("ssh", "#!/bin/sh\nwhile [ \"${1#-}\" != \"$1\" ]; do shift; done\necho \"$1\" >" + path("target") +
                      "\nshift\nexec sh -c \"$*\"\n");
-    write("sidestep-agent", "#!/bin/sh\ncat \"$2\" >" + path("scenario") + "\necho \"$2\" >" + path("where") +
+    // Who sees its arguments may end it.
+    write("sidestep-agent", "#!/bin/sh\ntrap 'echo ended >" + path("end") + "; exit 0' TERM\ncat \"$2\" >" +
+                                path("scenario") + "\necho \"$2\" >" + path("where") +
                                 "\nprintf '%s\\n' \"$@\" >" + path("arguments.part") + "\nmv " +
-                                path("arguments.part") + " " + path("arguments") + "\ntrap 'echo ended >" +
-                                path("end") + "; exit 0' TERM\nwhile :; do sleep 0.05; done\n");
+                                path("arguments.part") + " " + path("arguments") +
+                                "\nwhile :; do sleep 0.05; done\n");
     write("it's a scenario.yaml", "robots: all of them\n");
     setenv("PATH", (folder.string() + ":" + old_path).c_str(), 1);
     setenv("TMPDIR", folder.c_str(), 1);
