@@ -73,9 +73,9 @@ class World {
     Actuation wish;
     Vec2 last_position_m;
     double last_heading_rad;
-    Duration clock_offset;         ///< the robot's clock goes ahead of the host's by so much,
-    Time clock;                    ///< but never back
-    VersionNumber known_stop = 0;  ///< number of the latest stop of its own that the judge knows
+    Duration clock_offset;                      ///< the robot's clock goes ahead of the host's by so much,
+    Time clock;                                 ///< but never back
+    VersionNumber known_stop = 0;               ///< number of the latest stop of its own that the judge knows
     std::optional<Time> let_go = std::nullopt;  ///< when the last hand's doing to its body ends
     bool has_news = false;
   };

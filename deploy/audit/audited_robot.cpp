@@ -51,8 +51,8 @@ Known& AuditedRobot::note(VersionNumber number) {
     const auto gone = std::ranges::find_if(versions, is_gone);
     const auto given_up = gone == versions.end() ? versions.begin() : gone;
     given_up_version = std::max(given_up_version, given_up->number);
+    if (given_up - versions.begin() < static_cast<std::ptrdiff_t>(first_recent)) --first_recent;
     versions.erase(given_up);
-    first_recent = 0;
   }
   auto place = versions.end();
   while (place != versions.begin() && std::prev(place)->number > number) --place;
@@ -82,8 +82,7 @@ void AuditedRobot::forget(std::int64_t before_ns) {
 }
 
 void AuditedRobot::age(std::int64_t since_ns) {
-  const auto is_recent = [&](const Known& known) { return known.excluded_ns >= since_ns; };
-  first_recent = static_cast<std::size_t>(std::ranges::find_if(versions, is_recent) - versions.begin());
+  while (first_recent < versions.size() && versions[first_recent].excluded_ns < since_ns) ++first_recent;
 }
 
 HeardProposal& AuditedRobot::new_proposal() {
@@ -115,9 +114,9 @@ Excluded excluded_by(const AuditedRobot::Fact& fact, const Known& version) {
   return Excluded::kNo;
 }
 
-void Whereabouts::update(const AuditedRobot& robot) {
+Whereabouts look_at(const AuditedRobot& robot, std::vector<Live>& live) {
   live.clear();
-  reach_m = -1;
+  Whereabouts all;
   for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
     const Known& known = robot.versions[i];
     if (!known.has_content) continue;
@@ -125,15 +124,14 @@ void Whereabouts::update(const AuditedRobot& robot) {
     live.push_back({first.x, first.y, known.path.reach_m(), known.path.start_ns(), known.executed_until_ns,
                     known.granted_in == 0 ? kAlways : known.granted_by_ns, static_cast<std::uint32_t>(i),
                     known.number});
-    if (reach_m < 0) {
-      x = first.x;
-      y = first.y;
-      reach_m = known.path.reach_m();
+    if (all.reach_m < 0) {
+      all = {first.x, first.y, known.path.reach_m()};
     } else {
-      const double dx = first.x - x, dy = first.y - y;
-      reach_m = std::max(reach_m, std::sqrt(dx * dx + dy * dy) + known.path.reach_m());
+      const double dx = first.x - all.x, dy = first.y - all.y;
+      all.reach_m = std::max(all.reach_m, std::sqrt(dx * dx + dy * dy) + known.path.reach_m());
     }
   }
+  return all;
 }
 
 }  // namespace sidestep

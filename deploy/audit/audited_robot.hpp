@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -85,14 +86,15 @@ class AuditedRobot {
   static constexpr std::size_t kMostProposals = 16;
 
   RobotId id = 0;
-  std::vector<Known> versions;  ///< ascending by number
+  std::deque<Known> versions;  ///< ascending by number; most come at the end and go at the beginning
   std::array<HeardProposal, kMostProposals> proposals;
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
   std::size_t early_verdict_count = 0;
   std::uint64_t given_up_proposal = 0;  ///< proposals up to this number may have been given up
   VersionNumber given_up_version = 0;   ///< and versions up to this one
-  std::size_t first_recent = 0;         ///< versions before this index were excluded a while ago
+  std::size_t first_recent = 0;         ///< versions before this index were excluded a while ago, so all that
+                                        ///< facts do not exclude are from it on
 
   /// The latest fact.
   struct Fact {
@@ -148,16 +150,16 @@ struct Live {
   double x = 0, y = 0, reach_m = 0;
   std::int64_t start_ns = 0, executed_until_ns = kAlways,
                granted_by_ns = kAlways;  ///< kAlways: was not granted
-  std::uint32_t index = 0;               ///< in AuditedRobot::versions, at the time of update()
+  std::uint32_t index = 0;               ///< in AuditedRobot::versions, when it was looked at
   VersionNumber number = 0;
 };
 
-/// Where a robot's recent versions lie, and a disc that holds them.
+/// A disc that holds all recent versions of a robot.
 struct Whereabouts {
   double x = 0, y = 0, reach_m = -1;  ///< below 0: there are none
-  std::vector<Live> live;
-
-  void update(const AuditedRobot& robot);
 };
+
+/// Fills `live` with a robot's recent versions, and says where they lie.
+Whereabouts look_at(const AuditedRobot& robot, std::vector<Live>& live);
 
 }  // namespace sidestep

@@ -26,6 +26,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
     robots_.emplace_back().id = spec.id;
   }
   whereabouts_.resize(robots_.size());
+  live_.resize(robots_.size());
   sights_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
 }

@@ -119,7 +119,8 @@ class Auditor {
   bool clock_is_sound(const msg::Feedback& feedback, const Heard& heard) const;
 
   // Pairs.
-  void judge_pairs_of(AuditedRobot& robot, const std::vector<Before>& before);
+  /// `before`: of its recent versions, before the fact that is being looked at.
+  void judge_pairs_of(const AuditedRobot& robot, const std::vector<Before>& before);
   void judge_new_pairs_of(AuditedRobot& robot, const Known& known);
   /// Whether, and in which epoch's ledger (0: at once, by facts), both were held at one time; nullopt: not
   /// proven.
@@ -144,6 +145,7 @@ class Auditor {
   Time now_{};
   std::vector<AuditedRobot> robots_;      ///< ascending by id
   std::vector<Whereabouts> whereabouts_;  ///< as robots_
+  std::vector<std::vector<Live>> live_;   ///< as robots_
   double most_grown_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;

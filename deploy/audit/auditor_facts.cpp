@@ -11,6 +11,8 @@ namespace sidestep {
 namespace {
 
 constexpr std::int64_t kKept_ns = 1'500'000'000;
+// Versions that were excluded longer ago than this were compared when they were not.
+constexpr std::int64_t kRecent_ns = 50'000'000;
 constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 // Those that touch are not pressed together, and not seen at one instant.
 constexpr double kTouching_m = 0.001;
@@ -86,8 +88,10 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
   fact.is_lifted = feedback.is_lifted();
   judge_order(*robot, feedback);
 
+  robot->age(to_ns(now_) - kRecent_ns - (how_.is_complete ? 0 : 20 * how_.fastest.count()));
   before_.clear();
-  for (const Known& known : robot->versions) before_.push_back(state_of(known));
+  for (std::size_t i = robot->first_recent; i < robot->versions.size(); ++i)
+    before_.push_back(state_of(robot->versions[i]));
   if (!executes_nothing) {
     Known& executing = *robot->find(feedback.executing().version_number());
     judge_switch(*robot, executing, feedback);
@@ -235,7 +239,8 @@ void Auditor::judge_epochs(AuditedRobot& robot, const Known& executing, const ms
 
 void Auditor::exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
                       std::int64_t now_ns) {
-  for (Known& known : robot.versions) {
+  for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
+    Known& known = robot.versions[i];
     if (known.excluded != Excluded::kNo) continue;
     known.excluded = excluded_by(fact, known);
     if (known.excluded != Excluded::kNo) known.excluded_ns = now_ns;

@@ -294,7 +294,8 @@ void Auditor::judge_page(const msg::LedgerPage& page) {
     begin = end;
     if (id >= index_.size() || index_[id] == robots_.size()) continue;
     const AuditedRobot& robot = robots_[index_[id]];
-    for (const Known& known : robot.versions) {
+    for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
+      const Known& known = robot.versions[i];
       // What it is was given up here before a coordinator that was held up granted it.
       if (!known.has_content) continue;
       if (known.excluded != Excluded::kNo || known.is_own || !known.is_in(page.epoch())) continue;

@@ -10,8 +10,6 @@ namespace sidestep {
 namespace {
 
 constexpr double kLength_m = 2e-6;
-// Versions that were excluded longer ago than this were compared when they were not.
-constexpr std::int64_t kRecent_ns = 50'000'000;
 
 std::int64_t entered_ns(const Known& known, Epoch epoch) {
   return known.granted_in == epoch ? known.granted_by_ns : kAlways;
@@ -62,11 +60,9 @@ bool Auditor::may_matter(const Live& mine, const Before& before, const Live& the
   return dx * dx + dy * dy <= far * far;
 }
 
-void Auditor::judge_pairs_of(AuditedRobot& robot, const std::vector<Before>& before) {
+void Auditor::judge_pairs_of(const AuditedRobot& robot, const std::vector<Before>& before) {
   const std::size_t self = index_of(robot);
-  robot.age(to_ns(now_) - kRecent_ns - (how_.is_complete ? 0 : 20 * how_.fastest.count()));
-  Whereabouts& mine = whereabouts_[self];
-  mine.update(robot);
+  const Whereabouts mine = whereabouts_[self] = look_at(robot, live_[self]);
   if (mine.reach_m < 0) return;
   const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 2 * most_grown_m_;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -74,16 +70,16 @@ void Auditor::judge_pairs_of(AuditedRobot& robot, const std::vector<Before>& bef
     const double far = mine.reach_m + other.reach_m + keep, dx = other.x - mine.x, dy = other.y - mine.y;
     if (i == self || other.reach_m < 0 || dx * dx + dy * dy > far * far) continue;
     const bool clocks_are_sound = has_sound_clock_[self] && has_sound_clock_[i];
-    for (const Live& own : mine.live) {
-      for (const Live& live : other.live) {
-        if (!may_matter(own, before[own.index], live)) continue;
+    for (const Live& own : live_[self]) {
+      for (const Live& live : live_[i]) {
+        if (!may_matter(own, before[own.index - robot.first_recent], live)) continue;
         const Known& known = robot.versions[own.index];
         const Known* theirs = robots_[i].find(live.number);
         if (!theirs || !theirs->has_content) continue;
         const Before state = state_of(*theirs);
         const auto epoch = held_together(known, state_of(known), *theirs, state);
         if (!epoch || (*epoch == 0 && !clocks_are_sound)) continue;
-        const auto earlier = held_together(known, before[own.index], *theirs, state);
+        const auto earlier = held_together(known, before[own.index - robot.first_recent], *theirs, state);
         if (earlier && (*earlier != 0 || clocks_are_sound)) continue;
         judge_pair(robot, known, robots_[i], *theirs, *epoch);
       }

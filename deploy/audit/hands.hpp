@@ -18,8 +18,8 @@ class Hands {
   /// Who does not see whether robots are back in their places takes them to be after a while.
   Hands(std::size_t robots, bool sees_places);
 
-  /// A ground truth of now says that somebody has moved a robot, and lets go of it then. Said again and again,
-  /// it counts once.
+  /// A ground truth of now says that somebody has moved a robot, and lets go of it then. Said again and
+  /// again, it counts once.
   void move(std::size_t robot, Time let_go, Time now);
   /// Another ground truth: where robots are; nothing for a robot that is not in it. Those that touch are not
   /// farther apart than `touching_m`.

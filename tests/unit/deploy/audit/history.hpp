@@ -10,9 +10,8 @@
 
 namespace sidestep {
 
-using AuditedMessage =
-    std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
-                 msg::Command, msg::Feedback, msg::GroundTruth>;
+using AuditedMessage = std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState,
+                                    msg::LedgerPage, msg::Command, msg::Feedback, msg::GroundTruth>;
 
 struct HeardMessage {
   Time at;
