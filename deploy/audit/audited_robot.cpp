@@ -40,6 +40,15 @@ const Known* AuditedRobot::find(VersionNumber number) const {
   return nullptr;
 }
 
+const Known* AuditedRobot::find_near(std::size_t index, VersionNumber number) const {
+  // Since then older ones have gone, and newer ones come.
+  if (index < versions.size()) {
+    while (index > 0 && versions[index].number > number) --index;
+    if (versions[index].number == number) return &versions[index];
+  }
+  return find(number);
+}
+
 Known* AuditedRobot::find(VersionNumber number) {
   return const_cast<Known*>(static_cast<const AuditedRobot*>(this)->find(number));
 }
@@ -114,6 +123,15 @@ Excluded excluded_by(const AuditedRobot::Fact& fact, const Known& version) {
   return Excluded::kNo;
 }
 
+void Whereabouts::add(const Live& version) {
+  if (reach_m < 0) {
+    *this = {version.x, version.y, version.reach_m};
+  } else {
+    const double dx = version.x - x, dy = version.y - y;
+    reach_m = std::max(reach_m, std::sqrt(dx * dx + dy * dy) + version.reach_m);
+  }
+}
+
 Whereabouts look_at(const AuditedRobot& robot, std::vector<Live>& live) {
   live.clear();
   Whereabouts all;
@@ -124,12 +142,7 @@ Whereabouts look_at(const AuditedRobot& robot, std::vector<Live>& live) {
     live.push_back({first.x, first.y, known.path.reach_m(), known.path.start_ns(), known.executed_until_ns,
                     known.granted_in == 0 ? kAlways : known.granted_by_ns, static_cast<std::uint32_t>(i),
                     known.number});
-    if (all.reach_m < 0) {
-      all = {first.x, first.y, known.path.reach_m()};
-    } else {
-      const double dx = first.x - all.x, dy = first.y - all.y;
-      all.reach_m = std::max(all.reach_m, std::sqrt(dx * dx + dy * dy) + known.path.reach_m());
-    }
+    all.add(live.back());
   }
   return all;
 }

@@ -37,23 +37,24 @@ class EpochMemory {
 
 /// What is known of one version. Times of sending are by the auditor's clock.
 struct Known {
+  // What is asked of most versions first, side by side in memory.
   VersionNumber number = 0;
   bool has_content = false;
-  msg::Version version;
-  AuditPath path;
-  bool is_own = false;                  ///< the firmware made it, off reference
+  bool is_own = false;  ///< the firmware made it, off reference
+  bool was_executed = false;
+  Excluded excluded = Excluded::kNo;
   Epoch granted_in = 0;                 ///< or, for the firmware's own, whose ledger was seen to hold it
   std::int64_t granted_by_ns = kNever;  ///< the verdict, or that page, was not sent after
-  bool is_granted_by_page = false;      ///< its verdict was not heard, but a page that holds it was
+  std::int64_t executed_until_ns = kAlways;  ///< by the robot's clock, at least
+  std::int64_t alive_until_ns = kAlways;     ///< until then, at least, no fact excluded it
+  std::int64_t excluded_ns = kNever;
+  AuditPath path;
   EpochMemory registered_in;
   std::int64_t sent_ns = kNever;  ///< the first command with it
   Epoch sent_epoch = 0;           ///< the highest that one came with
-  bool was_executed = false;
-  std::int64_t executed_until_ns = kAlways;  ///< by the robot's clock, at least
-  std::int64_t alive_until_ns = kAlways;     ///< until then, at least, no fact excluded it
-  Excluded excluded = Excluded::kNo;
-  std::int64_t excluded_ns = kNever;
+  bool is_granted_by_page = false;  ///< its verdict was not heard, but a page that holds it was
   bool is_reported_unsent = false;  ///< so that one breach is told once
+  msg::Version version;
 
   bool is_in(Epoch epoch) const;
   /// The same as far as is known: a coordinator may wake up after more epochs than are remembered.
@@ -127,6 +128,8 @@ class AuditedRobot {
 
   Known* find(VersionNumber number);
   const Known* find(VersionNumber number) const;
+  /// The same for one that was at this index not long ago.
+  const Known* find_near(std::size_t index, VersionNumber number) const;
   /// Whether nothing is known of the version because what was has been given up, as it may have been.
   bool has_given_up(VersionNumber number) const { return number <= given_up_version && !find(number); }
   /// The version's record, made if it was not there; makes room by giving up what can matter least.
@@ -154,9 +157,11 @@ struct Live {
   VersionNumber number = 0;
 };
 
-/// A disc that holds all recent versions of a robot.
+/// A disc that holds some versions of a robot.
 struct Whereabouts {
   double x = 0, y = 0, reach_m = -1;  ///< below 0: there are none
+
+  void add(const Live& version);
 };
 
 /// Fills `live` with a robot's recent versions, and says where they lie.

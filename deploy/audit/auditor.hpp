@@ -59,6 +59,7 @@ class Auditor {
   struct Before {  ///< what was proven of a version before the message that is being looked at
     std::int64_t alive_until_ns, executed_until_ns;
     bool was_executed;
+    bool operator==(const Before&) const = default;
   };
   struct Sight {  ///< of one robot in ground truth
     std::int64_t at_ns = kNever;
@@ -160,6 +161,7 @@ class Auditor {
   std::map<std::uint32_t, std::vector<AgentStream>> agent_epochs_;
   std::map<std::uint64_t, msg::GroundTruth> truths_;  ///< last counters of each simulator's life
   std::vector<Before> before_;
+  std::vector<Live> changed_;
   std::vector<VersionNumber> page_numbers_;
   AuditTotals totals_;
   std::function<void(const Violation&)> on_violation_;

@@ -62,19 +62,27 @@ bool Auditor::may_matter(const Live& mine, const Before& before, const Live& the
 
 void Auditor::judge_pairs_of(const AuditedRobot& robot, const std::vector<Before>& before) {
   const std::size_t self = index_of(robot);
-  const Whereabouts mine = whereabouts_[self] = look_at(robot, live_[self]);
-  if (mine.reach_m < 0) return;
+  whereabouts_[self] = look_at(robot, live_[self]);
+  // Of which nothing new is known, nothing new can be proven.
+  changed_.clear();
+  Whereabouts mine;
+  for (const Live& own : live_[self]) {
+    if (state_of(robot.versions[own.index]) == before[own.index - robot.first_recent]) continue;
+    changed_.push_back(own);
+    mine.add(own);
+  }
+  if (changed_.empty()) return;
   const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 2 * most_grown_m_;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const Whereabouts& other = whereabouts_[i];
     const double far = mine.reach_m + other.reach_m + keep, dx = other.x - mine.x, dy = other.y - mine.y;
     if (i == self || other.reach_m < 0 || dx * dx + dy * dy > far * far) continue;
     const bool clocks_are_sound = has_sound_clock_[self] && has_sound_clock_[i];
-    for (const Live& own : live_[self]) {
+    for (const Live& own : changed_) {
       for (const Live& live : live_[i]) {
         if (!may_matter(own, before[own.index - robot.first_recent], live)) continue;
         const Known& known = robot.versions[own.index];
-        const Known* theirs = robots_[i].find(live.number);
+        const Known* theirs = robots_[i].find_near(live.index, live.number);
         if (!theirs || !theirs->has_content) continue;
         const Before state = state_of(*theirs);
         const auto epoch = held_together(known, state_of(known), *theirs, state);
