@@ -17,6 +17,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/messaging/dds_lease.hpp"
 #include "common/messaging/fault_transport.hpp"
 
 namespace sidestep {
@@ -116,6 +117,8 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
+  if (!is_lease_check_ours())
+    fmt::print(stderr, "warning: this build of Fast DDS may abort a process when another one leaves\n");
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
