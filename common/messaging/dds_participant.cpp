@@ -29,7 +29,6 @@ using eprosima::fastrtps::Duration_t;
 
 constexpr int kLargestDomain = 99;             ///< port numbers of the domains above overlap with others
 constexpr std::uint32_t kMutationTries = 250;  ///< bounds the number of participants on one host
-const Duration_t kLease{4, 0};
 const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< of which the system grants what it allows
 constexpr int kLargestInstances = 2048;  ///< keys that one endpoint holds; beyond, idle ones are given up
@@ -88,7 +87,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
-  builtin.discovery_config.leaseDuration = kLease;
+  builtin.discovery_config.leaseDuration = Duration_t(to_seconds(kLease));
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
   return qos;
 }

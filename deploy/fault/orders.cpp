@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/config/scenario.hpp"
+#include "common/messaging/dds_lease.hpp"
 #include "common/messaging/event_loop.hpp"
 #include "common/motion/version.hpp"
 
@@ -17,9 +18,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kDiscovery = 5s;  ///< more than the participants' announcements are apart
-constexpr Duration kQuiet = 1500ms;  ///< nobody new for so long: all are known
-constexpr Duration kTaking = 6s;     ///< more than the lease of one that has died
+constexpr Duration kDiscovery = 5s;        ///< more than the participants' announcements are apart
+constexpr Duration kQuiet = 1500ms;        ///< nobody new for so long: all are known
+constexpr Duration kTaking = kLease + 2s;  ///< until one that has died is missed
 constexpr auto kLook = 10ms;
 
 template <typename Condition>
