@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "common/time/time.hpp"
 
 namespace sidestep {
 
 /// A participant that nothing is heard of for so long is taken for dead.
-inline constexpr Duration kLease{4'000'000'000};
+Duration participant_lease();
 
-/// Whether Fast DDS calls our check of remote participants' leases (dds_lease.cpp) and not its own, which may
-/// end the process when a participant leaves: so it is unless the library was linked to call nothing but
-/// itself.
-bool is_lease_check_ours();
+/// How often this process has checked a lease in the place of Fast DDS (see dds_lease.cpp): for tests.
+std::uint64_t lease_checks();
 
 }  // namespace sidestep

@@ -87,7 +87,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
-  builtin.discovery_config.leaseDuration = Duration_t(to_seconds(kLease));
+  builtin.discovery_config.leaseDuration = Duration_t(to_seconds(participant_lease()));
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
   return qos;
 }
@@ -116,8 +116,6 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
-  if (!is_lease_check_ours())
-    fmt::print(stderr, "warning: this build of Fast DDS may abort a process when another one leaves\n");
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;

@@ -18,9 +18,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kDiscovery = 5s;        ///< more than the participants' announcements are apart
-constexpr Duration kQuiet = 1500ms;        ///< nobody new for so long: all are known
-constexpr Duration kTaking = kLease + 2s;  ///< until one that has died is missed
+constexpr Duration kDiscovery = 5s;  ///< more than the participants' announcements are apart
+constexpr Duration kQuiet = 1500ms;  ///< nobody new for so long: all are known
+constexpr Duration kMissing = 2s;    ///< after its lease one that has died is missed at the latest
 constexpr auto kLook = 10ms;
 
 template <typename Condition>
@@ -87,7 +87,7 @@ void wait_for_writer(DdsOrders& orders, const std::string& channel, const std::s
 }
 
 void wait_until_taken(DdsOrders& orders) {
-  if (!orders.wait_until_taken(kTaking)) {
+  if (!orders.wait_until_taken(participant_lease() + kMissing)) {
     throw std::runtime_error(
         fmt::format("the order was sent, but not all of {} have taken it", fmt::join(orders.takers(), ", ")));
   }
