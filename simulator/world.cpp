@@ -200,7 +200,8 @@ void World::fill(msg::GroundTruth& truth) const {
     robot.vx_mps(bodies_[i].velocity_mps().x());
     robot.vy_mps(bodies_[i].velocity_mps().y());
     robot.reference_error_m(reference_error_m(i));
-    robot.let_go_ns(robots_[i].let_go ? to_ns(*robots_[i].let_go) : -1);
+    const std::optional<Time> until = let_go(i);
+    robot.let_go_ns(until ? to_ns(*until) : -1);
   }
   truth.robots().resize(count);
 }

@@ -73,10 +73,10 @@ class World {
     Actuation wish;
     Vec2 last_position_m;
     double last_heading_rad;
-    Duration clock_offset;                      ///< the robot's clock goes ahead of the host's by so much,
-    Time clock;                                 ///< but never back
-    VersionNumber known_stop = 0;               ///< number of the latest stop of its own that the judge knows
-    std::optional<Time> let_go = std::nullopt;  ///< when the last hand's doing to its body ends
+    Duration clock_offset;         ///< the robot's clock goes ahead of the host's by so much,
+    Time clock;                    ///< but never back
+    VersionNumber known_stop = 0;  ///< number of the latest stop of its own that the judge knows
+    std::optional<Time> last_hand = std::nullopt;  ///< when one has last done something to its body
     bool has_news = false;
   };
   /// Something that lasts, or waits for its moment.
@@ -90,7 +90,9 @@ class World {
   void step();
   void end_effects();
   bool put_down(const Effect& wish);
-  void note_hand(std::size_t robot, Time until);
+  void note_hand(std::size_t robot, Time at);
+  /// When the last hand lets go of it.
+  std::optional<Time> let_go(std::size_t robot) const;
   void start_effect(const Effect& effect);
   void stop_effects(std::size_t robot, msg::DisturbanceKind kind);
   void lift(std::size_t robot, Time now);

@@ -25,12 +25,12 @@ bool World::disturb(std::size_t index, const msg::Disturbance& what, Time now) {
     case msg::DISTURBANCE_SLIP:
       body.set_grip(what.grip());
       start_effect({index, kind, until, Vec2(0, 0), 0});
-      note_hand(index, until);
+      note_hand(index, now);
       return true;
     case msg::DISTURBANCE_BLOCK:
       body.set_blocked(what.heading_rad());
       start_effect({index, kind, until, Vec2(0, 0), 0});
-      note_hand(index, until);
+      note_hand(index, now);
       return true;
     case msg::DISTURBANCE_LIFT:
       lift(index, now);
@@ -70,9 +70,18 @@ void World::lift(std::size_t index, Time now) {
   note_news(index);
 }
 
-void World::note_hand(std::size_t index, Time until) {
-  std::optional<Time>& let_go = robots_[index].let_go;
-  let_go = std::max(let_go.value_or(until), until);
+void World::note_hand(std::size_t index, Time at) {
+  std::optional<Time>& last = robots_[index].last_hand;
+  last = std::max(last.value_or(at), at);
+}
+
+std::optional<Time> World::let_go(std::size_t index) const {
+  std::optional<Time> last = robots_[index].last_hand;
+  for (const Effect& effect : effects_) {
+    if (effect.robot == index && effect.kind != msg::DISTURBANCE_PLACE)
+      last = std::max(last.value_or(effect.until), effect.until);
+  }
+  return last;
 }
 
 void World::start_effect(const Effect& effect) {
@@ -88,6 +97,7 @@ void World::end_effects() {
   std::erase_if(effects_, [this](const Effect& effect) {
     if (effect.kind == msg::DISTURBANCE_PLACE) return put_down(effect);
     if (effect.until > time_) return false;
+    note_hand(effect.robot, effect.until);
     if (effect.kind == msg::DISTURBANCE_SLIP)
       bodies_[effect.robot].set_grip(1);
     else

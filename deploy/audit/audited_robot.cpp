@@ -94,6 +94,10 @@ void AuditedRobot::age(std::int64_t since_ns) {
   while (first_recent < versions.size() && versions[first_recent].excluded_ns < since_ns) ++first_recent;
 }
 
+void AuditedRobot::make_recent(VersionNumber number) {
+  while (first_recent > 0 && versions[first_recent - 1].number >= number) --first_recent;
+}
+
 HeardProposal& AuditedRobot::new_proposal() {
   HeardProposal& heard = proposals[proposal_count++ % kMostProposals];
   given_up_proposal = std::max(given_up_proposal, heard.number);

@@ -43,15 +43,15 @@ struct Known {
   bool is_own = false;  ///< the firmware made it, off reference
   bool was_executed = false;
   Excluded excluded = Excluded::kNo;
-  Epoch granted_in = 0;                 ///< or, for the firmware's own, whose ledger was seen to hold it
-  std::int64_t granted_by_ns = kNever;  ///< the verdict, or that page, was not sent after
+  Epoch granted_in = 0;                      ///< or, for the firmware's own, whose ledger was seen to hold it
+  std::int64_t granted_by_ns = kNever;       ///< the verdict, or that page, was not sent after
   std::int64_t executed_until_ns = kAlways;  ///< by the robot's clock, at least
   std::int64_t alive_until_ns = kAlways;     ///< until then, at least, no fact excluded it
   std::int64_t excluded_ns = kNever;
   AuditPath path;
   EpochMemory registered_in;
-  std::int64_t sent_ns = kNever;  ///< the first command with it
-  Epoch sent_epoch = 0;           ///< the highest that one came with
+  std::int64_t sent_ns = kNever;    ///< the first command with it
+  Epoch sent_epoch = 0;             ///< the highest that one came with
   bool is_granted_by_page = false;  ///< its verdict was not heard, but a page that holds it was
   bool is_reported_unsent = false;  ///< so that one breach is told once
   msg::Version version;
@@ -139,6 +139,8 @@ class AuditedRobot {
   void forget(std::int64_t before_ns);
   /// Sets first_recent: what was excluded before then is no longer compared with others'.
   void age(std::int64_t since_ns);
+  /// More is known of this version: it is compared again.
+  void make_recent(VersionNumber number);
   /// A place for one more proposal.
   HeardProposal& new_proposal();
   /// A new floor: nothing that was known holds for it.

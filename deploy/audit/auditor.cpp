@@ -80,7 +80,8 @@ Known* Auditor::learn(AuditedRobot& robot, const msg::Version& version) {
     most_grown_m_ = std::max(most_grown_m_, version.grown_m());
     // A fact may have excluded it before it was heard of.
     if (robot.fact) known.excluded = excluded_by(*robot.fact, known);
-    if (known.excluded != Excluded::kNo) known.excluded_ns = to_ns(now_);
+    known.excluded_ns = known.excluded == Excluded::kNo ? kNever : to_ns(now_);
+    robot.make_recent(known.number);
   } else if (!(known.version == version)) {
     report(
         AuditRule::kOneMeaning, robot.id, &known, 0,

@@ -12,7 +12,6 @@
 #include "deploy/audit/audited_robot.hpp"
 #include "deploy/audit/hands.hpp"
 #include "deploy/audit/hearing.hpp"
-#include "idl/disturbance.h"
 
 namespace sidestep {
 

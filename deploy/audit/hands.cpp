@@ -28,8 +28,10 @@ void Hands::move(std::size_t robot, Time let_go, Time now) {
 void Hands::step(Time now, const std::vector<std::optional<Vec2>>& places_m, double touching_m) {
   now_ = now;
   for (Held& held : held_) {
+    if (!held.until) continue;
+    held.until = std::min(*held.until, now + kLongest + kSettles);  // its clock may have been set back
     // Only who sees that it is back in its place knows.
-    if (held.until && *held.until <= now && !sees_places_) held.until.reset();
+    if (*held.until <= now && !sees_places_) held.until.reset();
   }
   std::erase_if(pushes_, [&](const Push& push) {
     const auto &by = places_m[push.by], &of = places_m[push.of];

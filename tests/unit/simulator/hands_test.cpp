@@ -243,9 +243,22 @@ TEST_CASE("ground truth says until when a hand moves a robot") {
   CHECK(let_go_ns() == to_ns(now + milliseconds(500)));
   REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
   CHECK(let_go_ns() == to_ns(now + milliseconds(500)));
+  slip.duration_ns(Duration(milliseconds(200)).count());  // another hand, in place of the first
+  REQUIRE(world.disturb(0, slip, now));
+  const Time end = now + milliseconds(200);
+  CHECK(let_go_ns() == to_ns(end));
   world.advance(now += milliseconds(600));
-  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
-  CHECK(let_go_ns() == to_ns(now));
+  CHECK(let_go_ns() == to_ns(end));
+  auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
+  block.duration_ns(Duration(milliseconds(100)).count());
+  REQUIRE(world.disturb(0, block, now));
+  CHECK(let_go_ns() == to_ns(now + milliseconds(100)));
+  world.advance(now += milliseconds(600));
+  for (const auto kind : {msg::DISTURBANCE_PUSH, msg::DISTURBANCE_REBOOT}) {
+    REQUIRE(world.disturb(0, disturbance(0, kind), now));
+    CHECK(let_go_ns() == to_ns(now));
+    world.advance(now += milliseconds(600));
+  }
 }
 
 TEST_CASE("what no hand can do is refused") {

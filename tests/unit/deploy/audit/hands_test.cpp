@@ -66,6 +66,16 @@ TEST_CASE("a hand that says to stay for ages does not") {
   CHECK_FALSE(run.hands.are_on(0));
 }
 
+TEST_CASE("a simulator whose clock is set back does not stay in a robot's hands for as long") {
+  Pushed run(false);
+  run.now = kPushed - 50s;
+  run.step_for(10s, places(3));
+  CHECK(run.hands.are_on(0));
+  run.now = kPushed - 99s;
+  run.step_for(62s, places(3));
+  CHECK_FALSE(run.hands.are_on(0));
+}
+
 TEST_CASE("who touches one that was moved is pushed for as long as they touch") {
   const bool part = GENERATE(false, true);
   CAPTURE(part);
