@@ -89,8 +89,8 @@ double Judge::to_go_m(const Watched& robot) const {
 }
 
 bool Judge::has_arrived(const Watched& robot) const {
-  return robot.settled_since && !robot.lives.empty() &&
-         robot.lives.back().agent_phase() == msg::AgentPhase::AGENT_ARRIVED;
+  return robot.settled_since && robot.speaks() &&
+         robot.speaks()->agent_phase() == msg::AgentPhase::AGENT_ARRIVED;
 }
 
 void Judge::on_truth(const msg::GroundTruth& truth) {
@@ -137,10 +137,12 @@ void Judge::on_status(const msg::AgentStatus& status) {
   const bool is_phase = status.agent_phase() >= msg::AgentPhase::AGENT_FENCING &&
                         status.agent_phase() <= msg::AgentPhase::AGENT_ABSENT;
   msg::AgentStatus* life = robot && is_phase ? slot_for(robot->lives, status.head()) : nullptr;
-  if (life)
-    *life = status;
-  else
+  if (!life) {
     ++dropped_;
+    return;
+  }
+  *life = status;
+  robot->heard_last = static_cast<std::size_t>(life - robot->lives.data());
 }
 
 void Judge::on_coordinator(const msg::CoordinatorState& state) {
@@ -205,7 +207,7 @@ std::vector<RobotProgress> Judge::progress() const {
     RobotProgress row;
     row.robot = robot.spec->id;
     row.team = robot.spec->team;
-    if (!robot.lives.empty()) row.phase = robot.lives.back().agent_phase();
+    if (robot.speaks()) row.phase = robot.speaks()->agent_phase();
     row.arrived = has_arrived(robot);
     row.distance_to_go_m = to_go_m(robot);
     row.speed_mps = robot.speed_mps;
@@ -269,14 +271,14 @@ Report Judge::report() const {
   if (with_ratio > 0) report.arrival_over_straight = ratio / with_ratio;
   report.max_reference_error_m = max_reference_error_m_;
   for (const Watched& robot : robots_) {
-    if (robot.lives.empty()) continue;
-    const msg::AgentStatus& status = robot.lives.back();
-    const double offset_s = std::abs(status.clock_offset_s());
+    const msg::AgentStatus* status = robot.speaks();
+    if (!status) continue;
+    const double offset_s = std::abs(status->clock_offset_s());
     // A NaN fails both.
-    if (!(status.clock_uncertainty_s() >= 0) || !(offset_s >= report.clock_offset_max_s.value_or(0)))
+    if (!(status->clock_uncertainty_s() >= 0) || !(offset_s >= report.clock_offset_max_s.value_or(0)))
       continue;
     report.clock_offset_max_s = offset_s;
-    report.clock_uncertainty_s = status.clock_uncertainty_s();
+    report.clock_uncertainty_s = status->clock_uncertainty_s();
   }
   if (granting_since_ && truth_at_)
     report.robot_time_s = std::max(0.0, to_seconds(*truth_at_ - *granting_since_));

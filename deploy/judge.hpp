@@ -75,6 +75,11 @@ class Judge {
     double speed_mps = 0;
     std::optional<Time> settled_since;    ///< at the last goal and slow, without a break
     std::vector<msg::AgentStatus> lives;  ///< the last status of each life of its agent, in order
+    std::size_t heard_last = 0;           ///< of these
+
+    /// What its agent says, nullptr: nothing yet. Not that of the highest incarnation: that may have died
+    /// before its robot obeyed it, and on a host whose clock is ahead of that of the next one.
+    const msg::AgentStatus* speaks() const { return lives.empty() ? nullptr : &lives[heard_last]; }
   };
 
   Watched* find(RobotId robot);

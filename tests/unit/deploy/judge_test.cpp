@@ -200,6 +200,23 @@ TEST_CASE("counters are summed over the lives of restarted agents, simulators an
   CHECK_THAT(report.verdict(), Catch::Contains("5 contacts") && Catch::Contains("1 firmware violations"));
 }
 
+TEST_CASE("an agent that began on a clock that was ahead, and died, does not speak for the one after it") {
+  Judge judge(kTwo);
+  judge.on_coordinator(state(1, 0, kGranting));
+  judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
+  judge.on_status(status(3, 1, msg::AgentPhase::AGENT_FENCING, 5));
+  judge.on_status(status(3, 1, kDriving, 2));
+  CHECK(judge.progress()[0].phase == kDriving);
+  CHECK(judge.arrived() == 0);
+  judge.on_status(status(3, 2, kArrived, 2));
+  CHECK(judge.progress()[0].phase == kArrived);
+  CHECK(judge.arrived() == 1);
+  judge.on_status(status(3, 1, msg::AgentPhase::AGENT_FENCING, 1));  // goes before the others
+  CHECK(judge.arrived() == 0);
+  judge.on_status(status(3, 3, kArrived, 2));
+  CHECK(judge.arrived() == 1);
+}
+
 TEST_CASE("of several coordinators the one with the highest epoch speaks, and the counts of all are summed") {
   Judge judge(kTwo);
   const auto of = [](std::uint32_t number, Epoch epoch, std::uint64_t message_number, double at_s,
