@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace sidestep {
 
@@ -39,6 +41,11 @@ class Rng {
   double normal() {
     const double u = 1.0 - uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(6.283185307179586 * uniform());
+  }
+  /// Puts what has size() and [] into an order, all orders being equally likely (Fisher, Yates).
+  template <typename Values>
+  void shuffle(Values& values) {
+    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
   }
   /// A generator for a part of the work, independent of this one.
   Rng fork() { return Rng(bits()); }

@@ -29,7 +29,7 @@ constexpr Duration kStartDeadline = std::chrono::seconds(20);
 std::vector<int> shuffled(int count, Rng& rng) {
   std::vector<int> numbers(static_cast<std::size_t>(count));
   std::iota(numbers.begin(), numbers.end(), 0);
-  for (std::size_t i = numbers.size(); i > 1; --i) std::swap(numbers[i - 1], numbers[rng.below(i)]);
+  rng.shuffle(numbers);
   return numbers;
 }
 

@@ -28,24 +28,19 @@ std::vector<Vec2> cells_of(const Field& field, std::size_t count, Vec2& size_m) 
   return cells;
 }
 
-template <typename Value>
-void shuffle(std::vector<Value>& values, Rng& rng) {
-  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[rng.below(i)]);
-}
-
 }  // namespace
 
 SwayingRobots::SwayingRobots(const Field& field, std::size_t each, Rng& rng) {
   Vec2 size_m;
   std::vector<Vec2> cells = cells_of(field, 2 * each + 1, size_m);
-  shuffle(cells, rng);
+  rng.shuffle(cells);
   const Vec2 reach_m = 0.5 * size_m - Vec2::Constant(kBody_m);
   if (each > kPatterns || reach_m.minCoeff() < kLeastReach_m)
     throw std::invalid_argument("no room for so many robots");
   for (const Team team : {Team::kBlue, Team::kYellow}) {
     std::vector<std::uint32_t> ids;
     for (std::uint32_t id = 0; id < kPatterns; ++id) ids.push_back(id);
-    shuffle(ids, rng);
+    rng.shuffle(ids);
     for (std::size_t i = 0; i < each; ++i) worn_.push_back({team, ids[i]});
   }
   for (std::size_t i = 0; i <= worn_.size(); ++i) {
