@@ -25,10 +25,11 @@ class Spread {
     sum_ += error;
     square_ += error.squaredNorm();
   }
-  double sd() const {
+  double variance() const {
     const auto n = static_cast<double>(count_);
-    return std::sqrt((square_ / n - (sum_ / n).squaredNorm()) / 2);
+    return (square_ / n - (sum_ / n).squaredNorm()) / 2;
   }
+  double sd() const { return std::sqrt(variance()); }
 
  private:
   std::size_t count_ = 0;
@@ -36,10 +37,18 @@ class Spread {
   double square_ = 0;
 };
 
+/// In robots' own frames.
 struct Errors {
-  Spread dots, centroids;
+  std::vector<Spread> dots{butterfly().dots.size() + 1};
+  Spread centroids;
   double square_rad2 = 0;
   std::size_t robots = 0;
+
+  double dot_sd_m() const {
+    double sum_m2 = 0;
+    for (const Spread& dot : dots) sum_m2 += dot.variance();
+    return std::sqrt(sum_m2 / static_cast<double>(dots.size()));
+  }
 };
 
 Vec2 centroid_of(const MarkingLayout& layout) {
@@ -58,7 +67,8 @@ std::optional<Vec2> error_at(const std::vector<Patch>& patches, Colour colour, c
   return found ? std::optional<Vec2>(found->position_m - at_m) : std::nullopt;
 }
 
-/// The errors of a robot's dots, all of which the pose has to be from; nothing when one of them is not seen.
+/// The errors of a robot's dots, ahead and to its left, all of which the pose has to be from; nothing when
+/// one of them is not seen.
 std::optional<std::vector<Vec2>> dot_errors(const std::vector<Patch>& patches, const SceneRobot& robot) {
   const MarkingLayout& layout = butterfly();
   const Pose truth{robot.position_m, robot.heading_rad};
@@ -69,7 +79,7 @@ std::optional<std::vector<Vec2>> dot_errors(const std::vector<Patch>& patches, c
     const Colour colour = i == 0 ? layout.team_colour(robot.team) : pattern.colours[i - 1];
     const auto error = error_at(patches, colour, truth.to_world(dot.position_m));
     if (!error) return std::nullopt;
-    errors.push_back(*error);
+    errors.push_back(rotated(*error, -robot.heading_rad));
   }
   return errors;
 }
@@ -89,8 +99,9 @@ void add_frame(const Hall& hall, Errors& errors) {
       const Pose truth{robot.position_m, robot.heading_rad};
       const Pose pose{{seen.x_m(), seen.y_m()}, seen.heading_rad()};
       const double off_rad = wrapped_rad(pose.heading_rad - truth.heading_rad);
-      for (const Vec2& error : *of_dots) errors.dots.add(error);
-      errors.centroids.add(pose.to_world(centroid_m) - truth.to_world(centroid_m));
+      for (std::size_t i = 0; i < of_dots->size(); ++i) errors.dots[i].add((*of_dots)[i]);
+      const Vec2 off_m = pose.to_world(centroid_m) - truth.to_world(centroid_m);
+      errors.centroids.add(rotated(off_m, -robot.heading_rad));
       errors.square_rad2 += off_rad * off_rad;
       ++errors.robots;
     }
@@ -122,7 +133,7 @@ StudyTable patch_errors(const PatchErrors& settings, std::uint64_t seed, const S
       add_frame(hall, errors);
       advance(++done, settings.frames * settings.noises.size());
     }
-    const double dot_m = errors.dots.sd();
+    const double dot_m = errors.dot_sd_m();
     const PoseError predicted = predicted_pose_error(butterfly(), dot_m);
     const double heading_rad =
         std::sqrt(errors.square_rad2 / static_cast<double>(std::max<std::size_t>(1, errors.robots)));
