@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
       throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
                                   std::to_string(robot));
     }
-    auto node = std::make_shared<AgentNode>(bus, scenario, robot, static_cast<Incarnation>(to_ns(bus.now())));
+    const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
+    auto node =
+        std::make_shared<AgentNode>(bus, scenario, robot, incarnation, std::make_shared<Workbench>(scenario));
     // It does not end: a supervisor would start it again, and it would take the robot from the later one.
     node->on_superseded([robot] {
       fmt::print(stderr, "agent-{}: superseded, a later agent drives this robot; it is quiet from now on\n",

@@ -54,6 +54,7 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       rng_(seed),
       clocks_(std::move(clocks)),
       begin_(kBegin),
+      bench_(std::make_shared<Workbench>(scenario_)),
       network_(seed, kBegin, scenario.network),
       judge_(scenario_),
       auditor_(scenario_, {true, {}}),
@@ -109,7 +110,7 @@ void SimSystem::start(const std::string& name) {
     process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
   }
   if (const auto agent = robot_of_.find(name); agent != robot_of_.end())
-    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation);
+    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation, bench_);
   if (!process->node) throw std::invalid_argument("the system has no process \"" + name + "\"");
   processes_[name] = std::move(process);
 }

@@ -16,6 +16,8 @@
 
 namespace sidestep {
 
+struct Workbench;
+
 /// The name of the second agent of a robot.
 std::string twin_process(RobotId robot);
 
@@ -74,6 +76,7 @@ class SimSystem {
   Rng rng_;
   std::map<std::string, Duration> clocks_;
   Time begin_;
+  std::shared_ptr<Workbench> bench_;  // of all agents
   SimNetwork network_;
   Judge judge_;
   Auditor auditor_;

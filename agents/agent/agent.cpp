@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "agents/navigation/drift.hpp"
 #include "common/messaging/codec.hpp"
@@ -14,9 +15,11 @@ const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find
 
 }  // namespace
 
-Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
+Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
+             std::shared_ptr<Workbench> bench)
     : robot_(spec_of(scenario, robot)),
-      rules_(floor_rules(scenario)),
+      bench_(std::move(bench)),
+      rules_(bench_->rules),
       clocks_differ_(from_seconds(2 * scenario.clock_bound_s)),
       cycle_(scenario.cycle),
       tracking_bound_m_(scenario.tracking_bound_m),
@@ -24,8 +27,6 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation)
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
       obstacles_(scenario.opponent_speed_mps, clocks_differ_),
-      steering_(rules_.field, rules_.radius_m, rules_.limits),
-      safety_search_(rules_, {}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.look_about(robot_.start_m, page_horizon_m());
@@ -149,7 +150,7 @@ msg::AgentStatus Agent::status(Time now) const {
   status.cycles(n.counts().cycles);
   status.missed_cycles(n.counts().missed);
   status.off_reference(off_reference_);
-  status.plan_changes(steering_.changes());
+  status.plan_changes(last_choice_.changes);
   status.lost_versions(n.counts().lost);
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);

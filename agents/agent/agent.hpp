@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/seen_obstacles.hpp"
+#include "agents/agent/workbench.hpp"
 #include "agents/navigation/evasion.hpp"
 #include "agents/navigation/motion_control.hpp"
-#include "agents/navigation/steering.hpp"
 #include "agents/navigation/ways.hpp"
 #include "agents/safety/escape_search.hpp"
-#include "agents/safety/safety_search.hpp"
 #include "common/config/scenario.hpp"
 #include "idl/disturbance.h"
 #include "idl/monitor.h"
@@ -23,8 +23,8 @@ namespace sidestep {
 /// All times are by the robot's clock, as far as the caller knows it.
 class Agent {
  public:
-  /// `scenario` has to have the robot.
-  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation);
+  /// `scenario` has to have the robot, and the bench has to be one for it.
+  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation, std::shared_ptr<Workbench> bench);
 
   void on_feedback(const msg::Feedback& feedback);
   /// `now`: the latest that it can be by the robot's clock.
@@ -80,7 +80,8 @@ class Agent {
   Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
   const RobotSpec robot_;
-  const FloorRules rules_;
+  const std::shared_ptr<Workbench> bench_;
+  const FloorRules& rules_;
   const Duration clocks_differ_;  // any two of those that keep the bound, at most
   const Duration cycle_;
   const double tracking_bound_m_;
@@ -88,8 +89,7 @@ class Agent {
   Negotiation negotiation_;
   Neighbours neighbours_;
   SeenObstacles obstacles_;
-  Steering steering_;
-  SafetySearch safety_search_;
+  LastChoice last_choice_;
   Rng rng_;
   std::size_t goal_index_ = 0;
   std::optional<Ways> ways_;        // to the current goal

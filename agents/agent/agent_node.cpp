@@ -29,11 +29,12 @@ auto timed(DurationHistogram& histogram, Work work) {
 
 }  // namespace
 
-AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation)
+AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+                     std::shared_ptr<Workbench> bench)
     : bus_(bus),
       robot_(robot),
       cycle_(scenario.cycle),
-      agent_(scenario, robot, incarnation),
+      agent_(scenario, robot, incarnation, std::move(bench)),
       clocks_(robot, from_seconds(scenario.clock_bound_s)),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),

@@ -13,7 +13,8 @@ namespace sidestep {
 /// lives by that, as far as it is known to differ from the bus's.
 class AgentNode {
  public:
-  AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
+  AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+            std::shared_ptr<Workbench> bench);
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 

@@ -145,21 +145,22 @@ Intent Agent::steer(const State& there, Time start, const Route& route) {
     return {rules_.limits.speed_mps * direction_beside(there.position_m, route), kEvading_s, route.waypoint_m,
             goal().position_m};
   }
-  steering_.clear();
+  Steering& steering = bench_->steering;
+  steering.clear();
   for (const Version* version : neighbours_.newest(there.position_m, page_horizon_m())) {
     const State state = state_going_on(version->trajectory, start);
     const double keep = rules_.keep_m() + version->grown_m;
     const std::optional<Intent> intent = intent_at(*version, start);
     if (!intent)
-      steering_.add_standing(state.position_m, keep);
+      steering.add_standing(state.position_m, keep);
     else if (has_right_of_way(version->robot, robot_.id, start))
-      steering_.add_moving(state, *intent, keep);
+      steering.add_moving(state, *intent, keep);
   }
   for (const Circle& obstacle : rules_.obstacles)
-    steering_.add_standing(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
+    steering.add_standing(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
   const double since = std::max(0.0, to_seconds(start - steered_for_));
   steered_for_ = start;
-  return steering_.choose(there, route.waypoint_m, goal().position_m, since);
+  return steering.choose(there, route.waypoint_m, goal().position_m, since, last_choice_);
 }
 
 MotionWish Agent::wish_for(const Intent& intent, const State& there, const Route& route) const {
@@ -194,8 +195,9 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
-  Crowd& others = neighbours_.crowd(query.at_start.position_m, search_horizon_m());
-  SearchResult result = safety_search_.search(query, others, rng_);
+  Crowd& others = bench_->crowd;
+  neighbours_.gather(query.at_start.position_m, search_horizon_m(), others);
+  SearchResult result = bench_->safety_search.search(query, others, rng_);
   if (result.count == 0) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
   const bool waits = intent_.hold_s > 0 && intent_.velocity_mps.norm() < kWaiting * rules_.limits.speed_mps;
   evasion_.update(result.wish_is_clear && !waits, query.at_start.velocity_mps.norm(), now);

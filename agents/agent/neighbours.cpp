@@ -75,16 +75,15 @@ void Neighbours::take(const msg::LedgerPage& message, Page& page, std::shared_pt
   }
 }
 
-Crowd& Neighbours::crowd(const Vec2& here, double horizon) {
-  crowd_.clear();
+void Neighbours::gather(const Vec2& here, double horizon, Crowd& crowd) const {
+  crowd.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.held) {
       const LedgerView& view = *page.view;
       if ((view.entries[i].place_m - here).squaredNorm() <= horizon * horizon)
-        crowd_.add(view.versions[i], view.outlines[i]);
+        crowd.add(view.versions[i], view.outlines[i]);
     }
   }
-  return crowd_;
 }
 
 std::span<const Version* const> Neighbours::newest(const Vec2& here, double horizon) {

@@ -23,8 +23,8 @@ class Neighbours {
   /// is where the page's readers share their view of it.
   void on_page(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
 
-  /// Those that begin within `horizon_m` of `here`, to be found by place.
-  Crowd& crowd(const Vec2& here_m, double horizon_m);
+  /// Makes the crowd those that begin within `horizon_m` of `here`. Valid until the next page.
+  void gather(const Vec2& here_m, double horizon_m, Crowd& crowd) const;
   /// The newest version of each of those that begin within `horizon_m`. Valid until the next page, or call.
   std::span<const Version* const> newest(const Vec2& here_m, double horizon_m);
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at
@@ -57,7 +57,6 @@ class Neighbours {
   std::uint64_t in_use_ = 0;  // bit k: of page k something is held
   RobotId self_;
   std::vector<Page> pages_;
-  Crowd crowd_;
   std::vector<Stand> standing_;
   std::vector<Vec2> places_;
   std::vector<const Version*> newest_;

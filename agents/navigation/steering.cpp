@@ -65,14 +65,15 @@ void Steering::add_standing(const Vec2& place, double keep_m) {
   other.keep_m = keep_m + settings_.standing_room_m;
 }
 
-Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s) {
+Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s,
+                        LastChoice& last) {
   forecast_others();
   offered_.clear();
   intents_.clear();
   extra_s_.clear();
   const Intent direct{speed_mps_ * (waypoint - at.position_m).stableNormalized(), 0, waypoint, goal};
   offer(at, direct);
-  offer_last(at, waypoint, goal, since_s);
+  offer_last(at, waypoint, goal, since_s, last);
   const std::size_t first_new = intents_.size();
   weigh(at.position_m);
   const bool goes_on_well = first_new > 1 && danger_s(1) <= settings_.harmless_s;
@@ -85,9 +86,9 @@ Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal,
     weigh(at.position_m);
     chosen = best();
   }
-  const bool goes_on = chosen == 0 ? !last_ : chosen < first_new;
-  changes_ += goes_on ? 0 : 1;
-  last_ = chosen == 0 ? std::nullopt : std::optional(intents_[chosen]);
+  const bool goes_on = chosen == 0 ? !last.way_round : chosen < first_new;
+  last.changes += goes_on ? 0 : 1;
+  last.way_round = chosen == 0 ? std::nullopt : std::optional(intents_[chosen]);
   return intents_[chosen];
 }
 
@@ -105,9 +106,10 @@ void Steering::offer(const State& at, const Intent& intent, double extra_s) {
   extra_s_.push_back(extra_s);
 }
 
-void Steering::offer_last(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s) {
-  if (!last_) return;
-  Intent again = *last_;
+void Steering::offer_last(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s,
+                          const LastChoice& last) {
+  if (!last.way_round) return;
+  Intent again = *last.way_round;
   again.goal_m = goal;
   if (again.hold_s > 0) {
     again.hold_s -= since_s;

@@ -22,6 +22,12 @@ struct SteeringSettings {
   double standing_room_m = 0.016;  ///< and from what stands
 };
 
+/// What a robot chose last.
+struct LastChoice {
+  std::optional<Intent> way_round;  ///< a velocity that is held, or a bend
+  std::uint64_t changes = 0;        ///< times that something else was chosen than to go on with it
+};
+
 /// Chooses what a robot makes for among others who move. As long as the straight way is free it is taken;
 /// else ways round are driven in thought against what the others mean to do (their Intent), and weighed by
 /// the time that they take and by how near they come to whom, how soon: velocities to hold for some time, and
@@ -39,12 +45,10 @@ class Steering {
   /// Somebody or something that stays where it is.
   void add_standing(const Vec2& place_m, double keep_m);
 
-  /// What to do from a state on. `since_s`: so much earlier was the state of the last choice, which is kept
-  /// unless something is gained by another one.
-  Intent choose(const State& at, const Vec2& waypoint_m, const Vec2& goal_m, double since_s);
-
-  /// Times that something else was chosen than to go on with what had been.
-  std::uint64_t changes() const { return changes_; }
+  /// What to do from a state on. `since_s`: so much earlier was the state of the robot's last choice, which
+  /// is kept unless something is gained by another one.
+  Intent choose(const State& at, const Vec2& waypoint_m, const Vec2& goal_m, double since_s,
+                LastChoice& last);
 
  private:
   struct Other {
@@ -53,7 +57,8 @@ class Steering {
   };
   void forecast_others();
   void offer(const State& at, const Intent& intent, double extra_s = 0);
-  void offer_last(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s);
+  void offer_last(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s,
+                  const LastChoice& last);
   void offer_turns(const State& at, const Intent& direct);
   void offer_bends(const State& at, const Vec2& goal);
   /// Drives what is offered in thought and finds how dangerous it is.
@@ -77,8 +82,6 @@ class Steering {
   std::vector<Intent> intents_;  // as offered_, and what each costs besides time and danger
   std::vector<double> extra_s_;
   std::vector<batch::ForecastRow> dangers_;
-  std::optional<Intent> last_;  // way round: a velocity that is held, or a bend
-  std::uint64_t changes_ = 0;
 };
 
 }  // namespace sidestep

@@ -54,7 +54,7 @@ int IdealFloor::granting() {
 
 TroubledBus& IdealFloor::start_agent(RobotId robot) {
   auto& process = agents_.emplace(robot, network)->second;
-  process.node = std::make_unique<AgentNode>(process.bus, scenario, robot, next_incarnation());
+  process.node = std::make_unique<AgentNode>(process.bus, scenario, robot, next_incarnation(), bench_);
   return process.bus;
 }
 

@@ -65,6 +65,7 @@ class IdealFloor {
 
   void compare_with_ledger();
 
+  const std::shared_ptr<Workbench> bench_ = std::make_shared<Workbench>(scenario);
   SimBus audit_bus_{network};
   Auditor auditor_;
   int unknown_ = 0;

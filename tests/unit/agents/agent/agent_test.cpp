@@ -25,7 +25,7 @@ Scenario two_goals() {
 
 struct Driven {
   Scenario scenario = two_goals();
-  Agent agent{scenario, 3, kSelf};
+  Agent agent{scenario, 3, kSelf, std::make_shared<Workbench>(scenario)};
 
   Driven() {
     report({0, 0}, 0.5);
@@ -115,7 +115,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
   CHECK(d.agent.status(at_s(1)).goal_index() == 0);
   CHECK(d.agent.status(at_s(1)).distance_to_go_m() == Approx(1));
   CHECK(d.agent.command(at_s(1)).heading_rad() == 0);
-  Agent fresh(d.scenario, 3, kSelf);
+  Agent fresh(d.scenario, 3, kSelf, std::make_shared<Workbench>(d.scenario));
   msg::Feedback at_goal;
   at_goal.robot(3);
   at_goal.obeyed_incarnation(kSelf);
@@ -131,7 +131,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
 TEST_CASE("a robot whose held version ends at its goal has nothing to propose") {
   Scenario scenario = two_goals();
   scenario.robots[0].goals = {{{0, 0}, std::nullopt}};
-  Agent agent(scenario, 3, kSelf);
+  Agent agent(scenario, 3, kSelf, std::make_shared<Workbench>(scenario));
   msg::Feedback feedback;
   feedback.robot(3);
   feedback.obeyed_incarnation(kSelf);

@@ -79,6 +79,7 @@ TEST_CASE("a batch allocates nothing once warm") {
 TEST_CASE("what the neighbours may be executing is kept without allocations once warm") {
   Rng rng(3);
   Neighbours neighbours(0);
+  Crowd crowd;
   neighbours.look_about({0, 0}, 2.5);
   std::vector<msg::LedgerPage> pages(40);
   for (std::size_t k = 0; k < pages.size(); ++k) {
@@ -101,7 +102,8 @@ TEST_CASE("what the neighbours may be executing is kept without allocations once
           msg::LedgerPage& page = pages[number % pages.size()];
           page.head().message_number(++number);
           neighbours.on_page(page);
-          seen += neighbours.crowd({0, 0}, 1.6).size();
+          neighbours.gather({0, 0}, 1.6, crowd);
+          seen += crowd.size();
           seen += neighbours.standing(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
         }) == 0);
   CHECK(seen > 0);
