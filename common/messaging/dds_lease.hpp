@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// A participant that nothing is heard of for so long is taken for dead.
+/// A participant that nothing is heard of for so long is taken for dead. Throws std::runtime_error where the
+/// library is none whose dealing with that can be replaced (see dds_lease.cpp).
 Duration participant_lease();
 
 /// How often this process has checked a lease in the place of Fast DDS (see dds_lease.cpp): for tests.

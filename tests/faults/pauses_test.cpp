@@ -3,6 +3,7 @@
 #include <csignal>
 #include <set>
 
+#include "common/messaging/dds_lease.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;
@@ -10,11 +11,9 @@ using namespace sidestep;
 namespace {
 
 /// SIGSTOP for so long of the floor's time.
-void pause(LaunchedRun& run, const std::string& process, double seconds) {
-  INFO(process);
-  const pid_t pid = run.pid_of(process);
+void pause(LaunchedRun& run, pid_t pid, Duration duration) {
   REQUIRE(pid != 0);
-  const Time until = run.bus().now() + from_seconds(seconds);
+  const Time until = run.bus().now() + duration;
   REQUIRE(kill(pid, SIGSTOP) == 0);
   CHECK(run.until([&] { return run.bus().now() >= until; }));
   REQUIRE(kill(pid, SIGCONT) == 0);
@@ -27,7 +26,24 @@ TEST_CASE("nobody touches and all arrive though each kind of process sleeps for 
   for (const char* process : {"agent 2", "vision", "coordinator", "coordinator 1", "simulator"}) {
     INFO(process << "\n" << run.output());
     REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
-    pause(run, process, 2);
+    pause(run, run.pid_of(process), std::chrono::seconds(2));
+  }
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_untouched(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}
+
+TEST_CASE(
+    "whoever sleeps longer than its lease, the launcher while it starts robots too, is heard by all again") {
+  LaunchedRun run(shuttles(5, ""));
+  const Duration more_than_lease = participant_lease() + std::chrono::milliseconds(600);
+  REQUIRE(run.until([&] { return run.printed("started agent 1"); }));
+  pause(run, run.pid(), more_than_lease);
+  for (const char* process : {"agent 2", "vision", "coordinator", "simulator"}) {
+    INFO(process << "\n" << run.output());
+    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    pause(run, run.pid_of(process), more_than_lease);
   }
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());

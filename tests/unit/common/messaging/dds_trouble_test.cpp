@@ -122,13 +122,31 @@ TEST_CASE("unreadable payloads are counted, reported once and dropped, and good 
   hostile.delete_writer(writer);
 }
 
+namespace {
+
+/// Readers enough for telling of them to take several messages.
+void listen_to_many(DdsBus& bus) {
+  for (std::uint32_t robot = 2; robot < 30; ++robot)
+    bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [](const msg::Verdict&) {});
+}
+
+bool is_known(const DdsListener& listener, const std::string& participant) {
+  const auto known = listener.endpoints();
+  return std::ranges::any_of(known, [&](const DdsEndpoint& e) { return e.participant == participant; });
+}
+
+}  // namespace
+
 TEST_CASE("publishes until it is killed", "[.victim]") {
   DdsSettings settings = test_settings("victim");
   settings.domain = std::atoi(std::getenv("SIDESTEP_TEST_DOMAIN"));
   DdsBus bus(settings);
   auto writer = bus.advertise(topics::kVerdict, 1);
-  bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
   msg::Verdict verdict;
+  bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState& world) {
+    verdict.proposal_number(world.head().message_number());
+  });
+  listen_to_many(bus);
   const pid_t parent = getppid();
   while (getppid() == parent) {
     writer.publish(verdict, bus.now());
@@ -138,7 +156,7 @@ TEST_CASE("publishes until it is killed", "[.victim]") {
 
 namespace {
 
-/// A process that publishes until it is killed, as "victim".
+/// A process that publishes until it is killed, as "victim", and says which world it has heard last.
 struct Victim {
   Victim() {
     setenv("SIDESTEP_TEST_DOMAIN", std::to_string(test_settings().domain).c_str(), 1);
@@ -180,22 +198,50 @@ TEST_CASE("a process that is killed with kill -9 leaves nothing behind") {
   CHECK(victim.kill_now());
 }
 
-TEST_CASE("a process outlives its lease while it is heard, and is missed after it when it is killed") {
+TEST_CASE(
+    "a process that sleeps longer than its lease hears and is heard again, though others come meanwhile") {
   DdsListener listener(test_settings("listener"));
-  const auto is_known = [&] {
-    const auto known = listener.endpoints();
-    return std::ranges::any_of(known, [](const DdsEndpoint& e) { return e.participant == "victim"; });
+  DdsBus bus(test_settings());
+  std::uint64_t answered = 0;
+  bus.subscribe<msg::Verdict>(topics::kVerdict, 1,
+                              [&](const msg::Verdict& verdict) { answered = verdict.proposal_number(); });
+  auto writer = bus.advertise(topics::kWorld);
+  msg::WorldState world;
+  const auto talk_until = [&](auto condition) {
+    const auto talk = [&] {
+      writer.publish(world, bus.now());
+      return condition();
+    };
+    return run_until(talk, bus, listener);
   };
   Victim victim;
-  REQUIRE(run_until(is_known, listener));
+  REQUIRE(talk_until([&] { return answered > 0; }));
+  for (int sleep = 0; sleep < 3; ++sleep) {
+    CAPTURE(sleep);
+    REQUIRE(kill(victim.pid, SIGSTOP) == 0);
+    CHECK(talk_until([&] { return !is_known(listener, "victim"); }));
+    // Telling them of all its readers it sends heartbeats to everybody.
+    std::vector<std::unique_ptr<DdsBus>> others;
+    for (int i = 0; i < 5; ++i)
+      listen_to_many(*others.emplace_back(std::make_unique<DdsBus>(test_settings("other"))));
+    REQUIRE(kill(victim.pid, SIGCONT) == 0);
+    const std::uint64_t last = world.head().message_number();
+    CHECK(talk_until([&] { return answered > last; }));
+  }
+}
+
+TEST_CASE("a process outlives its lease while it is heard, and is missed after it when it is killed") {
+  DdsListener listener(test_settings("listener"));
+  Victim victim;
+  REQUIRE(run_until([&] { return is_known(listener, "victim"); }, listener));
   bool is_alive = true;
   for (const Time end = listener.now() + participant_lease() * 5 / 4; is_alive && listener.now() < end;) {
     listener.run_until(listener.now() + kStep);
-    is_alive = is_known();
+    is_alive = is_known(listener, "victim");
   }
   CHECK(is_alive);
   CHECK(victim.kill_now());
-  CHECK(run_until([&] { return !is_known(); }, listener));
+  CHECK(run_until([&] { return !is_known(listener, "victim"); }, listener));
   // That the library's own check aborts a process cannot be shown safely: with leases of 4 ms, ever shorter
   // stays and a busy machine it took half a minute.
   CHECK(lease_checks() > 0);
