@@ -11,6 +11,9 @@ constexpr double kAtRest_mps = 0.02;
 /// More lives of one process than any supervisor gives it: beyond it somebody is making them up.
 constexpr std::size_t kMaxLives = 1000;
 
+/// Who says nothing while others say so much is dead.
+constexpr int kSilentAfter = 5;
+
 /// The slot for a message in the list of its sender's lives, which are ordered by incarnation; nullptr when a
 /// newer message of that life is there already, or there are too many lives.
 template <typename Message>
@@ -84,6 +87,12 @@ Judge::Watched* Judge::find(RobotId robot) {
   return at != robots_.end() && at->spec->id == robot ? &*at : nullptr;
 }
 
+const msg::AgentStatus* Judge::Watched::speaks() const {
+  const auto found = std::ranges::find(
+      lives, speaker, [](const msg::AgentStatus& life) { return life.head().incarnation(); });
+  return found == lives.end() ? nullptr : &*found;
+}
+
 double Judge::to_go_m(const Watched& robot) const {
   return (robot.spec->goals.back().position_m - robot.position_m).norm();
 }
@@ -142,7 +151,13 @@ void Judge::on_status(const msg::AgentStatus& status) {
     return;
   }
   *life = status;
-  robot->heard_last = static_cast<std::size_t>(life - robot->lives.data());
+  // One that its robot does not obey says nothing for it while another one speaks.
+  const bool is_fencing = status.agent_phase() == msg::AgentPhase::AGENT_FENCING;
+  if (is_fencing && robot->speaks() && robot->speaker != status.head().incarnation() &&
+      ++robot->others < kSilentAfter)
+    return;
+  robot->speaker = status.head().incarnation();
+  robot->others = 0;
 }
 
 void Judge::on_coordinator(const msg::CoordinatorState& state) {

@@ -75,11 +75,13 @@ class Judge {
     double speed_mps = 0;
     std::optional<Time> settled_since;    ///< at the last goal and slow, without a break
     std::vector<msg::AgentStatus> lives;  ///< the last status of each life of its agent, in order
-    std::size_t heard_last = 0;           ///< of these
+    std::uint64_t speaker = 0;            ///< the incarnation of the one of them that speaks for the robot
+    int others = 0;                       ///< statuses since then of others that are but fencing
 
-    /// What its agent says, nullptr: nothing yet. Not that of the highest incarnation: that may have died
-    /// before its robot obeyed it, and on a host whose clock is ahead of that of the next one.
-    const msg::AgentStatus* speaks() const { return lives.empty() ? nullptr : &lives[heard_last]; }
+    /// What the robot's agent says, nullptr: nothing yet. The last one that was heard, not that of the
+    /// highest incarnation: that may have died before its robot obeyed it, and on a host whose clock was
+    /// ahead.
+    const msg::AgentStatus* speaks() const;
   };
 
   Watched* find(RobotId robot);

@@ -69,6 +69,7 @@ msg::CoordinatorState state(std::uint64_t number, double at_s, msg::CoordinatorP
 constexpr auto kRegistering = msg::CoordinatorPhase::COORDINATOR_REGISTERING;
 constexpr auto kGranting = msg::CoordinatorPhase::COORDINATOR_GRANTING;
 constexpr auto kDriving = msg::AgentPhase::AGENT_DRIVING;
+constexpr auto kFencing = msg::AgentPhase::AGENT_FENCING;
 constexpr auto kArrived = msg::AgentPhase::AGENT_ARRIVED;
 
 }  // namespace
@@ -204,16 +205,32 @@ TEST_CASE("an agent that began on a clock that was ahead, and died, does not spe
   Judge judge(kTwo);
   judge.on_coordinator(state(1, 0, kGranting));
   judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
-  judge.on_status(status(3, 1, msg::AgentPhase::AGENT_FENCING, 5));
+  judge.on_status(status(3, 1, kFencing, 5));
   judge.on_status(status(3, 1, kDriving, 2));
   CHECK(judge.progress()[0].phase == kDriving);
   CHECK(judge.arrived() == 0);
   judge.on_status(status(3, 2, kArrived, 2));
   CHECK(judge.progress()[0].phase == kArrived);
   CHECK(judge.arrived() == 1);
-  judge.on_status(status(3, 1, msg::AgentPhase::AGENT_FENCING, 1));  // goes before the others
+}
+
+TEST_CASE("an agent that does not get through to its robot does not speak for it while another one does") {
+  Judge judge(kTwo);
+  judge.on_coordinator(state(1, 0, kGranting));
+  judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
+  const std::uint64_t other = GENERATE(4u, 6u);
+  for (std::uint64_t number = 1; number <= 20; ++number) {
+    judge.on_status(status(3, number, kArrived, 5));
+    CHECK(judge.arrived() == 1);
+    judge.on_status(status(3, number, kFencing, other));
+    CHECK(judge.progress()[0].phase == kArrived);
+    CHECK(judge.arrived() == 1);
+  }
+  // The other one has died.
+  for (std::uint64_t number = 21; number <= 24; ++number) judge.on_status(status(3, number, kFencing, other));
+  CHECK(judge.progress()[0].phase == kFencing);
   CHECK(judge.arrived() == 0);
-  judge.on_status(status(3, 3, kArrived, 2));
+  judge.on_status(status(3, 21, kArrived, 5));
   CHECK(judge.arrived() == 1);
 }
 
