@@ -62,8 +62,7 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote) {
 /// leaves out when a heartbeat comes first.
 void ReaderProxy::acked_changes_set(const SequenceNumber_t& base) {
   const SequenceNumber_t nothing;
-  if (base > nothing && base <= changes_low_mark() && durability_kind() != VOLATILE)
-    acknowledge()(this, nothing);
+  if (base > nothing && base <= changes_low_mark()) acknowledge()(this, nothing);
   acknowledge()(this, base);
 }
 
