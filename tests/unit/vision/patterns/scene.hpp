@@ -47,7 +47,7 @@ inline std::vector<Patch> patches_of(const MarkingLayout& layout, const std::vec
             layout.dots[k].radius_m);
     }
   }
-  for (std::size_t i = patches.size(); i > 1; --i) std::swap(patches[i - 1], patches[rng.below(i)]);
+  rng.shuffle(patches);
   return patches;
 }
 

@@ -40,11 +40,11 @@ TEST_CASE("robots in frames are found by their names and where they are") {
 }
 
 TEST_CASE("poses are as exact as their dots allow") {
-  const auto rows = rows_of(patch_errors({.frames = 60, .noises = {2, 6}}, 3, [](auto, auto) {}));
+  const auto rows = rows_of(patch_errors({.frames = 200, .noises = {2, 6}}, 3, [](auto, auto) {}));
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("noise"));
-    CHECK(std::stod(row.at("centroid_mm")) == Approx(std::stod(row.at("predicted_mm"))).epsilon(0.1));
-    CHECK(std::stod(row.at("degrees")) == Approx(std::stod(row.at("predicted_degrees"))).epsilon(0.1));
+    CHECK(std::stod(row.at("centroid_mm")) == Approx(std::stod(row.at("predicted_mm"))).epsilon(0.05));
+    CHECK(std::stod(row.at("degrees")) == Approx(std::stod(row.at("predicted_degrees"))).epsilon(0.075));
   }
 }
 
