@@ -75,12 +75,12 @@ class Judge {
     double speed_mps = 0;
     std::optional<Time> settled_since;    ///< at the last goal and slow, without a break
     std::vector<msg::AgentStatus> lives;  ///< the last status of each life of its agent, in order
-    std::uint64_t speaker = 0;            ///< the incarnation of the one of them that speaks for the robot
+    Incarnation speaker = 0;              ///< the incarnation of the one of them that speaks for the robot
     int others = 0;                       ///< statuses since then of others that are but fencing
 
-    /// What the robot's agent says, nullptr: nothing yet. The last one that was heard, not that of the
-    /// highest incarnation: that may have died before its robot obeyed it, and on a host whose clock was
-    /// ahead.
+    /// What the robot's agent says, nullptr: nothing yet. Of several lives it is the one that was heard last,
+    /// of those that are but fencing only while no other speaks. Not the highest incarnation: that may have
+    /// died before its robot obeyed it, and on a host whose clock was ahead.
     const msg::AgentStatus* speaks() const;
   };
 

@@ -7,8 +7,11 @@
 
 namespace sidestep {
 
-/// A participant that nothing is heard of for so long is taken for dead. Throws std::runtime_error where the
-/// library is none whose dealing with that can be replaced (see dds_lease.cpp).
+/// Throws std::runtime_error where Fast DDS does not have what is replaced in dds_lease.cpp: before there is
+/// a participant, whose threads could tell nobody.
+void check_library();
+
+/// A participant that nothing is heard of for so long is taken for dead.
 Duration participant_lease();
 
 /// How often this process has checked a lease in the place of Fast DDS (see dds_lease.cpp): for tests.

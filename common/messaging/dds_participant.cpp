@@ -116,6 +116,7 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
+  check_library();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
