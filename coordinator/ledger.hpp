@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/motion/disc_grid.hpp"
+#include "coordinator/disc_grid.hpp"
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
 

@@ -5,16 +5,16 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/process.hpp"
-#include "deploy/audit/audit_command.hpp"
-#include "deploy/camera/frame_command.hpp"
-#include "deploy/camera/pattern_command.hpp"
+#include "deploy/monitor/audit/audit_command.hpp"
+#include "deploy/evaluation/camera/frame_command.hpp"
+#include "deploy/evaluation/camera/pattern_command.hpp"
 #include "deploy/fault/fault_command.hpp"
-#include "deploy/planning/plan_command.hpp"
-#include "deploy/run.hpp"
-#include "deploy/search/seed_search.hpp"
-#include "deploy/simulate.hpp"
-#include "deploy/study/study_command.hpp"
-#include "deploy/topic/topic_command.hpp"
+#include "deploy/evaluation/planning/plan_command.hpp"
+#include "deploy/launch/run.hpp"
+#include "deploy/simulate/campaign/seed_search.hpp"
+#include "deploy/simulate/simulate.hpp"
+#include "deploy/evaluation/study/study_command.hpp"
+#include "deploy/monitor/topic/topic_command.hpp"
 
 namespace sidestep {
 namespace {
@@ -38,7 +38,7 @@ void add_run_command(CLI::App& root, std::function<int()>& action, RunOptions& o
                       "more options for sidestep-simulator, e.g. --simulator=\"--ssl-vision\"");
   command->add_option("--vision", options.vision,
                       "more options for sidestep-vision, e.g. --vision=\"--tracked --colours hall.yaml\"");
-  command->add_option("--hosts", options.hosts_file, "hosts file, see deploy/hosts/README.md")
+  command->add_option("--hosts", options.hosts_file, "hosts file, see deploy/launch/hosts/README.md")
       ->excludes(command->get_option("--interface"));
   command->callback([&] { action = [&options] { return run(options); }; });
 }

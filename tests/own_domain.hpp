@@ -7,7 +7,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "common/messaging/dds_bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
 
 namespace sidestep {
 

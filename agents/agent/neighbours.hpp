@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "agents/agent/ledger_view.hpp"
-#include "common/motion/crowd.hpp"
+#include "agents/safety/trajectory_index.hpp"
 #include "idl/negotiation.h"
 
 namespace sidestep {

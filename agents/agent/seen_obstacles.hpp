@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/motion/moving_obstacle.hpp"
+#include "agents/safety/moving_obstacle.hpp"
 #include "idl/vision.h"
 
 namespace sidestep {

@@ -3,7 +3,7 @@
 
 #include "agents/navigation/steering.hpp"
 #include "agents/safety/safety_search.hpp"
-#include "common/motion/crowd.hpp"
+#include "agents/safety/trajectory_index.hpp"
 #include "common/motion/validity.hpp"
 
 namespace sidestep {

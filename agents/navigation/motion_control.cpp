@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/motion/trapezoid.hpp"
+#include "agents/navigation/trapezoid.hpp"
 
 namespace sidestep {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/field.hpp"
-#include "common/motion/forecast.hpp"
+#include "agents/navigation/motion_predictor.hpp"
 
 namespace sidestep {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/motion/batch/dispatch.hpp"
-#include "common/motion/batch/lanes.hpp"
+#include "agents/batch/dispatch.hpp"
+#include "agents/batch/lanes.hpp"
 #include "common/motion/limits.hpp"
 #include "common/random/rng.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "agents/safety/safety_search.hpp"
-#include "common/motion/crowd.hpp"
+#include "agents/safety/trajectory_index.hpp"
 
 namespace sidestep {
 

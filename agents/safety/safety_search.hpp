@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "agents/safety/candidate_choice.hpp"
-#include "common/motion/crowd.hpp"
-#include "common/motion/moving_obstacle.hpp"
+#include "agents/safety/trajectory_index.hpp"
+#include "agents/safety/moving_obstacle.hpp"
 #include "common/motion/validity.hpp"
 #include "common/random/rng.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Reads and checks a layout's file (deploy/markings/butterfly.yaml is one); throws ScenarioError
+/// Reads and checks a layout's file (deploy/scenarios/markings/butterfly.yaml is one); throws ScenarioError
 /// ("FILE:LINE:
 /// ...") for anything that is wrong.
 MarkingLayout load_layout(const std::string& path);

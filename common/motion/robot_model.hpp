@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/geometry/vec2.hpp"
-#include "common/motion/batch/kernels.hpp"
+#include "agents/batch/kernels.hpp"
 #include "common/motion/limits.hpp"
 #include "common/random/rng.hpp"
 #include "common/time/time.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/messaging/dds_bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
 
 namespace sidestep {
 

@@ -9,7 +9,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
-#include "common/messaging/dds_bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
 
 namespace CLI {
 class App;

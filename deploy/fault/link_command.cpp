@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/event_loop.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/fault/link_filter.hpp"
 

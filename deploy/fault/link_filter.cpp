@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <unistd.h>
 
-#include "deploy/hosts/command.hpp"
-#include "deploy/hosts/namespaces.hpp"
+#include "deploy/launch/hosts/command.hpp"
+#include "deploy/launch/hosts/namespaces.hpp"
 
 namespace sidestep {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/messaging/event_loop.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/impairment.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "common/config/scenario.hpp"
-#include "common/messaging/dds_lease.hpp"
-#include "common/messaging/event_loop.hpp"
+#include "common/messaging/dds/lease.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/motion/version.hpp"
 
 namespace sidestep {

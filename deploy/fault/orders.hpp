@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/dds_orders.hpp"
+#include "common/messaging/dds/operator_channel.hpp"
 #include "common/messaging/senders.hpp"
 #include "idl/header.h"
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "common/camera/hanging_camera.hpp"
-#include "common/geometry/field_marking.hpp"
+#include "simulator/field_marking.hpp"
 
 namespace sidestep {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/geometry/field.hpp"
-#include "common/geometry/field_marking.hpp"
+#include "simulator/field_marking.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/rendering/canvas.hpp"
 #include "simulator/rendering/render_spec.hpp"

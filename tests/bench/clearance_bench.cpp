@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "common/motion/clearance.hpp"
-#include "common/motion/clearance_batch.hpp"
+#include "agents/safety/clearance_batch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 using namespace sidestep;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "common/collision/obstacle_world.hpp"
-#include "deploy/study/planning/collision_problem.hpp"
-#include "deploy/study/planning/fcl_tree.hpp"
+#include "deploy/evaluation/study/planning/collision_problem.hpp"
+#include "deploy/evaluation/study/planning/fcl_tree.hpp"
 #include "tests/bench/collision_peers.hpp"
 
 using namespace sidestep;

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "common/geometry/vec2.hpp"
-#include "common/messaging/event_loop.hpp"
-#include "deploy/hosts/hosts_file.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "deploy/launch/hosts/hosts_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -197,7 +197,7 @@ nlohmann::json LaunchedRun::report() const {
 }
 
 std::string three_hosts_file() {
-  return std::string(SIDESTEP_SOURCE_DIR) + "/deploy/hosts/three-namespaces.yaml";
+  return std::string(SIDESTEP_SOURCE_DIR) + "/deploy/launch/hosts/three-namespaces.yaml";
 }
 
 std::string shipped(const std::string& file) {

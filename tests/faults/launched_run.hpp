@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/dds_bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
 #include "common/motion/version.hpp"
-#include "deploy/hosts/namespaces.hpp"
-#include "deploy/process_group.hpp"
+#include "deploy/launch/hosts/namespaces.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "tests/own_domain.hpp"
 
 namespace sidestep {

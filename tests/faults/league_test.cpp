@@ -11,9 +11,9 @@
 #include "common/league/tracked_packet.hpp"
 #include "common/league/vision_packet.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/audit/auditor.hpp"
-#include "deploy/judge.hpp"
-#include "deploy/process_group.hpp"
+#include "deploy/monitor/audit/auditor.hpp"
+#include "deploy/monitor/metrics/run_metrics.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/own_endpoint.hpp"
 

@@ -3,7 +3,7 @@
 #include <csignal>
 #include <set>
 
-#include "common/messaging/dds_lease.hpp"
+#include "common/messaging/dds/lease.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;

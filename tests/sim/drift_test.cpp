@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/report.hpp"
-#include "deploy/sim_system.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 
 using namespace sidestep;
 using namespace std::chrono_literals;

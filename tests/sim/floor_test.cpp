@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/sim_system.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 
 using namespace sidestep;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
-#include "deploy/sim_system.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 
 using namespace sidestep;
 

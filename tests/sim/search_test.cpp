@@ -2,8 +2,8 @@
 // Trials of the seeded search that say something about the system rather than about the search.
 #include <catch2/catch.hpp>
 
-#include "deploy/search/scene_draw.hpp"
-#include "deploy/search/trial.hpp"
+#include "deploy/simulate/campaign/scene_draw.hpp"
+#include "deploy/simulate/campaign/trial.hpp"
 
 using namespace sidestep;
 using namespace std::chrono_literals;

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/report.hpp"
-#include "deploy/sim_system.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 
 using namespace sidestep;
 

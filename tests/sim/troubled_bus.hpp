@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "common/messaging/sim_bus.hpp"
+#include "common/messaging/sim/sim_bus.hpp"
 
 namespace sidestep {
 

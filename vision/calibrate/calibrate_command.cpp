@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "common/camera/camera_file.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/image/picture.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "common/camera/camera_file.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"

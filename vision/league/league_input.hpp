@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/messaging/dds_bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
 #include "vision/league/league_source.hpp"
 #include "vision/vision_node.hpp"
 

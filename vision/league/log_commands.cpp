@@ -10,7 +10,7 @@
 
 #include "common/league/log_file.hpp"
 #include "common/league/multicast.hpp"
-#include "common/messaging/event_loop.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "vision/league/replay.hpp"

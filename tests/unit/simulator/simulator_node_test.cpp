@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/messaging/senders.hpp"
-#include "common/messaging/sim_bus.hpp"
+#include "common/messaging/sim/sim_bus.hpp"
 #include "tests/unit/simulator/commands.hpp"
 #include "tests/unit/simulator/random_drive.hpp"
 

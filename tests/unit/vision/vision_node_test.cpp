@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/messaging/senders.hpp"
-#include "common/messaging/sim_bus.hpp"
+#include "common/messaging/sim/sim_bus.hpp"
 #include "tests/unit/vision/floor.hpp"
 
 using namespace sidestep;

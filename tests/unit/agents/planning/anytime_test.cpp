@@ -5,7 +5,7 @@
 
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/planning/worlds.hpp"
+#include "deploy/evaluation/planning/worlds.hpp"
 
 using namespace sidestep;
 

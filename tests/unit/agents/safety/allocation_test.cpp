@@ -4,7 +4,7 @@
 #include "agents/agent/neighbours.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/codec.hpp"
-#include "common/motion/clearance_batch.hpp"
+#include "agents/safety/clearance_batch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 

@@ -5,7 +5,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "common/messaging/event_loop.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
 #include "tests/own_endpoint.hpp"
 

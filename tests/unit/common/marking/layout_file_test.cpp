@@ -5,7 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
-#include "common/marking/pattern_count.hpp"
+#include "deploy/evaluation/camera/pattern_count.hpp"
 
 using namespace sidestep;
 
@@ -54,7 +54,7 @@ TEST_CASE("a layout comes from a file") {
 }
 
 TEST_CASE("the butterfly's file is the built-in butterfly") {
-  const MarkingLayout layout = load_layout(SIDESTEP_SOURCE_DIR "/deploy/markings/butterfly.yaml");
+  const MarkingLayout layout = load_layout(SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/butterfly.yaml");
   const MarkingLayout& built_in = butterfly();
   CHECK(layout.name == built_in.name);
   CHECK(layout.centre.position_m == built_in.centre.position_m);
@@ -73,7 +73,7 @@ TEST_CASE("the butterfly's file is the built-in butterfly") {
 }
 
 TEST_CASE("the square's patterns differ in two dots at least") {
-  const MarkingLayout layout = load_layout(SIDESTEP_SOURCE_DIR "/deploy/markings/square.yaml");
+  const MarkingLayout layout = load_layout(SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/square.yaml");
   CHECK(smallest_difference(layout) == 2);
   CHECK(countable_patterns(layout, used_colours(layout)) == 60);
 }

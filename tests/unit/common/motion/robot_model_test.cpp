@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/motion/trapezoid.hpp"
+#include "agents/navigation/trapezoid.hpp"
 #include "common/motion/validity.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 

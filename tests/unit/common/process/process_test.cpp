@@ -7,7 +7,7 @@
 #include <signal.h>
 #include <stdexcept>
 
-#include "tests/unit/common/messaging/dds_test_support.hpp"
+#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
 
 namespace sidestep {
 namespace {

@@ -7,7 +7,7 @@
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
-#include "common/messaging/sim_bus.hpp"
+#include "common/messaging/sim/sim_bus.hpp"
 
 namespace sidestep {
 namespace {

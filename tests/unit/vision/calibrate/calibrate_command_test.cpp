@@ -6,7 +6,7 @@
 #include <fstream>
 #include <unistd.h>
 
-#include "common/camera/camera_file.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "common/image/picture.hpp"
 #include "common/process/process.hpp"
 #include "tests/unit/vision/calibrate/rendered_start.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 
-#include "common/camera/camera_file.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"

@@ -5,7 +5,7 @@
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoids.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/planning/worlds.hpp"
+#include "deploy/evaluation/planning/worlds.hpp"
 
 using namespace sidestep;
 

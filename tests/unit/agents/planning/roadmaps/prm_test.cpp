@@ -6,7 +6,7 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/planning/worlds.hpp"
+#include "deploy/evaluation/planning/worlds.hpp"
 
 using namespace sidestep;
 

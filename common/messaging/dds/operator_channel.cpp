@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/operator_channel.hpp"
+
+#include <algorithm>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <mutex>
+#include <set>
+
+#include "common/messaging/dds/directory.hpp"
+#include "common/messaging/dds/participant.hpp"
+#include "common/messaging/dds/types.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace eprosima::fastdds::dds;
+using eprosima::fastrtps::rtps::GUID_t;
+using eprosima::fastrtps::rtps::iHandle2GUID;
+
+DdsSettings operators(DdsSettings settings) {
+  settings.is_operator = true;
+  settings.faults = false;
+  return settings;
+}
+
+class Takers : public DataWriterListener {
+ public:
+  void on_publication_matched(DataWriter*, const PublicationMatchedStatus& status) override {
+    const std::lock_guard lock(mutex_);
+    const GUID_t reader = iHandle2GUID(status.last_subscription_handle);
+    if (status.current_count_change > 0)
+      guids_.insert(reader);
+    else
+      guids_.erase(reader);
+  }
+  std::set<GUID_t> guids() const {
+    const std::lock_guard lock(mutex_);
+    return guids_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<GUID_t> guids_;
+};
+
+}  // namespace
+
+struct DdsOrders::Impl : RawWriter {
+  Impl(const DdsSettings& settings, const TopicInfo& topic)
+      : participant(operators(settings), &directory),
+        data_writer(participant.create_writer(channel_name(topic, 0),
+                                              TypeSupport(make_dds_type(topic.type).release()),
+                                              dds_writer_qos(topic.qos), &takers)) {}
+  ~Impl() override { participant.delete_writer(data_writer); }
+
+  void write(const void* message) override {
+    GuardedType::Sample sample{const_cast<void*>(message), true};
+    if (!data_writer->write(&sample)) throw std::runtime_error("DDS refused to send the order");
+  }
+
+  DdsDirectory directory;
+  Takers takers;
+  DdsParticipant participant;
+  DataWriter* data_writer;
+};
+
+DdsOrders::DdsOrders(const DdsSettings& settings, const TopicInfo& topic)
+    : impl_(std::make_unique<Impl>(settings, topic)) {}
+DdsOrders::~DdsOrders() = default;
+
+std::vector<std::string> DdsOrders::takers() const {
+  std::vector<std::string> names;
+  for (const GUID_t& guid : impl_->takers.guids()) {
+    names.push_back(impl_->directory.participant_of(guid));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool DdsOrders::is_written(const std::string& channel) const {
+  const auto all = impl_->directory.endpoints();
+  return std::any_of(all.begin(), all.end(), [&](const DdsEndpoint& endpoint) {
+    return endpoint.is_writer && endpoint.topic == channel;
+  });
+}
+
+RawWriter& DdsOrders::writer() { return *impl_; }
+
+bool DdsOrders::wait_until_taken(Duration patience) {
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience);
+  const eprosima::fastrtps::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
+                                            static_cast<std::uint32_t>((patience - whole_s).count()));
+  return impl_->data_writer->wait_for_acknowledgments(wait) == ReturnCode_t::RETCODE_OK;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/messaging/bus.hpp"
+#include "common/messaging/dds/dds_bus.hpp"
+
+namespace sidestep {
+
+/// An operator's hand in a domain: writes one topic and knows who takes what it writes. No fault holds it up.
+class DdsOrders {
+ public:
+  /// Throws std::runtime_error as DdsBus does.
+  DdsOrders(const DdsSettings& settings, const TopicInfo& topic);
+  ~DdsOrders();
+  DdsOrders(const DdsOrders&) = delete;
+  DdsOrders& operator=(const DdsOrders&) = delete;
+
+  /// The names of the participants that take it now, sorted; a name stands there once for each.
+  std::vector<std::string> takers() const;
+  /// Whether somebody writes to a channel, e.g. "feedback/3".
+  bool is_written(const std::string& channel) const;
+  /// What sends messages of the topic's type to all takers.
+  RawWriter& writer();
+  /// Waits until every taker has all that was written; false when that takes longer.
+  [[nodiscard]] bool wait_until_taken(Duration patience);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/participant.hpp"
+
+#include <arpa/inet.h>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <fmt/core.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/messaging/dds/lease.hpp"
+#include "common/messaging/dds/fault_transport.hpp"
+
+namespace sidestep {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+using namespace eprosima::fastdds::dds;
+using eprosima::fastrtps::Duration_t;
+
+constexpr int kLargestDomain = 99;             ///< port numbers of the domains above overlap with others
+constexpr std::uint32_t kMutationTries = 250;  ///< bounds the number of participants on one host
+const Duration_t kAnnouncementPeriod{1, 0};
+constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< of which the system grants what it allows
+constexpr int kLargestInstances = 2048;  ///< keys that one endpoint holds; beyond, idle ones are given up
+constexpr int kEventDepth = 64;
+
+Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
+
+std::string own_addresses() {
+  std::string result;
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return result;
+  for (const ifaddrs* i = first; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = {};
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr, text, sizeof text);
+    result += std::string(result.empty() ? "" : " ") + text;
+  }
+  freeifaddrs(first);
+  return result;
+}
+
+void check(const DdsSettings& settings) {
+  if (settings.domain < 0 || settings.domain > kLargestDomain) {
+    throw std::runtime_error(fmt::format("domain {} is not within 0 .. {}", settings.domain, kLargestDomain));
+  }
+  if (settings.interface == "all") return;
+  // An address of another machine would leave the participant without any interface, and silent.
+  const std::string own = own_addresses();
+  if (settings.interface.empty() ||
+      (" " + own + " ").find(" " + settings.interface + " ") == std::string::npos) {
+    throw std::runtime_error(
+        fmt::format("interface '{}' is not an address of this machine: all {}", settings.interface, own));
+  }
+}
+
+DomainParticipantQos participant_qos(const DdsSettings& settings,
+                                     const std::shared_ptr<Impairment>& impairment,
+                                     std::uint32_t shared_memory_bytes) {
+  DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
+  qos.name(settings.participant);
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = kSocketBufferBytes;
+  udp->receiveBufferSize = kSocketBufferBytes;
+  if (settings.interface != "all") udp->interfaceWhiteList.push_back(settings.interface);
+  qos.transport().use_builtin_transports = false;
+  if (shared_memory_bytes > 0) {
+    auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+    memory->segment_size(shared_memory_bytes);
+    qos.transport().user_transports.push_back(memory);
+  }
+  // Never both: two transports for one kind of locator would each send everything.
+  if (impairment)
+    qos.transport().user_transports.push_back(fault_transport(udp, impairment));
+  else
+    qos.transport().user_transports.push_back(udp);
+  if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.mutation_tries = kMutationTries;
+  builtin.discovery_config.leaseDuration = Duration_t(to_seconds(participant_lease()));
+  builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
+  return qos;
+}
+
+template <typename EndpointQos>
+void set_common(EndpointQos& qos, Qos kind) {
+  const int depth = kind == Qos::kEvent ? kEventDepth : 1;
+  qos.reliability().kind = kind == Qos::kEvent ? RELIABLE_RELIABILITY_QOS : BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind = VOLATILE_DURABILITY_QOS;
+  qos.history().kind = KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_instances = kLargestInstances;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_samples = kLargestInstances * depth;
+  qos.resource_limits().allocated_samples = depth;
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.data_sharing().off();
+}
+
+std::runtime_error failure(const std::string& what, const std::string& channel) {
+  return std::runtime_error(fmt::format("DDS refuses to create the {} of topic '{}'", what, channel));
+}
+
+}  // namespace
+
+DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
+                               std::uint32_t shared_memory_bytes) {
+  check(settings);
+  check_library();
+  if (settings.faults) impairment_ = std::make_shared<Impairment>();
+  eprosima::fastrtps::LibrarySettingsAttributes library;
+  library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
+  participant_ = DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_, shared_memory_bytes),
+      listener, StatusMask::none());
+  if (participant_ == nullptr) {
+    throw std::runtime_error(fmt::format("DDS refuses to create a participant in domain {} on interface {}",
+                                         settings.domain, settings.interface));
+  }
+  publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
+  subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);
+  if (publisher_ == nullptr || subscriber_ == nullptr)
+    throw std::runtime_error("DDS refuses to create a publisher");
+}
+
+DdsParticipant::~DdsParticipant() {
+  participant_->set_listener(nullptr);
+  participant_->delete_contained_entities();
+  DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+bool DdsParticipant::has_type(const std::string& name) const {
+  return !participant_->find_type(name).empty();
+}
+
+dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) {
+  const std::string type_name = type.get_type_name();
+  if (TopicDescription* known = participant_->lookup_topicdescription(channel)) {
+    if (known->get_type_name() != type_name) {
+      throw std::runtime_error(fmt::format("topic '{}' is used with type {} and with type {}", channel,
+                                           known->get_type_name(), type_name));
+    }
+    return static_cast<dds::Topic*>(known);
+  }
+  if (!has_type(type_name)) type.register_type(participant_);
+  dds::Topic* created = participant_->create_topic(channel, type_name, TOPIC_QOS_DEFAULT);
+  if (created == nullptr) throw failure("topic", channel);
+  return created;
+}
+
+DataWriter* DdsParticipant::create_writer(const std::string& channel, TypeSupport type,
+                                          const DataWriterQos& qos, DataWriterListener* listener) {
+  const StatusMask mask = StatusMask::publication_matched() << StatusMask::offered_incompatible_qos();
+  DataWriter* writer = publisher_->create_datawriter(topic(channel, type), qos, listener, mask);
+  if (writer == nullptr) throw failure("writer", channel);
+  return writer;
+}
+
+DataReader* DdsParticipant::create_reader(const std::string& channel, TypeSupport type,
+                                          const DataReaderQos& qos, DataReaderListener* listener) {
+  const StatusMask mask = StatusMask::data_available() << StatusMask::requested_incompatible_qos();
+  DataReader* reader = subscriber_->create_datareader(topic(channel, type), qos, listener, mask);
+  if (reader == nullptr) throw failure("reader", channel);
+  return reader;
+}
+
+void DdsParticipant::delete_writer(DataWriter* writer) { publisher_->delete_datawriter(writer); }
+
+void DdsParticipant::delete_reader(DataReader* reader) { subscriber_->delete_datareader(reader); }
+
+std::string dds_locators(const DataReader& reader) {
+  eprosima::fastdds::rtps::LocatorList locators;
+  if (reader.get_listening_locators(locators) != ReturnCode_t::RETCODE_OK) return {};
+  std::ostringstream text;
+  text << locators;
+  return text.str();
+}
+
+DataWriterQos dds_writer_qos(Qos kind) {
+  DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
+  set_common(qos, kind);
+  qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
+  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(50);
+  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
+  return qos;
+}
+
+DataReaderQos dds_reader_qos(Qos kind) {
+  DataReaderQos qos = DATAREADER_QOS_DEFAULT;
+  set_common(qos, kind);
+  qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+  return qos;
+}
+
+std::string dds_policy_name(QosPolicyId_t policy) {
+  switch (policy) {
+    case DURABILITY_QOS_POLICY_ID:
+      return "durability";
+    case PRESENTATION_QOS_POLICY_ID:
+      return "presentation";
+    case DEADLINE_QOS_POLICY_ID:
+      return "deadline";
+    case LATENCYBUDGET_QOS_POLICY_ID:
+      return "latency budget";
+    case OWNERSHIP_QOS_POLICY_ID:
+      return "ownership";
+    case LIVELINESS_QOS_POLICY_ID:
+      return "liveliness";
+    case PARTITION_QOS_POLICY_ID:
+      return "partition";
+    case RELIABILITY_QOS_POLICY_ID:
+      return "reliability";
+    case DESTINATIONORDER_QOS_POLICY_ID:
+      return "destination order";
+    case DATAREPRESENTATION_QOS_POLICY_ID:
+      return "data representation";
+    case TYPECONSISTENCYENFORCEMENT_QOS_POLICY_ID:
+      return "type consistency";
+    default:
+      return fmt::format("policy {}", static_cast<std::uint32_t>(policy));
+  }
+}
+
+void log_dds(const std::string& message) { fmt::print(stderr, "dds: {}\n", message); }
+
+}  // namespace sidestep

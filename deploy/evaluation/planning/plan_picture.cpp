@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/planning/plan_picture.hpp"
+
+#include <fmt/format.h>
+
+namespace sidestep {
+namespace {
+
+constexpr double kPixelsPerMetre = 100;
+
+double x_of(const Vec2& p) { return kPixelsPerMetre * p.x(); }
+/// SVG's y axis points down.
+double y_of(const Vec2& p) { return -kPixelsPerMetre * p.y(); }
+
+std::string points_of(const std::vector<Vec2>& way) {
+  std::string points;
+  for (const Vec2& p : way) points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(p));
+  return points;
+}
+
+std::string line(const Segment& s) {
+  return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x_of(s.from_m), y_of(s.from_m), x_of(s.to_m),
+                     y_of(s.to_m));
+}
+
+std::string lines(const std::vector<Segment>& segments, const char* colour) {
+  if (segments.empty()) return {};
+  std::string path;
+  for (const Segment& segment : segments) path += line(segment);
+  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1'/>\n", path, colour);
+}
+
+std::string disc(const Vec2& centre, double radius_m, const char* style) {
+  return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", x_of(centre), y_of(centre),
+                     kPixelsPerMetre * radius_m, style);
+}
+
+std::string picture_of(const Circle& circle) {
+  return disc(circle.centre_m, circle.radius_m, "fill='#57606a'");
+}
+std::string picture_of(const ConvexPolygon& polygon) {
+  return fmt::format("<polygon points='{}' fill='#57606a'/>\n", points_of(polygon.corners_m));
+}
+std::string picture_of(const Box& box) {
+  return picture_of(
+      ConvexPolygon{{box.min_m, {box.max_m.x(), box.min_m.y()}, box.max_m, {box.min_m.x(), box.max_m.y()}}});
+}
+std::string picture_of(const Segment& segment) {
+  return fmt::format("<path d='{}' stroke='#57606a' stroke-width='4'/>\n", line(segment));
+}
+
+std::string polyline(const std::vector<Vec2>& way, const char* style) {
+  return fmt::format("<polyline points='{}' fill='none' {}/>\n", points_of(way), style);
+}
+
+}  // namespace
+
+std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
+                         const std::vector<Vec2>& way_m, const std::vector<Vec2>& smooth_way_m) {
+  const double width = kPixelsPerMetre * world.field.length_m, height = kPixelsPerMetre * world.field.width_m;
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}'>\n<rect x='{:.1f}' "
+      "y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#f6f8fa' stroke='#8b949e' stroke-width='2'/>\n",
+      -width / 2, -height / 2, width, height, -width / 2, -height / 2, width, height);
+  for (const ConvexPolygon& cell : drawing.cells)
+    svg += fmt::format("<polygon points='{}' fill='#dafbe1' stroke='#2da44e' stroke-width='0.5'/>\n",
+                       points_of(cell.corners_m));
+  for (const Shape& shape : world.obstacles)
+    svg += std::visit([](const auto& s) { return picture_of(s); }, shape);
+  svg += lines(drawing.tree, "#1f6feb") + lines(drawing.others, "#bf8700");
+  for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
+  svg += polyline(way_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
+  svg += polyline(smooth_way_m, "stroke='#cf222e' stroke-width='4'");
+  svg += disc(query.start_m, world.radius_m, "fill='#2da44e'");
+  svg += disc(query.goal_m, world.radius_m, "fill='none' stroke='#cf222e' stroke-width='3'");
+  return svg + "</svg>\n";
+}
+
+}  // namespace sidestep

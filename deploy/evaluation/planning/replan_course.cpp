@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/planning/replan_course.hpp"
+
+#include <cmath>
+
+#include "agents/planning/robust.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kCloseEnough_m = 0.1;
+
+/// Where one is after so much of a way.
+Vec2 place_on(const std::vector<Vec2>& way, double length_m) {
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double leg_m = (way[i] - way[i - 1]).norm();
+    if (leg_m >= length_m && leg_m > 0) return way[i - 1] + length_m / leg_m * (way[i] - way[i - 1]);
+    length_m -= leg_m;
+  }
+  return way.back();
+}
+
+}  // namespace
+
+ReplanCourse::ReplanCourse(std::size_t cycles, std::uint64_t seed)
+    : world_(make_world("circles", cycles, seed)),
+      obstacles_(world_.obstacles),
+      at_m_(world_.queries[0].start_m) {
+  Rng rng(seed);
+  for (std::size_t i = 0; i < world_.obstacles.size(); ++i)
+    velocities_mps_.push_back(rotated({kObstacleSpeed_mps, 0}, rng.uniform(0, 6.283185307179586)));
+  way_.states = {at_m_};
+  way_.reason = PlanReason::kSolved;
+}
+
+void ReplanCourse::step() {
+  at_m_ = place_on(way_.states, kSpeed_mps * kCycle_s);
+  if (!way_.arrives()) goal_ = (goal_ + 1) % world_.queries.size();
+  move_circles();
+  if ((world_.queries[goal_].goal_m - at_m_).norm() < kCloseEnough_m)
+    goal_ = (goal_ + 1) % world_.queries.size();
+  Rng rng(0);  // the driver draws nothing
+  way_ = plan_robustly(driver_, domain(), at_m_, {}, rng);
+}
+
+DiscDomain ReplanCourse::domain() const {
+  return {obstacles_, world_.field, world_.radius_m, at_m_, world_.queries[goal_].goal_m};
+}
+
+bool ReplanCourse::is_valid(const std::vector<Vec2>& way_m) const {
+  PlanWorld now = world_;
+  for (std::uint32_t i = 0; i < now.obstacles.size(); ++i) now.obstacles[i] = obstacles_.shape(ObstacleId{i});
+  return !is_free(now, way_m.front()) || is_valid_way(now, way_m, 0.02, 1e-9);
+}
+
+void ReplanCourse::move_circles() {
+  for (std::uint32_t i = 0; i < velocities_mps_.size(); ++i) {
+    const Vec2 at = std::get<Circle>(obstacles_.shape(ObstacleId{i})).centre_m;
+    Vec2& velocity = velocities_mps_[i];
+    if (at.x() * velocity.x() > 0 && std::abs(at.x()) > world_.field.length_m / 2) velocity.x() *= -1;
+    if (at.y() * velocity.y() > 0 && std::abs(at.y()) > world_.field.width_m / 2) velocity.y() *= -1;
+    obstacles_.move(ObstacleId{i}, kCycle_s * velocity);
+  }
+}
+
+}  // namespace sidestep

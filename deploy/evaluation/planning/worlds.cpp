@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/planning/worlds.hpp"
+
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "agents/planning/visibility/lazy_visibility.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::size_t kCircles = 64;
+
+Vec2 random_place(const PlanWorld& world, Rng& rng) {
+  const double x = world.field.length_m / 2, y = world.field.width_m / 2;
+  return {rng.uniform(-x, x), rng.uniform(-y, y)};
+}
+
+Vec2 free_place(const PlanWorld& world, Rng& rng) {
+  for (;;) {
+    const Vec2 place = random_place(world, rng);
+    if (is_free(world, place)) return place;
+  }
+}
+
+Vec2 free_place(const PlanWorld& world, const Box& within, Rng& rng) {
+  for (;;) {
+    const Vec2 place(rng.uniform(within.min_m.x(), within.max_m.x()),
+                     rng.uniform(within.min_m.y(), within.max_m.y()));
+    if (is_free(world, place)) return place;
+  }
+}
+
+/// From one part of the field to another.
+void ask_between(PlanWorld& world, const Box& from, const Box& to, std::size_t queries, Rng& rng) {
+  while (world.queries.size() < queries)
+    world.queries.push_back({free_place(world, from, rng), free_place(world, to, rng)});
+}
+
+void put_circles(PlanWorld& world, std::size_t count, Rng& rng) {
+  for (std::size_t i = 0; i < count; ++i)
+    world.obstacles.push_back(Circle{random_place(world, rng), rng.uniform(0.2, 0.6)});
+}
+
+ConvexPolygon random_polygon(const Vec2& centre, Rng& rng) {
+  const auto corners = 3 + rng.below(4);
+  const double radius = rng.uniform(0.25, 0.7), turn = rng.uniform(0, 2 * kPi);
+  ConvexPolygon polygon;
+  // Corners on a circle, one in each of its sectors.
+  for (std::uint64_t i = 0; i < corners; ++i) {
+    const double angle = turn + 2 * kPi * (static_cast<double>(i) + rng.uniform(0, 0.7)) / double(corners);
+    polygon.corners_m.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return polygon;
+}
+
+void put_mixed(PlanWorld& world, std::size_t of_each, Rng& rng) {
+  put_circles(world, of_each, rng);
+  for (std::size_t i = 0; i < of_each; ++i) {
+    const Vec2 centre = random_place(world, rng), half(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6));
+    world.obstacles.push_back(Box{centre - half, centre + half});
+    world.obstacles.push_back(random_polygon(random_place(world, rng), rng));
+    const Vec2 end = random_place(world, rng);
+    world.obstacles.push_back(Segment{end, end + rotated({rng.uniform(0.5, 2), 0}, rng.uniform(0, 2 * kPi))});
+  }
+}
+
+/// A perfect maze: between any two cells there is one way (depth-first, from the first cell).
+class Maze {
+ public:
+  Maze(std::size_t cells, Rng& rng)
+      : cells_(cells), visited_(cells * cells), right_(cells * cells, true), up_(right_) {
+    std::vector<std::size_t> way{0};
+    visited_[0] = true;
+    while (!way.empty()) {
+      const auto neighbours = unvisited_neighbours(way.back());
+      if (neighbours.empty()) {
+        way.pop_back();
+        continue;
+      }
+      const std::size_t next = neighbours[rng.below(neighbours.size())];
+      open(way.back(), next);
+      visited_[next] = true;
+      way.push_back(next);
+    }
+  }
+
+  /// Walls between cells, joined to the longest straight ones; the field's border is one anyway.
+  std::vector<Segment> walls(double length_m) const {
+    const double cell = length_m / static_cast<double>(cells_);
+    std::vector<Segment> walls;
+    for (const bool upright : {true, false}) {
+      for (std::size_t line = 0; line + 1 < cells_; ++line) {
+        for (std::size_t i = 0, end = 0; i < cells_; i = end + 1) {
+          for (end = i; end < cells_ && is_wall(upright, line, end);) ++end;
+          if (end == i) continue;
+          const double across = static_cast<double>(line + 1) * cell - length_m / 2;
+          const double from = static_cast<double>(i) * cell - length_m / 2;
+          const double to = static_cast<double>(end) * cell - length_m / 2;
+          walls.push_back(upright ? Segment{{across, from}, {across, to}}
+                                  : Segment{{from, across}, {to, across}});
+        }
+      }
+    }
+    return walls;
+  }
+
+ private:
+  bool is_wall(bool upright, std::size_t line, std::size_t i) const {
+    return upright ? right_[i * cells_ + line] : up_[line * cells_ + i];
+  }
+  std::vector<std::size_t> unvisited_neighbours(std::size_t cell) const {
+    std::vector<std::size_t> found;
+    const std::size_t x = cell % cells_, y = cell / cells_;
+    if (x > 0 && !visited_[cell - 1]) found.push_back(cell - 1);
+    if (x + 1 < cells_ && !visited_[cell + 1]) found.push_back(cell + 1);
+    if (y > 0 && !visited_[cell - cells_]) found.push_back(cell - cells_);
+    if (y + 1 < cells_ && !visited_[cell + cells_]) found.push_back(cell + cells_);
+    return found;
+  }
+  void open(std::size_t a, std::size_t b) {
+    (std::max(a, b) - std::min(a, b) == 1 ? right_ : up_)[std::min(a, b)] = false;
+  }
+
+  std::size_t cells_;
+  std::vector<bool> visited_, right_, up_;
+};
+
+void make_maze(PlanWorld& world, std::size_t queries, Rng& rng) {
+  for (const Segment& wall : Maze(7, rng).walls(world.field.length_m)) world.obstacles.push_back(wall);
+  ask_across(world, queries, rng);
+}
+
+/// A wall, and a gap in it that is a fifth wider than the robot.
+void make_gap(PlanWorld& world, std::size_t queries, Rng& rng) {
+  const double half = world.radius_m * 1.2, middle = 1;
+  world.obstacles = {Box{{-0.2, -5}, {0.2, middle - half}}, Box{{-0.2, middle + half}, {0.2, 5}}};
+  ask_between(world, {{-5, -5}, {-0.2, 5}}, {{0.2, -5}, {5, 5}}, queries, rng);
+}
+
+/// A chamber whose opening is a funnel that points inwards: whoever follows the walls stays in.
+void make_trap(PlanWorld& world, std::size_t queries, Rng& rng) {
+  world.obstacles = {Box{{-3, 2.8}, {3, 3}}, Box{{-3, -3}, {3, -2.8}}, Box{{-3, -2.8}, {-2.8, 2.8}},
+                     ConvexPolygon{{{2.8, 2.8}, {0.5, 0.3}, {0.6, 0.12}, {3, 2.8}}},
+                     ConvexPolygon{{{2.8, -2.8}, {3, -2.8}, {0.6, -0.12}, {0.5, -0.3}}}};
+  ask_between(world, {{-2.8, -2.8}, {0, 2.8}}, {{3.1, -5}, {5, 5}}, queries, rng);
+}
+
+void make_u(PlanWorld& world, std::size_t queries, Rng& rng) {
+  world.obstacles = {Box{{-2, 2}, {2, 2.3}}, Box{{-2, -2.3}, {2, -2}}, Box{{2, -2.3}, {2.3, 2.3}}};
+  ask_between(world, {{-1, -1.9}, {1.9, 1.9}}, {{2.4, -2}, {5, 2}}, queries, rng);
+}
+
+}  // namespace
+
+const std::vector<std::string>& world_names() {
+  static const std::vector<std::string> names{"empty", "circles", "mixed", "maze", "gap", "trap", "u"};
+  return names;
+}
+
+PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t seed) {
+  Rng rng(seed);
+  PlanWorld world;
+  world.name = name;
+  if (name == "empty") {
+    ask_across(world, queries, rng);
+  } else if (name == "circles") {
+    return make_circles(kCircles, queries, seed);
+  } else if (name == "mixed") {
+    put_mixed(world, 12, rng);
+    ask_across(world, queries, rng);
+  } else if (name == "maze") {
+    make_maze(world, queries, rng);
+  } else if (name == "gap") {
+    make_gap(world, queries, rng);
+  } else if (name == "trap") {
+    make_trap(world, queries, rng);
+  } else if (name == "u") {
+    make_u(world, queries, rng);
+  } else {
+    throw std::invalid_argument(
+        fmt::format("no world is called \"{}\": expected one of {}", name, fmt::join(world_names(), ", ")));
+  }
+  return world;
+}
+
+PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t seed) {
+  Rng rng(seed);
+  PlanWorld world;
+  world.name = "circles";
+  const double scale = std::sqrt(static_cast<double>(circles) / kCircles);
+  world.field = {scale * world.field.length_m, scale * world.field.width_m};
+  put_circles(world, circles, rng);
+  ask_across(world, queries, rng);
+  return world;
+}
+
+void ask_across(PlanWorld& world, std::size_t queries, Rng& rng) {
+  const ObstacleWorld obstacles(world.obstacles);
+  LazyVisibility planner;
+  while (world.queries.size() < queries) {
+    const Vec2 start = free_place(world, rng), goal = free_place(world, rng);
+    if ((start - goal).norm() < world.field.length_m / 2) continue;
+    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+    if (planner.plan(domain, start, {}, rng).arrives()) world.queries.push_back({start, goal});
+  }
+}
+
+bool is_free(const PlanWorld& world, const Vec2& place_m) { return is_valid_way(world, {place_m}, 1, 0); }
+
+bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& way_m, double step_m, double slack_m) {
+  const double radius = world.radius_m - slack_m;
+  const auto is_clear = [&](const Vec2& place) {
+    if (!world.field.contains(place, radius)) return false;
+    for (const Shape& shape : world.obstacles)
+      if (signed_distance(place, shape) <= radius) return false;
+    return true;
+  };
+  for (std::size_t i = 0; i < way_m.size(); ++i) {
+    const Vec2 from = way_m[i > 0 ? i - 1 : 0], to = way_m[i];
+    const auto steps = static_cast<int>(std::ceil((to - from).norm() / step_m)) + 1;
+    for (int k = 1; k <= steps; ++k)
+      if (!is_clear(from + double(k) / steps * (to - from))) return false;
+  }
+  return true;
+}
+
+}  // namespace sidestep

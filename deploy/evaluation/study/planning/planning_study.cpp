@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/planning/planning_study.hpp"
+
+#include "deploy/evaluation/study/planning/bridges_and_extensions.hpp"
+#include "deploy/evaluation/study/planning/cache_replans.hpp"
+#include "deploy/evaluation/study/planning/cache_strategies.hpp"
+#include "deploy/evaluation/study/planning/collision_structures.hpp"
+#include "deploy/evaluation/study/planning/errt_and_visibility.hpp"
+#include "deploy/evaluation/study/planning/roadmap_connections.hpp"
+
+namespace sidestep {
+namespace {
+
+/// How much of everything.
+struct Sizes {
+  CacheReplans cache;
+  CacheStrategies strategies;
+  BridgesAndExtensions bridges;
+  ErrtAndVisibility visibility;
+  RoadmapConnections roadmaps;
+  CollisionStructures collision;
+};
+Sizes quick_sizes() {
+  Sizes sizes;
+  sizes.cache = {.replans = 200};
+  sizes.strategies = {.waypoint_probabilities = {0, 0.4}, .courses = 1, .replans = 100};
+  sizes.bridges = {.extensions = {1, 8}, .bridges = {1, 4}, .worlds = 2, .queries = 5};
+  sizes.visibility = {.obstacles = {4, 64}, .worlds = 2, .queries = 5};
+  sizes.roadmaps = {.sectors = {8}, .neighbours = {8}, .radii_m = {1.5}, .worlds = 2, .queries = 5};
+  sizes.collision = {.obstacles = {4, 64, 1024}, .queries = 2000, .rounds = 3};
+  return sizes;
+}
+
+}  // namespace
+
+int study_planning(const StudyOptions& options) {
+  require_study_output(options);
+  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  const auto run = [&](const std::string& name, const auto& experiment, const auto& settings) {
+    const StudyTable table = experiment(settings, options.seed, StudyProgress(name));
+    write_study_table(table, "planning", options);
+    fmt::print("{}\n", markdown_of(table));
+  };
+  run("cache", cache_replans, sizes.cache);
+  run("strategies", cache_strategies, sizes.strategies);
+  run("bridges", bridges_and_extensions, sizes.bridges);
+  run("visibility", errt_and_visibility, sizes.visibility);
+  run("roadmaps", roadmap_connections, sizes.roadmaps);
+  run("collision", collision_structures, sizes.collision);
+  return 0;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/safety/safety_study.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "deploy/simulate/campaign/worker_pool.hpp"
+#include "deploy/evaluation/study/safety/search_time.hpp"
+#include "deploy/evaluation/study/safety/traversal.hpp"
+
+namespace sidestep {
+namespace {
+
+/// How much of everything.
+struct Sizes {
+  std::vector<int> robots{2, 4, 8, 16, 24, 32};
+  int trials = 10;
+  double seconds = 30;
+  int margin_robots = 16, margin_trials = 5;
+  double margin_seconds = 20;
+  std::vector<double> margins_mm{0, 5, 10, 20};
+  std::vector<double> noises_mm{0.5, 1, 2, 5, 10, 20};
+  std::vector<int> searchers{2, 5, 10, 20, 50, 100, 200, 500, 1000};
+  int search_trials = 100;
+};
+Sizes quick_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
+
+/// One run: the row that it will be, and how to measure it.
+struct Run {
+  std::string line;  ///< in a plot
+  double x = 0;
+  std::vector<std::string> key;          ///< the first columns
+  std::function<std::string()> columns;  ///< the others, the plotted one first
+};
+
+struct Experiment {
+  StudyTable table;
+  int jobs = 1;
+  std::vector<Run> runs;
+};
+
+std::string columns_of(const TraversalResult& r) {
+  return fmt::format("{:.9f},{},{:.6f},{},{:.6f}", r.penetration_m_s, r.contacts, r.min_clearance_m,
+                     r.traversals, r.reference_error_m);
+}
+/// The columns of a run of the floor, after those that say which.
+std::vector<std::string> traversal_columns(std::vector<std::string> columns) {
+  for (const char* name :
+       {"penetration_m_s", "contacts", "min_clearance_m", "traversals", "max_reference_error_m"})
+    columns.emplace_back(name);
+  return columns;
+}
+
+Experiment traversals(const StudyOptions& options, const Sizes& sizes) {
+  Experiment experiment;
+  experiment.table.name = "traversals";
+  experiment.table.columns = traversal_columns({"mode", "robots", "seconds", "seed"});
+  experiment.jobs = options.jobs;
+  Plot& plot = experiment.table.plots.emplace_back();
+  plot = {fmt::format("Left-right traversals, {} runs of {} s each", sizes.trials, sizes.seconds), "robots",
+          "interpenetration, depth x time [m s]"};
+  for (const bool has_search : {false, true}) {
+    const std::string mode = has_search ? "with safety search" : "without";
+    for (const int robots : sizes.robots) {
+      for (int trial = 0; trial < sizes.trials; ++trial) {
+        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
+        experiment.runs.push_back({mode, static_cast<double>(robots),
+                                   cells(has_search ? "with" : "without", robots, sizes.seconds, seed),
+                                   [=, seconds = sizes.seconds] {
+                                     TraversalSettings settings;
+                                     settings.robots = robots;
+                                     const Scenario scenario = traversal_scenario(settings, seed);
+                                     return columns_of(has_search
+                                                           ? traverse_with_search(scenario, seed, seconds)
+                                                           : traverse_without_search(scenario, seconds));
+                                   }});
+      }
+    }
+  }
+  return experiment;
+}
+
+Experiment margins(const StudyOptions& options, const Sizes& sizes) {
+  Experiment experiment;
+  experiment.table.name = "margins";
+  experiment.table.columns = traversal_columns(
+      {"odometry", "off_reference_rule", "margin_mm", "noise_mm", "robots", "seconds", "seed"});
+  experiment.jobs = options.jobs;
+  Plot& plot = experiment.table.plots.emplace_back();
+  plot = {fmt::format("Margins against noise: {} robots, poor odometry, {} runs of {} s each",
+                      sizes.margin_robots, sizes.margin_trials, sizes.margin_seconds),
+          "noise of vision, standard deviation per axis [mm]", "interpenetration, depth x time [m s]"};
+  plot.has_log_x = true;
+  const auto add = [&](bool is_poor, bool breaks_off, double margin_mm, double noise_mm) {
+    for (int trial = 0; trial < sizes.margin_trials; ++trial) {
+      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
+      Run run;
+      if (is_poor && !breaks_off) run.line = fmt::format("margin {} mm", margin_mm);
+      run.x = noise_mm;
+      run.key = cells(is_poor ? "poor" : "usual", breaks_off ? "on" : "off", margin_mm, noise_mm,
+                      sizes.margin_robots, sizes.margin_seconds, seed);
+      run.columns = [=, robots = sizes.margin_robots, seconds = sizes.margin_seconds] {
+        const TraversalSettings settings{robots, margin_mm * 1e-3, noise_mm * 1e-3, is_poor, breaks_off};
+        return columns_of(traverse_with_search(traversal_scenario(settings, seed), seed, seconds));
+      };
+      experiment.runs.push_back(std::move(run));
+    }
+  };
+  for (const bool is_poor : {false, true}) {
+    for (const double noise_mm : sizes.noises_mm) {
+      for (const double margin_mm : sizes.margins_mm) add(is_poor, false, margin_mm, noise_mm);
+      add(is_poor, true, TraversalSettings{}.margin_m * 1e3, noise_mm);
+    }
+  }
+  return experiment;
+}
+
+Experiment search_times(const StudyOptions& options, const Sizes& sizes) {
+  Experiment experiment;
+  experiment.table.name = "search";
+  experiment.table.columns = {"robots", "seed", "search_us_per_robot"};
+  Plot& plot = experiment.table.plots.emplace_back();
+  plot = {fmt::format("Safety search of one robot in one cycle, {} trials each", sizes.search_trials),
+          "robots", "time per robot [us]"};
+  plot.has_log_x = true;
+  for (const int robots : sizes.searchers) {
+    for (int trial = 0; trial < sizes.search_trials; ++trial) {
+      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
+      experiment.runs.push_back({"0.7 m2 of floor per robot", static_cast<double>(robots),
+                                 cells(robots, seed),
+                                 [=] { return fmt::format("{:.3f}", search_us_per_robot(robots, seed)); }});
+    }
+  }
+  return experiment;
+}
+
+/// Measures all runs; each is done by a process of its own that cannot harm the others.
+std::vector<std::string> measure(const Experiment& experiment) {
+  const std::vector<Run>& runs = experiment.runs;
+  std::vector<std::string> results(runs.size());
+  std::string failure;
+  std::size_t done = 0;
+  StudyProgress progress(experiment.table.name);
+  WorkerPool pool(
+      experiment.jobs, [&](std::uint64_t job) { return runs[job].columns(); },
+      [&](std::uint64_t job, const std::string& line, const std::string& died) {
+        if (!died.empty()) failure = fmt::format("{}: {}", fmt::join(runs[job].key, ","), died);
+        results[job] = line;
+        progress(++done, runs.size());
+      });
+  std::vector<std::uint64_t> jobs(runs.size());
+  std::iota(jobs.begin(), jobs.end(), 0);
+  pool.run(jobs);
+  if (!failure.empty()) throw std::runtime_error("a run has died: " + failure);
+  return results;
+}
+
+void fill_in(Experiment& experiment, const std::vector<std::string>& results) {
+  std::vector<std::string> titles;
+  std::map<std::string, std::map<double, std::vector<double>>> values;
+  for (std::size_t i = 0; i < experiment.runs.size(); ++i) {
+    const Run& run = experiment.runs[i];
+    std::vector<std::string>& row = experiment.table.rows.emplace_back(run.key);
+    std::istringstream line(results[i]);
+    for (std::string cell; std::getline(line, cell, ',');) row.push_back(cell);
+    if (run.line.empty()) continue;
+    if (!values.contains(run.line)) titles.push_back(run.line);
+    values[run.line][run.x].push_back(std::stod(results[i]));
+  }
+  for (const std::string& title : titles) {
+    PlotLine& line = experiment.table.plots.front().lines.emplace_back(PlotLine{title, {}});
+    for (const auto& [x, trials] : values[title]) line.points.push_back(plot_point(x, trials));
+  }
+}
+
+}  // namespace
+
+int study_safety(const StudyOptions& options) {
+  require_study_output(options);
+  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  for (Experiment& experiment :
+       std::vector{traversals(options, sizes), margins(options, sizes), search_times(options, sizes)}) {
+    fill_in(experiment, measure(experiment));
+    write_study_table(experiment.table, "safety", options);
+  }
+  return 0;
+}
+
+}  // namespace sidestep

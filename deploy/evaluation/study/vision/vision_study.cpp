@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/vision/vision_study.hpp"
+
+#include "deploy/evaluation/study/vision/frame_times.hpp"
+#include "deploy/evaluation/study/vision/patch_errors.hpp"
+#include "deploy/evaluation/study/vision/recognition.hpp"
+
+namespace sidestep {
+namespace {
+
+/// How much of everything.
+struct Sizes {
+  Recognition recognition;
+  PatchErrors errors;
+  FrameTimes times;
+};
+Sizes quick_sizes() { return {{.frames = 100}, {.frames = 20, .noises = {2, 6}}, {.rounds = 100}}; }
+
+}  // namespace
+
+int study_vision(const StudyOptions& options) {
+  require_study_output(options);
+  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  const auto run = [&](const std::string& name, const auto& experiment, const auto& settings) {
+    const StudyTable table = experiment(settings, options.seed, StudyProgress(name));
+    write_study_table(table, "vision", options);
+    fmt::print("{}\n", markdown_of(table));
+  };
+  run("recognition", recognition, sizes.recognition);
+  run("patch errors", patch_errors, sizes.errors);
+  run("frame times", frame_times, sizes.times);
+  return 0;
+}
+
+}  // namespace sidestep

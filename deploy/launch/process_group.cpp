@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/launch/process_group.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <poll.h>
+#include <stdexcept>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// glibc 2.36 declares it without C linkage.
+extern "C" {
+#include <sys/pidfd.h>
+}
+
+namespace sidestep {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr std::size_t kKeptLines = 20;
+constexpr std::size_t kLongestLine = 4096;
+constexpr ProcessGroup::Milliseconds kFirstBackoff{100}, kLongestBackoff{2000};
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+}
+
+std::string reason_of(int status) {
+  if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
+  const char* const name = sigabbrev_np(WTERMSIG(status));
+  return fmt::format("signal {} (SIG{})", WTERMSIG(status), name ? name : "?");
+}
+
+/// Between fork and exec in a process that may have threads: system calls only.
+[[noreturn]] void become(char* const argv[], int input, int output, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(126);  // the parent died before the line above
+  setpgid(0, 0);                        // Ctrl-C is for the parent, which then stops its children in order
+  for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  close_range(3, ~0U, 0);  // sockets of the parent's above all
+  execv(argv[0], argv);
+  const char* const why = strerrordesc_np(errno);
+  for (const char* part :
+       {"cannot execute ", static_cast<const char*>(argv[0]), ": ", why ? why : "?", "\n"}) {
+    if (write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
+  }
+  _exit(127);
+}
+
+void close_fd(int& fd) {
+  if (fd >= 0) close(fd);
+  fd = -1;
+}
+
+struct Pipe {
+  int read_end = -1;
+  int write_end = -1;
+};
+
+Pipe new_pipe() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
+  return {ends[0], ends[1]};
+}
+
+/// A pipe that holds the text already, whose reader then waits for its end.
+Pipe filled_pipe(const std::string& text) {
+  if (text.empty()) return {};
+  Pipe pipe = new_pipe();
+  fcntl(pipe.write_end, F_SETFL, O_NONBLOCK);
+  fcntl(pipe.write_end, F_SETPIPE_SZ, static_cast<int>(text.size()));
+  const ssize_t written = write(pipe.write_end, text.data(), text.size());
+  if (written == static_cast<ssize_t>(text.size())) return pipe;
+  close_fd(pipe.read_end);
+  close_fd(pipe.write_end);
+  throw std::runtime_error(fmt::format("{} bytes are too many for a child's stdin", text.size()));
+}
+
+}  // namespace
+
+struct ProcessGroup::Child {
+  ChildSpec spec;
+  pid_t pid = -1;
+  int pidfd = -1;
+  int input = -1;
+  int output = -1;
+  bool is_running = false;
+  SteadyTime started{};
+  SteadyTime restart_at = SteadyTime::max();
+  Milliseconds backoff = kFirstBackoff;
+  std::string partial;
+  std::deque<std::string> lines;
+};
+
+std::string program_beside_own(const std::string& name) {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
+}
+
+ProcessGroup::ProcessGroup(const std::string& log_path) {
+  const auto folder = std::filesystem::path(log_path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  log_ = std::fopen(log_path.c_str(), "we");
+  if (!log_) fail("cannot write the log " + log_path);
+}
+
+ProcessGroup::~ProcessGroup() {
+  terminate(Milliseconds{0});
+  std::fclose(log_);
+}
+
+void ProcessGroup::log(const std::string& line) {
+  fmt::print(log_, "{}\n", line);
+  std::fflush(log_);
+}
+
+pid_t ProcessGroup::start(const ChildSpec& spec) {
+  if (spec.argv.empty() || access(spec.argv[0].c_str(), X_OK) != 0) {
+    fail(fmt::format("cannot start {}, {}", spec.name, spec.argv.empty() ? "nothing" : spec.argv[0]));
+  }
+  auto child = std::make_unique<Child>();
+  child->spec = spec;
+  spawn(*child);
+  children_.push_back(std::move(child));
+  return children_.back()->pid;
+}
+
+void ProcessGroup::spawn(Child& child) {
+  Pipe input = filled_pipe(child.spec.input), output = new_pipe();
+  fcntl(output.read_end, F_SETFL, O_NONBLOCK);
+  std::vector<char*> argv;
+  for (auto& argument : child.spec.argv) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  // Until the child has let go of this program's signal handlers, a signal to it waits.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t pid = fork();
+  if (pid == 0) become(argv.data(), input.read_end, output.write_end, parent);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  close_fd(output.write_end);
+  close_fd(input.read_end);
+  close_fd(child.input);
+  child.input = input.write_end;
+  if (pid < 0) {
+    close_fd(output.read_end);
+    fail("cannot start " + child.spec.name);
+  }
+  child.pid = pid;
+  child.pidfd = pidfd_open(pid, 0);
+  child.output = output.read_end;
+  child.is_running = true;
+  child.started = steady_clock::now();
+  child.restart_at = SteadyTime::max();
+  if (child.pidfd < 0) fail("cannot watch " + child.spec.name);
+}
+
+void ProcessGroup::wait_for_something(Milliseconds timeout) {
+  std::vector<pollfd> watched;
+  SteadyTime until = steady_clock::now() + timeout;
+  for (const auto& child : children_) {
+    if (child->pidfd >= 0) watched.push_back({child->pidfd, POLLIN, 0});
+    if (child->output >= 0) watched.push_back({child->output, POLLIN, 0});
+    until = std::min(until, child->restart_at);
+  }
+  const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
+  ::poll(watched.data(), watched.size(), static_cast<int>(std::max<Milliseconds::rep>(left.count(), 0)));
+}
+
+void ProcessGroup::drain(Child& child) {
+  char buffer[4096];
+  const auto keep = [&] {
+    log(child.spec.name + ": " + child.partial);
+    child.lines.push_back(std::move(child.partial));
+    if (child.lines.size() > kKeptLines) child.lines.pop_front();
+    child.partial.clear();
+  };
+  while (child.output >= 0) {
+    const ssize_t count = read(child.output, buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) return;
+    if (count <= 0) {
+      if (!child.partial.empty()) keep();
+      close_fd(child.output);
+      return;
+    }
+    for (ssize_t i = 0; i < count; ++i) {
+      if (buffer[i] != '\n') child.partial += buffer[i];
+      if (buffer[i] == '\n' || child.partial.size() >= kLongestLine) keep();
+    }
+  }
+}
+
+bool ProcessGroup::reap(Child& child, ChildEvent& event) {
+  int status = 0;
+  if (!child.is_running || waitpid(child.pid, &status, WNOHANG) != child.pid) return false;
+  child.is_running = false;
+  close_fd(child.pidfd);
+  close_fd(child.input);
+  drain(child);
+  close_fd(child.output);  // a grandchild may still hold the other end
+  event = {ChildEvent::Kind::kDied, child.spec.name, child.pid, reason_of(status), false};
+  if (child.spec.restart && !is_terminating_) {
+    const auto now = steady_clock::now();
+    const bool lived_long = now - child.started > kLongestBackoff;
+    child.backoff = lived_long ? kFirstBackoff : std::min(2 * child.backoff, kLongestBackoff);
+    child.restart_at = now + child.backoff;
+    event.will_restart = true;
+  }
+  return true;
+}
+
+void ProcessGroup::start_due(std::vector<ChildEvent>& events) {
+  for (const auto& child : children_) {
+    if (child->restart_at > steady_clock::now()) continue;
+    spawn(*child);
+    events.push_back({ChildEvent::Kind::kStarted, child->spec.name, child->pid, "", false});
+  }
+}
+
+std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
+  const SteadyTime until = steady_clock::now() + timeout;
+  std::vector<ChildEvent> events;
+  while (true) {
+    const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
+    wait_for_something(std::max(left, Milliseconds{0}));
+    for (const auto& child : children_) {
+      ChildEvent event;
+      drain(*child);
+      if (reap(*child, event)) events.push_back(event);
+    }
+    if (!is_terminating_) start_due(events);
+    if (!events.empty() || steady_clock::now() >= until) return events;
+  }
+}
+
+std::vector<std::string> ProcessGroup::terminate(Milliseconds patience) {
+  is_terminating_ = true;
+  for (const auto& child : children_) {
+    child->restart_at = SteadyTime::max();
+    if (!child->is_running) continue;
+    if (child->input >= 0)
+      close_fd(child->input);
+    else
+      kill(child->pid, SIGTERM);
+  }
+  const SteadyTime until = steady_clock::now() + patience;
+  while (running() > 0 && steady_clock::now() < until) {
+    poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
+  }
+  std::vector<std::string> killed;
+  for (const auto& child : children_) {
+    if (!child->is_running) continue;
+    killed.push_back(child->spec.name);
+    kill(child->pid, SIGKILL);
+  }
+  while (running() > 0) poll(Milliseconds{1000});
+  is_terminating_ = false;
+  return killed;
+}
+
+std::size_t ProcessGroup::running() const {
+  return static_cast<std::size_t>(
+      std::count_if(children_.begin(), children_.end(), [](const auto& child) { return child->is_running; }));
+}
+
+std::vector<std::string> ProcessGroup::last_lines(const std::string& name) const {
+  for (const auto& child : children_) {
+    if (child->spec.name == name) return {child->lines.begin(), child->lines.end()};
+  }
+  return {};
+}
+
+}  // namespace sidestep

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/metrics/progress.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kRedraw = std::chrono::milliseconds(200);
+constexpr Duration kPlainLine = std::chrono::seconds(1);
+constexpr int kUsualTerminalRows = 24;
+
+const char* name_of(const RobotProgress& row) {
+  if (row.arrived) return "arrived";
+  if (!row.phase) return "silent";
+  switch (*row.phase) {
+    case msg::AgentPhase::AGENT_FENCING:
+      return "fencing";
+    case msg::AgentPhase::AGENT_REGISTERING:
+      return "registering";
+    case msg::AgentPhase::AGENT_WAITING:
+      return "waiting";
+    case msg::AgentPhase::AGENT_DRIVING:
+      return "driving";
+    case msg::AgentPhase::AGENT_ARRIVED:
+      return "settling";
+    case msg::AgentPhase::AGENT_OFF_CLOCK:
+      return "off clock";
+    case msg::AgentPhase::AGENT_ABSENT:
+      return "absent";
+  }
+  return "?";
+}
+
+std::string clocks_of(const Report& report) {
+  if (!report.clock_offset_max_s) return "";
+  return fmt::format("  clocks {:.2f} +- {:.2f} ms", *report.clock_offset_max_s * 1e3,
+                     report.clock_uncertainty_s.value_or(0) * 1e3);
+}
+
+double milliseconds(Duration duration) { return to_seconds(duration) * 1e3; }
+
+int terminal_rows() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : kUsualTerminalRows;
+}
+
+}  // namespace
+
+std::string progress_line(const Judge& judge, Time now) {
+  const Report report = judge.report();
+  const auto since = judge.granting_since();
+  const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
+                                                static_cast<double>(report.cycles)
+                                          : 0;
+  return fmt::format(
+      "{}  {} of {} arrived  {} contacts{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
+      "negotiation {:.2f} / {:.2f} ms{}",
+      since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
+      report.contacts, judge.conflicts() > 0 ? fmt::format("  {} in conflict", judge.conflicts()) : "",
+      report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
+      report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
+      milliseconds(report.negotiation.quantile(0.99)), clocks_of(report));
+}
+
+std::string progress_table(const Judge& judge, Time now, int max_rows) {
+  std::string text = progress_line(judge, now) + "\n";
+  text += "robot  team    state          to go      speed   grants  denials  negotiation p50 / p99\n";
+  const auto rows = judge.progress();
+  const auto shown = std::min<std::size_t>(rows.size(), static_cast<std::size_t>(std::max(max_rows, 1)));
+  for (std::size_t i = 0; i < shown; ++i) {
+    const RobotProgress& row = rows[i];
+    text += fmt::format("{:5}  {:6}  {:11}  {:6.2f} m  {:5.2f} m/s  {:7}  {:7}  {:11.2f} / {:.2f} ms\n",
+                        row.robot, row.team == Team::kBlue ? "blue" : "yellow", name_of(row),
+                        row.distance_to_go_m, row.speed_mps, row.grants, row.denials,
+                        milliseconds(row.negotiation_p50), milliseconds(row.negotiation_p99));
+  }
+  if (shown < rows.size()) text += fmt::format("... and {} more\n", rows.size() - shown);
+  return text;
+}
+
+ProgressDisplay::ProgressDisplay() : is_terminal_(isatty(STDOUT_FILENO) == 1) {}
+
+void ProgressDisplay::erase_table() {
+  if (drawn_lines_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_lines_);
+  drawn_lines_ = 0;
+}
+
+void ProgressDisplay::say(const std::string& line) {
+  erase_table();
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+  if (is_terminal_) next_ = Time{};
+}
+
+void ProgressDisplay::update(const Judge& judge, Time now) {
+  if (now < next_) return;
+  if (is_terminal_) {
+    next_ = now + kRedraw;
+    erase_table();
+    const std::string table = progress_table(judge, now, terminal_rows() - 4);
+    drawn_lines_ = static_cast<int>(std::count(table.begin(), table.end(), '\n'));
+    fmt::print("{}", table);
+  } else {
+    next_ = now + kPlainLine;
+    fmt::print("{}\n", progress_line(judge, now));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/topic/describe.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/time/histogram.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The enumerator's word; over the network any number may come.
+template <typename Enum, std::size_t kCount>
+Json word(Enum value, const char* const (&words)[kCount]) {
+  const auto number = static_cast<std::uint32_t>(value);
+  return number < kCount ? Json(words[number]) : Json("unknown " + std::to_string(number));
+}
+
+constexpr const char* kReasons[] = {
+    "granted",     "not tried",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
+    "old version", "base unknown", "not continuous", "beyond limits", "not at rest",        "outside field",
+    "obstacle",    "conflict",     "ledger full",    "absent"};
+constexpr const char* kCoordinatorPhases[] = {"standby", "registering", "granting"};
+constexpr const char* kAgentPhases[] = {"fencing", "registering", "waiting", "driving",
+                                        "arrived", "off clock",   "absent"};
+constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
+constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
+
+template <typename Range, typename Describe>
+Json list(const Range& range, std::size_t count, Describe describe_one) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < std::min<std::size_t>(count, range.size()); ++i)
+    result.push_back(describe_one(range[i]));
+  return result;
+}
+
+template <typename Range, typename Describe>
+Json list(const Range& range, Describe describe_one) {
+  return list(range, range.size(), describe_one);
+}
+
+Json head(const msg::Header& m) {
+  return {{"sender", m.sender()},
+          {"incarnation", m.incarnation()},
+          {"message_number", m.message_number()},
+          {"stamp_ns", m.stamp_ns()}};
+}
+
+Json phase(const msg::Phase& m) {
+  return {{"duration_ns", m.duration_ns()}, {"ax_mps2", m.ax_mps2()}, {"ay_mps2", m.ay_mps2()}};
+}
+
+Json intent(const msg::Intent& m) {
+  return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"hold_s", m.hold_s()},
+          {"way_x_m", m.way_x_m()},  {"way_y_m", m.way_y_m()}, {"goal_x_m", m.goal_x_m()},
+          {"goal_y_m", m.goal_y_m()}};
+}
+
+Json version(const msg::Version& m) {
+  return {{"robot", m.robot()},
+          {"incarnation", m.incarnation()},
+          {"version_number", m.version_number()},
+          {"base", m.base()},
+          {"start_ns", m.start_ns()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"grown_m", m.grown_m()},
+          {"has_intent", m.has_intent()},
+          {"intended", intent(m.intended())},
+          {"phase_count", m.phase_count()},
+          {"phases", list(m.phases(), m.phase_count(), phase)}};
+}
+
+Json quantiles(const msg::DurationCounts& m) {
+  const DurationHistogram histogram = DurationHistogram::from_message(m);
+  const auto us = [](Duration d) { return static_cast<double>(d.count()) * 1e-3; };
+  return {{"count", histogram.count()},
+          {"p50_us", us(histogram.quantile(0.5))},
+          {"p99_us", us(histogram.quantile(0.99))},
+          {"largest_us", us(histogram.largest())}};
+}
+
+}  // namespace
+
+Json describe(const msg::CameraImage& m) {
+  return {{"camera", m.camera()},
+          {"head", head(m.head())},
+          {"captured_at_ns", m.captured_at_ns()},
+          {"image_format", word(m.image_format(), kImageFormats)},
+          {"width_px", m.width_px()},
+          {"height_px", m.height_px()},
+          {"pixels", fmt::format("{} bytes", m.pixels().size())}};
+}
+
+Json describe(const msg::DetectionFrame& m) {
+  const auto ball = [](const msg::BallDetection& b) -> Json {
+    return {{"x_m", b.x_m()}, {"y_m", b.y_m()}, {"confidence", b.confidence()}};
+  };
+  const auto robot = [](const msg::RobotDetection& r) -> Json {
+    return {{"robot", r.robot()},
+            {"x_m", r.x_m()},
+            {"y_m", r.y_m()},
+            {"heading_rad", r.heading_rad()},
+            {"confidence", r.confidence()}};
+  };
+  const auto obstacle = [](const msg::ObstacleDetection& o) -> Json {
+    return {{"x_m", o.x_m()}, {"y_m", o.y_m()}, {"radius_m", o.radius_m()}};
+  };
+  return {{"camera", m.camera()},
+          {"head", head(m.head())},
+          {"captured_at_ns", m.captured_at_ns()},
+          {"ball_count", m.ball_count()},
+          {"balls", list(m.balls(), m.ball_count(), ball)},
+          {"obstacle_count", m.obstacle_count()},
+          {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
+          {"robots", list(m.robots(), robot)}};
+}
+
+Json describe(const msg::WorldState& m) {
+  const auto robot = [](const msg::TrackedRobot& r) -> Json {
+    return {{"robot", r.robot()},
+            {"x_m", r.x_m()},
+            {"y_m", r.y_m()},
+            {"heading_rad", r.heading_rad()},
+            {"vx_mps", r.vx_mps()},
+            {"vy_mps", r.vy_mps()},
+            {"angular_radps", r.angular_radps()},
+            {"position_variance_m2", r.position_variance_m2()},
+            {"velocity_variance_m2ps2", r.velocity_variance_m2ps2()},
+            {"seen_at_ns", r.seen_at_ns()},
+            {"seen_x_m", r.seen_x_m()},
+            {"seen_y_m", r.seen_y_m()},
+            {"seen_heading_rad", r.seen_heading_rad()}};
+  };
+  const auto obstacle = [](const msg::TrackedObstacle& o) -> Json {
+    return {{"obstacle", o.obstacle()}, {"seen_at_ns", o.seen_at_ns()},
+            {"x_m", o.x_m()},           {"y_m", o.y_m()},
+            {"vx_mps", o.vx_mps()},     {"vy_mps", o.vy_mps()},
+            {"radius_m", o.radius_m()}, {"position_variance_m2", o.position_variance_m2()}};
+  };
+  const msg::TrackedBall& b = m.ball();
+  const Json ball = {{"is_visible", b.is_visible()},
+                     {"x_m", b.x_m()},
+                     {"y_m", b.y_m()},
+                     {"vx_mps", b.vx_mps()},
+                     {"vy_mps", b.vy_mps()}};
+  return {{"vision", m.vision()},
+          {"head", head(m.head())},
+          {"valid_at_ns", m.valid_at_ns()},
+          {"frames", m.frames()},
+          {"rejected", m.rejected()},
+          {"ball", ball},
+          {"obstacle_count", m.obstacle_count()},
+          {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
+          {"robots", list(m.robots(), robot)}};
+}
+
+Json describe(const msg::Command& m) {
+  const msg::PoseFix& f = m.fix();
+  const Json fix = {{"captured_at_ns", f.captured_at_ns()},
+                    {"x_m", f.x_m()},
+                    {"y_m", f.y_m()},
+                    {"heading_rad", f.heading_rad()}};
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"epoch", m.epoch()},
+          {"has_version", m.has_version()},
+          {"granted", version(m.granted())},
+          {"has_fix", m.has_fix()},
+          {"fix", fix},
+          {"heading_rad", m.heading_rad()}};
+}
+
+Json describe(const msg::Feedback& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"obeyed_incarnation", m.obeyed_incarnation()},
+          {"obeyed_epoch", m.obeyed_epoch()},
+          {"at_ns", m.at_ns()},
+          {"executing", version(m.executing())},
+          {"is_off_reference", m.is_off_reference()},
+          {"is_lifted", m.is_lifted()},
+          {"heard_stamp_ns", m.heard_stamp_ns()},
+          {"heard_at_ns", m.heard_at_ns()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"heading_rad", m.heading_rad()},
+          {"tracking_error_m", m.tracking_error_m()},
+          {"deviation_m", m.deviation_m()},
+          {"scale_deviation", m.scale_deviation()},
+          {"taken", m.taken()},
+          {"refused_late", m.refused_late()},
+          {"refused_base", m.refused_base()},
+          {"refused_fenced", m.refused_fenced()},
+          {"refused_malformed", m.refused_malformed()}};
+}
+
+Json describe(const msg::Registration& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"epoch", m.epoch()},
+          {"is_absent", m.is_absent()},
+          {"version_count", m.version_count()},
+          {"versions", list(m.versions(), m.version_count(), version)}};
+}
+
+Json describe(const msg::Proposal& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"epoch", m.epoch()},
+          {"candidate_count", m.candidate_count()},
+          {"candidates", list(m.candidates(), m.candidate_count(), version)}};
+}
+
+Json describe(const msg::Verdict& m) {
+  const auto reason = [](msg::Reason r) { return word(r, kReasons); };
+  const auto robot = [](std::uint32_t id) { return Json(id); };
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"epoch", m.epoch()},
+          {"proposal_number", m.proposal_number()},
+          {"asked_stamp_ns", m.asked_stamp_ns()},
+          {"granted", m.granted()},
+          {"reasons", list(m.reasons(), reason)},
+          {"blockers", list(m.blockers(), robot)}};
+}
+
+Json describe(const msg::LedgerPage& m) {
+  return {
+      {"page_index", m.page_index()}, {"head", head(m.head())},   {"epoch", m.epoch()},
+      {"page_count", m.page_count()}, {"low_x_m", m.low_x_m()},   {"low_y_m", m.low_y_m()},
+      {"high_x_m", m.high_x_m()},     {"high_y_m", m.high_y_m()}, {"versions", list(m.versions(), version)}};
+}
+
+Json describe(const msg::CoordinatorState& m) {
+  return {{"coordinator", m.coordinator()},
+          {"head", head(m.head())},
+          {"epoch", m.epoch()},
+          {"coordinator_phase", word(m.coordinator_phase(), kCoordinatorPhases)},
+          {"proposals", m.proposals()},
+          {"grants", m.grants()},
+          {"denials", m.denials()},
+          {"invalid", m.invalid()},
+          {"conflicts", m.conflicts()},
+          {"conflict_first", m.conflict_first()},
+          {"conflict_second", m.conflict_second()},
+          {"absent", m.absent()},
+          {"missing", m.missing()}};
+}
+
+Json describe(const msg::AgentStatus& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"agent_phase", word(m.agent_phase(), kAgentPhases)},
+          {"goal_index", m.goal_index()},
+          {"distance_to_go_m", m.distance_to_go_m()},
+          {"speed_mps", m.speed_mps()},
+          {"cycles", m.cycles()},
+          {"missed_cycles", m.missed_cycles()},
+          {"lost_versions", m.lost_versions()},
+          {"proposals", m.proposals()},
+          {"grants", m.grants()},
+          {"denials", m.denials()},
+          {"invalid", m.invalid()},
+          {"clock_offset_s", m.clock_offset_s()},
+          {"clock_uncertainty_s", m.clock_uncertainty_s()},
+          {"off_reference", m.off_reference()},
+          {"plan_changes", m.plan_changes()},
+          {"negotiation", quantiles(m.negotiation())},
+          {"plan", quantiles(m.plan())},
+          {"search", quantiles(m.search())}};
+}
+
+Json describe(const msg::GroundTruth& m) {
+  const auto robot = [](const msg::TruthRobot& r) -> Json {
+    return {{"robot", r.robot()},
+            {"x_m", r.x_m()},
+            {"y_m", r.y_m()},
+            {"heading_rad", r.heading_rad()},
+            {"vx_mps", r.vx_mps()},
+            {"vy_mps", r.vy_mps()},
+            {"reference_error_m", r.reference_error_m()},
+            {"let_go_ns", r.let_go_ns()}};
+  };
+  const auto touch = [](const msg::Touch& t) -> Json {
+    return {{"first", t.first()}, {"second", t.second()}};
+  };
+  return {{"simulator", m.simulator()},
+          {"head", head(m.head())},
+          {"at_ns", m.at_ns()},
+          {"contacts", m.contacts()},
+          {"touches", list(m.touches(), touch)},
+          {"penetration_m_s", m.penetration_m_s()},
+          {"min_clearance_m", m.min_clearance_m()},
+          {"firmware_violations", m.firmware_violations()},
+          {"crashes", m.crashes()},
+          {"moving_crashes", m.moving_crashes()},
+          {"crash_speed_mps", m.crash_speed_mps()},
+          {"robot_crash_speed_mps", m.robot_crash_speed_mps()},
+          {"ball_x_m", m.ball_x_m()},
+          {"ball_y_m", m.ball_y_m()},
+          {"robots", list(m.robots(), robot)}};
+}
+
+Json describe(const msg::Disturbance& m) {
+  return {{"robot", m.robot()},
+          {"head", head(m.head())},
+          {"disturbance_kind", word(m.disturbance_kind(), kDisturbances)},
+          {"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"grip", m.grip()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"heading_rad", m.heading_rad()},
+          {"clock_offset_ns", m.clock_offset_ns()},
+          {"duration_ns", m.duration_ns()}};
+}
+
+Json describe(const msg::NetworkFault& m) {
+  return {{"target", m.target()},
+          {"head", head(m.head())},
+          {"seed", m.seed()},
+          {"loss", m.loss()},
+          {"mean_burst", m.mean_burst()},
+          {"duplicate", m.duplicate()},
+          {"delay_min_ns", m.delay_min_ns()},
+          {"delay_mean_ns", m.delay_mean_ns()},
+          {"delay_max_ns", m.delay_max_ns()},
+          {"is_cut", m.is_cut()}};
+}
+
+}  // namespace sidestep

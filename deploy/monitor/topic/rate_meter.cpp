@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/topic/rate_meter.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+
+void RateMeter::Span::add(Time received, std::size_t size) {
+  ++samples;
+  if (has_last) {
+    const Duration gap = received - last;
+    shortest = std::min(shortest, gap);
+    longest = std::max(longest, gap);
+    ++gaps;
+    bytes += size;
+  } else {
+    first = received;
+    has_last = true;
+  }
+  last = received;
+}
+
+Rate RateMeter::Span::rate() const {
+  Rate result;
+  result.samples = samples;
+  if (gaps == 0) return result;
+  result.shortest_gap = shortest;
+  result.longest_gap = longest;
+  const double seconds = to_seconds(last - first);
+  if (seconds > 0) {
+    result.rate_hz = static_cast<double>(gaps) / seconds;
+    result.bytes_per_second = static_cast<double>(bytes) / seconds;
+  }
+  return result;
+}
+
+void RateMeter::add(Time received, std::size_t bytes) {
+  total_.add(received, bytes);
+  recent_.add(received, bytes);
+}
+
+Rate RateMeter::take_recent() {
+  const Rate result = recent_.rate();
+  Span next;
+  next.has_last = recent_.has_last;
+  next.first = next.last = recent_.last;
+  recent_ = next;
+  return result;
+}
+
+}  // namespace sidestep

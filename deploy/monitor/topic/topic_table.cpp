@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/topic/topic_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <map>
+#include <set>
+
+namespace sidestep {
+namespace {
+
+using Group = std::vector<const DdsEndpoint*>;
+
+std::map<std::string, Group> by_topic(const std::vector<DdsEndpoint>& endpoints) {
+  std::map<std::string, Group> result;
+  for (const DdsEndpoint& endpoint : endpoints) result[endpoint.topic].push_back(&endpoint);
+  return result;
+}
+
+std::string name_of(const DdsEndpoint& endpoint) {
+  return endpoint.participant.empty() ? endpoint.guid : endpoint.participant;
+}
+
+template <typename Container>
+std::string join(const Container& words, const char* separator) {
+  std::string result;
+  for (const std::string& word : words) result += (result.empty() ? "" : separator) + word;
+  return result;
+}
+
+/// As "23: agent-0, agent-1, agent-10, ...", so that a fleet fits in a line.
+std::string names(const Group& group, bool is_writer) {
+  constexpr std::size_t kMostNames = 3;
+  std::vector<std::string> all;
+  for (const DdsEndpoint* endpoint : group) {
+    if (endpoint->is_writer == is_writer) all.push_back(name_of(*endpoint));
+  }
+  if (all.empty()) return "-";
+  const std::size_t count = all.size();
+  if (count > kMostNames) {
+    all.resize(kMostNames);
+    all.emplace_back("...");
+  }
+  return fmt::format("{}: {}", count, join(all, ", "));
+}
+
+std::string types(const Group& group) {
+  std::set<std::string> all;
+  for (const DdsEndpoint* endpoint : group) all.insert(endpoint->type);
+  return join(all, " | ");
+}
+
+std::string qos(const Group& group) {
+  std::set<std::string> all;
+  for (const DdsEndpoint* endpoint : group) {
+    std::string words = endpoint->is_reliable ? "reliable" : "best effort";
+    if (endpoint->durability != DdsEndpoint::Durability::kVolatile) words += ", durable";
+    if (endpoint->is_keyed) words += ", keyed";
+    all.insert(words);
+  }
+  return join(all, " | ");
+}
+
+/// One line for each reason, with the pairs that it keeps apart.
+std::string mismatches(const Group& group) {
+  std::map<std::string, std::set<std::string>> pairs;
+  for (const DdsEndpoint* writer : group) {
+    for (const DdsEndpoint* reader : group) {
+      if (!writer->is_writer || reader->is_writer) continue;
+      for (const std::string& reason : dds_mismatches(*writer, *reader)) {
+        pairs[reason].insert(name_of(*writer) + " -> " + name_of(*reader));
+      }
+    }
+  }
+  std::string result;
+  for (const auto& [reason, who] : pairs)
+    result += fmt::format("  MISMATCH {} ({})\n", reason, join(who, ", "));
+  return result;
+}
+
+}  // namespace
+
+std::string topic_table(const std::vector<DdsEndpoint>& endpoints) {
+  using Row = std::array<std::string, 5>;
+  const Row title = {"TOPIC", "TYPE", "WRITERS", "READERS", "QOS"};
+  std::vector<Row> rows{title};
+  std::vector<std::string> notes{""};
+  for (const auto& [topic, group] : by_topic(endpoints)) {
+    rows.push_back({topic, types(group), names(group, true), names(group, false), qos(group)});
+    notes.push_back(mismatches(group));
+  }
+  std::array<std::size_t, 4> widths{};
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string result;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    result += fmt::format("{:{}}  {:{}}  {:{}}  {:{}}  {}\n{}", row[0], widths[0], row[1], widths[1], row[2],
+                          widths[2], row[3], widths[3], row[4], notes[i]);
+  }
+  return result;
+}
+
+std::string topic_names(const std::vector<DdsEndpoint>& endpoints) {
+  std::vector<std::string> names;
+  for (const auto& [topic, group] : by_topic(endpoints)) names.push_back(topic);
+  return join(names, " ");
+}
+
+}  // namespace sidestep

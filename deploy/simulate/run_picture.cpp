@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/run_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace sidestep {
+namespace {
+
+constexpr double kPixelsPerMetre = 200;
+constexpr double kGhostEvery_s = 0.25;
+
+const char* colour_of(Team team) { return team == Team::kBlue ? "#1f6feb" : "#e0a100"; }
+
+/// SVG's y axis points down.
+std::string circle(const Vec2& centre_m, double radius_m, const std::string& style) {
+  return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", kPixelsPerMetre * centre_m.x(),
+                     -kPixelsPerMetre * centre_m.y(), kPixelsPerMetre * radius_m, style);
+}
+
+/// An opponent goes its way whatever happens, so the way is what there is to draw.
+std::string way_of(const OpponentSpec& opponent) {
+  std::string points;
+  for (const Vec2& point : opponent.way_m) {
+    points += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * point.x(), -kPixelsPerMetre * point.y());
+  }
+  return fmt::format(
+             "<polyline points='{}' fill='none' stroke='#cf222e' stroke-width='3' stroke-dasharray='12 "
+             "12'/>\n",
+             points) +
+         circle(opponent.way_m.front(), opponent.radius_m, "fill='#cf222e' fill-opacity='0.7'");
+}
+
+}  // namespace
+
+void Picture::add(const msg::GroundTruth& truth) {
+  for (const msg::TruthRobot& robot : truth.robots()) {
+    tracks_[robot.robot()].push_back({static_cast<double>(truth.at_ns()) * 1e-9, {robot.x_m(), robot.y_m()}});
+  }
+}
+
+std::string Picture::track(const RobotSpec& robot, const std::vector<Sight>& sights) const {
+  const char* colour = colour_of(robot.team);
+  std::string line, ghosts;
+  const double begin_s = sights.front().at_s, end_s = sights.back().at_s;
+  double next_ghost_s = begin_s;
+  Vec2 last = sights.front().position_m;
+  for (const Sight& sight : sights) {
+    if (line.empty() || (sight.position_m - last).norm() > 0.005) {
+      line += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * sight.position_m.x(),
+                          -kPixelsPerMetre * sight.position_m.y());
+    }
+    if (sight.at_s >= next_ghost_s && (sight.position_m - last).norm() > 0.005) {
+      const double age = (sight.at_s - begin_s) / std::max(0.1, end_s - begin_s);
+      ghosts +=
+          circle(sight.position_m, scenario_.radius_m,
+                 fmt::format("fill='none' stroke='{}' stroke-opacity='{:.2f}'", colour, 0.15 + 0.35 * age));
+      next_ghost_s = sight.at_s + kGhostEvery_s;
+    }
+    last = sight.position_m;
+  }
+  return ghosts +
+         fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
+}
+
+std::string Picture::end(const RobotSpec& robot, const Vec2& place) const {
+  return circle(place, scenario_.radius_m, fmt::format("fill='{}'", colour_of(robot.team))) +
+         fmt::format("<text x='{:.1f}' y='{:.1f}' dy='0.35em' text-anchor='middle' fill='white'>{}</text>\n",
+                     kPixelsPerMetre * place.x(), -kPixelsPerMetre * place.y(), robot.id);
+}
+
+std::string Picture::svg() const {
+  const double width = kPixelsPerMetre * scenario_.field.length_m,
+               height = kPixelsPerMetre * scenario_.field.width_m;
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' "
+      "font-family='sans-serif' "
+      "font-size='{:.0f}'>\n<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#f6f8fa' "
+      "stroke='#8b949e' stroke-width='4'/>\n",
+      -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2,
+      width, height);
+  for (const Circle& obstacle : scenario_.obstacles) {
+    svg += circle(obstacle.centre_m, obstacle.radius_m, "fill='#57606a'");
+  }
+  for (const OpponentSpec& opponent : scenario_.opponents) svg += way_of(opponent);
+  std::string ends;
+  for (const RobotSpec& robot : scenario_.robots) {
+    const auto found = tracks_.find(robot.id);
+    if (found == tracks_.end()) continue;
+    svg += track(robot, found->second);
+    ends += end(robot, found->second.back().position_m);
+  }
+  return svg + ends + "</svg>\n";
+}
+
+}  // namespace sidestep

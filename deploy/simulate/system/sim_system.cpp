@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/system/sim_system.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "agents/agent/agent_node.hpp"
+#include "coordinator/coordinator_node.hpp"
+#include "simulator/images/image_output.hpp"
+#include "vision/images/image_input.hpp"
+#include "vision/images/image_options.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr Duration kLook = std::chrono::milliseconds(10);
+constexpr Duration kSettle = std::chrono::milliseconds(500);
+
+/// As the processes' mains do, who have options.
+struct SimulatorProcess {
+  SimulatorProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed)
+      : node(bus, scenario, incarnation, seed) {
+    if (scenario.vision.images) images.emplace(bus, scenario, node, incarnation, seed);
+  }
+  SimulatorNode node;
+  std::optional<ImageOutput> images;
+};
+
+struct VisionProcess {
+  VisionProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation)
+      : node(bus, scenario, incarnation, scenario.vision.images ? FrameSource::kCaller : FrameSource::kBus) {
+    if (scenario.vision.images) images.emplace(bus, image_reader(scenario, {}), node);
+  }
+  VisionNode node;
+  std::optional<ImageInput> images;
+};
+
+}  // namespace
+
+/// Members go in reverse order: the node before its bus, so that nothing calls back into a node that is gone.
+struct SimSystem::Process {
+  Process(SimNetwork& network, const SimPlace& place) : bus(network, place) {}
+  SimBus bus;
+  std::shared_ptr<void> node;
+};
+
+std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
+
+SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks)
+    : scenario_(scenario),
+      seed_(seed),
+      rng_(seed),
+      clocks_(std::move(clocks)),
+      begin_(kBegin),
+      bench_(std::make_shared<Workbench>(scenario_)),
+      network_(seed, kBegin, scenario.network),
+      judge_(scenario_),
+      auditor_(scenario_, {true, {}}),
+      judge_bus_(network_),
+      hand_(judge_bus_.advertise(topics::kDisturbance)) {
+  judge_bus_.listen_aside();
+  judge_.include(auditor_);
+  listen(judge_bus_, scenario_, auditor_);
+  judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
+    judge_.on_truth(truth);
+    if (truth_watcher_) truth_watcher_(truth);
+  });
+  judge_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
+                                         [this](const auto& status) { judge_.on_status(status); });
+  judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
+                                              [this](const auto& state) { judge_.on_coordinator(state); });
+  for (const RobotSpec& robot : scenario_.robots)
+    robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
+  for (const std::string& process : process_names(scenario_)) start(process);
+}
+
+SimSystem::~SimSystem() = default;
+
+std::vector<std::string> SimSystem::process_names(const Scenario& scenario) {
+  std::vector<std::string> names{"simulator", "vision"};
+  for (int number = 0; number < scenario.coordinators; ++number) names.push_back(coordinator_process(number));
+  for (const RobotSpec& robot : scenario.robots) names.push_back(agent_process(robot.id));
+  return names;
+}
+
+SimPlace SimSystem::place_of(const std::string& process) {
+  const auto known = ids_.find(process);
+  const ProcessId id = known != ids_.end() ? known->second : network_.new_process();
+  ids_[process] = id;
+  const auto clock = clocks_.find(process);
+  return {id, clock != clocks_.end() ? clock->second : Duration{0}};
+}
+
+void SimSystem::start(const std::string& name) {
+  auto process = std::make_unique<Process>(network_, place_of(name));
+  SimBus& bus = process->bus;
+  // As over DDS the time by the process's clock; and its randomness comes from it, so it has to come from the
+  // seed.
+  Incarnation& incarnation = incarnations_[name];
+  incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
+  if (name == "simulator")
+    process->node = std::make_shared<SimulatorProcess>(bus, scenario_, incarnation, seed_);
+  else if (name == "vision")
+    process->node = std::make_shared<VisionProcess>(bus, scenario_, incarnation);
+  for (int number = 0; number < scenario_.coordinators; ++number) {
+    if (name != coordinator_process(number)) continue;
+    const CoordinatorIdentity self{static_cast<CoordinatorNumber>(number), incarnation};
+    process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
+  }
+  if (const auto agent = robot_of_.find(name); agent != robot_of_.end())
+    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation, bench_);
+  if (!process->node) throw std::invalid_argument("the system has no process \"" + name + "\"");
+  processes_[name] = std::move(process);
+}
+
+void SimSystem::kill(const std::string& process) {
+  if (processes_.erase(process) > 0) judge_.on_death(process, "signal 9 (SIGKILL)", now(), false);
+}
+
+void SimSystem::pause(const std::string& process, Duration duration, std::size_t most_waiting) {
+  const auto found = processes_.find(process);
+  if (found != processes_.end()) found->second->bus.pause(now() + duration, most_waiting);
+}
+
+void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {
+  network_.set_link(place_of(from).process, place_of(to).process, quality);
+}
+
+void SimSystem::restart(const std::string& process) {
+  if (!is_alive(process)) start(process);
+}
+
+bool SimSystem::run_until_arrived(Time limit) {
+  while (now() < limit) {
+    run_for(std::min(kLook, limit - now()));
+    if (!judge_.all_arrived())
+      arrived_since_.reset();
+    else if (!arrived_since_)
+      arrived_since_ = now();
+    if (arrived_since_ && now() - *arrived_since_ >= kSettle) return true;
+  }
+  return false;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/safety/trajectory_index.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/unit/common/motion/random_trajectory.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, near or far apart") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (const batch::Kernels& kernels : batch::available_kernels()) {
+    CAPTURE(kernels.name);
+    Crowd crowd(kernels);
+    for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 63u, 64u, 65u, 300u, 2000u}) {
+      CAPTURE(count);
+      const double half_side = rng.chance(0.5) ? 0.5 : rng.uniform(1, 200);
+      std::vector<Version> versions;
+      for (std::size_t i = 0; i < count; ++i) {
+        Version version;
+        version.robot = static_cast<RobotId>(i);
+        version.trajectory = Trajectory({}, {random_vector(rng, half_side), random_vector(rng, 2)});
+        append_stop(version.trajectory, 5);
+        if (rng.chance(0.01)) version.grown_m = rng.uniform(0, 0.5);
+        versions.push_back(version);
+      }
+      crowd.assign(versions);
+      for (int i = 0; i < 50; ++i) {
+        const Circle circle{random_vector(rng, 1.5 * half_side), rng.uniform(0, 1)};
+        std::vector<std::uint32_t> expected, found;
+        for (std::uint32_t k = 0; k < count; ++k) {
+          const double far = circle.radius_m + crowd.outline(k).disc.radius_m;
+          if ((circle.centre_m - crowd.outline(k).disc.centre_m).squaredNorm() <= far * far)
+            expected.push_back(k);
+        }
+        crowd.find(circle, found);
+        std::ranges::sort(found);
+        REQUIRE(found == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("a disc in the outline of a crowd's version is larger by what the robot has grown") {
+  Crowd crowd;
+  Version version{1, 1, 1, 0, Trajectory::resting({}, {0, 0}), 0.25};
+  crowd.add(version);
+  CHECK(crowd.outline(0).disc.radius_m == Approx(0.25).margin(1e-5));
+  crowd.clear();
+  std::vector<std::uint32_t> found;
+  crowd.find({{0, 0}, 10}, found);
+  CHECK(found.empty());
+}

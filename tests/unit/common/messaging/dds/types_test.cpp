@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/types.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+
+namespace sidestep {
+namespace {
+
+using Payload = GuardedType::Payload;
+
+/// A type, a sample of it, and reading payloads from bytes.
+class Reading {
+ public:
+  explicit Reading(const TopicInfo& topic) : type_(make_dds_type(topic.type)), sample_(type_->createData()) {}
+  ~Reading() { type_->deleteData(sample_); }
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+
+  bool accepts(const std::vector<std::uint8_t>& bytes) {
+    Payload payload(static_cast<std::uint32_t>(bytes.size() + 1));
+    if (!bytes.empty()) std::memcpy(payload.data, bytes.data(), bytes.size());
+    payload.length = static_cast<std::uint32_t>(bytes.size());
+    REQUIRE(type_->deserialize(&payload, sample_));
+    return sample().is_valid;
+  }
+  template <typename Message>
+  const Message& message() {
+    return *static_cast<const Message*>(sample().message);
+  }
+  GuardedType::Sample& sample() { return *static_cast<GuardedType::Sample*>(sample_); }
+  GuardedType& type() { return *type_; }
+
+ private:
+  std::unique_ptr<GuardedType> type_;
+  void* sample_;
+};
+
+template <typename Message>
+std::vector<std::uint8_t> bytes_of(const TopicInfo& topic, Message& message) {
+  const auto type = make_dds_type(topic.type);
+  GuardedType::Sample sample{&message, true};
+  Payload payload(type->getSerializedSizeProvider(&sample)());
+  REQUIRE(type->serialize(&sample, &payload));
+  return {payload.data, payload.data + payload.length};
+}
+
+/// The same message as a big-endian machine would send it.
+template <typename Message>
+std::vector<std::uint8_t> big_endian_bytes_of(const Message& message) {
+  std::vector<char> body(Message::getCdrSerializedSize(message));
+  eprosima::fastcdr::FastBuffer buffer(body.data(), body.size());
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::BIG_ENDIANNESS);
+  message.serialize(cdr);
+  std::vector<std::uint8_t> result(4 + body.size(), 0);
+  std::copy(body.begin(), body.end(), result.begin() + 4);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("every topic's type is known to DDS by its name in the topic table") {
+  for (const TopicInfo& topic : all_topics()) {
+    CAPTURE(topic.name);
+    CHECK(std::string(make_dds_type(topic.type)->getName()) == topic.type.name);
+    CHECK(make_dds_type(topic.type)->m_isGetKeyDefined);
+  }
+  CHECK_THROWS_WITH(make_dds_type(message_type<msg::Verdict>("other::Type")),
+                    Catch::Matchers::Contains("other::Type"));
+}
+
+TEST_CASE("random bytes never do more than be refused") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  Rng rng(seed);
+  for (const TopicInfo& topic : all_topics()) {
+    CAPTURE(seed, topic.name);
+    Reading reading(topic);
+    int accepted = 0;
+    for (int i = 0; i < 10000; ++i) {
+      std::vector<std::uint8_t> bytes(rng.below(3000));
+      for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(rng.bits());
+      if (rng.chance(0.5) && bytes.size() >= 4) bytes[0] = 0, bytes[1] = bytes[1] & 1;
+      accepted += reading.accepts(bytes);
+    }
+    // A type without sequence and boolean is any bytes of its length; the others are hardly ever hit.
+    CHECK(accepted < 10000);
+    if (topic.type.max_elements > 0) CHECK(accepted == 0);
+  }
+}
+
+TEST_CASE("a sequence longer than the type's bound is refused before memory is taken for it") {
+  Rng rng(7);
+  Reading reading(topics::kWorld);
+  msg::WorldState world = random_message<msg::WorldState>(rng, true, 0);
+  std::vector<std::uint8_t> bytes = bytes_of(topics::kWorld, world);
+  CHECK(reading.accepts(bytes));
+  const auto max = static_cast<std::uint32_t>(topics::kWorld.type.max_elements);
+  for (const std::uint32_t count : {max + 1, 1u << 24, 0x7fffffffu, 0xffffffffu}) {
+    CAPTURE(count);
+    std::memcpy(bytes.data() + bytes.size() - 4, &count, sizeof count);
+    CHECK_FALSE(reading.accepts(bytes));
+    CHECK(reading.message<msg::WorldState>().robots().capacity() <= max);
+  }
+}
+
+TEST_CASE("a sequence as long as the type's bound is accepted, in either byte order") {
+  Rng rng(8);
+  Reading reading(topics::kWorld);
+  msg::WorldState world = random_message<msg::WorldState>(
+      rng, true, static_cast<std::uint32_t>(topics::kWorld.type.max_elements));
+  CHECK(reading.accepts(bytes_of(topics::kWorld, world)));
+  CHECK(reading.message<msg::WorldState>() == world);
+  reading.accepts({});
+  CHECK(reading.accepts(big_endian_bytes_of(world)));
+  CHECK(reading.message<msg::WorldState>() == world);
+  std::vector<std::uint8_t> too_long = big_endian_bytes_of(random_message<msg::WorldState>(rng, true, 0));
+  too_long[too_long.size() - 4] = 1;  // 2^24 robots
+  CHECK_FALSE(reading.accepts(too_long));
+}
+
+TEST_CASE("a payload that ends too early is refused at every length") {
+  Rng rng(9);
+  msg::Command command = random_message<msg::Command>(rng, false, 0);
+  msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);
+  Reading commands(topics::kCommand);
+  Reading worlds(topics::kWorld);
+  const auto check = [](Reading& reading, std::vector<std::uint8_t> bytes) {
+    REQUIRE(reading.accepts(bytes));
+    while (!bytes.empty()) {
+      bytes.pop_back();
+      CAPTURE(bytes.size());
+      CHECK_FALSE(reading.accepts(bytes));
+    }
+  };
+  check(commands, bytes_of(topics::kCommand, command));
+  check(worlds, bytes_of(topics::kWorld, world));
+}
+
+TEST_CASE("a boolean that is neither true nor false is refused") {
+  Rng rng(10);
+  msg::Command command = random_message<msg::Command>(rng, false, 0);
+  command.has_version(true);
+  std::vector<std::uint8_t> bytes = bytes_of(topics::kCommand, command);
+  msg::Command other = command;
+  other.has_version(false);
+  const std::vector<std::uint8_t> other_bytes = bytes_of(topics::kCommand, other);
+  const auto place = std::mismatch(bytes.begin(), bytes.end(), other_bytes.begin()).first;
+  REQUIRE(place != bytes.end());
+  *place = 2;
+  Reading reading(topics::kCommand);
+  CHECK_FALSE(reading.accepts(bytes));
+  *place = 1;
+  CHECK(reading.accepts(bytes));
+}
+
+TEST_CASE("samples with one key have one handle, samples with another have another") {
+  Reading reading(topics::kVerdict);
+  const auto handle_of = [&](std::uint32_t robot) {
+    msg::Verdict verdict;
+    verdict.robot(robot);
+    GuardedType::Sample sample{&verdict, true};
+    eprosima::fastrtps::rtps::InstanceHandle_t handle;
+    REQUIRE(reading.type().getKey(&sample, &handle, false));
+    return handle;
+  };
+  CHECK(handle_of(5) == handle_of(5));
+  CHECK_FALSE(handle_of(5) == handle_of(6));
+}
+
+}  // namespace sidestep

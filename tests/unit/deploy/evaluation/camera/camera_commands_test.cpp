@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/marking/butterfly.hpp"
+#include "common/marking/layout_file.hpp"
+#include "deploy/evaluation/camera/frame_command.hpp"
+#include "deploy/evaluation/camera/pattern_command.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+
+int run(const std::string& arguments) {
+  CLI::App app;
+  std::function<int()> action;
+  add_frame_command(app, action);
+  add_pattern_command(app, action);
+  app.parse(arguments, false);
+  return action();
+}
+
+struct PictureFile {
+  std::string path =
+      (std::filesystem::temp_directory_path() / ("frame-" + std::to_string(getpid()) + ".png")).string();
+  ~PictureFile() { std::filesystem::remove(path); }
+};
+
+}  // namespace
+
+TEST_CASE("the frame of a scenario shows its robots where they start") {
+  const PictureFile file;
+  REQUIRE(run("frame " + kCrossing + " " + file.path) == 0);
+  const cv::Mat3b bgr = cv::imread(file.path);
+  REQUIRE(bgr.cols == 780);
+  REQUIRE(bgr.rows == 580);
+  // Camera 0 looks at the low x, where the blue robots are: their four centre dots.
+  int blue = 0, yellow = 0, white = 0;
+  for (const cv::Vec3b& c : bgr) {
+    blue += c[0] > 130 && c[2] < 70 && c[1] < 110;
+    yellow += c[2] > 180 && c[1] > 150 && c[0] < 90;
+    white += c[0] > 170 && c[1] > 170 && c[2] > 170;
+  }
+  CHECK(blue > 100);
+  CHECK(yellow < blue / 10);
+  CHECK(white > 500);
+}
+
+TEST_CASE("the frame command takes another camera and size") {
+  const PictureFile file;
+  REQUIRE(run("frame " + kCrossing + " " + file.path + " --camera 1 --width 320 --height 240") == 0);
+  const cv::Mat3b bgr = cv::imread(file.path);
+  CHECK(bgr.cols == 320);
+  CHECK(bgr.rows == 240);
+  const std::string square = " --layout " SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/square.yaml";
+  CHECK(run("frame " + kCrossing + " " + file.path + square) == 0);
+}
+
+TEST_CASE("the frame command says what is wrong") {
+  const PictureFile file;
+  CHECK(run("frame " + kCrossing + " " + file.path + " --camera 7") == 2);
+  CHECK_THROWS_AS(run("frame " + kCrossing + " picture.gif"), CLI::ParseError);
+  CHECK_THROWS_AS(run("frame " + kCrossing), CLI::ParseError);
+  CHECK_THROWS_AS(run("frame nowhere.yaml " + file.path), ScenarioError);
+  CHECK_THROWS_AS(run("frame " + kCrossing + " " + file.path + " --layout " + kCrossing), ScenarioError);
+  CHECK_THROWS_AS(run("frame " + kCrossing + " /nowhere/frame.png"), std::runtime_error);
+}
+
+TEST_CASE("the pattern command prints what a layout can tell") {
+  CHECK(describe_layout(butterfly(), 0.001) ==
+        "butterfly: 4 dots and the centre, no turn puts the dots on each other\n"
+        "patterns: 16 of 16 that 2 colours can show; the most alike differ in 1 dot\n"
+        "patterns with other numbers of colours: 2: 16, 3: 81, 4: 256, 5: 625, 6: 1296\n"
+        "with 1 mm per axis and dot: position 0.447 mm ahead and 0.451 mm aside, heading 0.445 degrees\n");
+  const MarkingLayout square = load_layout(SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/square.yaml");
+  CHECK(describe_layout(square, 0.002) ==
+        "square: 4 dots and the centre, turns by 90 degrees put the dots on each other\n"
+        "patterns: 8 of 60 that 4 colours can show; the most alike differ in 2 dots\n"
+        "patterns with other numbers of colours: 2: 3, 3: 18, 4: 60, 5: 150, 6: 315\n"
+        "with 2 mm per axis and dot: position 0.894 mm ahead and 0.894 mm aside, heading 0.965 degrees\n");
+  CHECK(run("pattern") == 0);
+  CHECK_THROWS_AS(run("pattern " + kCrossing), ScenarioError);
+  CHECK_THROWS_AS(run("pattern --dot-mm -1"), CLI::ParseError);
+}

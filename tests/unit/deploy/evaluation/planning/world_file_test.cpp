@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/planning/world_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "common/config/scenario_loader.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const std::string kQuery = "queries: [{start_m: [0, 0], goal_m: [1, 0]}]\n";
+
+void check_refused(const std::string& text, int line, const std::string& why) {
+  CAPTURE(text);
+  std::string said = "accepted";
+  try {
+    parse_plan_world(text, "file.yaml");
+  } catch (const ScenarioError& error) {
+    said = error.what();
+  }
+  CHECK_THAT(said, Catch::StartsWith("file.yaml:" + std::to_string(line) + ": "));
+  CHECK_THAT(said, Catch::Contains(why));
+}
+
+}  // namespace
+
+TEST_CASE("a world's text is read back as the same world") {
+  const std::string name = GENERATE(from_range(world_names()));
+  const PlanWorld world = make_world(name, 5, 3);
+  const PlanWorld read = parse_plan_world(plan_world_text(world), "other.yaml");
+  CHECK(read.name == name);
+  CHECK(read.radius_m == world.radius_m);
+  CHECK(read.field.length_m == world.field.length_m);
+  CHECK(read.queries.size() == 5);
+  CHECK(read.queries[4].goal_m == world.queries[4].goal_m);
+  REQUIRE(read.obstacles.size() == world.obstacles.size());
+  CHECK(plan_world_text(read) == plan_world_text(world));
+}
+
+TEST_CASE("every shipped world loads") {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SIDESTEP_SOURCE_DIR "/deploy/evaluation/planning/worlds")) {
+    CAPTURE(entry.path());
+    const PlanWorld world = load_plan_world(entry.path().string());
+    CHECK(world.name == entry.path().stem().string());
+    ++count;
+  }
+  CHECK(count > 0);
+}
+
+TEST_CASE("what is wrong with a world is said with its line") {
+  check_refused("radius_m: 0.1\n", 1, "queries");
+  check_refused("queries: []\n", 1, "at least one query");
+  check_refused(kQuery + "radius: 0.1\n", 2, "radius");
+  check_refused(kQuery + "radius_m: -1\n", 2, "radius_m");
+  check_refused(kQuery + "obstacles:\n  - ball: {}\n", 3, "ball");
+  check_refused(kQuery + "obstacles:\n  - {}\n", 3, "expected one of circle");
+  check_refused(kQuery + "obstacles:\n  - circle: {centre_m: [0, 0]}\n", 3, "radius_m");
+  check_refused(kQuery + "obstacles:\n  - segment: {from_m: [0, 0], to_m: [0, x]}\n", 3, "to_m");
+  check_refused(kQuery + "obstacles:\n\n  - polygon: {corners_m: [[0, 0], [0, 1], [1, 0]]}\n", 4,
+                "clockwise");
+  check_refused(kQuery + "obstacles:\n  - box: {min_m: [1, 0], max_m: [0, 1]}\n", 3, "min");
+}

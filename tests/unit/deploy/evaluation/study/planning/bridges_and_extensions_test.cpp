@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/planning/bridges_and_extensions.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/deploy/evaluation/study/study_files.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("bridges and extensions are compared by their seed") {
+  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+    return bridges_and_extensions({{1, 8}, {1, 4}, 2, 4}, seed, advance);
+  });
+}
+
+TEST_CASE("more bridges make ways shorter for more nodes and more extensions make them longer") {
+  const auto seed = GENERATE(1u, 40u);
+  CAPTURE(seed);
+  const auto rows = rows_of(bridges_and_extensions({{1, 32}, {1, 16}, 5, 20}, seed, [](auto, auto) {}));
+  const auto of = [&](const char* extensions, const char* bridges, const char* column) {
+    return number_in(rows, {{"extensions", extensions}, {"bridges", bridges}}, column);
+  };
+  for (const char* extensions : {"1", "32"}) {
+    CAPTURE(extensions);
+    CHECK(of(extensions, "16", "median_length") < of(extensions, "1", "median_length"));
+    CHECK(of(extensions, "16", "median_nodes") > of(extensions, "1", "median_nodes"));
+    CHECK(of(extensions, "1", "solved_percent") == 100);
+    CHECK(of(extensions, "1", "queries") == 100);
+  }
+  for (const char* bridges : {"1", "16"})
+    CHECK(of("32", bridges, "median_length") > of("1", bridges, "median_length"));
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/planning/cache_strategies.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/deploy/evaluation/study/study_files.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("cache strategies are compared by their seed") {
+  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+    return cache_strategies({{0, 0.5}, 2, 20}, seed, advance);
+  });
+}
+
+TEST_CASE("with each strategy replans keep fewer nodes the more way points they grow towards") {
+  const auto seed = GENERATE(1u, 4u);
+  CAPTURE(seed);
+  const auto rows = rows_of(cache_strategies({{0, 0.2, 0.7}, 2, 200}, seed, [](auto, auto) {}));
+  for (const char* strategy : {"random", "oldest", "least recently used", "whole plan"}) {
+    CAPTURE(strategy);
+    const auto nodes = [&](const char* probability, const char* column) {
+      return number_in(rows, {{"waypoint_probability", probability}, {"strategy", strategy}}, column);
+    };
+    CHECK(nodes("0", "median_nodes") > nodes("0.2", "median_nodes"));
+    CHECK(nodes("0.2", "median_nodes") > nodes("0.7", "median_nodes"));
+    CHECK(nodes("0", "p95_nodes") > 2 * nodes("0.7", "p95_nodes"));
+  }
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/planning/collision_structures.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "deploy/evaluation/study/planning/collision_problem.hpp"
+#include "deploy/evaluation/study/planning/fcl_tree.hpp"
+#include "tests/unit/deploy/evaluation/study/study_files.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("collision structures are compared by their seed") {
+  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+    return collision_structures({{4, 64}, 500, 2}, seed, advance);
+  });
+}
+
+TEST_CASE("all collision structures of the study find the same ways touched and by an exact comparison") {
+  const auto seed = GENERATE(1u, 2u);
+  const std::size_t obstacles = GENERATE(4u, 64u, 1024u);
+  constexpr std::size_t kWays = 1000;
+  CAPTURE(seed, obstacles);
+  const CollisionProblem problem(obstacles, kWays, true, seed);
+  std::size_t touched = 0;
+  for (const Segment& way : problem.ways) {
+    const double radius2_m2 = problem.radius_m * problem.radius_m;
+    const auto touches = [&](const Shape& shape) { return squared_distance(way, shape) <= radius2_m2; };
+    touched += std::any_of(problem.shapes.begin(), problem.shapes.end(), touches);
+  }
+  const auto rows = rows_of(collision_structures({{obstacles}, kWays, 1}, seed, [](auto, auto) {}));
+  CHECK(rows.size() == 4);
+  for (const StudyRow& row : rows) {
+    CAPTURE(row.at("structure"));
+    CHECK(std::stod(row.at("touch_percent")) == Approx(100.0 * double(touched) / kWays));
+  }
+}
+
+TEST_CASE("a problem of collisions covers the square alike however many obstacles there are") {
+  const std::size_t obstacles = GENERATE(256u, 4096u);
+  CAPTURE(obstacles);
+  const CollisionProblem problem(obstacles, 10, true, 3);
+  double area_m2 = 0;
+  for (const Shape& shape : problem.shapes) {
+    const double radius_m = std::get<Circle>(shape).radius_m;
+    area_m2 += 3.14159265 * radius_m * radius_m;
+  }
+  CHECK(area_m2 == Approx(CollisionProblem::kCovered).epsilon(0.1));
+}

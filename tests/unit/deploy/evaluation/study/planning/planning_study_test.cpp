@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/planning/planning_study.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/deploy/evaluation/study/study_files.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("the quick study of planning writes all its tables and pictures") {
+  StudyFolder folder;
+  StudyOptions options;
+  options.folder = folder.path();
+  options.seed = 7;
+  options.is_quick = true;
+  REQUIRE(study_planning(options) == 0);
+  for (const char* name : {"cache", "strategies", "bridges", "visibility", "roadmaps", "collision"}) {
+    CAPTURE(name);
+    CHECK(folder.table("planning", name, 7).size() >= 4);
+    CHECK(folder.has_png(name));
+  }
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/study_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "common/process/process.hpp"
+#include "tests/unit/deploy/evaluation/study/study_files.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+/// The exit code of `sidestep study ARGUMENTS`, or that of what it does.
+int study(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"sidestep", "study"});
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  CLI::App app("test", "sidestep");
+  std::function<int()> action;
+  add_study_command(app, action);
+  const int exit_code = parse_options(app, static_cast<int>(argv.size()), argv.data());
+  return exit_code < 0 ? action() : exit_code;
+}
+
+}  // namespace
+
+TEST_CASE("a study with wrong arguments is refused before it begins") {
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
+  StudyFolder folder;
+  CAPTURE(name);
+  CHECK(study({}) == kExitUsage);
+  CHECK(study({"tides"}) == kExitUsage);
+  CHECK(study({name}) == kExitUsage);
+  CHECK(study({name, "--out", ""}) == kExitUsage);
+  CHECK(study({name, "--out", folder.path(), "more"}) == kExitUsage);
+  for (const char* seed : {"-1", "1.5", "one", "18446744073709551616"}) {
+    CAPTURE(seed);
+    CHECK(study({name, "--out", folder.path(), "--seed", seed}) == kExitUsage);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder.path()));
+}
+
+TEST_CASE("a study says which folder it cannot write to before it begins") {
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
+  StudyFolder folder;
+  std::ofstream(folder.path()) << "a file";
+  CHECK_THROWS_WITH(study({name, "--out", folder.path()}), Catch::Contains(folder.path()));
+}

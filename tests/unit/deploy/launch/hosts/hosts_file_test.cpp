@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/launch/hosts/hosts_file.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/config/scenario_loader.hpp"
+#include "deploy/launch/hosts/placement.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const std::string kTwoHosts = R"(launcher: {interface: 10.1.0.9}
+hosts:
+  - name: floor
+    transport: local
+    interface: 10.1.0.1
+    processes: [simulator, vision, coordinator]
+    agents: [0-2, 7]
+  - name: far
+    transport: {ssh: robot@far.example}
+    interface: 10.1.0.2
+    programs: /opt/sidestep/bin
+    agents: rest
+)";
+
+std::string with(std::string text, const std::string& old_words, const std::string& new_words) {
+  const auto at = text.find(old_words);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, old_words.size(), new_words);
+}
+
+void check_refused(const std::string& text, const std::string& beginning, const std::string& words) {
+  INFO(text);
+  try {
+    (void)parse_hosts(text, "hosts.yaml");
+    FAIL("it was accepted");
+  } catch (const ScenarioError& error) {
+    INFO(error.what());
+    CHECK(std::string(error.what()).rfind(beginning, 0) == 0);
+    CHECK(std::string(error.what()).find(words) != std::string::npos);
+  }
+}
+
+Scenario eight_robots() { return parse_scenario("circle: {count: 8, spacing_m: 0.5}", "eight.yaml"); }
+
+std::string refusal_to_place(const std::string& text) {
+  const Hosts hosts = parse_hosts(text, "hosts.yaml");
+  try {
+    (void)Placement(hosts, eight_robots());
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a hosts file says where each process runs") {
+  const Hosts hosts = parse_hosts(kTwoHosts, "hosts.yaml");
+  CHECK_FALSE(hosts.create);
+  CHECK(hosts.interface == "10.1.0.9");
+  REQUIRE(hosts.hosts.size() == 2);
+  CHECK(hosts.hosts[1].transport == HostTransport::kSsh);
+  CHECK(hosts.hosts[1].target == "robot@far.example");
+  CHECK(hosts.hosts[1].programs == "/opt/sidestep/bin");
+  const Scenario scenario = eight_robots();
+  const Placement placement(hosts, scenario);
+  for (const char* process : {"simulator", "vision", "coordinator", "agent 0", "agent 2", "agent 7"}) {
+    CHECK(placement.host_of(process).name == "floor");
+  }
+  for (const char* process : {"agent 3", "agent 6"}) CHECK(placement.host_of(process).name == "far");
+}
+
+TEST_CASE("hosts that take the rest share it evenly") {
+  const Hosts hosts = parse_hosts(with(kTwoHosts, "[0-2, 7]", "rest"), "hosts.yaml");
+  const Scenario scenario = eight_robots();
+  const Placement placement(hosts, scenario);
+  int on_floor = 0;
+  for (const RobotSpec& robot : scenario.robots) {
+    on_floor += placement.host_of("agent " + std::to_string(robot.id)).name == "floor";
+  }
+  CHECK(on_floor == 4);
+}
+
+TEST_CASE("a wrong hosts file is refused with its line and what was expected") {
+  check_refused("", "hosts.yaml:1: ", "expected a hosts file");
+  check_refused("hosts: [", "hosts.yaml:", "not YAML");
+  check_refused("hosts: []", "hosts.yaml:1: ", "\"launcher\" is missing");
+  check_refused("launcher: {interface: 10.0.0.1}\nhosts: []", "hosts.yaml:2: ", "at least one host");
+  check_refused(kTwoHosts + "colour: red\n", "hosts.yaml:13: ", "unknown key \"colour\"");
+  check_refused(with(kTwoHosts, "    transport: local", "    colour: red\n    transport: local"),
+                "hosts.yaml:4: ", "unknown key \"colour\"");
+  check_refused(with(kTwoHosts, "transport: local", "transport: remote"), "hosts.yaml:4: ", "expected local");
+  check_refused(with(kTwoHosts, "{ssh: robot@far.example}", "{ssh: a, namespace: b}"),
+                "hosts.yaml:9: ", "one of the keys");
+  check_refused(with(kTwoHosts, "{ssh: robot@far.example}", "{ssh: -oProxyCommand=x}"),
+                "hosts.yaml:9: ", "expected letters");
+  check_refused(with(kTwoHosts, "{ssh: robot@far.example}", "{namespace: ../x}"),
+                "hosts.yaml:9: ", "expected letters");
+  check_refused(with(kTwoHosts, "10.1.0.2", "far.example"), "hosts.yaml:10: ", "IPv4 address");
+  check_refused(with(kTwoHosts, "[0-2, 7]", "[2-0]"), "hosts.yaml:7: ", "lower number first");
+  check_refused(with(kTwoHosts, "[0-2, 7]", "[one]"), "hosts.yaml:7: ", "such as 3 or 5-9");
+  check_refused(with(kTwoHosts, "[0-2, 7]", "[0-4096]"), "hosts.yaml:7: ", "0 to 1023");
+  check_refused(with(kTwoHosts, "vision,", "visions,"), "hosts.yaml:6: ", "expected simulator, vision");
+  check_refused(with(kTwoHosts, "name: far", "name: floor"), "hosts.yaml:8: ", "another host has this name");
+  check_refused("create: true\n" + kTwoHosts, "hosts.yaml:4: ", "for namespaces only");
+  check_refused("create: perhaps\n" + kTwoHosts, "hosts.yaml:1: ", "true or false");
+}
+
+TEST_CASE("a file whose network the launcher makes needs different addresses and namespaces") {
+  const std::string good =
+      with(with("create: true\n" + kTwoHosts, "transport: local", "transport: {namespace: a}"),
+           "{ssh: robot@far.example}", "{namespace: b}");
+  CHECK(parse_hosts(good, "hosts.yaml").create);
+  check_refused(with(good, "10.1.0.2", "10.1.0.1"), "hosts.yaml:9: ", "already somebody else's");
+  check_refused(with(good, "10.1.0.2", "10.1.0.9"), "hosts.yaml:9: ", "already somebody else's");
+  check_refused(with(good, "{namespace: b}", "{namespace: a}"),
+                "hosts.yaml:9: ", "another host has this namespace");
+  check_refused(with(good, "{namespace: b}", "{namespace: hub}"), "hosts.yaml:9: ", "the launcher's own");
+}
+
+TEST_CASE("coordinators that stand by are placed like agents") {
+  const Scenario scenario =
+      parse_scenario("coordinators: 3\ncircle: {count: 8, spacing_m: 0.5}", "eight.yaml");
+  const Hosts nobody = parse_hosts(kTwoHosts, "hosts.yaml");
+  CHECK_THROWS_WITH(Placement(nobody, scenario),
+                    Catch::StartsWith("hosts.yaml:1: no host runs coordinator 1"));
+  const Hosts both =
+      parse_hosts(with(kTwoHosts, "agents: rest", "agents: rest\n    standbys: [1-2]"), "hosts.yaml");
+  const Placement placement(both, scenario);
+  CHECK(placement.host_of("coordinator").name == "floor");
+  CHECK(placement.host_of("coordinator 2").name == "far");
+}
+
+TEST_CASE("each process has exactly one host, and hosts name only robots that there are") {
+  CHECK(refusal_to_place(kTwoHosts).empty());
+  CHECK_THAT(refusal_to_place(with(kTwoHosts, "vision, ", "")),
+             Catch::StartsWith("hosts.yaml:1: no host runs the vision"));
+  CHECK_THAT(refusal_to_place(with(kTwoHosts, "rest", "[3-5]")),
+             Catch::StartsWith("hosts.yaml:1: no host runs agent 6"));
+  CHECK_THAT(refusal_to_place(with(kTwoHosts, "rest", "[2-6]")),
+             Catch::StartsWith("hosts.yaml:12: host far runs the agent 2, but floor does already"));
+  CHECK_THAT(refusal_to_place(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
+             Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, of which the scenario has none"));
+}
+
+TEST_CASE("the shipped hosts files fit any scenario") {
+  const Scenario scenario = eight_robots();
+  for (const char* name : {"three-namespaces", "two-machines"}) {
+    const Hosts hosts = load_hosts(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/launch/hosts/" + name + ".yaml");
+    CHECK_NOTHROW(Placement(hosts, scenario));
+  }
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/launch/process_group.hpp"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <poll.h>
+#include <sstream>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// glibc 2.36 declares it without C linkage.
+extern "C" {
+#include <sys/pidfd.h>
+}
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = ChildEvent::Kind;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr auto kDeadline = 20s;
+
+/// A folder of this process's own that goes with it.
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("process-group-" + std::to_string(getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+std::string log_path() {
+  static const Folder folder;
+  return (folder.path / "children.log").string();
+}
+
+ChildSpec shell(const std::string& name, const std::string& script, bool restart = false) {
+  return {name, {"/bin/sh", "-c", script}, restart};
+}
+
+/// The next event, or a failed test.
+ChildEvent next_event(ProcessGroup& group) {
+  const auto events = group.poll(kDeadline);
+  REQUIRE(events.size() == 1);
+  return events[0];
+}
+
+/// Waits until a child has printed the line.
+void wait_for_line(ProcessGroup& group, const std::string& name, const std::string& line) {
+  const auto until = SteadyClock::now() + kDeadline;
+  while (SteadyClock::now() < until) {
+    for (const auto& said : group.last_lines(name)) {
+      if (said == line) return;
+    }
+    group.poll(10ms);
+  }
+  FAIL(name + " never said " + line);
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a death is reported with exit code or signal, and the last lines are kept") {
+  ProcessGroup group(log_path());
+  const pid_t pid = group.start(shell("talker", "echo first; echo second >&2; printf unfinished; exit 3"));
+  const ChildEvent event = next_event(group);
+  CHECK(event.kind == Kind::kDied);
+  CHECK(event.pid == pid);
+  CHECK(event.name == "talker");
+  CHECK(event.reason == "exit code 3");
+  CHECK_FALSE(event.will_restart);
+  CHECK(group.last_lines("talker") == std::vector<std::string>{"first", "second", "unfinished"});
+  CHECK_THAT(text_of(log_path()),
+             Catch::Contains("talker: first\n") && Catch::Contains("talker: unfinished\n"));
+
+  group.start(shell("victim", "kill -9 $$"));
+  CHECK(next_event(group).reason == "signal 9 (SIGKILL)");
+  group.start(shell("aborter", "kill -ABRT $$"));
+  CHECK(next_event(group).reason == "signal 6 (SIGABRT)");
+  CHECK(group.running() == 0);
+}
+
+TEST_CASE("a program that does not exist is refused at once") {
+  ProcessGroup group(log_path());
+  CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),
+                    Catch::Contains("cannot start ghost, /nowhere/ghost: No such file"));
+}
+
+TEST_CASE("a program that cannot be executed says why in its last lines") {
+  const std::string path = log_path() + ".script";
+  std::ofstream(path) << "not a program\n";
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  ProcessGroup group(log_path());
+  group.start({"text", {path}, false});
+  CHECK(next_event(group).reason == "exit code 127");
+  REQUIRE_FALSE(group.last_lines("text").empty());  // a sanitizer may add a line of its own
+  CHECK_THAT(group.last_lines("text")[0], Catch::StartsWith("cannot execute " + path));
+}
+
+TEST_CASE("a child that is to be restarted comes back as another process, again and again") {
+  ProcessGroup group(log_path());
+  const pid_t first = group.start(shell("phoenix", "echo up; exec sleep 1000", true));
+  pid_t pid = first;
+  for (int life = 0; life < 3; ++life) {
+    REQUIRE(kill(pid, SIGKILL) == 0);
+    const ChildEvent death = next_event(group);
+    CHECK(death.kind == Kind::kDied);
+    CHECK(death.reason == "signal 9 (SIGKILL)");
+    CHECK(death.will_restart);
+    CHECK(group.running() == 0);
+    const ChildEvent birth = next_event(group);
+    CHECK(birth.kind == Kind::kStarted);
+    CHECK(birth.name == "phoenix");
+    CHECK(birth.pid != pid);
+    CHECK(group.running() == 1);
+    pid = birth.pid;
+  }
+  CHECK(group.terminate(kDeadline).empty());
+  CHECK(group.poll(0ms).empty());
+}
+
+TEST_CASE("terminating ends polite children by SIGTERM and stubborn ones by SIGKILL, and starts none again") {
+  ProcessGroup group(log_path());
+  group.start(
+      shell("polite", "trap 'echo bye; exit 0' TERM; echo ready; while :; do sleep 0.01; done", true));
+  const pid_t stubborn =
+      group.start(shell("stubborn", "trap '' TERM; echo ready; while :; do sleep 0.01; done", true));
+  wait_for_line(group, "polite", "ready");
+  wait_for_line(group, "stubborn", "ready");
+  CHECK(group.terminate(1s) == std::vector<std::string>{"stubborn"});
+  CHECK(group.running() == 0);
+  CHECK(group.last_lines("polite").back() == "bye");
+  CHECK(kill(stubborn, 0) == -1);
+  CHECK(group.poll(0ms).empty());
+}
+
+TEST_CASE("a child with an input reads it, again in its next life, and ends with it when it is asked to") {
+  ProcessGroup group(log_path());
+  const std::string text(100'000, 'x');
+  group.start({"reader", {"/bin/sh", "-c", "head -c 100000 | wc -c; read end; echo over"}, true, text});
+  const auto lines = [&] { return group.last_lines("reader"); };
+  const auto until = SteadyClock::now() + kDeadline;
+  while (lines().empty() && SteadyClock::now() < until) group.poll(1ms);
+  REQUIRE(lines() == std::vector<std::string>{"100000"});
+  CHECK(group.terminate(kDeadline).empty());
+  CHECK(lines().back() == "over");
+
+  ProcessGroup twice(log_path());
+  twice.start({"reader", {"/bin/sh", "-c", "head -c 3; kill -9 $$"}, true, "abc"});
+  while (twice.last_lines("reader").size() < 2 && SteadyClock::now() < until) twice.poll(1ms);
+  CHECK(twice.last_lines("reader") == std::vector<std::string>{"abc", "abc"});
+  CHECK_THROWS_WITH(twice.start({"full", {"/bin/cat"}, false, std::string(2 << 20, 'x')}),
+                    Catch::Contains("too many"));
+}
+
+TEST_CASE("a child that prints without end does not stall, and only its last lines are kept") {
+  ProcessGroup group(log_path());
+  group.start(shell("chatter", "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done"));
+  CHECK(next_event(group).reason == "exit code 0");
+  const auto lines = group.last_lines("chatter");
+  CHECK(lines.size() == 20);
+  CHECK(lines.back() == "line 19999");
+}
+
+TEST_CASE("children inherit no descriptor, and a group only waits for its own") {
+  const int inheritable = open("/dev/null", O_RDONLY);
+  REQUIRE(inheritable >= 0);
+  const pid_t stranger = fork();
+  if (stranger == 0) _exit(42);
+  {
+    ProcessGroup group(log_path());
+    group.start(shell("lister", "echo /proc/self/fd/*"));
+    CHECK(next_event(group).name == "lister");
+    // The shell's own glob opens the folder while it reads it.
+    CHECK(group.last_lines("lister")[0] == "/proc/self/fd/0 /proc/self/fd/1 /proc/self/fd/2 /proc/self/fd/3");
+  }
+  close(inheritable);
+  int status = 0;
+  REQUIRE(waitpid(stranger, &status, 0) == stranger);
+  CHECK(WEXITSTATUS(status) == 42);
+}
+
+TEST_CASE("no child outlives its launcher, even if that is killed by SIGKILL") {
+  const std::string path = log_path();
+  int pids[2];
+  REQUIRE(pipe(pids) == 0);
+  const pid_t launcher = fork();
+  if (launcher == 0) {
+    ProcessGroup group(path);
+    for (int i = 0; i < 3; ++i) {
+      const pid_t child =
+          group.start(shell("child", "trap '' TERM HUP INT; echo ready; while :; do sleep 0.05; done", true));
+      if (write(pids[1], &child, sizeof child) != sizeof child) _exit(1);
+    }
+    while (true) group.poll(1000ms);
+  }
+  int watched[3];
+  for (int& pidfd : watched) {
+    pid_t child = 0;
+    REQUIRE(read(pids[0], &child, sizeof child) == sizeof child);
+    pidfd = pidfd_open(child, 0);
+    REQUIRE(pidfd >= 0);
+  }
+  REQUIRE(kill(launcher, SIGKILL) == 0);
+  REQUIRE(waitpid(launcher, nullptr, 0) == launcher);
+  for (int& pidfd : watched) {
+    pollfd ended{pidfd, POLLIN, 0};
+    CHECK(::poll(&ended, 1, static_cast<int>(std::chrono::milliseconds(kDeadline).count())) == 1);
+    close(pidfd);
+  }
+  close(pids[0]);
+  close(pids[1]);
+}
+
+TEST_CASE("programs are found beside the one that runs") {
+  CHECK(std::filesystem::exists(program_beside_own("process_group_test")));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/metrics/report.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace sidestep {
+namespace {
+
+Report example() {
+  Report report;
+  report.program = "simulate";
+  report.scenario = "crossing";
+  report.seed = 7;
+  report.robots = 2;
+  report.arrived = 1;
+  report.arrival_s = {{3, 1.25}, {7, std::nullopt}};
+  report.mean_arrival_s = 1.25;
+  report.min_clearance_m = 0.0123456789;
+  report.cycles = 200;
+  report.missed_cycles = 1;
+  report.robot_time_s = 6;
+  report.duration_s = 2;
+  for (int i = 1; i <= 100; ++i) report.negotiation.add(std::chrono::microseconds(100 * i));
+  report.deaths.push_back({"agent 7", "exit code 1", 0.5, false});
+  report.conflicts = {{3, 7}};
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order") {
+  const std::string text = to_json(example());
+  const auto json = nlohmann::ordered_json::parse(text);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  CHECK(keys == std::vector<std::string>{"program",
+                                         "scenario",
+                                         "seed",
+                                         "passed",
+                                         "failure",
+                                         "robots",
+                                         "arrived",
+                                         "contacts",
+                                         "penetration_m_s",
+                                         "min_clearance_m",
+                                         "crashes",
+                                         "moving_crashes",
+                                         "crash_speed_mps",
+                                         "robot_crash_speed_mps",
+                                         "makespan_s",
+                                         "mean_arrival_s",
+                                         "arrival_over_straight",
+                                         "arrival_s",
+                                         "proposals",
+                                         "grants",
+                                         "denials",
+                                         "cycles",
+                                         "missed_cycles",
+                                         "plan_changes",
+                                         "plan_changes_per_s",
+                                         "invalid_messages",
+                                         "firmware_violations",
+                                         "conflicts",
+                                         "max_reference_error_m",
+                                         "clock_offset_max_s",
+                                         "clock_uncertainty_s",
+                                         "negotiation_us",
+                                         "robot_time_s",
+                                         "deaths",
+                                         "audit",
+                                         "wall_clock"});
+  CHECK(json["seed"] == 7);
+  CHECK(json["passed"] == false);
+  CHECK(json["failure"] == "1 of 2 arrived");
+  CHECK(json["min_clearance_m"] == 0.012346);
+  CHECK(json["makespan_s"].is_null());
+  CHECK(json["arrival_s"]["3"] == 1.25);
+  CHECK(json["arrival_s"]["7"].is_null());
+  CHECK(json["negotiation_us"]["max"] == 10000.0);
+  CHECK(json["negotiation_us"]["p50"] >= 5000.0);
+  CHECK(json["negotiation_us"]["p50"] < 5700.0);
+  CHECK(json["conflicts"].dump() == "[[3,7]]");
+  CHECK_THAT(summary(example()), Catch::Contains("robots 3 and 7 were brought too near"));
+  CHECK(json["deaths"][0]["process"] == "agent 7");
+  CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
+}
+
+TEST_CASE("reports that differ in wall-clock figures only differ under wall_clock only") {
+  Report slow = example();
+  slow.duration_s = 9;
+  slow.plan.add(std::chrono::milliseconds(5));
+  slow.search.add(std::chrono::milliseconds(5));
+  auto a = nlohmann::ordered_json::parse(to_json(example())),
+       b = nlohmann::ordered_json::parse(to_json(slow));
+  CHECK(a != b);
+  a.erase("wall_clock");
+  b.erase("wall_clock");
+  CHECK(a == b);
+}
+
+TEST_CASE("the verdict names everything that is wrong in one line, and is empty when nothing is") {
+  Report report = example();
+  CHECK_THAT(summary(report), Catch::EndsWith("failed: 1 of 2 arrived\n"));
+  report.failure = "time limit of 60 s";
+  report.contacts = 1;
+  report.firmware_violations = 2;
+  CHECK(report.verdict() == "time limit of 60 s, 1 contacts, 2 firmware violations, 1 of 2 arrived");
+  Report good = example();
+  good.arrived = 2;
+  CHECK(good.verdict().empty());
+  CHECK_THAT(summary(good), Catch::EndsWith("passed\n"));
+}
+
+TEST_CASE("a report is written into a folder that is made for it, or it says why not") {
+  const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
+  const std::string path = (folder / "deep" / "r.json").string();
+  write_report(example(), path);
+  std::ifstream file(path);
+  CHECK(nlohmann::json::parse(file)["scenario"] == "crossing");
+  std::filesystem::remove_all(folder);
+  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), Catch::Contains("cannot write /dev/null"));
+}
+
+TEST_CASE("a report is named after scenario and seed, or scenario and time") {
+  CHECK(default_report_path("crossing", 7) == "reports/crossing-7.json");
+  CHECK_THAT(default_report_path("crossing", std::nullopt),
+             Catch::Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
+}
+
+TEST_CASE("a crash of a moving robot fails a run, one of a robot at rest is told only") {
+  Report report = example();
+  report.arrived = 2;
+  REQUIRE(report.verdict().empty());
+  report.crashes = 3;
+  report.crash_speed_mps = 1.5;
+  CHECK(report.verdict().empty());
+  CHECK_THAT(summary(report),
+             Catch::Contains("3 crashes with opponents, 0 of them moving; fastest 1.50 m/s"));
+  report.moving_crashes = 1;
+  CHECK(report.verdict() == "1 crashes of moving robots");
+}
+
+TEST_CASE("what the audit found fails a run, and stands in its report") {
+  Report report = example();
+  report.arrived = report.robots;
+  CHECK(nlohmann::json::parse(to_json(report))["audit"].is_null());
+  report.audit = AuditTotals{};
+  CHECK(report.verdict().empty());
+  Violation violation;
+  violation.rule = AuditRule::kLate;
+  violation.robot = 3;
+  violation.version = 17;
+  violation.what = "is executed, although";
+  report.audit->violations = 1;
+  report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLate)] = 1;
+  report.audit->first.push_back(violation);
+  CHECK(report.verdict() == "1 violations found by the audit, first of late");
+  const auto audit = nlohmann::json::parse(to_json(report))["audit"];
+  CHECK(audit["violations"] == 1);
+  CHECK(audit["by_rule"]["late"] == 1);
+  CHECK(audit["first"][0]["robot"] == 3);
+  CHECK(audit["first"][0]["what"] == "is executed, although");
+  CHECK_THAT(summary(report), Catch::Contains("late (firmware, S-05): robot 3 version 17: is executed"));
+}
+
+TEST_CASE("contacts of robots that somebody has just pushed fail no run, others do") {
+  Report report = example();
+  report.arrived = report.robots;
+  report.failure.clear();
+  report.contacts = 3;
+  report.audit = AuditTotals();
+  report.audit->contacts_by_hand = 3;
+  CHECK(report.verdict() == "");
+  report.contacts = 4;
+  CHECK(report.verdict() == "1 contacts");
+}
+
+}  // namespace sidestep

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "deploy/monitor/topic/describe.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string idl_text() {
+  std::ostringstream text;
+  for (const char* name :
+       {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor"}) {
+    std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
+    REQUIRE(file);
+    text << file.rdbuf();
+  }
+  return text.str();
+}
+
+std::string without_comments(const std::string& idl) {
+  std::istringstream lines(idl);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) result += line.substr(0, line.find("//")) + "\n";
+  return result;
+}
+
+/// What stands between the braces of "struct NAME {" or "enum NAME {".
+std::string idl_body(const std::string& idl, const std::string& declaration) {
+  const std::size_t begin = idl.find(declaration + " {");
+  REQUIRE(begin != std::string::npos);
+  const std::size_t open = idl.find('{', begin);
+  return idl.substr(open + 1, idl.find('}', open) - open - 1);
+}
+
+/// The last word of each piece that ends at the separator, without what stands in square brackets.
+std::vector<std::string> last_words(const std::string& text, char separator) {
+  const std::string blanks = " \n";
+  std::istringstream pieces(text);
+  std::vector<std::string> result;
+  for (std::string piece; std::getline(pieces, piece, separator);) {
+    piece.resize(std::min(piece.size(), piece.find('[')));
+    const std::size_t end = piece.find_last_not_of(blanks);
+    if (end == std::string::npos) continue;
+    const std::size_t before = piece.find_last_of(blanks, end);
+    result.push_back(piece.substr(before + 1, end - before));
+  }
+  return result;
+}
+
+/// The members of a struct in the IDL, in order.
+std::vector<std::string> idl_members(const std::string& idl, const std::string& name) {
+  return last_words(idl_body(idl, "struct " + name), ';');
+}
+
+std::vector<std::string> idl_enumerators(const std::string& idl, const std::string& name) {
+  return last_words(idl_body(idl, "enum " + name), ',');
+}
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> result;
+  for (const auto& item : object.items()) result.push_back(item.key());
+  return result;
+}
+
+/// "REASON_NOT_TRIED" with prefix "REASON_" as "not tried".
+std::string in_words(std::string enumerator, const std::string& prefix) {
+  enumerator.erase(0, prefix.size());
+  for (char& c : enumerator) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
+  return enumerator;
+}
+
+}  // namespace
+
+TEST_CASE("a description holds the members of each message that the IDL names, in its order") {
+  const std::string idl = without_comments(idl_text());
+  msg::DetectionFrame frame;
+  frame.ball_count(1);
+  frame.obstacle_count(1);
+  frame.robots().resize(1);
+  msg::WorldState world;
+  world.robots().resize(1);
+  world.obstacle_count(1);
+  msg::GroundTruth truth;
+  truth.robots().resize(1);
+  msg::Feedback feedback;
+  feedback.executing().phase_count(1);
+
+  CHECK(keys(describe(frame)) == idl_members(idl, "DetectionFrame"));
+  CHECK(keys(describe(frame)["head"]) == idl_members(idl, "Header"));
+  CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
+  CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
+  CHECK(keys(describe(frame)["obstacles"].at(0)) == idl_members(idl, "ObstacleDetection"));
+  CHECK(keys(describe(world)["obstacles"].at(0)) == idl_members(idl, "TrackedObstacle"));
+  CHECK(keys(describe(msg::Disturbance())) == idl_members(idl, "Disturbance"));
+  CHECK(keys(describe(msg::NetworkFault())) == idl_members(idl, "NetworkFault"));
+  CHECK(keys(describe(world)) == idl_members(idl, "WorldState"));
+  CHECK(keys(describe(world)["ball"]) == idl_members(idl, "TrackedBall"));
+  CHECK(keys(describe(world)["robots"].at(0)) == idl_members(idl, "TrackedRobot"));
+  CHECK(keys(describe(msg::Command())) == idl_members(idl, "Command"));
+  CHECK(keys(describe(msg::Command())["fix"]) == idl_members(idl, "PoseFix"));
+  CHECK(keys(describe(feedback)) == idl_members(idl, "Feedback"));
+  CHECK(keys(describe(feedback)["executing"]) == idl_members(idl, "Version"));
+  CHECK(keys(describe(feedback)["executing"]["phases"].at(0)) == idl_members(idl, "Phase"));
+  CHECK(keys(describe(msg::Registration())) == idl_members(idl, "Registration"));
+  CHECK(keys(describe(msg::Proposal())) == idl_members(idl, "Proposal"));
+  CHECK(keys(describe(msg::Verdict())) == idl_members(idl, "Verdict"));
+  CHECK(keys(describe(msg::LedgerPage())) == idl_members(idl, "LedgerPage"));
+  CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
+  CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
+  CHECK(keys(describe(truth)) == idl_members(idl, "GroundTruth"));
+  CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TruthRobot"));
+}
+
+TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by its number") {
+  const std::string idl = without_comments(idl_text());
+  const auto check = [&](const char* name, const std::string& prefix, auto describe_value) {
+    const std::vector<std::string> enumerators = idl_enumerators(idl, name);
+    REQUIRE_FALSE(enumerators.empty());
+    for (std::uint32_t i = 0; i < enumerators.size(); ++i) {
+      CHECK(describe_value(i) == in_words(enumerators[i], prefix));
+    }
+    const auto beyond = static_cast<std::uint32_t>(enumerators.size());
+    CHECK(describe_value(beyond) == "unknown " + std::to_string(beyond));
+    CHECK(describe_value(0xffffffffu) == "unknown 4294967295");
+  };
+  check("Reason", "REASON_", [](std::uint32_t value) -> std::string {
+    msg::Verdict verdict;
+    verdict.reasons()[0] = static_cast<msg::Reason>(value);
+    return describe(verdict)["reasons"][0];
+  });
+  check("DisturbanceKind", "DISTURBANCE_", [](std::uint32_t value) -> std::string {
+    msg::Disturbance disturbance;
+    disturbance.disturbance_kind(static_cast<msg::DisturbanceKind>(value));
+    return describe(disturbance)["disturbance_kind"];
+  });
+  check("AgentPhase", "AGENT_", [](std::uint32_t value) -> std::string {
+    msg::AgentStatus status;
+    status.agent_phase(static_cast<msg::AgentPhase>(value));
+    return describe(status)["agent_phase"];
+  });
+  check("CoordinatorPhase", "COORDINATOR_", [](std::uint32_t value) -> std::string {
+    msg::CoordinatorState state;
+    state.coordinator_phase(static_cast<msg::CoordinatorPhase>(value));
+    return describe(state)["coordinator_phase"];
+  });
+}
+
+TEST_CASE("a count beyond its array shows the whole array and the count as it came") {
+  msg::Proposal proposal;
+  proposal.candidate_count(255);
+  proposal.candidates()[0].phase_count(200);
+  const Json description = describe(proposal);
+  CHECK(description["candidate_count"] == 255);
+  CHECK(description["candidates"].size() == proposal.candidates().size());
+  CHECK(description["candidates"][0]["phases"].size() == proposal.candidates()[0].phases().size());
+  CHECK(description["candidates"][1]["phases"].empty());
+}
+
+}  // namespace sidestep

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+#include <unistd.h>
+
+#include "common/process/process.hpp"
+#include "deploy/monitor/topic/rate_meter.hpp"
+#include "deploy/monitor/topic/topic_command.hpp"
+#include "deploy/monitor/topic/topic_table.hpp"
+#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+
+namespace sidestep {
+namespace {
+
+using Catch::Matchers::Contains;
+
+Time at_ms(int ms) { return time_from_ns(std::int64_t{ms} * 1'000'000); }
+
+DdsEndpoint endpoint(const std::string& participant, bool is_writer, bool is_reliable) {
+  DdsEndpoint result;
+  result.participant = participant;
+  result.topic = "world";
+  result.type = "Type";
+  result.is_writer = is_writer;
+  result.is_reliable = is_reliable;
+  return result;
+}
+
+/// Collects what this process writes on stdout while it lives.
+class CaptureStdout {
+ public:
+  CaptureStdout() : file_(std::tmpfile()) {
+    std::fflush(stdout);
+    saved_ = dup(1);
+    dup2(fileno(file_), 1);
+  }
+  ~CaptureStdout() {
+    finish();
+    std::fclose(file_);
+  }
+  CaptureStdout(const CaptureStdout&) = delete;
+  CaptureStdout& operator=(const CaptureStdout&) = delete;
+
+  std::string finish() {
+    std::fflush(stdout);
+    if (saved_ >= 0) {
+      dup2(saved_, 1);
+      close(saved_);
+      saved_ = -1;
+    }
+    std::string result(1 << 16, '\0');
+    const ssize_t size = pread(fileno(file_), result.data(), result.size(), 0);
+    result.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return result;
+  }
+
+ private:
+  std::FILE* file_;
+  int saved_ = -1;
+};
+
+struct Outcome {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+/// What `sidestep topic ARGUMENTS` would do, in this test's domain.
+Outcome topic(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"sidestep", "topic"});
+  arguments.insert(arguments.end(), {"--domain", std::to_string(test_settings().domain)});
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  CLI::App app("test", "sidestep");
+  std::function<int()> action;
+  add_topic_command(app, action);
+  Outcome outcome{};
+  const CaptureStderr err;
+  CaptureStdout out;
+  outcome.exit_code = parse_options(app, static_cast<int>(argv.size()), argv.data());
+  if (outcome.exit_code < 0) outcome.exit_code = action();
+  outcome.out = out.finish();
+  outcome.err = err.text();
+  return outcome;
+}
+
+/// A process's worth of publishing in a thread of its own.
+class Publisher {
+ public:
+  Publisher() : bus_(test_settings("vision")), writer_(bus_.advertise(topics::kWorld)) {
+    tick();
+    thread_ = std::thread([this] { bus_.run(); });
+  }
+  ~Publisher() {
+    bus_.stop();
+    thread_.join();
+  }
+
+ private:
+  void tick() {
+    msg::WorldState world;
+    world.frames(77);
+    writer_.publish(world, bus_.now());
+    bus_.at(bus_.now() + Duration{10'000'000}, [this] { tick(); });
+  }
+
+  DdsBus bus_;
+  Writer<msg::WorldState> writer_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+TEST_CASE("a rate is gaps per second, and knows its shortest and longest gap") {
+  RateMeter meter;
+  CHECK(meter.total().samples == 0);
+  CHECK_FALSE(meter.total().shortest_gap.has_value());
+  meter.add(at_ms(1000), 500);
+  CHECK(meter.total().samples == 1);
+  CHECK(meter.total().rate_hz == 0);
+  meter.add(at_ms(1010), 100);
+  meter.add(at_ms(1040), 300);
+  const Rate rate = meter.total();
+  CHECK(rate.samples == 3);
+  CHECK(rate.rate_hz == Approx(50));
+  CHECK(*rate.shortest_gap == Duration{10'000'000});
+  CHECK(*rate.longest_gap == Duration{30'000'000});
+  CHECK(rate.bytes_per_second == Approx(400 / 0.040));
+}
+
+TEST_CASE("a silence that spans two looks is not lost") {
+  RateMeter meter;
+  meter.add(at_ms(0), 1);
+  meter.add(at_ms(10), 1);
+  CHECK(meter.take_recent().samples == 2);
+  CHECK(meter.take_recent().samples == 0);
+  meter.add(at_ms(5010), 1);
+  const Rate recent = meter.take_recent();
+  CHECK(recent.samples == 1);
+  REQUIRE(recent.longest_gap.has_value());
+  CHECK(*recent.longest_gap == Duration{5'000'000'000});
+  CHECK(recent.rate_hz == Approx(0.2));
+  CHECK(meter.total().samples == 3);
+}
+
+TEST_CASE("samples of one instant have no rate, and nothing is divided by zero") {
+  RateMeter meter;
+  meter.add(at_ms(5), 10);
+  meter.add(at_ms(5), 10);
+  CHECK(meter.total().rate_hz == 0);
+  CHECK(meter.total().bytes_per_second == 0);
+}
+
+TEST_CASE("the table names a fleet's first members and counts all") {
+  std::vector<DdsEndpoint> endpoints{endpoint("vision", true, false)};
+  for (int i = 0; i < 22; ++i) endpoints.push_back(endpoint("agent-" + std::to_string(i), false, false));
+  const std::string table = topic_table(endpoints);
+  CHECK_THAT(table, Contains("1: vision"));
+  CHECK_THAT(table, Contains("22: agent-0, agent-1, agent-2, ..."));
+  CHECK_THAT(table, Contains("best effort"));
+  CHECK_THAT(table, !Contains("MISMATCH"));
+}
+
+TEST_CASE("the table shows a mismatch with the pairs that it keeps apart") {
+  const std::string table = topic_table(
+      {endpoint("vision", true, false), endpoint("logger", false, true), endpoint("agent", false, false)});
+  CHECK_THAT(table, Contains("MISMATCH reliability: the reader wants reliable, the writer offers best effort "
+                             "(vision -> logger)"));
+}
+
+TEST_CASE("topic list finds the topics of a running process") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"list", "--seconds", "1.5"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out,
+             Contains("world") && Contains("sidestep::msg::WorldState") && Contains("1: vision"));
+}
+
+TEST_CASE("topic hz measures a topic, and for one that nobody writes names those that there are") {
+  const Publisher publisher;
+  const Outcome measured = topic({"hz", "world", "--seconds", "1"});
+  CAPTURE(measured.out, measured.err);
+  CHECK(measured.exit_code == 0);
+  CHECK_THAT(measured.out, Contains("total: ") && Contains(" Hz  gap min "));
+
+  const Outcome unknown = topic({"hz", "nothing"});
+  CAPTURE(unknown.err);
+  CHECK(unknown.exit_code == kExitFailure);
+  CHECK_THAT(unknown.err, Contains("nobody writes topic 'nothing'") && Contains("topics here: world"));
+}
+
+TEST_CASE("topic echo prints as many messages as asked for, each a line of JSON") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"echo", "world", "--count", "2"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  std::istringstream lines(outcome.out);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    CHECK(nlohmann::json::parse(line)["frames"] == 77);
+  }
+  CHECK(count == 2);
+}
+
+TEST_CASE("topic echo of a topic that is not ours names those that are") {
+  for (const char* name : {"nothing", "verdict", "verdict/", "verdict/-1", "verdict/3x", "world/1"}) {
+    const Outcome outcome = topic({"echo", name});
+    CAPTURE(name, outcome.err);
+    CHECK(outcome.exit_code == kExitFailure);
+    CHECK_THAT(outcome.err, Contains("is none of our topics") && Contains("verdict/ROBOT"));
+  }
+}
+
+TEST_CASE("wrong usage of topic exits with 2") {
+  CHECK(topic({}).exit_code == kExitUsage);
+  CHECK(topic({"hz"}).exit_code == kExitUsage);
+  CHECK(topic({"echo", "world", "--count", "-3"}).exit_code == kExitUsage);
+  CHECK(topic({"list", "--seconds", "soon"}).exit_code == kExitUsage);
+  CHECK(topic({"--help"}).exit_code == 0);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/campaign/fault_player.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/config/scenario_loader.hpp"
+#include "deploy/simulate/campaign/trial.hpp"
+
+using namespace sidestep;
+using namespace std::chrono_literals;
+
+namespace {
+
+Scenario pair_of_robots() {
+  return parse_scenario(
+      "field: {length_m: 6, width_m: 4}\nlimits: {speed_mps: 0.3}\ncircle: {count: 2, spacing_m: 3}\n",
+      "pair.yaml");
+}
+
+FaultPlan plan_of(const Scenario& scenario, std::vector<TimedFault> faults, Duration healed_at) {
+  FaultPlan plan;
+  for (const std::string& process : SimSystem::process_names(scenario)) plan.hosts.push_back({process});
+  plan.faults = std::move(faults);
+  plan.healed_at = healed_at;
+  return plan;
+}
+
+/// Counts what gets from the coordinator to the agent of robot 0.
+struct Verdicts {
+  explicit Verdicts(SimSystem& system) : bus(system.network()) {
+    bus.listen_aside();
+    bus.subscribe(topics::kStatus, std::function([this](const msg::AgentStatus& status) {
+                    if (status.robot() == 0) answered = status.grants() + status.denials();
+                  }));
+  }
+  SimBus bus;
+  std::uint64_t answered = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a partition cuts links for its time and no longer, also when two overlap") {
+  const Scenario scenario = pair_of_robots();
+  const Partition cut{{"coordinator"}, {"agent 0"}, 2s}, longer{{"coordinator"}, {"agent 0"}, 1s};
+  const FaultPlan plan = plan_of(scenario, {{1s, cut}, {2500ms, longer}}, 20s);
+  SimSystem system(scenario, 1);
+  Verdicts verdicts(system);
+  FaultPlayer player(system, plan);
+  player.run_until(1250ms);
+  const auto before = verdicts.answered;
+  CHECK(before > 10);
+  // The longer one begins within the first and goes on after its end.
+  player.run_until(3400ms);
+  const auto within = verdicts.answered;
+  CHECK(within <= before + 3);
+  // Agents that missed verdicts ask less often for a while.
+  player.run_until(5500ms);
+  CHECK(verdicts.answered > within + 8);
+}
+
+TEST_CASE("what is killed is dead until it is started, and a twin lives beside its brother") {
+  const Scenario scenario = pair_of_robots();
+  FaultPlan plan =
+      plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
+  plan.hosts.push_back({twin_process(1)});
+  SimSystem system(scenario, 1);
+  FaultPlayer player(system, plan);
+  player.run_until(1500ms);
+  CHECK_FALSE(system.is_alive("vision"));
+  player.run_until(2500ms);
+  CHECK(system.is_alive("vision"));
+  CHECK_FALSE(system.is_alive(twin_process(1)));
+  player.run_until(3500ms);
+  CHECK(system.is_alive(twin_process(1)));
+  CHECK(system.is_alive("agent 1"));
+}
+
+TEST_CASE("when everything heals the weather is gone and partitions end") {
+  const Scenario scenario = pair_of_robots();
+  LinkQuality terrible;
+  terrible.loss = 1;
+  const auto processes = SimSystem::process_names(scenario);
+  const FaultPlan plan = plan_of(
+      scenario,
+      {{0s, WeatherChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);
+  SimSystem system(scenario, 1);
+  Verdicts verdicts(system);
+  FaultPlayer player(system, plan);
+  player.run_until(3s);
+  CHECK(verdicts.answered == 0);
+  player.run_until(5s);
+  CHECK(verdicts.answered > 10);
+}
+
+TEST_CASE("a trial that is run again gives the same result, and another seed another one") {
+  const auto outcome = [](std::uint64_t seed) {
+    Report report;
+    run_trial(draw_trial(seed, 10s, std::nullopt), &report);
+    report.plan = report.search = DurationHistogram{};
+    return to_json(report);
+  };
+  CHECK(outcome(17) == outcome(17));
+  CHECK(outcome(17) != outcome(18));
+}
+
+TEST_CASE("a system that never gets to drive is stuck, and the trial says so") {
+  const Scenario scenario = pair_of_robots();
+  Trial trial{1, scenario, plan_of(scenario, {{0s, Kill{"coordinator"}}}, 1s), 10s};
+  const TrialResult dead = run_trial(trial);
+  REQUIRE(dead.failures.size() == 3);
+  CHECK(dead.failures[0] == "no coordinator has ever granted");
+  CHECK_THAT(dead.failures[1], Catch::Contains("robots 0, 1 do not drive"));
+  CHECK_THAT(dead.failures[2], Catch::Contains("nobody moves"));
+  trial.plan.faults.clear();
+  CHECK(run_trial(trial).failures.empty());
+}

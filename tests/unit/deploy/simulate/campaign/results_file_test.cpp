@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/campaign/results_file.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+using namespace sidestep;
+
+namespace {
+
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("sidestep-results-" + std::to_string(getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string file() const { return (path / "results").string(); }
+};
+
+TrialResult result_of(std::uint64_t seed) {
+  TrialResult result;
+  result.seed = seed;
+  result.robot_s = 0.1 * static_cast<double>(seed);
+  if (seed == 3) result.failures = {"stuck: robots 1, 2"};
+  return result;
+}
+
+void append(const std::string& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
+
+}  // namespace
+
+TEST_CASE("a search's results outlast it, but for a line that was not written to its end") {
+  const Folder folder;
+  {
+    ResultsFile results(folder.file(), "seeds of here");
+    CHECK(results.found().empty());
+    for (std::uint64_t seed = 2; seed < 5; ++seed) results.add(result_of(seed));
+  }
+  append(folder.file(), "{\"seed\": 5, \"failu");
+  {
+    ResultsFile results(folder.file(), "seeds of here");
+    REQUIRE(results.found().size() == 3);
+    CHECK(results.found()[1].seed == 3);
+    CHECK(results.found()[1].failures == std::vector<std::string>{"stuck: robots 1, 2"});
+    CHECK(results.found()[2].robot_s == result_of(4).robot_s);
+    results.add(result_of(6));
+  }
+  CHECK(ResultsFile(folder.file(), "seeds of here").found().back().seed == 6);
+}
+
+TEST_CASE("results of another search, and what are no results, are refused with the reason, and are kept") {
+  const Folder folder;
+  { ResultsFile(folder.file(), "seeds of here").add(result_of(1)); }
+  CHECK_THROWS_WITH(ResultsFile(folder.file(), "seeds of there"),
+                    Catch::Contains("results of another search: seeds of here"));
+  append(folder.file(), "something else\n");
+  CHECK_THROWS_WITH(ResultsFile(folder.file(), "seeds of here"), Catch::Contains("results:3: is no result"));
+  CHECK(std::filesystem::file_size(folder.file()) > 100);
+  const std::string picture = (folder.path / "picture").string();
+  append(picture, "no line ends here");
+  CHECK_THROWS_WITH(ResultsFile(picture, "seeds of here"), Catch::Contains("holds no results of a search"));
+  CHECK(std::filesystem::file_size(picture) == 17);
+  CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "seeds of here"),
+                    Catch::Contains("cannot be written"));
+}
