@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     }
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
     auto node =
-        std::make_shared<AgentNode>(bus, scenario, robot, incarnation, std::make_shared<Workbench>(scenario));
+        std::make_shared<AgentNode>(bus, scenario, robot, incarnation, std::make_shared<PlanningScratch>(scenario));
     // It does not end: a supervisor would start it again, and it would take the robot from the later one.
     node->on_superseded([robot] {
       fmt::print(stderr, "agent-{}: superseded, a later agent drives this robot; it is quiet from now on\n",

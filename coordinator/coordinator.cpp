@@ -183,7 +183,7 @@ void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Ve
 msg::CoordinatorState Coordinator::state() const {
   msg::CoordinatorState state;
   state.epoch(epoch_);
-  state.coordinator_phase(!is_active()    ? msg::COORDINATOR_STANDBY
+  state.coordinator_mode(!is_active()    ? msg::COORDINATOR_STANDBY
                           : is_granting() ? msg::COORDINATOR_GRANTING
                                           : msg::COORDINATOR_REGISTERING);
   state.proposals(proposals_);

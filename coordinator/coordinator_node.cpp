@@ -23,8 +23,8 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
     : bus_(bus),
       self_(self),
       cycle_(scenario.cycle),
-      succession_(self, is_standby, bus.now()),
-      coordinator_(floor_rules(scenario), roster_of(scenario), succession_.epoch()) {
+      failover_(self, is_standby, bus.now()),
+      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch()) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
   for (const RobotSpec& robot : scenario.robots) {
@@ -33,8 +33,8 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
                    [this](const msg::Feedback& feedback) { on_feedback(feedback); });
   }
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
-    succession_.on_coordinator_state(state, bus_.now());
-    follow_succession();
+    failover_.on_coordinator_state(state, bus_.now());
+    follow_failover();
   });
   bus_.subscribe(topics::kRegistration,
                  [this](const msg::Registration& registration) { on_registration(registration); });
@@ -54,8 +54,8 @@ void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
 template <typename Message>
 void CoordinatorNode::note_epoch(const Message& message, Epoch epoch) {
   if (message.head().sender() != message.robot() || !coordinator_.ledger().knows(message.robot())) return;
-  succession_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
-  follow_succession();
+  failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
+  follow_failover();
 }
 
 void CoordinatorNode::on_registration(const msg::Registration& registration) {
@@ -71,8 +71,8 @@ void CoordinatorNode::on_feedback(const msg::Feedback& feedback) {
   note_epoch(feedback, feedback.obeyed_epoch());
   coordinator_.on_feedback(feedback);
   if (!coordinator_.is_contradicted()) return;
-  succession_.begin_epoch(bus_.now());
-  follow_succession();
+  failover_.begin_epoch(bus_.now());
+  follow_failover();
 }
 
 void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {
@@ -81,27 +81,27 @@ void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {
     publish(verdict_writers_.at(verdict->robot()), *verdict);
 }
 
-void CoordinatorNode::follow_succession() {
-  if (succession_.epoch() == coordinator_.epoch()) return;
-  coordinator_.begin_epoch(succession_.epoch());
+void CoordinatorNode::follow_failover() {
+  if (failover_.epoch() == coordinator_.epoch()) return;
+  coordinator_.begin_epoch(failover_.epoch());
   publish_state();
 }
 
 void CoordinatorNode::look() {
-  bus_.at(bus_.now() + Succession::kLook, [this] { look(); });
-  succession_.update(bus_.now());
-  follow_succession();
+  bus_.at(bus_.now() + Failover::kLook, [this] { look(); });
+  failover_.update(bus_.now());
+  follow_failover();
 }
 
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
-  state.invalid(state.invalid() + succession_.invalid());
+  state.invalid(state.invalid() + failover_.invalid());
   publish(state_writer_, state);
 }
 
 void CoordinatorNode::publish_state_periodically() {
-  bus_.at(bus_.now() + Succession::kSignOfLife, [this] { publish_state_periodically(); });
+  bus_.at(bus_.now() + Failover::kSignOfLife, [this] { publish_state_periodically(); });
   if (coordinator_.is_active() || periods_++ % kStandbySign == 0) publish_state();
 }
 

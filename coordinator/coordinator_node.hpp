@@ -5,7 +5,7 @@
 
 #include "common/messaging/bus.hpp"
 #include "coordinator/coordinator.hpp"
-#include "coordinator/succession.hpp"
+#include "coordinator/failover.hpp"
 
 namespace sidestep {
 
@@ -29,7 +29,7 @@ class CoordinatorNode {
   void on_feedback(const msg::Feedback& feedback);
   void on_proposal(const msg::Proposal& proposal);
   /// Begins the epoch that the succession has begun, or stands by with it, and says so.
-  void follow_succession();
+  void follow_failover();
   void look();
   void publish_state();
   void publish_state_periodically();
@@ -38,7 +38,7 @@ class CoordinatorNode {
   Bus& bus_;
   const CoordinatorIdentity self_;
   Duration cycle_;
-  Succession succession_;
+  Failover failover_;
   Coordinator coordinator_;
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;

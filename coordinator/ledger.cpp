@@ -5,7 +5,7 @@
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/escape.hpp"
-#include "common/motion/outline.hpp"
+#include "common/motion/trajectory_bounds.hpp"
 
 namespace sidestep {
 namespace {
@@ -19,9 +19,9 @@ bool is_stand(const Version& version) {
 }
 
 /// Growth ends where a robot rests, and changes nowhere else.
-bool may_have_growth(const Version& candidate, const Version& base) {
-  if (candidate.grown_m == base.grown_m) return true;
-  return candidate.grown_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;
+bool may_have_inflation(const Version& candidate, const Version& base) {
+  if (candidate.inflation_m == base.inflation_m) return true;
+  return candidate.inflation_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;
 }
 
 /// Whether two versions of one number are one version.
@@ -29,8 +29,8 @@ bool is_same(const Version& a, const Version& b) {
   const State &from = a.trajectory.at_start(), &other = b.trajectory.at_start();
   return a.base == b.base && a.trajectory.start() == b.trajectory.start() &&
          from.position_m == other.position_m && from.velocity_mps == other.velocity_mps &&
-         a.grown_m == b.grown_m &&
-         std::ranges::equal(a.trajectory.phases(), b.trajectory.phases(), [](const Phase& p, const Phase& q) {
+         a.inflation_m == b.inflation_m &&
+         std::ranges::equal(a.trajectory.phases(), b.trajectory.phases(), [](const MotionPhase& p, const MotionPhase& q) {
            return p.duration == q.duration && p.acceleration_mps2 == q.acceleration_mps2;
          });
 }
@@ -78,9 +78,9 @@ Ruling Ledger::grant(const Version& candidate) {
 
 msg::Reason Ledger::refusal_of(const Version& candidate, const Version* base) const {
   const Trajectory& trajectory = candidate.trajectory;
-  if (!base) return candidate.grown_m == 0 ? check_place(trajectory, rules_) : msg::REASON_NOT_CONTINUOUS;
+  if (!base) return candidate.inflation_m == 0 ? check_place(trajectory, rules_) : msg::REASON_NOT_CONTINUOUS;
   if (candidate.number <= base->number) return msg::REASON_OLD_VERSION;
-  if (!continues(trajectory, base->trajectory) || !may_have_growth(candidate, *base))
+  if (!continues(trajectory, base->trajectory) || !may_have_inflation(candidate, *base))
     return msg::REASON_NOT_CONTINUOUS;
   if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED)
     return reason;
@@ -133,7 +133,7 @@ void Ledger::bound(std::size_t index) {
   }
   for (std::size_t i = 0; i < versions.size(); ++i) {
     entry.discs[i] = disc_of(versions[i].trajectory);
-    entry.discs[i].radius_m += versions[i].grown_m;
+    entry.discs[i].radius_m += versions[i].inflation_m;
   }
   Circle all = entry.discs.front();
   for (std::size_t i = 1; i < versions.size(); ++i) {
@@ -144,7 +144,7 @@ void Ledger::bound(std::size_t index) {
 }
 
 bool Ledger::may_both(const Version& candidate, const Version* base, const Version& other) const {
-  const double keep = rules_.keep_m() + candidate.grown_m + other.grown_m;
+  const double keep = rules_.min_separation_m() + candidate.inflation_m + other.inflation_m;
   if (is_clear(candidate.trajectory, other.trajectory, keep)) return true;
   if (!base) return false;
   const double kept = kept_distance_m(base->trajectory, candidate.trajectory.start(), other.trajectory, keep);
@@ -153,7 +153,7 @@ bool Ledger::may_both(const Version& candidate, const Version* base, const Versi
 
 std::optional<RobotId> Ledger::blocker_of(const Version& candidate, const Version* base) {
   Circle around = disc_of(candidate.trajectory);
-  around.radius_m += candidate.grown_m + rules_.keep_m() + kClearanceTolerance_m;
+  around.radius_m += candidate.inflation_m + rules_.min_separation_m() + kClearanceTolerance_m;
   places_.find(around, near_);
   for (const std::uint32_t index : near_) {
     if (roster_[index] == candidate.robot) continue;
@@ -177,7 +177,7 @@ void Ledger::find_conflicts(RobotId robot) {
   const Entry& entry = entry_of(robot);
   for (std::size_t i = 0; i < entry.set.versions().size(); ++i) {
     Circle around = entry.discs[i];
-    around.radius_m += rules_.keep_m() + kClearanceTolerance_m;
+    around.radius_m += rules_.min_separation_m() + kClearanceTolerance_m;
     places_.find(around, near_);
     for (const std::uint32_t index : near_) {
       const Conflict pair{std::min(robot, roster_[index]), std::max(robot, roster_[index])};

@@ -11,7 +11,7 @@
 #include "deploy/fault/fault_command.hpp"
 #include "deploy/evaluation/planning/plan_command.hpp"
 #include "deploy/launch/run.hpp"
-#include "deploy/simulate/campaign/seed_search.hpp"
+#include "deploy/simulate/campaign/campaign.hpp"
 #include "deploy/simulate/simulate.hpp"
 #include "deploy/evaluation/study/study_command.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
@@ -56,8 +56,8 @@ std::string read_seeds(const std::string& text, SearchOptions& search) {
   return {};
 }
 
-int simulate_or_search(const SimulateOptions& one, SearchOptions& many, bool draws_faults, bool is_many) {
-  if (!is_many) return draws_faults ? simulate_trial(one) : simulate(one);
+int simulate_or_search(const SimulateOptions& one, SearchOptions& many, bool samples_faults, bool is_many) {
+  if (!is_many) return samples_faults ? simulate_trial(one) : simulate(one);
   many.scenario_file = one.scenario_file;
   many.report_file = one.report_file;
   if (one.seconds) many.duration = from_seconds(*one.seconds);
@@ -109,9 +109,9 @@ void add_simulate_command(CLI::App& root, std::function<int()>& action, Simulate
                    "file of the seeds' results; a search that was stopped goes on where it was")
       ->needs(seeds);
   command->callback([=, &action, &options, &search] {
-    const bool draws_faults = faults->count() > 0, is_many = seeds->count() > 0;
-    if (!draws_faults && scenario->count() == 0) throw CLI::RequiredError("SCENARIO");
-    action = [=, &options, &search] { return simulate_or_search(options, search, draws_faults, is_many); };
+    const bool samples_faults = faults->count() > 0, is_many = seeds->count() > 0;
+    if (!samples_faults && scenario->count() == 0) throw CLI::RequiredError("SCENARIO");
+    action = [=, &options, &search] { return simulate_or_search(options, search, samples_faults, is_many); };
   });
 }
 

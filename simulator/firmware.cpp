@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kFarthest_m = 1e4;  // no floor is larger
-constexpr double kMostGrown_m = 1;
+constexpr double kMaxInflation_m = 1;
 // What claims to be higher would leave no room for numbers above it.
 constexpr Incarnation kHighestIncarnation = Incarnation{1} << 62;
 constexpr VersionNumber kHighestNumber = VersionNumber{1} << 63;
@@ -181,12 +181,12 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   }
   auto& believed = believed_.acceleration_mps2;
   auto& believed_angular = believed_.angular_acceleration_radps2;
-  believed = last_wish_.acceleration_mps2 + (believed - last_wish_.acceleration_mps2) * decay_;
-  believed_angular = last_wish_.angular_acceleration_radps2 +
-                     (believed_angular - last_wish_.angular_acceleration_radps2) * decay_;
+  believed = last_desired_.acceleration_mps2 + (believed - last_desired_.acceleration_mps2) * decay_;
+  believed_angular = last_desired_.angular_acceleration_radps2 +
+                     (believed_angular - last_desired_.angular_acceleration_radps2) * decay_;
   estimator_.advance(now, odometry, believed, believed_angular);
 
-  if (is_lifted_) return last_wish_ = {};
+  if (is_lifted_) return last_desired_ = {};
   const bool may_break_off = now > last_fact_ && now > executing_.trajectory.start();
   if (is_rebooting_ && may_break_off) start_again(now);
 
@@ -217,9 +217,9 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   const double rate = std::clamp(settings_.heading_gain_ps * turn, -settings_.turning_speed_radps,
                                  settings_.turning_speed_radps);
   const double angular_most = settings_.body.angular_acceleration_radps2;
-  last_wish_ = {wanted, std::clamp(settings_.turning_gain_ps * (rate - estimator_.angular_radps()),
+  last_desired_ = {wanted, std::clamp(settings_.turning_gain_ps * (rate - estimator_.angular_radps()),
                                    -angular_most, angular_most)};
-  return last_wish_;
+  return last_desired_;
 }
 
 // The uncertainty counts for half of the bound at most: a robot that nobody sees is not thereby off its
@@ -227,7 +227,7 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
 bool Firmware::is_beyond_bound(const Vec2& error_m) const {
   const double half = 0.5 * settings_.tracking_bound_m;
   if (error_m.squaredNorm() < half * half) return false;
-  const double allowed = settings_.tracking_bound_m + executing_.grown_m;
+  const double allowed = settings_.tracking_bound_m + executing_.inflation_m;
   return error_m.norm() + std::min(2 * estimator_.deviation_m(), half) > allowed;
 }
 
@@ -241,7 +241,7 @@ bool Firmware::must_break_off(const Vec2& error_m, Time now) {
   }
   beyond_since_ = std::min(beyond_since_, now);
   return now - beyond_since_ >= kCure || estimator_.jump_m() > 0 ||
-         error_m.norm() > 2 * settings_.tracking_bound_m + executing_.grown_m;
+         error_m.norm() > 2 * settings_.tracking_bound_m + executing_.inflation_m;
 }
 
 void Firmware::break_off(Time now) {
@@ -255,7 +255,7 @@ void Firmware::break_off(Time now) {
   stop.trajectory = Trajectory(now, {estimator_.position_m(), estimator_.velocity_mps()});
   append_stop(stop.trajectory, settings_.deceleration_mps2);
   // What moved it past its wheels may do so again until the next sight.
-  stop.grown_m = std::min(2 * estimator_.deviation_m() + estimator_.jump_m(), kMostGrown_m);
+  stop.inflation_m = std::min(2 * estimator_.deviation_m() + estimator_.jump_m(), kMaxInflation_m);
   executing_ = stop;
   newest_ = stop.number;
   is_off_reference_ = true;
@@ -275,7 +275,7 @@ void Firmware::put_down(double heading_rad, Time now) {
   is_lifted_ = false;
   heading_goal_rad_ = heading_rad;
   estimator_ = PoseEstimator(executing_.trajectory.rest_position_m(), heading_rad, now, settings_.estimator);
-  last_wish_ = believed_ = {};
+  last_desired_ = believed_ = {};
 }
 
 void Firmware::start_again(Time now) {

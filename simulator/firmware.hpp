@@ -127,7 +127,7 @@ class Firmware {
   Duration look_ahead_;
   double most_lead_m_;  ///< distance from which the tracking control's approach brakes as hard as motors can
   PoseEstimator estimator_;
-  Actuation last_wish_;
+  Actuation last_desired_;
   Actuation believed_;  ///< accelerations by the motor model
   double heading_goal_rad_;
 };

@@ -17,18 +17,18 @@ constexpr double kPushed_m = 0.02;  // by which contacts may move a robot betwee
 Opponents::Opponents(std::span<const OpponentSpec> specs, double robot_radius_m, double robot_speed_limit_mps)
     : radius_m_(robot_radius_m), speed_limit_mps_(robot_speed_limit_mps) {
   for (const OpponentSpec& spec : specs) {
-    Walk walk{.way_m = spec.way_m, .speed_mps = spec.speed_mps, .is_round = false};
-    if (walk.way_m.size() > 2 && (walk.way_m.back() - walk.way_m.front()).norm() < kSamePlace_m) {
+    Walk walk{.path_m = spec.path_m, .speed_mps = spec.speed_mps, .is_round = false};
+    if (walk.path_m.size() > 2 && (walk.path_m.back() - walk.path_m.front()).norm() < kSamePlace_m) {
       walk.is_round = true;
-      walk.way_m.pop_back();
+      walk.path_m.pop_back();
     }
-    discs_.push_back({walk.way_m.front(), spec.radius_m});
+    discs_.push_back({walk.path_m.front(), spec.radius_m});
     walks_.push_back(std::move(walk));
   }
 }
 
 void Opponents::head_on(Walk& walk) {
-  const std::size_t last = walk.way_m.size() - 1;
+  const std::size_t last = walk.path_m.size() - 1;
   if (walk.is_round) {
     walk.next = walk.next == last ? 0 : walk.next + 1;
     return;
@@ -40,11 +40,11 @@ void Opponents::head_on(Walk& walk) {
 
 void Opponents::move(Walk& walk, Vec2& position_m) {
   walk.velocity_mps.setZero();
-  if (walk.way_m.size() == 1) return;
+  if (walk.path_m.size() == 1) return;
   double left_m = walk.speed_mps * kPhysicsStepSeconds;
   // Points that lie on each other must not keep it busy for ever.
-  for (std::size_t passed = 0; passed <= 2 * walk.way_m.size(); ++passed) {
-    const Vec2 ahead = walk.way_m[walk.next] - position_m;
+  for (std::size_t passed = 0; passed <= 2 * walk.path_m.size(); ++passed) {
+    const Vec2 ahead = walk.path_m[walk.next] - position_m;
     const double distance = ahead.norm();
     if (distance > left_m) {
       position_m += ahead * (left_m / distance);
@@ -52,7 +52,7 @@ void Opponents::move(Walk& walk, Vec2& position_m) {
       return;
     }
     left_m -= distance;
-    position_m = walk.way_m[walk.next];
+    position_m = walk.path_m[walk.next];
     head_on(walk);
   }
 }

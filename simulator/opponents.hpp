@@ -40,7 +40,7 @@ class Opponents {
 
  private:
   struct Walk {
-    std::vector<Vec2> way_m;
+    std::vector<Vec2> path_m;
     double speed_mps;
     std::size_t next = 0;  ///< point of the way that it heads for
     bool is_round;

@@ -44,7 +44,7 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
     bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
     const Time clock = begin + spec.clock_offset;
     Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, clock, settings);
-    const FirmwareJudge judge(firmware.executing(), settings.tracking_bound_m, settings.deceleration_mps2);
+    const FirmwareMonitor judge(firmware.executing(), settings.tracking_bound_m, settings.deceleration_mps2);
     Rng noise = rng.fork();
     const double scale = 1 + scenario.odometry.scale_error * noise.normal();
     robots_.push_back({spec.id,
@@ -69,7 +69,7 @@ void World::advance(Time to) {
 
 void World::step() {
   time_ += kPhysicsStep;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].wish);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].desired);
   contacts_.step(bodies_);
   if (!opponents_.empty()) opponents_.step(bodies_);
   if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
@@ -78,7 +78,7 @@ void World::step() {
     Robot& robot = robots_[i];
     const Time now = robot_time(i, time_);
     switch_versions(i, now);
-    robot.wish = robot.firmware.tick(now, measure(i));
+    robot.desired = robot.firmware.tick(now, measure(i));
     if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.known_stop) {
       robot.known_stop = robot.firmware.executing().number;
       robot.judge.broke_off(robot.firmware.executing());
@@ -201,7 +201,7 @@ void World::fill(msg::GroundTruth& truth) const {
     robot.vy_mps(bodies_[i].velocity_mps().y());
     robot.reference_error_m(reference_error_m(i));
     const std::optional<Time> until = let_go(i);
-    robot.let_go_ns(until ? to_ns(*until) : -1);
+    robot.disturbance_end_ns(until ? to_ns(*until) : -1);
   }
   truth.robots().resize(count);
 }

@@ -15,7 +15,7 @@
 #include "simulator/body.hpp"
 #include "simulator/contacts.hpp"
 #include "simulator/firmware.hpp"
-#include "simulator/firmware_judge.hpp"
+#include "simulator/firmware_monitor.hpp"
 #include "simulator/opponents.hpp"
 
 namespace sidestep {
@@ -67,10 +67,10 @@ class World {
   struct Robot {
     RobotId id;
     Firmware firmware;
-    FirmwareJudge judge;
+    FirmwareMonitor judge;
     Rng noise;
     double odometry_scale;
-    Actuation wish;
+    Actuation desired;
     Vec2 last_position_m;
     double last_heading_rad;
     Duration clock_offset;         ///< the robot's clock goes ahead of the host's by so much,
@@ -89,7 +89,7 @@ class World {
   };
   void step();
   void end_effects();
-  bool put_down(const Effect& wish);
+  bool put_down(const Effect& desired);
   void note_hand(std::size_t robot, Time at);
   /// When the last hand lets go of it.
   std::optional<Time> let_go(std::size_t robot) const;

@@ -16,7 +16,7 @@ const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find
 }  // namespace
 
 Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
-             std::shared_ptr<Workbench> bench)
+             std::shared_ptr<PlanningScratch> bench)
     : robot_(spec_of(scenario, robot)),
       bench_(std::move(bench)),
       rules_(bench_->rules),
@@ -39,7 +39,7 @@ void Agent::on_feedback(const msg::Feedback& feedback) {
   if (feedback.robot() != robot_.id || !position.allFinite() || !velocity.allFinite()) return;
   if (!(known.deviation_m >= 0) || !(known.scale_deviation >= 0)) return;
   estimate_ = {position, velocity};
-  blind_way_m_ = blind_way_m(known, tracking_bound_m_);
+  blind_path_m_ = blind_path_m(known, tracking_bound_m_);
   neighbours_.look_about(position, page_horizon_m());
   const VersionNumber stop = feedback.is_off_reference() ? feedback.executing().version_number() : 0;
   off_reference_ += stop > last_stop_;
@@ -138,7 +138,7 @@ msg::AgentStatus Agent::status(Time now) const {
   msg::AgentStatus status;
   status.robot(robot_.id);
   const Negotiation& n = negotiation_;
-  status.agent_phase(!n.is_fenced()           ? msg::AGENT_FENCING
+  status.agent_state(!n.is_fenced()           ? msg::AGENT_FENCING
                      : n.needs_registration() ? msg::AGENT_REGISTERING
                      : n.is_absent()          ? msg::AGENT_ABSENT
                      : arrived_               ? msg::AGENT_ARRIVED

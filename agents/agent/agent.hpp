@@ -7,8 +7,8 @@
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/seen_obstacles.hpp"
-#include "agents/agent/workbench.hpp"
-#include "agents/navigation/evasion.hpp"
+#include "agents/agent/planning_scratch.hpp"
+#include "agents/navigation/deadlock_recovery.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/ways.hpp"
 #include "agents/safety/escape_search.hpp"
@@ -24,7 +24,7 @@ namespace sidestep {
 class Agent {
  public:
   /// `scenario` has to have the robot, and the bench has to be one for it.
-  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation, std::shared_ptr<Workbench> bench);
+  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation, std::shared_ptr<PlanningScratch> bench);
 
   void on_feedback(const msg::Feedback& feedback);
   /// `now`: the latest that it can be by the robot's clock.
@@ -65,22 +65,22 @@ class Agent {
   std::vector<Circle> in_the_way(Time now);
   std::vector<Circle> moving_in_the_way(Time now);
   /// How far from the edge of what is in the way a robot's centre stays where it plans.
-  double planning_keep_m() const;
+  double planning_separation_m() const;
   /// What a version on this base has to be taken for larger: as the base, until vision has seen the robot at
   /// rest.
-  double growth_from(const Version& base, Time start) const;
+  double inflation_from(const Version& base, Time start) const;
   /// Two robots that begin farther apart than this cannot come near to each other with what they do next.
   double search_horizon_m() const;
   /// Of the others who begin farther away than this, an agent need not know.
   double page_horizon_m() const;
   /// What to make for from where the robot will be at `start`, among what the others mean to do.
   Intent steer(const State& there, Time start, const Route& route);
-  MotionWish wish_for(const Intent& intent, const State& there, const Route& route) const;
+  AccelerationCommand desired_for(const Intent& intent, const State& there, const Route& route) const;
   /// The way's direction, turned right to get out of a jam as far as obstacles allow.
   Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
 
   const RobotSpec robot_;
-  const std::shared_ptr<Workbench> bench_;
+  const std::shared_ptr<PlanningScratch> bench_;
   const FloorRules& rules_;
   const Duration clocks_differ_;  // any two of those that keep the bound, at most
   const Duration cycle_;
@@ -94,10 +94,10 @@ class Agent {
   std::size_t goal_index_ = 0;
   std::optional<Ways> ways_;        // to the current goal
   std::vector<Circle> in_the_way_;  // that ways_ leads round, besides the scenario's obstacles
-  Evasion evasion_;
+  DeadlockRecovery recovery_;
   bool arrived_ = false;
   State estimate_;                   // the robot's own,
-  double blind_way_m_ = 0;           // and how far from there it may drive without being seen again
+  double blind_path_m_ = 0;           // and how far from there it may drive without being seen again
   std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
   std::size_t in_world_ = 0;  // the robot's place in the last world that it was in

@@ -30,7 +30,7 @@ auto timed(DurationHistogram& histogram, Work work) {
 }  // namespace
 
 AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
-                     std::shared_ptr<Workbench> bench)
+                     std::shared_ptr<PlanningScratch> bench)
     : bus_(bus),
       robot_(robot),
       cycle_(scenario.cycle),

@@ -14,7 +14,7 @@ namespace sidestep {
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
-            std::shared_ptr<Workbench> bench);
+            std::shared_ptr<PlanningScratch> bench);
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 

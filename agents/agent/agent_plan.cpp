@@ -69,12 +69,12 @@ std::optional<Intent> intent_at(const Version& version, Time t) {
 
 double Agent::search_horizon_m() const {
   const double speed = rules_.limits.speed_mps;
-  return 2 * speed * (kAhead_s + speed / (2 * rules_.limits.deceleration_mps2)) + rules_.keep_m();
+  return 2 * speed * (kAhead_s + speed / (2 * rules_.limits.deceleration_mps2)) + rules_.min_separation_m();
 }
 
 double Agent::page_horizon_m() const { return search_horizon_m() + 2 * rules_.limits.speed_mps * kPageAge_s; }
 
-double Agent::planning_keep_m() const { return rules_.radius_m + rules_.margin_m + kPlanningRoom_m; }
+double Agent::planning_separation_m() const { return rules_.radius_m + rules_.margin_m + kPlanningRoom_m; }
 
 std::vector<Circle> Agent::moving_in_the_way(Time now) {
   const Vec2& here = estimate_.position_m;
@@ -85,7 +85,7 @@ std::vector<Circle> Agent::moving_in_the_way(Time now) {
     const Vec2 place = (seen.position_m / kAvoidedStep_m).array().round().matrix() * kAvoidedStep_m;
     const double radius = std::round(seen.radius_m / kAvoidedStep_m) * kAvoidedStep_m;
     // As much room as there is before the goal.
-    const double room = (place - goal().position_m).norm() - radius - planning_keep_m() - kCloseEnough_m;
+    const double room = (place - goal().position_m).norm() - radius - planning_separation_m() - kCloseEnough_m;
     const double wanted = kAvoidedStep_m + seen.speed_mps * to_seconds(kAvoidedAhead);
     found.push_back({place, radius + std::clamp(room, 0.0, wanted)});
   }
@@ -102,7 +102,7 @@ std::vector<Circle> Agent::in_the_way(Time now) {
   }
   // Whoever is on the goal is no obstacle on the way to it.
   std::erase_if(found, [&](const Circle& circle) {
-    return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_keep_m();
+    return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_separation_m();
   });
   return found;
 }
@@ -127,8 +127,8 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
-  const double grown_m = growth_from(base, start);
-  const bool is_there = (rest - goal().position_m).norm() < kCloseEnough_m && grown_m == base.grown_m;
+  const double inflation_m = inflation_from(base, start);
+  const bool is_there = (rest - goal().position_m).norm() < kCloseEnough_m && inflation_m == base.inflation_m;
   if (is_there || start <= base.trajectory.start()) return std::nullopt;
   base_ = base.number;
   const State there = base.trajectory.state_at(start);
@@ -136,12 +136,12 @@ std::optional<SearchQuery> Agent::plan(Time now, Time start) {
   const Route straight{goal().position_m, (goal().position_m - there.position_m).norm()};
   const Route route = ways_->route_from(there.position_m).value_or(straight);
   intent_ = steer(there, start, route);
-  const MotionWish wish = wish_for(intent_, there, route);
-  return SearchQuery{start, there, wish.acceleration_mps2, wish.hold, grown_m, obstacles_.recent(now)};
+  const AccelerationCommand desired = desired_for(intent_, there, route);
+  return SearchQuery{start, there, desired.acceleration_mps2, desired.hold, inflation_m, obstacles_.recent(now)};
 }
 
 Intent Agent::steer(const State& there, Time start, const Route& route) {
-  if (evasion_.is_needed()) {
+  if (recovery_.is_needed()) {
     return {rules_.limits.speed_mps * direction_beside(there.position_m, route), kEvading_s, route.waypoint_m,
             goal().position_m};
   }
@@ -149,7 +149,7 @@ Intent Agent::steer(const State& there, Time start, const Route& route) {
   steering.clear();
   for (const Version* version : neighbours_.newest(there.position_m, page_horizon_m())) {
     const State state = state_going_on(version->trajectory, start);
-    const double keep = rules_.keep_m() + version->grown_m;
+    const double keep = rules_.min_separation_m() + version->inflation_m;
     const std::optional<Intent> intent = intent_at(*version, start);
     if (!intent)
       steering.add_standing(state.position_m, keep);
@@ -163,9 +163,9 @@ Intent Agent::steer(const State& there, Time start, const Route& route) {
   return steering.choose(there, route.waypoint_m, goal().position_m, since, last_choice_);
 }
 
-MotionWish Agent::wish_for(const Intent& intent, const State& there, const Route& route) const {
+AccelerationCommand Agent::desired_for(const Intent& intent, const State& there, const Route& route) const {
   // It comes to rest before it would drift too far were it never seen again.
-  const double blind_m = std::max(0.0, blind_way_m_ - (there.position_m - estimate_.position_m).norm());
+  const double blind_m = std::max(0.0, blind_path_m_ - (there.position_m - estimate_.position_m).norm());
   const double length = std::min(route.length_m, blind_m);
   MotionLimits limits = rules_.limits;
   Vec2 to_go = length * (intent.waypoint_m - there.position_m).stableNormalized();
@@ -174,20 +174,20 @@ MotionWish Agent::wish_for(const Intent& intent, const State& there, const Route
     to_go = speed < kRest_mps ? Vec2::Zero() : Vec2(length / speed * intent.velocity_mps);
     if (speed >= kRest_mps) limits.speed_mps = speed;
   }
-  return wished_motion(to_go, there.velocity_mps, limits, cycle_, cycle_ * negotiation_.lead());
+  return desired_acceleration(to_go, there.velocity_mps, limits, cycle_, cycle_ * negotiation_.lead());
 }
 
-double Agent::growth_from(const Version& base, Time start) const {
+double Agent::inflation_from(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
   const bool was_seen_there = last_fix_ns_ > to_ns(base.trajectory.end());
-  return is_at_rest && was_seen_there ? 0 : base.grown_m;
+  return is_at_rest && was_seen_there ? 0 : base.inflation_m;
 }
 
 Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
   const Vec2 straight = (route.waypoint_m - here).stableNormalized();
   const double look_ahead = std::min(route.length_m, kLookAhead_m);
   for (const double share : {1.0, 0.75, 0.5, 0.25}) {
-    const Vec2 direction = rotated(straight, -share * evasion_.angle_rad());
+    const Vec2 direction = rotated(straight, -share * recovery_.angle_rad());
     const Vec2 ahead = here + look_ahead * direction;
     if (rules_.field.contains(ahead, rules_.radius_m) && ways_->sees(here, ahead)) return direction;
   }
@@ -195,14 +195,14 @@ Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
 }
 
 std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
-  Crowd& others = bench_->crowd;
+  TrajectoryIndex& others = bench_->crowd;
   neighbours_.gather(query.at_start.position_m, search_horizon_m(), others);
   SearchResult result = bench_->safety_search.search(query, others, rng_);
   if (result.count == 0) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
   const bool waits = intent_.hold_s > 0 && intent_.velocity_mps.norm() < kWaiting * rules_.limits.speed_mps;
-  evasion_.update(result.wish_is_clear && !waits, query.at_start.velocity_mps.norm(), now);
+  recovery_.update(result.desired_is_clear && !waits, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
-  return negotiation_.propose({result.candidates.data(), result.count}, base_, now, query.grown_m, intent_);
+  return negotiation_.propose({result.candidates.data(), result.count}, base_, now, query.inflation_m, intent_);
 }
 
 }  // namespace sidestep

@@ -64,8 +64,8 @@ void ClockWatch::fill(msg::AgentStatus& status, Time now) const {
   status.clock_uncertainty_s(offset ? to_seconds(offset->uncertainty()) : -1);
   status.invalid(status.invalid() + invalid_);
   const bool is_on_its_way =
-      status.agent_phase() == msg::AGENT_DRIVING || status.agent_phase() == msg::AGENT_WAITING;
-  if (is_on_its_way && is_beyond_bound(now)) status.agent_phase(msg::AGENT_OFF_CLOCK);
+      status.agent_state() == msg::AGENT_DRIVING || status.agent_state() == msg::AGENT_WAITING;
+  if (is_on_its_way && is_beyond_bound(now)) status.agent_state(msg::AGENT_OFF_CLOCK);
 }
 
 }  // namespace sidestep

@@ -19,7 +19,7 @@ void LedgerView::assign(const msg::LedgerPage& page) {
     const auto version = decode(message);
     entries.push_back({{message.x_m(), message.y_m()}, message.robot(), version.has_value()});
     versions.push_back(version.value_or(Version{}));
-    outlines.push_back(outline_of(versions.back().trajectory));
+    outlines.push_back(trajectory_bounds(versions.back().trajectory));
     ends.push_back(versions.back().trajectory.end());
   }
 }

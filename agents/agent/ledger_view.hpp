@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/motion/outline.hpp"
+#include "common/motion/trajectory_bounds.hpp"
 #include "common/motion/version.hpp"
 #include "idl/negotiation.h"
 
@@ -25,7 +25,7 @@ struct LedgerView {
   // All four as the page's versions.
   std::vector<Entry> entries;
   std::vector<Version> versions;
-  std::vector<Outline> outlines;
+  std::vector<TrajectoryBounds> outlines;
   std::vector<Time> ends;
 };
 

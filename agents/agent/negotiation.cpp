@@ -18,7 +18,7 @@ constexpr Incarnation kSpread = 1'000'003;
 }  // namespace
 
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
-    : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pace_(cycle) {}
+    : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pacing_(cycle) {}
 
 void Negotiation::on_feedback(const msg::Feedback& feedback) {
   if (feedback.robot() != robot_) return;
@@ -53,7 +53,7 @@ void Negotiation::use_fact(const msg::Feedback& feedback, const Version& executi
     executing_ = 0;
   } else if (held_.forget(executing.number, at)) {
     executing_ = executing.number;
-    if (moved_on) pace_.on_taken();
+    if (moved_on) pacing_.on_taken();
   } else {
     const auto is_older = [&](const Version& held) { return held.number < executing.number; };
     if (!std::ranges::any_of(held_.versions(), is_older)) return;  // late
@@ -63,7 +63,7 @@ void Negotiation::use_fact(const msg::Feedback& feedback, const Version& executi
   // What went away is what was executed before, if the robot has moved on, and what the robot can never take.
   for (std::size_t gone = before - held_.versions().size(); gone > (moved_on ? 1 : 0); --gone) {
     ++counts_.lost;
-    pace_.on_late();
+    pacing_.on_late();
   }
   check_assumptions();
 }
@@ -92,7 +92,7 @@ void Negotiation::adopt_epoch(Epoch epoch) {
   granting_ = false;
   close_all();
   for (Asked& asked : asked_) asked.answered = true;
-  pace_.reset();
+  pacing_.reset();
 }
 
 void Negotiation::close_all() {
@@ -129,7 +129,7 @@ void Negotiation::on_coordinator_state(const msg::CoordinatorState& state, Time 
   if (state.epoch() > epoch_) adopt_epoch(state.epoch());
   heard_ = now;
   missing_ = std::ranges::find(state.missing(), robot_) != state.missing().end();
-  granting_ = state.coordinator_phase() == msg::COORDINATOR_GRANTING;
+  granting_ = state.coordinator_mode() == msg::COORDINATOR_GRANTING;
 }
 
 bool Negotiation::may_propose(Time now) const {
@@ -150,7 +150,7 @@ Time Negotiation::last_start() const {
 std::optional<Time> Negotiation::unanswered_start(Time now) const {
   if (asked_count_ == 0 || asked_for_start_ >= kMostAskedForStart || last_start() > now) return std::nullopt;
   const Asked& last = newest();
-  const bool is_due = last.open && now - last.proposed_at >= pace_.patience() && last.start() - now > cycle_;
+  const bool is_due = last.open && now - last.proposed_at >= pacing_.patience() && last.start() - now > cycle_;
   return is_due ? std::optional(last.start()) : std::nullopt;
 }
 
@@ -178,7 +178,7 @@ const Version& Negotiation::base_at(Time start) const {
 }
 
 msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                                   double grown_m, const std::optional<Intent>& intent) {
+                                   double inflation_m, const std::optional<Intent>& intent) {
   contradicted_ = false;
   const bool is_again = asked_count_ > 0 && newest().start() == candidates.front().start();
   asked_for_start_ = is_again ? asked_for_start_ + 1 : 1;
@@ -197,7 +197,7 @@ msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, Versi
   proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
   for (const Trajectory& trajectory : candidates) {
     Version& version = asked.candidates[asked.count];
-    version = {robot_, incarnation_, next_number_++, base, trajectory, grown_m, intent};
+    version = {robot_, incarnation_, next_number_++, base, trajectory, inflation_m, intent};
     proposal.candidates()[asked.count++] = encode(version);
   }
   return proposal;
@@ -211,7 +211,7 @@ std::optional<Version> Negotiation::on_verdict(const msg::Verdict& verdict, Time
   const bool was_open = std::exchange(asked->open, false);
   asked->answered = true;
   last_round_trip_ = now - asked->proposed_at;
-  pace_.on_round_trip(last_round_trip_);
+  pacing_.on_round_trip(last_round_trip_);
   if (verdict.granted() == 0) {
     ++counts_.denials;
     // The coordinator knows the robot from an earlier agent, but not this one: the registration was lost.
@@ -246,7 +246,7 @@ void Negotiation::close_cycle(Time now) {
   }
   if (missed == 0) return;
   counts_.missed += static_cast<std::uint64_t>(missed);
-  pace_.on_late();
+  pacing_.on_late();
 }
 
 }  // namespace sidestep

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "agents/agent/pace.hpp"
+#include "agents/agent/proposal_pacing.hpp"
 #include "common/motion/version_set.hpp"
 #include "idl/negotiation.h"
 #include "idl/robot.h"
@@ -47,7 +47,7 @@ class Negotiation {
   /// The start of a version for which it is time to ask again, because no answer is to be expected any more.
   std::optional<Time> unanswered_start(Time now) const;
   /// How many cycles ahead to propose, and for how many to hold an acceleration at most.
-  int lead() const { return pace_.lead(); }
+  int lead() const { return pacing_.lead(); }
   /// What was proposed last, or forwarded, rests on a base that the robot turned out not to be executing.
   bool is_contradicted() const { return contradicted_; }
 
@@ -59,9 +59,9 @@ class Negotiation {
   /// is_absent().
   const Version& executing() const { return *held_.find(executing_); }
   /// Precondition: 1 to MAX_CANDIDATES candidates that continue `base` at one start time; or a stand on base
-  /// 0 for a robot that is absent. `grown_m` is the base's, or 0 from rest.
+  /// 0 for a robot that is absent. `inflation_m` is the base's, or 0 from rest.
   msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                        double grown_m = 0, const std::optional<Intent>& intent = std::nullopt);
+                        double inflation_m = 0, const std::optional<Intent>& intent = std::nullopt);
 
   /// Closes the cycle that ends now: what was proposed for it and has no verdict is given up, and counted.
   void close_cycle(Time now);
@@ -117,7 +117,7 @@ class Negotiation {
   std::array<Asked, 8> asked_;
   std::size_t asked_count_ = 0;
   int asked_for_start_ = 0;
-  Pace pace_;
+  ProposalPacing pacing_;
   Counts counts_;
   Duration last_round_trip_{0};
 };

@@ -75,7 +75,7 @@ void Neighbours::take(const msg::LedgerPage& message, Page& page, std::shared_pt
   }
 }
 
-void Neighbours::gather(const Vec2& here, double horizon, Crowd& crowd) const {
+void Neighbours::gather(const Vec2& here, double horizon, TrajectoryIndex& crowd) const {
   crowd.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.held) {

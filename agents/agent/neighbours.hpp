@@ -24,7 +24,7 @@ class Neighbours {
   void on_page(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
 
   /// Makes the crowd those that begin within `horizon_m` of `here`. Valid until the next page.
-  void gather(const Vec2& here_m, double horizon_m, Crowd& crowd) const;
+  void gather(const Vec2& here_m, double horizon_m, TrajectoryIndex& crowd) const;
   /// The newest version of each of those that begin within `horizon_m`. Valid until the next page, or call.
   std::span<const Version* const> newest(const Vec2& here_m, double horizon_m);
   /// Where the nearest others stand, and will until somebody grants them something: those who have been at

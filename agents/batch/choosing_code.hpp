@@ -31,7 +31,7 @@ void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t
       y = y * scale;
       store(a.x, at, x);
       store(a.y, at, y);
-      const Vector off_x = x - s.wish_x, off_y = y - s.wish_y;
+      const Vector off_x = x - s.desired_x, off_y = y - s.desired_y;
       store(a.distance2, at, off_x * off_x + off_y * off_y);
     }
   }

@@ -124,10 +124,10 @@ void compare(const ComparisonSettings& s, const Track& one, const TrackBlock* la
   for (std::size_t block = 0; block < blocks; ++block) {
     const KeepBlock& keep = keeps[one_for_all ? 0 : block];
     for (std::size_t at = 0; at < kLanes; at += kWidth) {
-      const Vector start = load(keep.start_s, at), keep_m = load(keep.keep_m, at);
+      const Vector start = load(keep.start_s, at), min_separation_m = load(keep.min_separation_m, at);
       const Vector deviation = (load(keep.acceleration_mps2, at) + s.acceleration_mps2) * deviation_s2;
-      const Vector clear_from = larger(keep_m + deviation + s.clear_room_m, zero);
-      const Vector blocked_below = keep_m - deviation - s.blocked_room_m;
+      const Vector clear_from = larger(min_separation_m + deviation + s.clear_room_m, zero);
+      const Vector blocked_below = min_separation_m - deviation - s.blocked_room_m;
       const Vector blocked_below2 = blocked_below > zero ? blocked_below * blocked_below : all(-1);
       Gaps found{all(kInfinity), all(kInfinity)};
       if (keep_gaps) found = {load(gaps[block].clear, at), load(gaps[block].blocked, at)};

@@ -63,11 +63,11 @@ void note(const Driven& d, const Mask& which, Number now_s, Driven& then, Vector
 }
 
 /// One step towards velocities.
-void advance(const DrivingSettings& s, const Vector& wish_x, const Vector& wish_y, Driven& d) {
-  constexpr Number kStep = static_cast<Number>(kForecastStep_s);
-  Vector change_x = wish_x - d.vx, change_y = wish_y - d.vy;
+void advance(const DrivingSettings& s, const Vector& desired_x, const Vector& desired_y, Driven& d) {
+  constexpr Number kStep = static_cast<Number>(kPredictionStep_s);
+  Vector change_x = desired_x - d.vx, change_y = desired_y - d.vy;
   const Vector change = root(change_x * change_x + change_y * change_y);
-  const auto slows = wish_x * wish_x + wish_y * wish_y < kSlower2 * (d.vx * d.vx + d.vy * d.vy);
+  const auto slows = desired_x * desired_x + desired_y * desired_y < kSlower2 * (d.vx * d.vx + d.vy * d.vy);
   const Vector most = slows ? all(s.deceleration_mps2 * kStep) : all(s.acceleration_mps2 * kStep);
   const Vector scale = change > most ? most / change : all(1);
   change_x = change_x * scale;
@@ -78,8 +78,8 @@ void advance(const DrivingSettings& s, const Vector& wish_x, const Vector& wish_
   d.vy = d.vy + change_y;
 }
 
-void drive(const DrivingSettings& s, const CourseBlock& c, std::size_t at, ForecastBlock& f) {
-  constexpr Number kStep = static_cast<Number>(kForecastStep_s);
+void drive(const DrivingSettings& s, const CourseBlock& c, std::size_t at, PredictionBlock& f) {
+  constexpr Number kStep = static_cast<Number>(kPredictionStep_s);
   const Vector zero = all(0), top = all(s.speed_mps);
   const Vector leg_x = load(c.goal_x, at) - load(c.way_x, at), leg_y = load(c.goal_y, at) - load(c.way_y, at);
   const Vector leg = root(leg_x * leg_x + leg_y * leg_y);
@@ -97,24 +97,24 @@ void drive(const DrivingSettings& s, const CourseBlock& c, std::size_t at, Forec
     const auto holds = held > all(kNothing_s);
     const Vector before = d.is_past;
     look(c, at, leg, d);
-    if (i == kForecastSteps) break;
+    if (i == kPredictionSteps) break;
     d.is_past = holds ? before : d.is_past;
     const Vector brakes = root(2 * kBraking * s.deceleration_mps2 * d.rest) - s.deceleration_mps2 * kStep / 2;
     const Vector speed = smaller(top, larger(brakes, smaller(d.rest / kStep, all(kCreep_mps))));
     const Vector share = d.to_go > all(kNothing) ? speed / d.to_go : zero;
-    const Vector wish_x = holds ? load(c.hold_vx, at) : share * d.to_go_x;
-    const Vector wish_y = holds ? load(c.hold_vy, at) : share * d.to_go_y;
+    const Vector desired_x = holds ? load(c.hold_vx, at) : share * d.to_go_x;
+    const Vector desired_y = holds ? load(c.hold_vy, at) : share * d.to_go_y;
     note(d, (when < zero) & ~holds & (d.rest < all(near_m)), static_cast<Number>(i) * kStep, then, when);
-    advance(s, wish_x, wish_y, d);
+    advance(s, desired_x, desired_y, d);
   }
-  note(d, when < zero, kForecastSteps * kStep, then, when);
+  note(d, when < zero, kPredictionSteps * kStep, then, when);
   store(f.arrival_s, at, when + time_to_go_s(s, then));
 }
 
 void drive(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
-           ForecastBlock* forecasts) {
+           PredictionBlock* forecasts) {
   for (std::size_t block = 0; block < blocks; ++block) {
-    for (std::size_t at = 0; at < kForecastLanes; at += kWidth)
+    for (std::size_t at = 0; at < kPredictionLanes; at += kWidth)
       drive(settings, courses[block], at, forecasts[block]);
   }
 }
@@ -129,20 +129,20 @@ Vector too_near(const Vector& ax, const Vector& ay, const Vector& bx, const Vect
   return deep * deep;
 }
 
-void meet(const Forecast& one, std::size_t from, Number keep_m, const Number* weights, Number after_s,
-          const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers) {
+void meet(const Prediction& one, std::size_t from, Number min_separation_m, const Number* weights, Number after_s,
+          const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers) {
   const Vector zero = all(0), full = all(1);
-  const Number inverse = 1 / (keep_m * keep_m);
+  const Number inverse = 1 / (min_separation_m * min_separation_m);
   for (std::size_t block = 0; block < blocks; ++block) {
-    const ForecastBlock& f = lanes[block];
-    for (std::size_t at = 0; at < kForecastLanes; at += kWidth) {
+    const PredictionBlock& f = lanes[block];
+    for (std::size_t at = 0; at < kPredictionLanes; at += kWidth) {
       const Vector last = load(f.arrival_s, at) + after_s;
       Vector danger = load(dangers[block], at);
       Vector ax = load(f.x_m[from], at) - one.x_m[from], ay = load(f.y_m[from], at) - one.y_m[from];
-      for (std::size_t i = from + 1; i < kForecastSamples; ++i) {
+      for (std::size_t i = from + 1; i < kPredictionSamples; ++i) {
         const Vector bx = load(f.x_m[i], at) - one.x_m[i], by = load(f.y_m[i], at) - one.y_m[i];
         const Vector counts =
-            last < all(static_cast<Number>(i) * static_cast<Number>(kForecastStep_s)) ? zero : full;
+            last < all(static_cast<Number>(i) * static_cast<Number>(kPredictionStep_s)) ? zero : full;
         const Vector deep = too_near(ax, ay, bx, by, inverse);
         danger = danger + weights[i] * counts * deep;
         ax = bx;
@@ -154,14 +154,14 @@ void meet(const Forecast& one, std::size_t from, Number keep_m, const Number* we
 }
 
 void leave(Number half_length_m, Number half_width_m, Number deep_m, const Number* weights,
-           const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers) {
+           const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers) {
   const Vector zero = all(0), full = all(1);
   const Number inverse = 1 / deep_m;
   for (std::size_t block = 0; block < blocks; ++block) {
-    const ForecastBlock& f = lanes[block];
-    for (std::size_t at = 0; at < kForecastLanes; at += kWidth) {
+    const PredictionBlock& f = lanes[block];
+    for (std::size_t at = 0; at < kPredictionLanes; at += kWidth) {
       Vector danger = load(dangers[block], at);
-      for (std::size_t i = 1; i < kForecastSamples; ++i) {
+      for (std::size_t i = 1; i < kPredictionSamples; ++i) {
         const Vector x = load(f.x_m[i], at), y = load(f.y_m[i], at);
         const Vector out = larger(larger(x, -x) - half_length_m, larger(y, -y) - half_width_m);
         danger = danger + weights[i] * smaller(full, larger(zero, out * inverse));
@@ -173,6 +173,6 @@ void leave(Number half_length_m, Number half_width_m, Number deep_m, const Numbe
 
 }  // namespace
 
-const ForecastingKernels SIDESTEP_KERNELS{drive, meet, leave};
+const PredictionKernels SIDESTEP_KERNELS{drive, meet, leave};
 
 }  // namespace sidestep::batch

@@ -33,7 +33,7 @@ struct Track {
 
 /// What each lane brings to a comparison. What happens before `start_s` does not count.
 struct KeepBlock {
-  Row start_s, keep_m, acceleration_mps2;
+  Row start_s, min_separation_m, acceleration_mps2;
 };
 
 /// What a comparison decides by: chords of the relative motion are farther apart than the distance to keep
@@ -62,7 +62,7 @@ struct LimitSettings {
   bool is_at_rest;
   double inverse_acceleration2, inverse_deceleration2, inverse_speed;
   double speed_limit_mps, seconds, inverse_seconds;
-  double wish_x, wish_y;
+  double desired_x, desired_y;
 };
 
 /// Accelerations that are held and followed by the stop manoeuvre.
@@ -103,34 +103,34 @@ struct ChoosingKernels {
                         const GapBlock* gaps, std::size_t blocks);
 };
 
-inline constexpr std::size_t kForecastSteps = 16;
-inline constexpr double kForecastStep_s = 0.1;
-inline constexpr std::size_t kForecastSamples = kForecastSteps + 1;
+inline constexpr std::size_t kPredictionSteps = 16;
+inline constexpr double kPredictionStep_s = 0.1;
+inline constexpr std::size_t kPredictionSamples = kPredictionSteps + 1;
 /// As near to its way point a robot turns to its goal.
 inline constexpr double kPassed_m = 0.2;
 
 /// Looking ahead, which nobody relies on, is done in single precision.
-inline constexpr std::size_t kForecastLanes = 2 * kLanes;
-struct alignas(64) ForecastRow {
-  float lane[kForecastLanes];
+inline constexpr std::size_t kPredictionLanes = 2 * kLanes;
+struct alignas(64) PredictionRow {
+  float lane[kPredictionLanes];
 };
 
 /// States, and what their robots mean to do: hold a velocity for so long, then make for a goal past a way
 /// point.
 struct CourseBlock {
-  ForecastRow x_m, y_m, vx_mps, vy_mps;
-  ForecastRow hold_vx, hold_vy, hold_s;
-  ForecastRow way_x, way_y, goal_x, goal_y;
+  PredictionRow x_m, y_m, vx_mps, vy_mps;
+  PredictionRow hold_vx, hold_vy, hold_s;
+  PredictionRow way_x, way_y, goal_x, goal_y;
 };
 
 /// Where robots are expected at the ends of steps, and when each has come to its goal.
-struct ForecastBlock {
-  ForecastRow x_m[kForecastSamples], y_m[kForecastSamples];
-  ForecastRow arrival_s;
+struct PredictionBlock {
+  PredictionRow x_m[kPredictionSamples], y_m[kPredictionSamples];
+  PredictionRow arrival_s;
 };
 /// One robot's.
-struct Forecast {
-  float x_m[kForecastSamples], y_m[kForecastSamples];
+struct Prediction {
+  float x_m[kPredictionSamples], y_m[kPredictionSamples];
 };
 
 /// What robots can do.
@@ -139,18 +139,18 @@ struct DrivingSettings {
 };
 
 /// Looking ahead. Every instruction set gives the same bits.
-struct ForecastingKernels {
+struct PredictionKernels {
   void (*drive)(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
-                ForecastBlock* forecasts);
-  /// Adds, for each step after the sample `from` in which a lane comes nearer to `one` than `keep_m`, the
-  /// step's weight times the square of 1 - (distance / keep_m)²; steps that end later than `after_s` after a
+                PredictionBlock* forecasts);
+  /// Adds, for each step after the sample `from` in which a lane comes nearer to `one` than `min_separation_m`, the
+  /// step's weight times the square of 1 - (distance / min_separation_m)²; steps that end later than `after_s` after a
   /// lane's arrival do not count.
-  void (*meet)(const Forecast& one, std::size_t from, float keep_m, const float* weights, float after_s,
-               const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers);
+  void (*meet)(const Prediction& one, std::size_t from, float min_separation_m, const float* weights, float after_s,
+               const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers);
   /// The same for each sample outside a rectangle about the origin, once its weight for each `deep_m`
   /// outside.
   void (*leave)(float half_length_m, float half_width_m, float deep_m, const float* weights,
-                const ForecastBlock* lanes, std::size_t blocks, ForecastRow* dangers);
+                const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers);
 };
 
 /// The inner loops of safety layer and steering for one instruction set.
@@ -158,7 +158,7 @@ struct Kernels {
   const char* name;
   ComparingKernels comparing;
   ChoosingKernels choosing;
-  ForecastingKernels forecasting;
+  PredictionKernels forecasting;
 };
 
 }  // namespace sidestep::batch

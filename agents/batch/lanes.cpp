@@ -16,8 +16,8 @@ constexpr double kLongAgo_s = -1e6;
 
 }  // namespace
 
-ComparisonSettings comparison(double begin_s, double step_s, double acceleration, double room_m) {
-  return {begin_s, step_s, acceleration, room_m + kClearanceTolerance_m + kRounding_m, room_m + kRounding_m};
+ComparisonSettings comparison(double begin_s, double step_s, double acceleration, double extra_clearance_m) {
+  return {begin_s, step_s, acceleration, extra_clearance_m + kClearanceTolerance_m + kRounding_m, extra_clearance_m + kRounding_m};
 }
 
 Track track_of(const TrackBlock& tracks, std::size_t lane) {
@@ -29,7 +29,7 @@ Track track_of(const TrackBlock& tracks, std::size_t lane) {
   return track;
 }
 
-Track track_of(const Outline& outline, Time begin, double step_s) {
+Track track_of(const TrajectoryBounds& outline, Time begin, double step_s) {
   const double from_s = to_seconds(begin - outline.start);
   Track track;
   for (std::size_t k = 0; k < kSamples; ++k) {
@@ -67,7 +67,7 @@ void Lanes::begin_block() {
   exact_[block] = 0;
 }
 
-void Lanes::add(const Outline& outline, double keep_m) {
+void Lanes::add(const TrajectoryBounds& outline, double min_separation_m) {
   const std::size_t block = count_ / kLanes, lane = count_ % kLanes;
   if (lane == 0) begin_block();
   ++count_;
@@ -91,7 +91,7 @@ void Lanes::add(const Outline& outline, double keep_m) {
   m.second_half_ax.lane[lane] = outline.second_half_mps2.x();
   m.second_half_ay.lane[lane] = outline.second_half_mps2.y();
   keeps_[block].start_s.lane[lane] = m.start_s.lane[lane];
-  keeps_[block].keep_m.lane[lane] = keep_m;
+  keeps_[block].min_separation_m.lane[lane] = min_separation_m;
   keeps_[block].acceleration_mps2.lane[lane] = outline.acceleration_mps2;
 }
 
@@ -106,8 +106,8 @@ void Lanes::sample(Time begin, double at_least_s) {
   is_sampled_ = true;
 }
 
-void Lanes::compare(const Track& one, double acceleration, double room_m) {
-  const ComparisonSettings settings = comparison(begin_s_, step_s_, acceleration, room_m);
+void Lanes::compare(const Track& one, double acceleration, double extra_clearance_m) {
+  const ComparisonSettings settings = comparison(begin_s_, step_s_, acceleration, extra_clearance_m);
   kernels_->comparing.compare(settings, one, tracks_.data(), keeps_.data(), false, blocks(), false,
                               gaps_.data());
   kernels_->comparing.decide(gaps_.data(), blocks(), clear_.data(), blocked_.data());

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "agents/batch/kernels.hpp"
-#include "common/motion/outline.hpp"
+#include "common/motion/trajectory_bounds.hpp"
 
 namespace sidestep::batch {
 
@@ -19,15 +19,15 @@ class Lanes {
 
   /// Forgets all; times are counted from `base` on, which should be near to what is compared.
   void restart(Time base);
-  void add(const Outline& outline, double keep_m);
+  void add(const TrajectoryBounds& outline, double min_separation_m);
   std::size_t size() const { return count_; }
 
   /// Prepares comparisons that begin at a time and last for at least so long.
   void sample(Time begin, double at_least_s);
   double step_s() const { return step_s_; }
   /// Compares all with one, sampled from the same begin on, as if every distance to keep were larger by
-  /// room_m for what is clear, and smaller for what is blocked.
-  void compare(const Track& one, double acceleration_mps2, double room_m);
+  /// extra_clearance_m for what is clear, and smaller for what is blocked.
+  void compare(const Track& one, double acceleration_mps2, double extra_clearance_m);
 
   /// After sample(): the lane cannot be compared like this.
   bool is_exact(std::size_t lane) const { return bit(exact_, lane) || bit(later_, lane); }
@@ -44,7 +44,7 @@ class Lanes {
   Track track(std::size_t lane) const;
   /// After the begin of the comparison.
   double start_s(std::size_t lane) const;
-  double keep_m(std::size_t lane) const { return keeps_[lane / kLanes].keep_m.lane[lane % kLanes]; }
+  double min_separation_m(std::size_t lane) const { return keeps_[lane / kLanes].min_separation_m.lane[lane % kLanes]; }
   double acceleration_mps2(std::size_t lane) const {
     return keeps_[lane / kLanes].acceleration_mps2.lane[lane % kLanes];
   }
@@ -69,12 +69,12 @@ class Lanes {
 };
 
 /// What comparisons with this much room decide by.
-ComparisonSettings comparison(double begin_s, double step_s, double acceleration_mps2, double room_m);
+ComparisonSettings comparison(double begin_s, double step_s, double acceleration_mps2, double extra_clearance_m);
 
 /// One lane's samples.
 Track track_of(const TrackBlock& tracks, std::size_t lane);
 
 /// A trajectory's samples. Precondition: the outline is plain.
-Track track_of(const Outline& outline, Time begin, double step_s);
+Track track_of(const TrajectoryBounds& outline, Time begin, double step_s);
 
 }  // namespace sidestep::batch

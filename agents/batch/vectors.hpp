@@ -10,7 +10,7 @@ namespace {
 
 #ifdef SIDESTEP_SINGLE_PRECISION
 typedef float Number;
-typedef ForecastRow NumberRow;
+typedef PredictionRow NumberRow;
 #else
 typedef double Number;
 typedef Row NumberRow;

@@ -12,7 +12,7 @@ constexpr double kLeastScaleDeviation = 1e-6;
 
 }  // namespace
 
-double blind_way_m(const Localisation& known, double tracking_bound_m) {
+double blind_path_m(const Localisation& known, double tracking_bound_m) {
   const double most = tracking_bound_m / kDeviations;
   const double left = most * most - known.deviation_m * known.deviation_m;
   return left > 0 ? std::sqrt(left) / std::max(known.scale_deviation, kLeastScaleDeviation) : 0;

@@ -11,6 +11,6 @@ struct Localisation {
 
 /// How far a robot may drive on without being seen before it must fear, at three standard deviations, to be
 /// farther from its reference than the bound. 0: it ought to stand and wait to be seen.
-double blind_way_m(const Localisation& known, double tracking_bound_m);
+double blind_path_m(const Localisation& known, double tracking_bound_m);
 
 }  // namespace sidestep

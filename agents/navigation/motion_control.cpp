@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-MotionWish wished_motion(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
+AccelerationCommand desired_acceleration(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
                          Duration shortest, Duration longest) {
   const Trapezoid2d profile(to_go_m, velocity_mps, limits);
   const Duration hold = std::clamp(from_seconds(profile.along().first_stretch_s()), shortest, longest);

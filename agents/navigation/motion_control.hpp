@@ -8,14 +8,14 @@
 namespace sidestep {
 
 /// An acceleration, and for how long to hold it.
-struct MotionWish {
+struct AccelerationCommand {
   Vec2 acceleration_mps2{0, 0};
   Duration hold{};
 };
 
 /// Trapezoidal motion control (Bruce, app. B) from a state to rest at the offset `to_go_m`. The acceleration
 /// is held for as long as the profile holds it, but at least for `shortest` and at most for `longest`.
-MotionWish wished_motion(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
+AccelerationCommand desired_acceleration(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
                          Duration shortest, Duration longest);
 
 }  // namespace sidestep

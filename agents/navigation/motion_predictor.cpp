@@ -3,21 +3,21 @@
 
 namespace sidestep {
 
-using batch::kForecastLanes;
-using batch::kForecastSamples;
+using batch::kPredictionLanes;
+using batch::kPredictionSamples;
 
-Forecasts::Forecasts(const MotionLimits& limits, const batch::Kernels& kernels)
+MotionPredictor::MotionPredictor(const MotionLimits& limits, const batch::Kernels& kernels)
     : kernels_(&kernels),
       settings_{static_cast<float>(limits.speed_mps), static_cast<float>(limits.acceleration_mps2),
                 static_cast<float>(limits.deceleration_mps2)} {}
 
-std::size_t Forecasts::block_count() const { return (size_ + kForecastLanes - 1) / kForecastLanes; }
+std::size_t MotionPredictor::block_count() const { return (size_ + kPredictionLanes - 1) / kPredictionLanes; }
 
-std::size_t Forecasts::add(const State& state, const Intent& intent) {
-  const std::size_t lane = size_++, i = lane % kForecastLanes;
+std::size_t MotionPredictor::add(const State& state, const Intent& intent) {
+  const std::size_t lane = size_++, i = lane % kPredictionLanes;
   if (courses_.size() < block_count()) courses_.resize(block_count());
-  batch::CourseBlock& c = courses_[lane / kForecastLanes];
-  const auto set = [i](batch::ForecastRow& row, double value) { row.lane[i] = static_cast<float>(value); };
+  batch::CourseBlock& c = courses_[lane / kPredictionLanes];
+  const auto set = [i](batch::PredictionRow& row, double value) { row.lane[i] = static_cast<float>(value); };
   set(c.x_m, state.position_m.x());
   set(c.y_m, state.position_m.y());
   set(c.vx_mps, state.velocity_mps.x());
@@ -32,23 +32,23 @@ std::size_t Forecasts::add(const State& state, const Intent& intent) {
   return lane;
 }
 
-void Forecasts::drive() {
+void MotionPredictor::drive() {
   if (driven_.size() < block_count()) driven_.resize(block_count());
   kernels_->forecasting.drive(settings_, courses_.data(), block_count(), driven_.data());
 }
 
-batch::Forecast Forecasts::of(std::size_t lane) const {
-  const batch::ForecastBlock& block = driven_[lane / kForecastLanes];
-  batch::Forecast forecast;
-  for (std::size_t i = 0; i < kForecastSamples; ++i) {
-    forecast.x_m[i] = block.x_m[i].lane[lane % kForecastLanes];
-    forecast.y_m[i] = block.y_m[i].lane[lane % kForecastLanes];
+batch::Prediction MotionPredictor::of(std::size_t lane) const {
+  const batch::PredictionBlock& block = driven_[lane / kPredictionLanes];
+  batch::Prediction forecast;
+  for (std::size_t i = 0; i < kPredictionSamples; ++i) {
+    forecast.x_m[i] = block.x_m[i].lane[lane % kPredictionLanes];
+    forecast.y_m[i] = block.y_m[i].lane[lane % kPredictionLanes];
   }
   return forecast;
 }
 
-double Forecasts::arrival_s(std::size_t lane) const {
-  return driven_[lane / kForecastLanes].arrival_s.lane[lane % kForecastLanes];
+double MotionPredictor::arrival_s(std::size_t lane) const {
+  return driven_[lane / kPredictionLanes].arrival_s.lane[lane % kPredictionLanes];
 }
 
 }  // namespace sidestep

@@ -11,10 +11,10 @@
 namespace sidestep {
 
 /// Robots driven in thought, with the limits that they have and what they mean to do, over steps of
-/// batch::kForecastStep_s. Nobody promises to move like that. Allocates nothing once warm.
-class Forecasts {
+/// batch::kPredictionStep_s. Nobody promises to move like that. Allocates nothing once warm.
+class MotionPredictor {
  public:
-  explicit Forecasts(const MotionLimits& limits, const batch::Kernels& kernels = batch::best_kernels());
+  explicit MotionPredictor(const MotionLimits& limits, const batch::Kernels& kernels = batch::best_kernels());
 
   void clear() { size_ = 0; }
   /// Returns the robot's lane.
@@ -24,9 +24,9 @@ class Forecasts {
 
   std::size_t size() const { return size_; }
   std::size_t block_count() const;
-  const batch::ForecastBlock* blocks() const { return driven_.data(); }
+  const batch::PredictionBlock* blocks() const { return driven_.data(); }
   /// Where a robot is expected at the ends of the steps.
-  batch::Forecast of(std::size_t lane) const;
+  batch::Prediction of(std::size_t lane) const;
   /// When it is expected at its goal, after its state; beyond the forecast by what is left of its way.
   double arrival_s(std::size_t lane) const;
 
@@ -35,7 +35,7 @@ class Forecasts {
   batch::DrivingSettings settings_;
   std::size_t size_ = 0;
   std::vector<batch::CourseBlock> courses_;
-  std::vector<batch::ForecastBlock> driven_;
+  std::vector<batch::PredictionBlock> driven_;
 };
 
 }  // namespace sidestep

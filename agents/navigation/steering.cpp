@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
-using batch::kForecastLanes;
-using batch::kForecastSamples;
+using batch::kPredictionLanes;
+using batch::kPredictionSamples;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kTurnsToASide = 9;
@@ -39,8 +39,8 @@ Steering::Steering(const Field& field, double radius_m, const MotionLimits& limi
       half_width_m_(static_cast<float>(field.width_m / 2 - radius_m)),
       moving_(limits, kernels),
       offered_(limits, kernels) {
-  for (std::size_t i = 0; i < kForecastSamples; ++i) {
-    const double to_come = 1 - static_cast<double>(i) / static_cast<double>(batch::kForecastSteps);
+  for (std::size_t i = 0; i < kPredictionSamples; ++i) {
+    const double to_come = 1 - static_cast<double>(i) / static_cast<double>(batch::kPredictionSteps);
     const double late = settings_.late_danger;
     weights_[i] =
         static_cast<float>(settings_.danger_s * (late + (1 - late) * std::pow(to_come, settings_.fade)));
@@ -53,16 +53,16 @@ void Steering::clear() {
   others_.clear();
 }
 
-void Steering::add_moving(const State& state, const Intent& intent, double keep_m) {
+void Steering::add_moving(const State& state, const Intent& intent, double min_separation_m) {
   moving_.add(state, intent);
-  keeps_m_.push_back(keep_m + settings_.room_m);
+  keeps_m_.push_back(min_separation_m + settings_.extra_clearance_m);
 }
 
-void Steering::add_standing(const Vec2& place, double keep_m) {
+void Steering::add_standing(const Vec2& place, double min_separation_m) {
   Other& other = others_.emplace_back();
   std::ranges::fill(other.forecast.x_m, static_cast<float>(place.x()));
   std::ranges::fill(other.forecast.y_m, static_cast<float>(place.y()));
-  other.keep_m = keep_m + settings_.standing_room_m;
+  other.min_separation_m = min_separation_m + settings_.standing_room_m;
 }
 
 Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s,
@@ -151,32 +151,32 @@ void Steering::offer_bends(const State& at, const Vec2& goal) {
 }
 
 std::size_t Steering::first_reach(const Other& other, const Vec2& from_m) const {
-  const double step_m = speed_mps_ * batch::kForecastStep_s;
+  const double step_m = speed_mps_ * batch::kPredictionStep_s;
   std::size_t i = 0;
   // However it goes, it is not farther away than that, and the other one comes no nearer than that before.
-  const auto reach_m = [&] { return other.keep_m + step_m * static_cast<double>(i + 2); };
-  while (i < batch::kForecastSteps && std::hypot(other.forecast.x_m[i + 1] - from_m.x(),
+  const auto reach_m = [&] { return other.min_separation_m + step_m * static_cast<double>(i + 2); };
+  while (i < batch::kPredictionSteps && std::hypot(other.forecast.x_m[i + 1] - from_m.x(),
                                                  other.forecast.y_m[i + 1] - from_m.y()) > reach_m())
     ++i;
   return i;
 }
 
 void Steering::weigh(const Vec2& at) {
-  const batch::ForecastingKernels& kernels = kernels_->forecasting;
+  const batch::PredictionKernels& kernels = kernels_->forecasting;
   offered_.drive();
   const std::size_t blocks = offered_.block_count();
-  dangers_.assign(blocks, batch::ForecastRow{});
+  dangers_.assign(blocks, batch::PredictionRow{});
   kernels.leave(half_length_m_, half_width_m_, kDeepOutside_m, weights_, offered_.blocks(), blocks,
                 dangers_.data());
   for (const Other& other : others_) {
     const std::size_t from = first_reach(other, at);
-    kernels.meet(other.forecast, from, static_cast<float>(other.keep_m), weights_, kAfterArrival_s,
+    kernels.meet(other.forecast, from, static_cast<float>(other.min_separation_m), weights_, kAfterArrival_s,
                  offered_.blocks(), blocks, dangers_.data());
   }
 }
 
 double Steering::danger_s(std::size_t lane) const {
-  return dangers_[lane / kForecastLanes].lane[lane % kForecastLanes];
+  return dangers_[lane / kPredictionLanes].lane[lane % kPredictionLanes];
 }
 
 std::size_t Steering::best() const {

@@ -18,7 +18,7 @@ struct SteeringSettings {
   double left_s = 0.16;            ///< of turning left: where both turn right they come past each other
   double change_s = 0.06;          ///< of going round in another way than was chosen last,
   double harmless_s = 0.02;        ///< which is not looked for while the danger of the last one is less
-  double room_m = 0.035;           ///< by so much more than they must, robots like to keep from each other,
+  double extra_clearance_m = 0.035;           ///< by so much more than they must, robots like to keep from each other,
   double standing_room_m = 0.016;  ///< and from what stands
 };
 
@@ -40,10 +40,10 @@ class Steering {
 
   /// Forgets the others.
   void clear();
-  /// Somebody who moves, to make way for; centres are to stay `keep_m` apart.
-  void add_moving(const State& state, const Intent& intent, double keep_m);
+  /// Somebody who moves, to make way for; centres are to stay `min_separation_m` apart.
+  void add_moving(const State& state, const Intent& intent, double min_separation_m);
   /// Somebody or something that stays where it is.
-  void add_standing(const Vec2& place_m, double keep_m);
+  void add_standing(const Vec2& place_m, double min_separation_m);
 
   /// What to do from a state on. `since_s`: so much earlier was the state of the robot's last choice, which
   /// is kept unless something is gained by another one.
@@ -52,8 +52,8 @@ class Steering {
 
  private:
   struct Other {
-    batch::Forecast forecast;
-    double keep_m;
+    batch::Prediction forecast;
+    double min_separation_m;
   };
   void forecast_others();
   void offer(const State& at, const Intent& intent, double extra_s = 0);
@@ -74,14 +74,14 @@ class Steering {
   SteeringSettings settings_;
   double speed_mps_;
   float half_length_m_, half_width_m_;
-  float weights_[batch::kForecastSamples];
-  Forecasts moving_;
+  float weights_[batch::kPredictionSamples];
+  MotionPredictor moving_;
   std::vector<double> keeps_m_;  // as moving_
   std::vector<Other> others_;
-  Forecasts offered_;
+  MotionPredictor offered_;
   std::vector<Intent> intents_;  // as offered_, and what each costs besides time and danger
   std::vector<double> extra_s_;
-  std::vector<batch::ForecastRow> dangers_;
+  std::vector<batch::PredictionRow> dangers_;
 };
 
 }  // namespace sidestep

@@ -20,8 +20,8 @@ std::vector<Shape> grown(const std::vector<Circle>& obstacles, double by_m) {
 }  // namespace
 
 Ways::Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
-           double room_m, const Vec2& goal_m)
-    : roomy_(grown(obstacles, margin_m + room_m)),
+           double extra_clearance_m, const Vec2& goal_m)
+    : roomy_(grown(obstacles, margin_m + extra_clearance_m)),
       tight_(grown(obstacles, margin_m)),
       field_(field),
       radius_m_(radius_m),

@@ -24,10 +24,10 @@ class Ways {
   Ways(const Ways&) = delete;
   Ways& operator=(const Ways&) = delete;
 
-  /// `margin_m`: so much more than its radius the robot's centre has to keep from the discs' edges; `room_m`:
+  /// `margin_m`: so much more than its radius the robot's centre has to keep from the discs' edges; `extra_clearance_m`:
   /// and so much more it keeps where there is a way that does.
   Ways(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
-       double room_m, const Vec2& goal_m);
+       double extra_clearance_m, const Vec2& goal_m);
 
   /// nullopt when there is no way from here, or none that can be found in a cycle. A start that is too near a
   /// disc may move away from it. Where the goal is too near one, the way leads to the nearest place that is

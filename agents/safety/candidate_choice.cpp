@@ -28,16 +28,16 @@ CandidateChoice::CandidateChoice(int samples, const MotionLimits& limits, const 
       tracks_(blocks_for(count_)),
       gaps_(blocks_for(count_)) {}
 
-void CandidateChoice::draw(const Vec2& velocity, const Vec2& wish, Duration phase, Rng& rng) {
-  const batch::LimitSettings settings = limit_settings(velocity, wish, limits_, phase);
+void CandidateChoice::draw(const Vec2& velocity, const Vec2& desired, Duration phase, Rng& rng) {
+  const batch::LimitSettings settings = limit_settings(velocity, desired, limits_, phase);
   sample_ahead(settings.is_at_rest, limits_, rng, count_ - 1, drawn_x_.data(), drawn_y_.data());
   for (std::size_t i = 1; i < count_; ++i) {
     accelerations_[i / kLanes].x.lane[i % kLanes] = drawn_x_[i - 1];
     accelerations_[i / kLanes].y.lane[i % kLanes] = drawn_y_[i - 1];
   }
   kernels_->choosing.limit(settings, accelerations_.data(), accelerations_.size());
-  accelerations_[0].x.lane[0] = wish.x();
-  accelerations_[0].y.lane[0] = wish.y();
+  accelerations_[0].x.lane[0] = desired.x();
+  accelerations_[0].y.lane[0] = desired.y();
   accelerations_[0].distance2.lane[0] = 0;
   for (std::size_t i = count_; i < accelerations_.size() * kLanes; ++i)
     accelerations_[i / kLanes].distance2.lane[i % kLanes] = kInfinity;
@@ -60,14 +60,14 @@ void CandidateChoice::sample(const State& at_start, double phase_s, double step_
   kernels_->comparing.sample(motions_.data(), motions_.size(), 0, step_s, tracks_.data());
 }
 
-void CandidateChoice::compare(const batch::Track& other, double start_s, double keep_m,
+void CandidateChoice::compare(const batch::Track& other, double start_s, double min_separation_m,
                               double other_acceleration) {
   // A little more than the largest, for rounding.
   const double own = 1.001 * std::max(limits_.acceleration_mps2, limits_.deceleration_mps2);
   batch::KeepBlock keep;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     keep.start_s.lane[lane] = start_s;
-    keep.keep_m.lane[lane] = keep_m;
+    keep.min_separation_m.lane[lane] = min_separation_m;
     keep.acceleration_mps2.lane[lane] = own;
   }
   kernels_->comparing.compare(batch::comparison(0, step_s_, other_acceleration, 0), other, tracks_.data(),

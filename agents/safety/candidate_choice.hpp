@@ -19,11 +19,11 @@ class CandidateChoice {
 
   /// The wish, which has to obey the limits, and random ones from A(v), limited to what may be held for the
   /// phase.
-  void draw(const Vec2& velocity_mps, const Vec2& wish_mps2, Duration phase, Rng& rng);
+  void draw(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration phase, Rng& rng);
   /// Prepares for compare(): every one is held from the state on for the phase, then the robot stops.
   void sample(const State& at_start, double phase_s, double step_s);
-  /// Takes out what certainly comes nearer than `keep_m` to the other, who begins at `start_s`.
-  void compare(const batch::Track& other, double start_s, double keep_m, double other_acceleration_mps2);
+  /// Takes out what certainly comes nearer than `min_separation_m` to the other, who begins at `start_s`.
+  void compare(const batch::Track& other, double start_s, double min_separation_m, double other_acceleration_mps2);
 
   /// Takes the nearest to the wish that is left out of the choice, and those too near to the one chosen last.
   std::optional<std::size_t> take_nearest(double spread_mps2);

@@ -13,19 +13,19 @@ void ClearanceBatch::restart(Time base) {
   others_.clear();
 }
 
-void ClearanceBatch::add(const Outline& outline, const Trajectory& trajectory, double keep_m) {
-  lanes_.add(outline, keep_m);
-  others_.push_back({&trajectory, keep_m});
+void ClearanceBatch::add(const TrajectoryBounds& outline, const Trajectory& trajectory, double min_separation_m) {
+  lanes_.add(outline, min_separation_m);
+  others_.push_back({&trajectory, min_separation_m});
 }
 
 bool ClearanceBatch::exact(const Trajectory& one, const Other& other) {
   ++left_to_exact_;
-  return is_clear(one, *other.trajectory, other.keep_m);
+  return is_clear(one, *other.trajectory, other.min_separation_m);
 }
 
 std::span<const std::uint8_t> ClearanceBatch::compare(const Trajectory& one) {
   clear_.resize(others_.size());
-  const Outline outline = outline_of(one);
+  const TrajectoryBounds outline = trajectory_bounds(one);
   if (!outline.is_plain || outline.seconds > batch::kLongest_s) {
     for (std::size_t i = 0; i < others_.size(); ++i) clear_[i] = exact(one, others_[i]);
     return clear_;

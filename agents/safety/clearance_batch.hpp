@@ -21,9 +21,9 @@ class ClearanceBatch {
   void restart(Time base);
   std::size_t size() const { return others_.size(); }
   /// The trajectory, whose outline it is, is read until the next restart().
-  void add(const Outline& outline, const Trajectory& trajectory, double keep_m);
+  void add(const TrajectoryBounds& outline, const Trajectory& trajectory, double min_separation_m);
 
-  /// For each that was added, in that order: is_clear(one, trajectory, keep_m).
+  /// For each that was added, in that order: is_clear(one, trajectory, min_separation_m).
   std::span<const std::uint8_t> compare(const Trajectory& one);
 
   /// How many pairs had to be left to is_clear() so far.
@@ -32,7 +32,7 @@ class ClearanceBatch {
  private:
   struct Other {
     const Trajectory* trajectory;
-    double keep_m;
+    double min_separation_m;
   };
   bool exact(const Trajectory& one, const Other& other);
 

@@ -48,14 +48,14 @@ double MovingObstacle::reach_m(Time t) const {
   return radius_m + speed_mps * std::abs(to_seconds(t - seen_at));
 }
 
-bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double keep_m) {
-  const double keep = keep_m + kRounding_m;
+bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double min_separation_m) {
+  const double keep = min_separation_m + kRounding_m;
   const double far = sidestep::reach_m(trajectory) + keep +
                      std::max(obstacle.reach_m(trajectory.start()), obstacle.reach_m(trajectory.end()));
   State state = trajectory.at_start();
   if ((state.position_m - obstacle.position_m).squaredNorm() > far * far) return true;
   Time t = trajectory.start();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     if (phase.duration <= Duration::zero()) continue;
     const double seconds = to_seconds(phase.duration);
     // The reach is convex in time, so it lies below what grows evenly between its ends.
@@ -70,9 +70,9 @@ bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, 
 }
 
 bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles,
-                      double keep_m) {
+                      double min_separation_m) {
   return std::ranges::all_of(
-      obstacles, [&](const MovingObstacle& obstacle) { return rests_before(trajectory, obstacle, keep_m); });
+      obstacles, [&](const MovingObstacle& obstacle) { return rests_before(trajectory, obstacle, min_separation_m); });
 }
 
 }  // namespace sidestep

@@ -22,14 +22,14 @@ struct MovingObstacle {
 };
 
 /// Whether the robot comes to rest before the obstacle could reach it: at every time of the trajectory before
-/// its end the robot's centre is farther than `keep_m` (its radius and the margin) from wherever the
+/// its end the robot's centre is farther than `min_separation_m` (its radius and the margin) from wherever the
 /// obstacle's edge may be. Afterwards the robot is at rest, and that is all that it can promise. The answer
 /// yes is never wrong; no may be, within a micrometre.
 ///
 /// Squared distance less squared reach is a quartic on each phase. In Bernstein form its least coefficient
 /// bounds it from below, and halving the phase brings the bound up to the quartic itself (Lane, Riesenfeld
 /// 1981).
-bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double keep_m);
-bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles, double keep_m);
+bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double min_separation_m);
+bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles, double min_separation_m);
 
 }  // namespace sidestep

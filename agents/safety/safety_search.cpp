@@ -42,15 +42,15 @@ double reach_per_mps2(const SearchQuery& query, const MotionLimits& limits) {
 }  // namespace
 
 bool SafetySearch::Other::is_clear(const Trajectory& candidate) const {
-  return trajectory ? sidestep::is_clear(candidate, *trajectory, keep_m)
-                    : sidestep::is_clear(candidate, centre_m, keep_m);
+  return trajectory ? sidestep::is_clear(candidate, *trajectory, min_separation_m)
+                    : sidestep::is_clear(candidate, centre_m, min_separation_m);
 }
 
 SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settings,
                            const batch::Kernels& kernels)
     : rules_(rules), settings_(settings), choice_(settings.samples, rules.limits, kernels), lanes_(kernels) {
   for (const Circle& obstacle : rules.obstacles)
-    obstacles_.push_back(outline_of(Trajectory::resting(Time{}, obstacle.centre_m)));
+    obstacles_.push_back(trajectory_bounds(Trajectory::resting(Time{}, obstacle.centre_m)));
   constexpr std::size_t kUsuallyEnough = 64;
   found_.reserve(kUsuallyEnough);
   others_.reserve(kUsuallyEnough);
@@ -58,35 +58,35 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
   exact_.reserve(kUsuallyEnough);
 }
 
-SearchResult SafetySearch::search(const SearchQuery& query, Crowd& others, Rng& rng) {
+SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng) {
   const MotionLimits& limits = rules_.limits;
-  const Vec2 wish = limited(query.wish_mps2, query.at_start.velocity_mps, limits, query.phase);
-  const Outline wished = outline_of(
-      accelerate_then_stop(query.start, query.at_start, wish, query.phase, limits.deceleration_mps2));
-  const double room = (wish.norm() + largest_acceleration_mps2(limits)) * reach_per_mps2(query, limits);
+  const Vec2 desired = limited(query.desired_mps2, query.at_start.velocity_mps, limits, query.phase);
+  const TrajectoryBounds desired = trajectory_bounds(
+      accelerate_then_stop(query.start, query.at_start, desired, query.phase, limits.deceleration_mps2));
+  const double room = (desired.norm() + largest_acceleration_mps2(limits)) * reach_per_mps2(query, limits);
 
   SearchResult result;
-  choice_.draw(query.at_start.velocity_mps, wish, query.phase, rng);
-  find_near(query, {wished.disc.centre_m, wished.disc.radius_m + room}, others);
-  compare(query, wished, room, result.checks);
+  choice_.draw(query.at_start.velocity_mps, desired, query.phase, rng);
+  find_near(query, {desired.disc.centre_m, desired.disc.radius_m + room}, others);
+  compare(query, desired, room, result.checks);
   while (const auto index = choice_.take_nearest(settings_.spread_mps2)) {
     const Trajectory trajectory = accelerate_then_stop(
         query.start, query.at_start, choice_.acceleration(*index), query.phase, limits.deceleration_mps2);
     if (!is_allowed(trajectory, choice_.is_certainly_clear(*index))) continue;
-    if (!rests_before_all(trajectory, query.moving, rules_.radius_m + rules_.margin_m + query.grown_m))
+    if (!rests_before_all(trajectory, query.moving, rules_.radius_m + rules_.margin_m + query.inflation_m))
       continue;
     choice_.keep(*index);
-    result.wish_is_clear = result.wish_is_clear || *index == 0;
+    result.desired_is_clear = result.desired_is_clear || *index == 0;
     result.candidates[result.count++] = trajectory;
     if (result.count == SearchResult::kMaxCandidates) break;
   }
   return result;
 }
 
-void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd& others) {
+void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others) {
   lanes_.restart(query.start);
   others_.clear();
-  const double keep = rules_.keep_m() + query.grown_m;
+  const double keep = rules_.min_separation_m() + query.inflation_m;
   // Room for what clearances are computed to.
   constexpr double kRoom_m = 1e-6;
   found_.clear();
@@ -94,15 +94,15 @@ void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd
   for (const std::uint32_t index : found_) {
     const Version& version = others.version(index);
     if (query.robot == version.robot) continue;
-    lanes_.add(others.outline(index), keep + version.grown_m);
-    others_.push_back({&version.trajectory, Vec2(0, 0), keep + version.grown_m});
+    lanes_.add(others.outline(index), keep + version.inflation_m);
+    others_.push_back({&version.trajectory, Vec2(0, 0), keep + version.inflation_m});
   }
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Circle& obstacle = rules_.obstacles[i];
-    const double clearance = obstacle.radius_m + rules_.radius_m + rules_.margin_m + query.grown_m;
+    const double clearance = obstacle.radius_m + rules_.radius_m + rules_.margin_m + query.inflation_m;
     const double far = disc.radius_m + clearance + kRoom_m;
     if ((obstacle.centre_m - disc.centre_m).squaredNorm() > far * far) continue;
-    Outline outline = obstacles_[i];
+    TrajectoryBounds outline = obstacles_[i];
     outline.start = query.start;
     lanes_.add(outline, clearance);
     others_.push_back({nullptr, obstacle.centre_m, clearance});
@@ -114,10 +114,10 @@ void SafetySearch::find_near(const SearchQuery& query, const Circle& disc, Crowd
 
 /// All candidates are about where the wish leads, so whoever is clear of that by the room that they take is
 /// clear of all of them. Only with the others who are near each candidate is compared.
-void SafetySearch::compare(const SearchQuery& query, const Outline& wish, double room_m, int& checks) {
+void SafetySearch::compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m, int& checks) {
   const double phase_s = to_seconds(query.phase);
   const double seconds = phase_s + longest_stop_s(query, rules_.limits);
-  if (!wish.is_plain || seconds > batch::kLongest_s) {
+  if (!desired.is_plain || seconds > batch::kLongest_s) {
     near_ = exact_ = others_;
     return;
   }
@@ -125,7 +125,7 @@ void SafetySearch::compare(const SearchQuery& query, const Outline& wish, double
   near_.clear();
   if (others_.empty()) return;
   lanes_.sample(query.start, seconds);
-  lanes_.compare(batch::track_of(wish, query.start, lanes_.step_s()), wish.acceleration_mps2, room_m);
+  lanes_.compare(batch::track_of(desired, query.start, lanes_.step_s()), desired.acceleration_mps2, extra_clearance_m);
   checks += static_cast<int>(lanes_.size());
   if (lanes_.are_all_clear()) return;
   bool is_sampled = false;
@@ -136,7 +136,7 @@ void SafetySearch::compare(const SearchQuery& query, const Outline& wish, double
     } else if (!lanes_.is_clear(lane)) {
       if (!is_sampled) choice_.sample(query.at_start, phase_s, lanes_.step_s());
       is_sampled = true;
-      choice_.compare(lanes_.track(lane), lanes_.start_s(lane), lanes_.keep_m(lane),
+      choice_.compare(lanes_.track(lane), lanes_.start_s(lane), lanes_.min_separation_m(lane),
                       lanes_.acceleration_mps2(lane));
       checks += static_cast<int>(choice_.size());
       near_.push_back(others_[lane]);

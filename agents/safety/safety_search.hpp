@@ -19,9 +19,9 @@ namespace sidestep {
 struct SearchQuery {
   Time start{};
   State at_start;
-  Vec2 wish_mps2{0, 0};
+  Vec2 desired_mps2{0, 0};
   Duration phase{};                          ///< how long the acceleration is held before the stop
-  double grown_m = 0;                        ///< how much larger than its radius the robot has to be taken
+  double inflation_m = 0;                        ///< how much larger than its radius the robot has to be taken
   std::span<const MovingObstacle> moving{};  ///< to be at rest before
   std::optional<RobotId> robot{};  ///< whose own versions, if they are among the others, do not count
 };
@@ -36,7 +36,7 @@ struct SearchResult {
   static constexpr std::size_t kMaxCandidates = 5;
   std::array<Trajectory, kMaxCandidates> candidates;
   std::size_t count = 0;
-  bool wish_is_clear = false;  ///< the first candidate is the wish itself
+  bool desired_is_clear = false;  ///< the first candidate is the wish itself
   int checks = 0;              ///< pairs of trajectories compared
 };
 
@@ -49,24 +49,24 @@ class SafetySearch {
   SafetySearch(const FloorRules& rules, const SearchSettings& settings,
                const batch::Kernels& kernels = batch::best_kernels());
 
-  SearchResult search(const SearchQuery& query, Crowd& others, Rng& rng);
+  SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
  private:
   /// Somebody or something that a candidate may come near to.
   struct Other {
     const Trajectory* trajectory;  // nullptr: an obstacle
     Vec2 centre_m;
-    double keep_m;
+    double min_separation_m;
     bool is_clear(const Trajectory& candidate) const;
   };
-  void draw(const SearchQuery& query, const Vec2& wish_mps2, Rng& rng);
-  void find_near(const SearchQuery& query, const Circle& disc, Crowd& others);
-  void compare(const SearchQuery& query, const Outline& wish, double room_m, int& checks);
+  void draw(const SearchQuery& query, const Vec2& desired_mps2, Rng& rng);
+  void find_near(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
+  void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m, int& checks);
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
   SearchSettings settings_;
-  std::vector<Outline> obstacles_;  // as rules_.obstacles
+  std::vector<TrajectoryBounds> obstacles_;  // as rules_.obstacles
   CandidateChoice choice_;
   std::vector<std::uint32_t> found_;
   batch::Lanes lanes_;               // of the others who may be near, and

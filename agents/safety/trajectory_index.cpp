@@ -15,41 +15,41 @@ constexpr std::size_t kFew = 64;
 
 }  // namespace
 
-void Crowd::clear() {
+void TrajectoryIndex::clear() {
   versions_.clear();
   outlines_.clear();
   is_built_ = false;
 }
 
-void Crowd::add(const Version& version, const Outline& outline) {
+void TrajectoryIndex::add(const Version& version, const TrajectoryBounds& outline) {
   versions_.push_back(&version);
   outlines_.push_back(outline);
-  outlines_.back().disc.radius_m += version.grown_m;
+  outlines_.back().disc.radius_m += version.inflation_m;
   is_built_ = false;
 }
 
-void Crowd::assign(std::span<const Version> versions) {
+void TrajectoryIndex::assign(std::span<const Version> versions) {
   clear();
   for (const Version& version : versions) add(version);
 }
 
-std::size_t Crowd::column_of(double x) const {
+std::size_t TrajectoryIndex::column_of(double x) const {
   const double column = (x - low_m_.x()) / cell_m_;
   return static_cast<std::size_t>(std::clamp(column, 0.0, static_cast<double>(columns_ - 1)));
 }
 
-std::size_t Crowd::row_of(double y) const {
+std::size_t TrajectoryIndex::row_of(double y) const {
   const double row = (y - low_m_.y()) / cell_m_;
   return static_cast<std::size_t>(std::clamp(row, 0.0, static_cast<double>(rows_ - 1)));
 }
 
-void Crowd::build() {
+void TrajectoryIndex::build() {
   const std::size_t count = versions_.size();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   low_m_ = Vec2::Constant(kInfinity);
   Vec2 high_m = Vec2::Constant(-kInfinity);
   largest_m_ = 0;
-  for (const Outline& outline : outlines_) {
+  for (const TrajectoryBounds& outline : outlines_) {
     low_m_ = low_m_.cwiseMin(outline.disc.centre_m);
     high_m = high_m.cwiseMax(outline.disc.centre_m);
     largest_m_ = std::max(largest_m_, outline.disc.radius_m);
@@ -95,7 +95,7 @@ void Crowd::build() {
   is_built_ = true;
 }
 
-void Crowd::find(const Circle& circle, std::vector<std::uint32_t>& found) {
+void TrajectoryIndex::find(const Circle& circle, std::vector<std::uint32_t>& found) {
   if (versions_.empty()) return;
   if (!is_built_) build();
   const double far = circle.radius_m + largest_m_;
@@ -108,7 +108,7 @@ void Crowd::find(const Circle& circle, std::vector<std::uint32_t>& found) {
   }
 }
 
-void Crowd::find_between(std::size_t begin, std::size_t end, const Circle& circle,
+void TrajectoryIndex::find_between(std::size_t begin, std::size_t end, const Circle& circle,
                          std::vector<std::uint32_t>& found) {
   if (begin == end) return;
   const std::size_t first = begin / batch::kLanes, last = (end - 1) / batch::kLanes;

@@ -6,29 +6,29 @@
 #include <vector>
 
 #include "agents/batch/dispatch.hpp"
-#include "common/motion/outline.hpp"
+#include "common/motion/trajectory_bounds.hpp"
 #include "common/motion/version.hpp"
 
 namespace sidestep {
 
 /// What others may be executing, laid out for being found by place: a grid of cells, and in each the discs
 /// that versions never leave. Allocates nothing once warm.
-class Crowd {
+class TrajectoryIndex {
  public:
-  explicit Crowd(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
+  explicit TrajectoryIndex(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
 
   void clear();
   /// The version is read until clear() or assign().
-  void add(const Version& version) { add(version, outline_of(version.trajectory)); }
+  void add(const Version& version) { add(version, trajectory_bounds(version.trajectory)); }
   /// The same with the outline of its trajectory.
-  void add(const Version& version, const Outline& outline);
+  void add(const Version& version, const TrajectoryBounds& outline);
   void assign(std::span<const Version> versions);
 
   std::size_t size() const { return versions_.size(); }
   const Version& version(std::size_t index) const { return *versions_[index]; }
-  const Outline& outline(std::size_t index) const { return outlines_[index]; }
+  const TrajectoryBounds& outline(std::size_t index) const { return outlines_[index]; }
 
-  /// Adds the indices of the versions whose discs, grown_m larger, touch the circle. In no particular order,
+  /// Adds the indices of the versions whose discs, inflation_m larger, touch the circle. In no particular order,
   /// but the same one for the same versions added in the same order.
   void find(const Circle& circle, std::vector<std::uint32_t>& found);
 
@@ -41,7 +41,7 @@ class Crowd {
 
   const batch::Kernels* kernels_;
   std::vector<const Version*> versions_;
-  std::vector<Outline> outlines_;
+  std::vector<TrajectoryBounds> outlines_;
   bool is_built_ = true;
   Vec2 low_m_{0, 0};
   double cell_m_ = 1;

@@ -3,13 +3,13 @@
 
 namespace sidestep {
 
-std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const HangingCamera& like) {
+std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const OverheadCamera& like) {
   const Vec2 corner(-field.length_m / 2, -field.width_m / 2);
   const Vec2 share(field.length_m / spec.columns, field.width_m / spec.rows);
   std::vector<CameraModel> cameras;
   for (int camera = 0; camera < spec.columns * spec.rows; ++camera) {
     const Vec2 low = corner + share.cwiseProduct(Vec2(camera % spec.columns, camera / spec.columns));
-    HangingCamera over = like;
+    OverheadCamera over = like;
     over.view_m = grown(Box{low, low + share}, spec.overlap_m);
     cameras.push_back(hang(over));
   }
@@ -20,8 +20,8 @@ std::vector<CameraModel> hang_grid(const Scenario& scenario) {
   return hang_grid(scenario.field, scenario.vision, hanging(scenario.vision.images.value_or(ImageSpec())));
 }
 
-HangingCamera hanging(const ImageSpec& images) {
-  HangingCamera camera;
+OverheadCamera hanging(const ImageSpec& images) {
+  OverheadCamera camera;
   camera.height_m = images.camera_height_m;
   camera.width_px = images.width_px;
   camera.height_px = images.height_px;

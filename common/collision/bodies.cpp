@@ -98,8 +98,8 @@ void Bodies::record_edges(Slot slot, std::span<const Vec2> corners) {
     const Vec2 along = way / std::max(way.squaredNorm(), 1e-24);
     block.x_m[i % 4] = static_cast<float>(begin.x());
     block.y_m[i % 4] = static_cast<float>(begin.y());
-    block.way_x_m[i % 4] = static_cast<float>(way.x());
-    block.way_y_m[i % 4] = static_cast<float>(way.y());
+    block.via_x_m[i % 4] = static_cast<float>(way.x());
+    block.via_y_m[i % 4] = static_cast<float>(way.y());
     block.along_x_per_m[i % 4] = static_cast<float>(along.x());
     block.along_y_per_m[i % 4] = static_cast<float>(along.y());
     block.more = blocks - 1 - i / 4;

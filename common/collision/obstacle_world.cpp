@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/collision/batch/dispatch.hpp"
-#include "common/collision/first_touch.hpp"
+#include "common/collision/time_of_impact.hpp"
 
 namespace sidestep {
 namespace {
@@ -86,7 +86,7 @@ std::optional<Contact> ObstacleWorld::first_contact(const Vec2& from, const Vec2
   const Box box = sweep.bounds();
   std::optional<Contact> first;
   const auto meet = [&](Slot slot) {
-    const std::optional<double> part = first_touch(sweep, parts_.bodies.shape(slot));
+    const std::optional<double> part = time_of_impact(sweep, parts_.bodies.shape(slot));
     if (part && !(first && first->part <= *part)) first = Contact{*part, ObstacleId{slot}};
   };
   if (const auto* masks = std::get_if<ExtentMasks>(&parts_.set))

@@ -50,24 +50,24 @@ std::vector<TerrainTree::Corners> triangles_of(const HeightField& field) {
 
 /// A query's segment.
 struct TerrainTree::Line {
-  Vec3 from_m, way_m;
+  Vec3 from_m, path_m;
 
-  Line(const Vec3& from, const Vec3& to) : from_m(from), way_m(to - from) {
+  Line(const Vec3& from, const Vec3& to) : from_m(from), path_m(to - from) {
     require(from.allFinite() && to.allFinite(), "a place over terrain is not finite");
   }
-  Vec3 to_m() const { return from_m + way_m; }
-  Vec3 at(double part) const { return from_m + part * way_m; }
+  Vec3 to_m() const { return from_m + path_m; }
+  Vec3 at(double part) const { return from_m + part * path_m; }
 
   /// The parts of the line between which it is over a rectangle; none where the first is above the second.
   std::pair<double, double> over(const Node& node) const {
     double begin = 0, end = 1;
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       const double low = node.min_m[axis] - from_m[axis], high = node.max_m[axis] - from_m[axis];
-      if (way_m[axis] == 0) {
+      if (path_m[axis] == 0) {
         if (low > 0 || high < 0) return {1, 0};
         continue;
       }
-      const double a = low / way_m[axis], b = high / way_m[axis];
+      const double a = low / path_m[axis], b = high / path_m[axis];
       begin = std::max(begin, std::min(a, b));
       end = std::min(end, std::max(a, b));
     }
@@ -83,13 +83,13 @@ struct TerrainTree::Line {
   /// The square of the distance from a box, exact: its derivative grows, and is linear between the parts
   /// where the line meets a plane of the box.
   double squared_distance_from(const Node& node) const {
-    const auto slope = [&](double part) { return way_m.dot(outside(node, part)); };
+    const auto slope = [&](double part) { return path_m.dot(outside(node, part)); };
     double begin = 0, end = 1, slope_begin = slope(0), slope_end = slope(1);
     if (slope_begin >= 0) return outside(node, 0).squaredNorm();
     if (slope_end <= 0) return outside(node, 1).squaredNorm();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const double plane : {node.min_m[axis], node.max_m[axis]}) {
-        const double part = way_m[axis] != 0 ? (plane - from_m[axis]) / way_m[axis] : begin;
+        const double part = path_m[axis] != 0 ? (plane - from_m[axis]) / path_m[axis] : begin;
         if (!(part > begin && part < end)) continue;
         const double slope_here = slope(part);
         (slope_here < 0 ? begin : end) = part;

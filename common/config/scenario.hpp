@@ -36,7 +36,7 @@ struct RobotSpec {
 struct OpponentSpec {
   double radius_m = 0.09;
   double speed_mps = 1;
-  std::vector<Vec2> way_m;  ///< at least one point; to and fro, or round when it ends where it begins
+  std::vector<Vec2> path_m;  ///< at least one point; to and fro, or round when it ends where it begins
 };
 
 struct BallSpec {

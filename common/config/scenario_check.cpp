@@ -39,7 +39,7 @@ struct Checker {
   void clear_of_opponents(const Vec2& point, int line, const std::string& what) const {
     for (const OpponentSpec& opponent : scenario.opponents) {
       const double least = opponent.radius_m + scenario.radius_m + scenario.margin_m;
-      const double distance = (point - opponent.way_m.front()).norm();
+      const double distance = (point - opponent.path_m.front()).norm();
       if (distance >= least - kRounding_m) continue;
       throw ScenarioError(
           file, line,

@@ -36,12 +36,12 @@ OpponentSpec read_opponent(YamlMap& map, double bound_mps) {
   map.require("speed_mps");
   map.read("radius_m", {0.01, 5}, opponent.radius_m);
   map.read("speed_mps", kSpeed_mps, opponent.speed_mps);
-  const YamlPlace way = map.place_of("way_m");
-  for (const YAML::Node& point : list_from(map.require("way_m"), way, kMaxWayPoints)) {
+  const YamlPlace way = map.place_of("path_m");
+  for (const YAML::Node& point : list_from(map.require("path_m"), way, kMaxWayPoints)) {
     const auto numbers = numbers_from(point, way.of(point, way.what), 2, 2, kPlace_m);
-    opponent.way_m.emplace_back(numbers[0], numbers[1]);
+    opponent.path_m.emplace_back(numbers[0], numbers[1]);
   }
-  if (opponent.way_m.empty()) way.refuse("expected at least one point");
+  if (opponent.path_m.empty()) way.refuse("expected at least one point");
   map.finish();
   if (opponent.speed_mps > bound_mps) {
     map.place_of("speed_mps")

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLargestPosition_m = 1e4;
 constexpr double kLargestSpeed_mps = 100;
-constexpr double kLargestGrowth_m = 10;
+constexpr double kMaxInflation_m = 10;
 constexpr double kLargestAcceleration_mps2 = 1000;
 constexpr Duration kLongestPhase = std::chrono::minutes(1);
 constexpr std::int64_t kLatestStart_ns = std::int64_t{1} << 62;
@@ -21,7 +21,7 @@ bool within(double value, double bound) { return std::abs(value) <= bound; }
 std::optional<Intent> decode(const msg::Intent& message) {
   const Intent intent{{message.vx_mps(), message.vy_mps()},
                       message.hold_s(),
-                      {message.way_x_m(), message.way_y_m()},
+                      {message.via_x_m(), message.via_y_m()},
                       {message.goal_x_m(), message.goal_y_m()}};
   const auto is_place = [](const Vec2& p) {
     return within(p.x(), kLargestPosition_m) && within(p.y(), kLargestPosition_m);
@@ -38,8 +38,8 @@ msg::Intent encode(const Intent& intent) {
   message.vx_mps(static_cast<float>(intent.velocity_mps.x()));
   message.vy_mps(static_cast<float>(intent.velocity_mps.y()));
   message.hold_s(static_cast<float>(intent.hold_s));
-  message.way_x_m(static_cast<float>(intent.waypoint_m.x()));
-  message.way_y_m(static_cast<float>(intent.waypoint_m.y()));
+  message.via_x_m(static_cast<float>(intent.waypoint_m.x()));
+  message.via_y_m(static_cast<float>(intent.waypoint_m.y()));
   message.goal_x_m(static_cast<float>(intent.goal_m.x()));
   message.goal_y_m(static_cast<float>(intent.goal_m.y()));
   return message;
@@ -50,14 +50,14 @@ msg::Intent encode(const Intent& intent) {
 // Each field is read once: their accessors are calls, and every agent reads many versions in every cycle.
 std::optional<Version> decode(const msg::Version& message) {
   const double x = message.x_m(), y = message.y_m(), vx = message.vx_mps(), vy = message.vy_mps();
-  const double grown = message.grown_m();
+  const double grown = message.inflation_m();
   const std::int64_t start = message.start_ns();
   const int phases = message.phase_count();
   const RobotId robot = message.robot();
   const bool sound = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
                      start <= kLatestStart_ns && within(x, kLargestPosition_m) &&
                      within(y, kLargestPosition_m) && within(vx, kLargestSpeed_mps) &&
-                     within(vy, kLargestSpeed_mps) && grown >= 0 && grown <= kLargestGrowth_m;
+                     within(vy, kLargestSpeed_mps) && grown >= 0 && grown <= kMaxInflation_m;
   if (!sound) return std::nullopt;
   std::optional<Version> version(Version{robot, message.incarnation(), message.version_number(),
                                          message.base(), Trajectory(time_from_ns(start), {{x, y}, {vx, vy}}),
@@ -90,12 +90,12 @@ msg::Version encode(const Version& version) {
   message.y_m(trajectory.at_start().position_m.y());
   message.vx_mps(trajectory.at_start().velocity_mps.x());
   message.vy_mps(trajectory.at_start().velocity_mps.y());
-  message.grown_m(version.grown_m);
+  message.inflation_m(version.inflation_m);
   message.has_intent(version.intent.has_value());
   if (version.intent) message.intended(encode(*version.intent));
   message.phase_count(static_cast<std::uint8_t>(trajectory.phases().size()));
   auto slot = message.phases().begin();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     slot->duration_ns(phase.duration.count());
     slot->ax_mps2(phase.acceleration_mps2.x());
     slot->ay_mps2(phase.acceleration_mps2.y());

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-Duration draw_delay(const LinkQuality& quality, Rng& rng) {
+Duration sample_delay(const LinkQuality& quality, Rng& rng) {
   const double mean_s = std::max(0.0, to_seconds(quality.delay_mean - quality.delay_min));
   const Duration above = from_seconds(-mean_s * std::log(1 - rng.uniform()));
   return std::min(quality.delay_min + above, std::max(quality.delay_min, quality.delay_max));
@@ -25,8 +25,8 @@ bool ImpairedLink::is_lost(const LinkQuality& quality, Rng& rng) {
 Copies ImpairedLink::send(const LinkQuality& quality, Rng& rng) {
   Copies copies;
   if (is_lost(quality, rng)) return copies;
-  copies.delays[copies.count++] = draw_delay(quality, rng);
-  if (rng.chance(quality.duplicate)) copies.delays[copies.count++] = draw_delay(quality, rng);
+  copies.delays[copies.count++] = sample_delay(quality, rng);
+  if (rng.chance(quality.duplicate)) copies.delays[copies.count++] = sample_delay(quality, rng);
   return copies;
 }
 

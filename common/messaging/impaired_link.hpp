@@ -41,6 +41,6 @@ class ImpairedLink {
 };
 
 /// The delay of one message.
-Duration draw_delay(const LinkQuality& quality, Rng& rng);
+Duration sample_delay(const LinkQuality& quality, Rng& rng);
 
 }  // namespace sidestep

@@ -169,25 +169,25 @@ double smallest_squared_distance(const Trajectory& a, const Trajectory& b, doubl
 
 }  // namespace
 
-double clearance_m(const Trajectory& a, const Trajectory& b, double keep_m) {
+double clearance_m(const Trajectory& a, const Trajectory& b, double min_separation_m) {
   const double squared =
       smallest_squared_distance(a, b, std::numeric_limits<double>::infinity(), [](double) { return false; });
-  return std::sqrt(squared) - keep_m - kClearanceTolerance_m;
+  return std::sqrt(squared) - min_separation_m - kClearanceTolerance_m;
 }
 
-bool is_clear(const Trajectory& a, const Trajectory& b, double keep_m) {
-  const double keep = keep_m + kClearanceTolerance_m;
+bool is_clear(const Trajectory& a, const Trajectory& b, double min_separation_m) {
+  const double keep = min_separation_m + kClearanceTolerance_m;
   const double too_near = keep * keep;
   return smallest_squared_distance(a, b, keep, [=](double squared) { return squared < too_near; }) >=
          too_near;
 }
 
-double clearance_m(const Trajectory& a, const Vec2& centre_m, double keep_m) {
-  return clearance_m(a, Trajectory::resting(a.start(), centre_m), keep_m);
+double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separation_m) {
+  return clearance_m(a, Trajectory::resting(a.start(), centre_m), min_separation_m);
 }
 
-bool is_clear(const Trajectory& a, const Vec2& centre_m, double keep_m) {
-  return is_clear(a, Trajectory::resting(a.start(), centre_m), keep_m);
+bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m) {
+  return is_clear(a, Trajectory::resting(a.start(), centre_m), min_separation_m);
 }
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@ namespace {
 Vec2 farthest_m(const Trajectory& trajectory) {
   State state = trajectory.at_start();
   Vec2 farthest = state.position_m.cwiseAbs();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
     for (const int axis : {0, 1}) {
       const double turn = -state.velocity_mps[axis] / phase.acceleration_mps2[axis];
@@ -32,7 +32,7 @@ Trajectory rest_of(const Trajectory& trajectory, Time from) {
   if (from <= trajectory.start()) return trajectory;
   Trajectory rest(from, trajectory.state_at(from));
   Time begin = trajectory.start();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     const Time end = begin + phase.duration;
     if (end > from) rest.append(end - std::max(begin, from), phase.acceleration_mps2);
     begin = end;
@@ -40,25 +40,25 @@ Trajectory rest_of(const Trajectory& trajectory, Time from) {
   return rest;
 }
 
-double kept_distance_m(const Trajectory& base, Time from, const Trajectory& other, double keep_m) {
-  return std::min(keep_m, clearance_m(rest_of(base, from), other, 0) - kClearanceTolerance_m);
+double kept_distance_m(const Trajectory& base, Time from, const Trajectory& other, double min_separation_m) {
+  return std::min(min_separation_m, clearance_m(rest_of(base, from), other, 0) - kClearanceTolerance_m);
 }
 
 msg::Reason check_place_after(const Version& version, const Trajectory& base, const FloorRules& rules) {
   FloorRules eased = rules;
-  eased.margin_m += version.grown_m;
-  const msg::Reason reason = check_place(version.trajectory, version.grown_m == 0 ? rules : eased);
+  eased.margin_m += version.inflation_m;
+  const msg::Reason reason = check_place(version.trajectory, version.inflation_m == 0 ? rules : eased);
   if (reason == msg::REASON_GRANTED) return reason;
   const Trajectory rest = rest_of(base, version.trajectory.start());
-  const double room_m = rules.radius_m + kClearanceTolerance_m;
+  const double extra_clearance_m = rules.radius_m + kClearanceTolerance_m;
   const Vec2 farthest = farthest_m(rest);
-  eased.field.length_m = std::max(eased.field.length_m, 2 * (farthest.x() + room_m));
-  eased.field.width_m = std::max(eased.field.width_m, 2 * (farthest.y() + room_m));
-  const double keep_m = eased.radius_m + eased.margin_m;
+  eased.field.length_m = std::max(eased.field.length_m, 2 * (farthest.x() + extra_clearance_m));
+  eased.field.width_m = std::max(eased.field.width_m, 2 * (farthest.y() + extra_clearance_m));
+  const double min_separation_m = eased.radius_m + eased.margin_m;
   for (Circle& obstacle : eased.obstacles) {
     const double kept_m = kept_distance_m(
-        rest, rest.start(), Trajectory::resting(rest.start(), obstacle.centre_m), keep_m + obstacle.radius_m);
-    obstacle.radius_m = kept_m - keep_m;
+        rest, rest.start(), Trajectory::resting(rest.start(), obstacle.centre_m), min_separation_m + obstacle.radius_m);
+    obstacle.radius_m = kept_m - min_separation_m;
   }
   return check_place(version.trajectory, eased);
 }

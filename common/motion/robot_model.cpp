@@ -85,7 +85,7 @@ Vec2 forward_of(const Vec2& velocity) {
   return speed < kAtRest_mps ? Vec2(1, 0) : Vec2(velocity * (1 / speed));
 }
 
-batch::LimitSettings limit_settings(const Vec2& velocity, const Vec2& wish, const MotionLimits& limits,
+batch::LimitSettings limit_settings(const Vec2& velocity, const Vec2& desired, const MotionLimits& limits,
                                     Duration duration) {
   const double speed = velocity.norm(), seconds = to_seconds(duration);
   const Vec2 forward = forward_of(velocity);
@@ -100,8 +100,8 @@ batch::LimitSettings limit_settings(const Vec2& velocity, const Vec2& wish, cons
           limits.speed_mps,
           seconds,
           1 / seconds,
-          wish.x(),
-          wish.y()};
+          desired.x(),
+          desired.y()};
 }
 
 }  // namespace sidestep

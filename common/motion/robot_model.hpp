@@ -36,7 +36,7 @@ void sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng, std::si
 Vec2 forward_of(const Vec2& velocity_mps);
 
 /// What batch::Kernels::limit takes to do as limited() does to many, drawn by sample_ahead().
-batch::LimitSettings limit_settings(const Vec2& velocity_mps, const Vec2& wish_mps2,
+batch::LimitSettings limit_settings(const Vec2& velocity_mps, const Vec2& desired_mps2,
                                     const MotionLimits& limits, Duration duration);
 
 }  // namespace sidestep

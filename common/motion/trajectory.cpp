@@ -9,7 +9,7 @@ Motion Trajectory::motion_at(Time t) const {
   State state = at_start_;
   if (t < start_) return {state};
   Duration left = t - start_;
-  for (const Phase& phase : phases()) {
+  for (const MotionPhase& phase : phases()) {
     const Vec2& acceleration = phase.acceleration_mps2;
     if (left < phase.duration) return {state_after(state, acceleration, to_seconds(left)), acceleration};
     state = state_after(state, acceleration, to_seconds(phase.duration));
@@ -21,7 +21,7 @@ Motion Trajectory::motion_at(Time t) const {
 namespace {
 State state_after_phases(const Trajectory& trajectory) {
   State state = trajectory.at_start();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
   }
   return state;
@@ -44,7 +44,7 @@ void append_stop(Trajectory& trajectory, double deceleration_mps2) {
 double reach_m(const Trajectory& trajectory) {
   double reach = 0;
   State state = trajectory.at_start();
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
     // The speed is convex over a phase, so its larger end bounds it.
     const State next = state_after(state, phase.acceleration_mps2, seconds);

@@ -16,7 +16,7 @@ struct State {
 };
 
 /// A stretch of constant acceleration.
-struct Phase {
+struct MotionPhase {
   Duration duration{0};
   Vec2 acceleration_mps2{0, 0};
 };
@@ -56,11 +56,11 @@ class Trajectory {
   Time start() const { return start_; }
   Time end() const {
     Time t = start_;
-    for (const Phase& phase : phases()) t += phase.duration;
+    for (const MotionPhase& phase : phases()) t += phase.duration;
     return t;
   }
   const State& at_start() const { return at_start_; }
-  std::span<const Phase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
+  std::span<const MotionPhase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
 
   /// The state at a time; at rest at the end point from end() on; the start state before the start.
   State state_at(Time t) const { return motion_at(t).state; }
@@ -75,7 +75,7 @@ class Trajectory {
  private:
   Time start_{};
   State at_start_;
-  Phase phases_[kMaxPhases];
+  MotionPhase phases_[kMaxPhases];
   int count_ = 0;
 };
 

@@ -33,7 +33,7 @@ FloorRules floor_rules(const Scenario& scenario) {
 msg::Reason check_limits(const Trajectory& trajectory, const MotionLimits& limits) {
   State state = trajectory.at_start();
   if (state.velocity_mps.norm() > limits.speed_mps + kSpeedTolerance_mps) return msg::REASON_BEYOND_LIMITS;
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     const Vec2& a = phase.acceleration_mps2;
     const double largest = std::max(limits.acceleration_mps2, limits.deceleration_mps2);
     if (a.norm() > largest + kAccelerationTolerance_mps2) return msg::REASON_BEYOND_LIMITS;
@@ -63,7 +63,7 @@ bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory)
   const double room_x = field.length_m / 2 - radius_m, room_y = field.width_m / 2 - radius_m;
   State state = trajectory.at_start();
   if (std::abs(state.position_m.x()) > room_x || std::abs(state.position_m.y()) > room_y) return false;
-  for (const Phase& phase : trajectory.phases()) {
+  for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
     const Vec2 &p = state.position_m, &v = state.velocity_mps, &a = phase.acceleration_mps2;
     if (largest_excursion(p.x(), v.x(), a.x(), seconds) > room_x) return false;

@@ -20,7 +20,7 @@ struct FloorRules {
   double margin_m = 0.01;
 
   /// The distance that two robots' centres keep.
-  double keep_m() const { return 2 * radius_m + margin_m; }
+  double min_separation_m() const { return 2 * radius_m + margin_m; }
 };
 
 FloorRules floor_rules(const Scenario& scenario);

@@ -37,7 +37,7 @@ struct Version {
   VersionNumber base = 0;
   Trajectory trajectory;
   /// How much larger than its radius the robot has to be taken: where it was measured off its reference.
-  double grown_m = 0;
+  double inflation_m = 0;
   std::optional<Intent> intent{};
 };
 

@@ -51,7 +51,7 @@ msg::NetworkFault order_from(const NetworkOptions& options, std::uint32_t target
   return order;
 }
 
-void send(DdsOrders& orders, msg::NetworkFault order) {
+void send(OperatorChannel& orders, msg::NetworkFault order) {
   order.head(order_head());
   orders.writer().write(&order);
   wait_until_taken(orders);
@@ -60,7 +60,7 @@ void send(DdsOrders& orders, msg::NetworkFault order) {
 int disturb(const NetworkOptions& options) {
   const auto target = order_target(options.target);
   const msg::NetworkFault order = order_from(options, target->number);
-  DdsOrders orders(options.dds, topics::kNetworkFault);
+  OperatorChannel orders(options.dds, topics::kNetworkFault);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   wait_for_taker(orders, target->participant);

@@ -64,7 +64,7 @@ std::optional<OrderTarget> order_target(const std::string& words) {
   return std::nullopt;
 }
 
-void wait_for_taker(DdsOrders& orders, const std::string& participant) {
+void wait_for_taker(OperatorChannel& orders, const std::string& participant) {
   std::vector<std::string> takers;
   Time changed_at = EventLoop::now();
   const bool is_there = wait_until([&] {
@@ -82,11 +82,11 @@ void wait_for_taker(DdsOrders& orders, const std::string& participant) {
                   takers.empty() ? "" : fmt::format(", only {}", fmt::join(takers, ", "))));
 }
 
-void wait_for_writer(DdsOrders& orders, const std::string& channel, const std::string& complaint) {
+void wait_for_writer(OperatorChannel& orders, const std::string& channel, const std::string& complaint) {
   if (!wait_until([&] { return orders.is_written(channel); })) throw std::runtime_error(complaint);
 }
 
-void wait_until_taken(DdsOrders& orders) {
+void wait_until_taken(OperatorChannel& orders) {
   if (!orders.wait_until_taken(participant_lease() + kMissing)) {
     throw std::runtime_error(
         fmt::format("the order was sent, but not all of {} have taken it", fmt::join(orders.takers(), ", ")));

@@ -23,11 +23,11 @@ std::optional<OrderTarget> order_target(const std::string& words);
 
 /// Waits until this participant takes the orders, or, for an empty name, until somebody does and nobody new
 /// comes for a while. Throws std::runtime_error saying who does take them, when it does not come.
-void wait_for_taker(DdsOrders& orders, const std::string& participant);
+void wait_for_taker(OperatorChannel& orders, const std::string& participant);
 /// Waits until somebody writes this channel; throws std::runtime_error with `complaint`.
-void wait_for_writer(DdsOrders& orders, const std::string& channel, const std::string& complaint);
+void wait_for_writer(OperatorChannel& orders, const std::string& channel, const std::string& complaint);
 /// Waits until all takers have what was sent; throws std::runtime_error.
-void wait_until_taken(DdsOrders& orders);
+void wait_until_taken(OperatorChannel& orders);
 
 /// The head of an order that is sent now.
 msg::Header order_head();

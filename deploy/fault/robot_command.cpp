@@ -49,7 +49,7 @@ msg::Disturbance order_from(const RobotOptions& options, Kind kind) {
 }
 
 int disturb(const RobotOptions& options, Kind kind) {
-  DdsOrders orders(options.dds, topics::kDisturbance);
+  OperatorChannel orders(options.dds, topics::kDisturbance);
   wait_for_taker(orders, "sidestep-simulator");
   wait_for_writer(orders, channel_name(topics::kFeedback, options.robot),
                   fmt::format("there is no robot {} on this floor", options.robot));

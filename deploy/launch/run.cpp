@@ -220,7 +220,7 @@ class Launcher {
   const NamespaceNetwork* network_;
   ProcessGroup group_;
   DdsBus bus_;
-  Judge judge_;
+  RunMetrics judge_;
   Auditor auditor_;
   std::uint64_t said_violations_ = 0;
   std::optional<RecordingWriter> recording_;

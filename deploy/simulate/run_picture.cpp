@@ -22,14 +22,14 @@ std::string circle(const Vec2& centre_m, double radius_m, const std::string& sty
 /// An opponent goes its way whatever happens, so the way is what there is to draw.
 std::string way_of(const OpponentSpec& opponent) {
   std::string points;
-  for (const Vec2& point : opponent.way_m) {
+  for (const Vec2& point : opponent.path_m) {
     points += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * point.x(), -kPixelsPerMetre * point.y());
   }
   return fmt::format(
              "<polyline points='{}' fill='none' stroke='#cf222e' stroke-width='3' stroke-dasharray='12 "
              "12'/>\n",
              points) +
-         circle(opponent.way_m.front(), opponent.radius_m, "fill='#cf222e' fill-opacity='0.7'");
+         circle(opponent.path_m.front(), opponent.radius_m, "fill='#cf222e' fill-opacity='0.7'");
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/commit.hpp"
-#include "deploy/simulate/campaign/scene_draw.hpp"
-#include "deploy/simulate/campaign/seed_search.hpp"
+#include "deploy/simulate/campaign/scene_sampler.hpp"
+#include "deploy/simulate/campaign/campaign.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
@@ -107,7 +107,7 @@ int simulate_trial(const SimulateOptions& options) {
   std::optional<Scenario> scenario;
   if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : SearchOptions{}.duration;
-  const Trial trial = draw_trial(options.seed, duration, scenario);
+  const Trial trial = sample_trial(options.seed, duration, scenario);
   fmt::print("commit {}\n{}\n", kCommit, floor_in_words(trial.scenario));
   for (const std::string& line : in_words(trial.plan)) fmt::print("  {}\n", line);
   Picture picture(trial.scenario);

@@ -25,7 +25,7 @@ FloorScene floor_scene(const Scenario& scenario) {
   }
   for (const Circle& circle : scenario.obstacles) floor.blobs.push_back({circle});
   for (const OpponentSpec& spec : scenario.opponents)
-    floor.blobs.push_back(opponent({spec.way_m.front(), spec.radius_m}));
+    floor.blobs.push_back(opponent({spec.path_m.front(), spec.radius_m}));
   if (scenario.ball) floor.ball = ball(scenario.ball->position_m, scenario.ball->velocity_mps);
   return floor;
 }

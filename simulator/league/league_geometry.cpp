@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "common/camera/hanging_camera.hpp"
+#include "common/camera/overhead_camera.hpp"
 #include "simulator/field_marking.hpp"
 
 namespace sidestep {
@@ -75,7 +75,7 @@ league::FieldSize league_field(const Field& field) {
 }
 
 CameraModel league_camera(const CameraView& view) {
-  HangingCamera camera;
+  OverheadCamera camera;
   camera.view_m = {view.low_m, view.high_m};
   camera.distortion = 0;
   return hang(camera);

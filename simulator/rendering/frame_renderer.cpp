@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "common/image/pixel_writing.hpp"
-#include "simulator/rendering/carpet.hpp"
+#include "simulator/rendering/field_surface.hpp"
 #include "simulator/rendering/round_ball.hpp"
 
 namespace sidestep {
@@ -47,7 +47,7 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
   // Three standard deviations to the outer edge of the last pixel.
   if (spec_.blur_px > kLeastBlur_px)
     blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
-  grey_floor_ = draw_floor(camera_, field_, spec_, rng_);
+  grey_floor_ = sample_floor(camera_, field_, spec_, rng_);
   set_colour_gain(spec_.colour_gain);
 }
 
@@ -89,7 +89,7 @@ cv::Rect FrameRenderer::draw_robot(const SceneRobot& robot) {
     add(0, layout_.centre, layout_.team_colour(robot.team));
     for (std::size_t i = 0; i < layout_.dots.size(); ++i) add(i + 1, layout_.dots[i], pattern->colours[i]);
   }
-  UprightBody body;
+  VerticalBody body;
   body.position_m = robot.position_m;
   body.heading_rad = robot.heading_rad;
   body.radius_m = spec_.robot.radius_m;
@@ -104,7 +104,7 @@ cv::Rect FrameRenderer::draw_robot(const SceneRobot& robot) {
 }
 
 cv::Rect FrameRenderer::draw_blob(const SceneBlob& blob) {
-  UprightBody body;
+  VerticalBody body;
   body.position_m = blob.circle.centre_m;
   body.radius_m = blob.circle.radius_m;
   body.front_m = 2 * blob.circle.radius_m;

@@ -12,7 +12,7 @@
 #include "simulator/rendering/render_spec.hpp"
 #include "simulator/rendering/scene.hpp"
 #include "simulator/rendering/sensor_noise.hpp"
-#include "simulator/rendering/upright_body.hpp"
+#include "simulator/rendering/vertical_body.hpp"
 
 namespace sidestep {
 

@@ -18,7 +18,7 @@ CameraModel quarter(int width_px, int height_px) {
   VisionSpec spec;
   spec.columns = spec.rows = 2;
   spec.overlap_m = 0.25;
-  HangingCamera like;
+  OverheadCamera like;
   like.width_px = width_px;
   like.height_px = height_px;
   return hang_grid(kField, spec, like)[0];

@@ -38,11 +38,11 @@ struct Pairs {
     }
     for (std::size_t i = 0; i < kRounds * kOthers; ++i) {
       others.push_back(version_like(rng, static_cast<double>(half_side_cm) / 100));
-      outlines.push_back(outline_of(others.back()));
+      outlines.push_back(trajectory_bounds(others.back()));
     }
   }
   std::vector<Trajectory> ones, others;
-  std::vector<Outline> outlines;
+  std::vector<TrajectoryBounds> outlines;
 };
 
 void report(benchmark::State& state, std::size_t clear) {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "common/random/rng.hpp"
-#include "tests/unit/vision/frames/painted_floor.hpp"
+#include "tests/unit/vision/detection/painted_floor.hpp"
 #include "vision/segmentation/batch/dispatch.hpp"
 #include "vision/segmentation/segmenter.hpp"
 
@@ -125,7 +125,7 @@ void compare(const std::string& what, std::size_t bytes, std::vector<Side> sides
 bool bench(int width_px, int height_px, PixelFormat format) {
   RenderSpec spec;
   spec.format = format;
-  HangingCamera camera;
+  OverheadCamera camera;
   camera.width_px = width_px;
   camera.height_px = height_px;
   test::PaintedFloor floor(kSeed, spec, camera);

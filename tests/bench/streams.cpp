@@ -38,13 +38,13 @@ SearchQuery next_query(const Scenario& scenario, const Version& newest) {
   const Time start = newest.trajectory.start() + scenario.cycle;
   const State there = newest.trajectory.state_at(start);
   const Vec2 to_goal = find_robot(scenario, newest.robot)->goals.back().position_m - there.position_m;
-  const MotionWish wish =
-      wished_motion(to_goal, there.velocity_mps, scenario.limits, scenario.cycle, scenario.cycle);
+  const AccelerationCommand desired =
+      desired_acceleration(to_goal, there.velocity_mps, scenario.limits, scenario.cycle, scenario.cycle);
   SearchQuery query;
   query.start = start;
   query.at_start = there;
-  query.wish_mps2 = wish.acceleration_mps2;
-  query.phase = wish.hold;
+  query.desired_mps2 = desired.acceleration_mps2;
+  query.phase = desired.hold;
   return query;
 }
 

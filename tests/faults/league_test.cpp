@@ -187,7 +187,7 @@ TEST_CASE("the launcher passes options for the league on to the simulator and to
 
 TEST_CASE("robots that are seen over the league's packets cross the floor and arrive without a contact") {
   Floor floor;
-  Judge judge(floor.scenario());
+  RunMetrics judge(floor.scenario());
   Auditor auditor(floor.scenario(), {});
   judge.include(auditor);
   listen(floor.bus(), floor.scenario(), auditor);

@@ -85,7 +85,7 @@ TEST_CASE(
   LaunchedRun run(shuttles(5, ""));
   std::map<RobotId, msg::Feedback> facts;
   std::map<RobotId, bool> was_off;
-  std::map<RobotId, msg::AgentPhase> phases;
+  std::map<RobotId, msg::AgentState> phases;
   for (RobotId robot = 0; robot < 8; ++robot) {
     run.bus().subscribe(topics::kFeedback, robot, std::function([&](const msg::Feedback& feedback) {
                           facts[feedback.robot()] = feedback;
@@ -93,7 +93,7 @@ TEST_CASE(
                         }));
   }
   run.bus().subscribe(topics::kStatus, std::function([&](const msg::AgentStatus& status) {
-                        phases[status.robot()] = status.agent_phase();
+                        phases[status.robot()] = status.agent_state();
                       }));
   REQUIRE(run.until([&] { return facts.size() == 8; }));
   // On its way out of where others cross its lane: hands are beyond the bounds, and could bring it into

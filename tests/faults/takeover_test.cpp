@@ -17,7 +17,7 @@ class TakeoverWatch {
  public:
   TakeoverWatch(DdsBus& bus, int robots) {
     bus.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& state) {
-                    if (state.coordinator_phase() == msg::COORDINATOR_STANDBY) {
+                    if (state.coordinator_mode() == msg::COORDINATOR_STANDBY) {
                       standbys_.insert(state.coordinator());
                     } else {
                       standbys_.erase(state.coordinator());

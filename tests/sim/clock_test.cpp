@@ -84,7 +84,7 @@ TEST_CASE(
   CHECK(floor.robots.position_m(1, floor.network.now()) == before);
   CHECK(floor.arrived() >= 2);
   const msg::AgentStatus& status = statuses.latest.at(1);
-  CHECK(status.agent_phase() == msg::AGENT_OFF_CLOCK);
+  CHECK(status.agent_state() == msg::AGENT_OFF_CLOCK);
   CHECK(std::abs(status.clock_offset_s() - ahead_s) <= status.clock_uncertainty_s());
   floor.robots.set_clock_ahead(1, Duration{0});
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);

@@ -68,9 +68,9 @@ struct Driver {
       if (!negotiation.may_propose(now)) continue;
       const Time start = now + kCycle;
       const Version base = negotiation.base_at(start);
-      const Vec2 wish(robot.speed_at(start) < 1 ? 2.9 * direction : 0, 0);
+      const Vec2 desired(robot.speed_at(start) < 1 ? 2.9 * direction : 0, 0);
       const Trajectory candidate =
-          accelerate_then_stop(start, base.trajectory.state_at(start), wish, kCycle, 5);
+          accelerate_then_stop(start, base.trajectory.state_at(start), desired, kCycle, 5);
       const auto verdict =
           coordinator.on_proposal(from_here(negotiation.propose({&candidate, 1}, base.number, now)));
       const auto granted = verdict ? negotiation.on_verdict(*verdict, now + kCycle / 4) : std::nullopt;
@@ -110,7 +110,7 @@ struct Floor {
     left_driver.register_with(coordinator, now);
   }
   void require_clear() {
-    const double keep = floor_rules_here().keep_m();
+    const double keep = floor_rules_here().min_separation_m();
     REQUIRE(clearance_m(left.firmware.executing().trajectory, right.firmware.executing().trajectory, keep) >=
             0);
   }

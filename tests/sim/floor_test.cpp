@@ -75,7 +75,7 @@ TEST_CASE("a robot that is pushed says so as soon as cameras, vision and radio l
 TEST_CASE("among opponents every robot arrives, and whoever is touched is at rest") {
   Scenario scenario = shipped("opponents");
   // One of them drives to and fro over the goals.
-  scenario.opponents.at(1).way_m = {{3.45, 2.6}, {3.45, -2.6}};
+  scenario.opponents.at(1).path_m = {{3.45, 2.6}, {3.45, -2.6}};
   std::uint64_t crashes = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);

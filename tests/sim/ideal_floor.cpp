@@ -12,7 +12,7 @@ constexpr Duration kLook{5'000'000};
 
 }  // namespace
 
-IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed, AuditHearing hearing)
+IdealFloor::IdealFloor(const Scenario& s, std::uint64_t seed, AuditTrace hearing)
     : scenario(s),
       network(seed, kBegin, s.network),
       robots(robots_bus, scenario),

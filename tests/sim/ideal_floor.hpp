@@ -18,7 +18,7 @@ class IdealFloor {
  public:
   /// Starts an agent for each robot and as many coordinators as the scenario has. The audit hears everything,
   /// but for what is said on a bus that is mute.
-  IdealFloor(const Scenario& scenario, std::uint64_t seed, AuditHearing hearing = {true, {}});
+  IdealFloor(const Scenario& scenario, std::uint64_t seed, AuditTrace hearing = {true, {}});
 
   void start_coordinator(CoordinatorNumber number);
   void kill_coordinator(CoordinatorNumber number) { coordinators_.erase(number); }
@@ -65,7 +65,7 @@ class IdealFloor {
 
   void compare_with_ledger();
 
-  const std::shared_ptr<Workbench> bench_ = std::make_shared<Workbench>(scenario);
+  const std::shared_ptr<PlanningScratch> bench_ = std::make_shared<PlanningScratch>(scenario);
   SimBus audit_bus_{network};
   Auditor auditor_;
   int unknown_ = 0;

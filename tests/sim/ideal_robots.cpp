@@ -34,7 +34,7 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
   publish_world();
 }
 
-void IdealRobots::push(RobotId id, const Vec2& shift, const Vec2& velocity, double grown_m) {
+void IdealRobots::push(RobotId id, const Vec2& shift, const Vec2& velocity, double inflation_m) {
   const Time now = bus_.now();
   Robot& robot = robots_.at(id);
   advance(robot, now);
@@ -42,7 +42,7 @@ void IdealRobots::push(RobotId id, const Vec2& shift, const Vec2& velocity, doub
   robot.highest += kOwnNumberGap;
   Trajectory stop(now, {robot.executing.trajectory.state_at(now).position_m + shift, velocity});
   append_stop(stop, deceleration_mps2_);
-  robot.executing = {id, robot.obeyed, robot.highest, robot.executing.number, stop, grown_m};
+  robot.executing = {id, robot.obeyed, robot.highest, robot.executing.number, stop, inflation_m};
   robot.pending.clear();
   robot.is_off_reference = true;
   report(robot);

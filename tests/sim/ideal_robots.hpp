@@ -29,7 +29,7 @@ class IdealRobots {
   bool is_on_floor(RobotId robot) const { return !robots_.at(robot).is_lifted; }
 
   /// Something moves a robot and gives it another velocity; it notices, and brakes.
-  void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double grown_m = 0);
+  void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double inflation_m = 0);
   /// Its firmware starts again: it keeps what it has obeyed, and nothing else.
   void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
   void lift(RobotId robot);

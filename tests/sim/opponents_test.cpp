@@ -50,8 +50,8 @@ Scenario random_scene(std::uint64_t seed) {
     OpponentSpec opponent;
     opponent.radius_m = rng.uniform(0.06, 0.25);
     opponent.speed_mps = rng.chance(0.3) ? scenario.opponent_speed_mps : rng.uniform(0.2, 1.5);
-    opponent.way_m.push_back(starts.take(0.6));
-    for (std::uint64_t k = 0; k < 1 + rng.below(3); ++k) opponent.way_m.push_back(starts.anywhere());
+    opponent.path_m.push_back(starts.take(0.6));
+    for (std::uint64_t k = 0; k < 1 + rng.below(3); ++k) opponent.path_m.push_back(starts.anywhere());
     scenario.opponents.push_back(opponent);
   }
   return scenario;

@@ -55,7 +55,7 @@ TEST_CASE("robots that are pushed stop, and all go on to their goals in the same
     REQUIRE(floor.coordinator(0).ledger().conflicts().empty());
     for (const RobotSpec& spec : floor.scenario.robots) {
       for (const Version& version : floor.coordinator(0).ledger().versions(spec.id))
-        CHECK(version.grown_m == 0);
+        CHECK(version.inflation_m == 0);
     }
   }
 }

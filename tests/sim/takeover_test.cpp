@@ -131,7 +131,7 @@ TEST_CASE("one-way partitions of agents and coordinators cost motion, never clea
     scenario.network.loss = 0.05;
     scenario.network.duplicate = 0.05;
     scenario.network.delay_max = std::chrono::milliseconds(20);
-    IdealFloor floor(scenario, seed, AuditHearing{});
+    IdealFloor floor(scenario, seed, AuditTrace{});
     Rng rng(seed);
     double clearance = floor.run(1.5);
     for (int round = 0; round < 12; ++round) {
@@ -162,7 +162,7 @@ TEST_CASE("a hostile epoch costs one change of epoch, and one that is far ahead 
   auto writer = stranger.advertise(topics::kCoordinator);
   msg::CoordinatorState state;
   state.coordinator(5);
-  state.coordinator_phase(msg::COORDINATOR_GRANTING);
+  state.coordinator_mode(msg::COORDINATOR_GRANTING);
   REQUIRE(floor.run_until_fast(0.5));
   const Epoch before = floor.coordinator(0).epoch();
   for (const Epoch hostile : {(Epoch{1} << 62) - 1, Epoch{1} << 61, ~Epoch{0}}) {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "vision/colours/known_discs.hpp"
-#include "vision/frames/frame_reader.hpp"
+#include "vision/detection/detector.hpp"
 #include "vision/patterns/patch.hpp"
 
 namespace sidestep {
@@ -42,7 +42,7 @@ KnownFloor floor_at_start(const Scenario& scenario, const MarkingLayout& layout,
   }
   for (const Circle& obstacle : scenario.obstacles) hide(camera, obstacle, floor.unknown);
   for (const OpponentSpec& opponent : scenario.opponents)
-    hide(camera, {opponent.way_m.front(), opponent.radius_m}, floor.unknown);
+    hide(camera, {opponent.path_m.front(), opponent.radius_m}, floor.unknown);
   return floor;
 }
 

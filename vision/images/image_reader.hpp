@@ -8,7 +8,7 @@
 #include "common/config/scenario.hpp"
 #include "idl/vision.h"
 #include "vision/colours/colour_file.hpp"
-#include "vision/frames/frame_reader.hpp"
+#include "vision/detection/detector.hpp"
 
 namespace sidestep {
 
@@ -33,13 +33,13 @@ class ImageReader {
             msg::DetectionFrame& frame);
 
   /// The camera's reader, and what it knows of its last image.
-  const FrameReader& camera(std::size_t number) const { return readers_[number]; }
+  const Detector& camera(std::size_t number) const { return readers_[number]; }
   const std::vector<CameraModel>& cameras() const { return cameras_; }
 
  private:
   std::vector<CameraModel> cameras_;
   PixelFormat format_;
-  std::vector<FrameReader> readers_;
+  std::vector<Detector> readers_;
   std::vector<ExpectedRobot> expected_;
 };
 

@@ -12,13 +12,13 @@
 
 namespace sidestep {
 
-struct RobotSight {
+struct RobotObservation {
   RobotId robot = 0;
   Vec2 position_m{0, 0};
   double heading_rad = 0;  ///< in [-pi, pi]
 };
 
-struct ObstacleSight {
+struct ObstacleObservation {
   Vec2 position_m{0, 0};
   double radius_m = 0;
 };
@@ -34,9 +34,9 @@ class Frame {
   Time captured_at() const { return captured_at_; }
   /// Not usable: its stamp or its counts made no sense, and it holds no detection.
   bool is_usable() const { return is_usable_; }
-  std::span<const RobotSight> robots() const { return {robots_.data(), robot_count_}; }
+  std::span<const RobotObservation> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
-  std::span<const ObstacleSight> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
+  std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
   /// Detections of the message that are not in here; for a frame that is not usable at least 1.
   std::uint64_t rejected() const { return rejected_; }
 
@@ -54,9 +54,9 @@ class Frame {
   std::size_t ball_count_ = 0;
   std::size_t obstacle_count_ = 0;
   std::uint64_t rejected_ = 0;
-  std::array<RobotSight, kMaxRobots> robots_;
+  std::array<RobotObservation, kMaxRobots> robots_;
   std::array<Vec2, msg::MAX_DETECTED_BALLS> balls_;
-  std::array<ObstacleSight, msg::MAX_OBSTACLES> obstacles_;
+  std::array<ObstacleObservation, msg::MAX_OBSTACLES> obstacles_;
 };
 
 }  // namespace sidestep

@@ -72,7 +72,7 @@ double ObstacleTracker::gate_m(const Track& track, Time at) const {
   return settings_.speed_mps * std::abs(to_seconds(at - track.seen_at)) + kGateDeviations * deviation;
 }
 
-void ObstacleTracker::follow(Track& track, Time at, const ObstacleSight& sight) {
+void ObstacleTracker::follow(Track& track, Time at, const ObstacleObservation& sight) {
   if (at <= track.seen_at) return;
   const double variance = settings_.position_noise_m * settings_.position_noise_m;
   track.filter.predict(to_seconds(at - track.seen_at), settings_.motion);
@@ -88,7 +88,7 @@ void ObstacleTracker::follow(Track& track, Time at, const ObstacleSight& sight) 
   if (++track.hits >= settings_.confirm_hits && track.number == 0) track.number = ++numbers_;
 }
 
-void ObstacleTracker::begin(Time at, const ObstacleSight& sight) {
+void ObstacleTracker::begin(Time at, const ObstacleObservation& sight) {
   if (count_ == kMostTracks) {
     ++rejected_;
     return;

@@ -46,8 +46,8 @@ class ObstacleTracker {
   void match(const Frame& frame, std::array<bool, msg::MAX_OBSTACLES>& is_taken);
   double distance_m(const Track& track, Time at, const Vec2& position_m) const;
   double gate_m(const Track& track, Time at) const;
-  void follow(Track& track, Time at, const ObstacleSight& sight);
-  void begin(Time at, const ObstacleSight& sight);
+  void follow(Track& track, Time at, const ObstacleObservation& sight);
+  void begin(Time at, const ObstacleObservation& sight);
   void drop_unseen(Time now);
 
   ObstacleSettings settings_;

@@ -97,7 +97,7 @@ void Tracker::update(const Frame& frame) {
   rejected_ += frame.rejected();
   if (!frame.is_usable()) return;
   bool is_new = frame.robots().empty() && frame.balls().empty();
-  for (const RobotSight& sight : frame.robots()) {
+  for (const RobotObservation& sight : frame.robots()) {
     const std::uint16_t index = index_of_[sight.robot];
     if (index == kStranger) {
       ++rejected_;

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "vision/frames/frame_reader.hpp"
+#include "vision/detection/detector.hpp"
 
 namespace sidestep {
 namespace {

@@ -37,9 +37,9 @@ class Prm {
     if (plan_straight(domain, start, plan_)) return plan_;
     if (!settings_.keeps_roadmap) forget();
     if (settings_.is_dynamic) ++version_;
-    if (kept_ == 0) draw_nodes(domain, budget, rng);
+    if (kept_ == 0) sample_nodes(domain, budget, rng);
     while (!query(domain, start) && !budget.is_spent(map_.size() + settings_.nodes, plan_.samples))
-      draw_nodes(domain, budget, rng);
+      sample_nodes(domain, budget, rng);
     // What is full and does not do any more begins anew.
     if (!plan_.arrives() && map_.size() + settings_.nodes >= budget.nodes) forget();
     plan_.length = length_of(domain, plan_.states);
@@ -49,7 +49,7 @@ class Prm {
   /// Draws the roadmap, if there is none yet, before a query has to.
   void build(const D& domain, const Budget& budget, Rng& rng) {
     plan_.samples = 0;
-    if (kept_ == 0) draw_nodes(domain, budget, rng);
+    if (kept_ == 0) sample_nodes(domain, budget, rng);
   }
 
   /// The world, or what a query asks for, has become another.
@@ -70,7 +70,7 @@ class Prm {
   };
   static bool promises_less(const Open& a, const Open& b) { return a.promise > b.promise; }
 
-  void draw_nodes(const D& domain, const Budget& budget, Rng& rng) {
+  void sample_nodes(const D& domain, const Budget& budget, Rng& rng) {
     map_.shrink(kept_);
     const std::size_t wanted = kept_ + settings_.nodes;
     while (map_.size() < wanted && !budget.is_spent(map_.size(), plan_.samples)) {

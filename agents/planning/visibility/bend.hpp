@@ -25,8 +25,8 @@ struct Bend {
   }
 };
 
-/// Appends the bends round a shape for ways that keep `keep_m` from it.
-void append_bends(const Shape& shape, double keep_m, std::vector<Bend>& bends);
+/// Appends the bends round a shape for ways that keep `min_separation_m` from it.
+void append_bends(const Shape& shape, double min_separation_m, std::vector<Bend>& bends);
 
 /// On which side of a way a bend lies: the way turns to that side.
 enum class Side { kLeft = 1, kRight = -1 };

@@ -50,11 +50,11 @@ inline bool may_have_tangent(const Bend& from, Side from_side, const Bend& to, d
   const Vec2 between = to.centre_m - from.centre_m;
   const BothSides across = (kSigns * to.radius_m - sign(from_side) * from.radius_m).abs();
   // Over the cosine of at most 30 degrees. What is no corner has directions of 0.
-  const BothSides room_m = 1.16 * across + slack_m;
+  const BothSides extra_clearance_m = 1.16 * across + slack_m;
   const double leaves_m =
       std::min(-sign(from_side) * between.dot(from.first), sign(from_side) * between.dot(from.last));
   const BothSides arrives_m = (-between.dot(to.first) * kSigns).min(between.dot(to.last) * kSigns);
-  return (room_m + arrives_m.min(leaves_m)).max(4 * across.square() - between.squaredNorm()).maxCoeff() >= 0;
+  return (extra_clearance_m + arrives_m.min(leaves_m)).max(4 * across.square() - between.squaredNorm()).maxCoeff() >= 0;
 }
 
 /// By how much directions are within a bend's arc where ways along them touch it: about the angle, negative

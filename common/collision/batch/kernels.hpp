@@ -21,7 +21,7 @@ struct alignas(16) BodyRecord {
 /// along them, and that over its squared length. A segment has two, there and back; the last one may fill
 /// more lanes.
 struct alignas(32) EdgeBlock {
-  float x_m[4], y_m[4], way_x_m[4], way_y_m[4], along_x_per_m[4], along_y_per_m[4];
+  float x_m[4], y_m[4], via_x_m[4], via_y_m[4], along_x_per_m[4], along_y_per_m[4];
   std::uint32_t more;  ///< blocks of the same shape that follow
 };
 

@@ -10,7 +10,7 @@ constexpr float kShortest2_m2 = 1e-24f;  // a shorter way is none
 /// A disc on its way, in metres from the origin.
 struct MovingDisc {
   FourFloats ends_m;  ///< x and y of the place that it comes from, of that it goes to
-  float way_x_m, way_y_m, along_x_per_m, along_y_per_m, radius_m;
+  float via_x_m, via_y_m, along_x_per_m, along_y_per_m, radius_m;
   float doubt_m2;  ///< how wrong a gap may be that comes out near 0
   bool is_sound;   ///< all is finite, and near enough for single precision
 };
@@ -32,8 +32,8 @@ inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, co
   const FourFloats squares = way * way;
   const FourFloats length2 = all<FourFloats>(squares[0] + squares[1]);
   const FourFloats along = way / larger(length2, all<FourFloats>(kShortest2_m2));
-  d.way_x_m = way[0];
-  d.way_y_m = way[1];
+  d.via_x_m = way[0];
+  d.via_y_m = way[1];
   d.along_x_per_m = along[0];
   d.along_y_per_m = along[1];
   d.radius_m = static_cast<float>(radius_m);
@@ -49,7 +49,7 @@ template <typename V>
 inline V gaps(const V& x_m, const V& y_m, const V& radius_m, const MovingDisc& d) {
   const V dx = x_m - d.ends_m[0], dy = y_m - d.ends_m[1];
   const V along = smaller(larger(dx * d.along_x_per_m + dy * d.along_y_per_m, all<V>(0)), all<V>(1));
-  const V ex = dx - along * d.way_x_m, ey = dy - along * d.way_y_m;
+  const V ex = dx - along * d.via_x_m, ey = dy - along * d.via_y_m;
   const V reach = radius_m + d.radius_m;
   return ex * ex + (ey * ey - reach * reach);
 }
@@ -86,10 +86,10 @@ inline Touched touched(const Query& query, const std::uint32_t* slots) {
 
 /// The squares of distances from the nearest points of ways along which there is so much.
 template <typename V>
-inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, const V& way_x_m,
-                           const V& way_y_m) {
+inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, const V& via_x_m,
+                           const V& via_y_m) {
   const V part = smaller(larger(along, all<V>(0)), all<V>(1));
-  const V ex = off_x_m - part * way_x_m, ey = off_y_m - part * way_y_m;
+  const V ex = off_x_m - part * via_x_m, ey = off_y_m - part * via_y_m;
   return ex * ex + ey * ey;
 }
 
@@ -100,26 +100,26 @@ inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::
   const FourFloats error = all<FourFloats>(bodies.error_m);
   bool doubtful = false, inside = true;
   for (std::uint32_t more = block->more;; --more, ++block) {
-    const FourFloats way_x = load<FourFloats>(block->way_x_m), way_y = load<FourFloats>(block->way_y_m);
+    const FourFloats way_x = load<FourFloats>(block->via_x_m), way_y = load<FourFloats>(block->via_y_m);
     const FourFloats along_x = load<FourFloats>(block->along_x_per_m),
                      along_y = load<FourFloats>(block->along_y_per_m);
     const FourFloats x = d.ends_m[0] - load<FourFloats>(block->x_m),
                      y = d.ends_m[1] - load<FourFloats>(block->y_m);
-    const FourFloats to_x = x + d.way_x_m, to_y = y + d.way_y_m;
+    const FourFloats to_x = x + d.via_x_m, to_y = y + d.via_y_m;
     const FourFloats nearest2 =
         smaller(smaller(squared_distances(x, y, x * along_x + y * along_y, way_x, way_y),
                         squared_distances(to_x, to_y, to_x * along_x + to_y * along_y, way_x, way_y)),
                 squared_distances(-x, -y, -x * d.along_x_per_m - y * d.along_y_per_m,
-                                  all<FourFloats>(d.way_x_m), all<FourFloats>(d.way_y_m)));
+                                  all<FourFloats>(d.via_x_m), all<FourFloats>(d.via_y_m)));
     const FourFloats gap = nearest2 - all<FourFloats>(d.radius_m * d.radius_m);
     // On which sides of the edge the way's ends are, and of the way those of the edge, times the other's
     // length.
-    const FourFloats turn = d.way_x_m * way_y - d.way_y_m * way_x;
+    const FourFloats turn = d.via_x_m * way_y - d.via_y_m * way_x;
     const FourFloats from = way_x * y - way_y * x, to = from - turn;
-    const FourFloats begin = d.way_y_m * x - d.way_x_m * y, end = begin + turn;
+    const FourFloats begin = d.via_y_m * x - d.via_x_m * y, end = begin + turn;
     const FourFloats edge_room = error * (larger(way_x, -way_x) + larger(way_y, -way_y));
     const FourFloats way_room =
-        error * all<FourFloats>(__builtin_fabsf(d.way_x_m) + __builtin_fabsf(d.way_y_m));
+        error * all<FourFloats>(__builtin_fabsf(d.via_x_m) + __builtin_fabsf(d.via_y_m));
     const FourFloats apart = larger(larger(smaller(from, to) + edge_room, edge_room - larger(from, to)),
                                     larger(smaller(begin, end) + way_room, way_room - larger(begin, end)));
     const unsigned touched = not_above(gap, all<FourFloats>(-d.doubt_m2));

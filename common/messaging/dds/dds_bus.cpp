@@ -15,7 +15,7 @@ namespace {
 struct Session {
   explicit Session(const DdsSettings& settings) : participant(settings, &strangers) {}
 
-  DdsStrangers strangers;
+  TypeMismatchListener strangers;
   DdsParticipant participant;
 };
 

@@ -18,12 +18,12 @@ using namespace eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::ReaderDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
-void DdsStrangers::expect(const std::string& channel, const std::string& type) {
+void TypeMismatchListener::expect(const std::string& channel, const std::string& type) {
   const std::lock_guard lock(mutex_);
   types_[channel] = type;
 }
 
-std::optional<Time> DdsStrangers::writer_since(const std::string& channel) const {
+std::optional<Time> TypeMismatchListener::writer_since(const std::string& channel) const {
   const std::lock_guard lock(mutex_);
   std::optional<Time> latest;
   const auto own = types_.find(channel);
@@ -34,7 +34,7 @@ std::optional<Time> DdsStrangers::writer_since(const std::string& channel) const
   return latest;
 }
 
-void DdsStrangers::on_publisher_discovery(DomainParticipant*, WriterDiscoveryInfo&& info) {
+void TypeMismatchListener::on_publisher_discovery(DomainParticipant*, WriterDiscoveryInfo&& info) {
   const std::string channel = info.info.topicName().to_string(), type = info.info.typeName().to_string();
   std::ostringstream guid;
   guid << info.info.guid();
@@ -47,13 +47,13 @@ void DdsStrangers::on_publisher_discovery(DomainParticipant*, WriterDiscoveryInf
   }
 }
 
-void DdsStrangers::on_subscriber_discovery(DomainParticipant*, ReaderDiscoveryInfo&& info) {
+void TypeMismatchListener::on_subscriber_discovery(DomainParticipant*, ReaderDiscoveryInfo&& info) {
   if (info.status != ReaderDiscoveryInfo::DISCOVERED_READER) return;
   const std::lock_guard lock(mutex_);
   compare("reader", info.info.topicName().to_string(), info.info.typeName().to_string());
 }
 
-void DdsStrangers::compare(const char* endpoint, const std::string& channel, const std::string& type) {
+void TypeMismatchListener::compare(const char* endpoint, const std::string& channel, const std::string& type) {
   const auto own = types_.find(channel);
   if (own == types_.end() || own->second == type) return;
   log_dds(fmt::format("topic '{}': a {} has type {} and is ignored, ours is {}", channel, endpoint, type,

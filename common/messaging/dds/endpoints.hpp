@@ -22,7 +22,7 @@ namespace sidestep {
 
 /// Knows who writes our topics, and reports strangers that use one of them with another type: DDS just never
 /// matches them.
-class DdsStrangers : public eprosima::fastdds::dds::DomainParticipantListener {
+class TypeMismatchListener : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   void expect(const std::string& channel, const std::string& type);
   /// When the channel's latest writer of our type that still writes came to be known; nothing when nobody

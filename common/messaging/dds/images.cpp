@@ -64,7 +64,7 @@ std::shared_ptr<DdsParticipant> image_writing_participant(const DdsSettings& set
   return make_sharing(settings, kImagesBytes);
 }
 
-DdsImageReader::DdsImageReader(EventLoop& loop, const DdsSettings& settings, const DdsStrangers& strangers,
+DdsImageReader::DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& strangers,
                                const TopicInfo& topic, const std::string& channel,
                                std::function<void(const void*)> callback)
     : loop_(loop),

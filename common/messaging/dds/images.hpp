@@ -25,7 +25,7 @@ std::shared_ptr<DdsParticipant> image_writing_participant(const DdsSettings& set
 class DdsImageReader {
  public:
   /// Throws std::runtime_error as DdsReader does.
-  DdsImageReader(EventLoop& loop, const DdsSettings& settings, const DdsStrangers& strangers,
+  DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& strangers,
                  const TopicInfo& topic, const std::string& channel,
                  std::function<void(const void*)> callback);
 
@@ -36,7 +36,7 @@ class DdsImageReader {
 
   EventLoop& loop_;
   DdsSettings settings_;
-  const DdsStrangers& strangers_;
+  const TypeMismatchListener& strangers_;
   std::string channel_;
   bool shares_memory_ = true;
   Time opened_at_;

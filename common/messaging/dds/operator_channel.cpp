@@ -45,7 +45,7 @@ class Takers : public DataWriterListener {
 
 }  // namespace
 
-struct DdsOrders::Impl : RawWriter {
+struct OperatorChannel::Impl : RawWriter {
   Impl(const DdsSettings& settings, const TopicInfo& topic)
       : participant(operators(settings), &directory),
         data_writer(participant.create_writer(channel_name(topic, 0),
@@ -64,11 +64,11 @@ struct DdsOrders::Impl : RawWriter {
   DataWriter* data_writer;
 };
 
-DdsOrders::DdsOrders(const DdsSettings& settings, const TopicInfo& topic)
+OperatorChannel::OperatorChannel(const DdsSettings& settings, const TopicInfo& topic)
     : impl_(std::make_unique<Impl>(settings, topic)) {}
-DdsOrders::~DdsOrders() = default;
+OperatorChannel::~OperatorChannel() = default;
 
-std::vector<std::string> DdsOrders::takers() const {
+std::vector<std::string> OperatorChannel::takers() const {
   std::vector<std::string> names;
   for (const GUID_t& guid : impl_->takers.guids()) {
     names.push_back(impl_->directory.participant_of(guid));
@@ -77,16 +77,16 @@ std::vector<std::string> DdsOrders::takers() const {
   return names;
 }
 
-bool DdsOrders::is_written(const std::string& channel) const {
+bool OperatorChannel::is_written(const std::string& channel) const {
   const auto all = impl_->directory.endpoints();
   return std::any_of(all.begin(), all.end(), [&](const DdsEndpoint& endpoint) {
     return endpoint.is_writer && endpoint.topic == channel;
   });
 }
 
-RawWriter& DdsOrders::writer() { return *impl_; }
+RawWriter& OperatorChannel::writer() { return *impl_; }
 
-bool DdsOrders::wait_until_taken(Duration patience) {
+bool OperatorChannel::wait_until_taken(Duration patience) {
   const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience);
   const eprosima::fastrtps::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
                                             static_cast<std::uint32_t>((patience - whole_s).count()));

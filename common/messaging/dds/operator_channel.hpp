@@ -11,13 +11,13 @@
 namespace sidestep {
 
 /// An operator's hand in a domain: writes one topic and knows who takes what it writes. No fault holds it up.
-class DdsOrders {
+class OperatorChannel {
  public:
   /// Throws std::runtime_error as DdsBus does.
-  DdsOrders(const DdsSettings& settings, const TopicInfo& topic);
-  ~DdsOrders();
-  DdsOrders(const DdsOrders&) = delete;
-  DdsOrders& operator=(const DdsOrders&) = delete;
+  OperatorChannel(const DdsSettings& settings, const TopicInfo& topic);
+  ~OperatorChannel();
+  OperatorChannel(const OperatorChannel&) = delete;
+  OperatorChannel& operator=(const OperatorChannel&) = delete;
 
   /// The names of the participants that take it now, sorted; a name stands there once for each.
   std::vector<std::string> takers() const;

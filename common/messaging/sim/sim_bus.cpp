@@ -126,7 +126,7 @@ void SimNetwork::hold_back(const Event& event) {
   events_.put(life.paused_until, event);
 }
 
-Duration SimNetwork::draw_delay() {
+Duration SimNetwork::sample_delay() {
   const double span = to_seconds(spec_.delay_max - spec_.delay_min);
   return spec_.delay_min + from_seconds(rng_.uniform() * std::max(0.0, span));
 }
@@ -144,8 +144,8 @@ void SimNetwork::send(ProcessId from, const TopicInfo& topic, Channel& channel, 
       const Copies copies = links_.send(from, to, rng_);
       for (std::size_t i = 0; i < copies.count; ++i) deliver(*reader, now_ + copies.delays[i], copy, true);
     } else if (!rng_.chance(spec_.loss)) {
-      deliver(*reader, now_ + draw_delay(), copy, true);
-      if (rng_.chance(spec_.duplicate)) deliver(*reader, now_ + draw_delay(), copy, true);
+      deliver(*reader, now_ + sample_delay(), copy, true);
+      if (rng_.chance(spec_.duplicate)) deliver(*reader, now_ + sample_delay(), copy, true);
     }
   }
   release(copy);
@@ -153,7 +153,7 @@ void SimNetwork::send(ProcessId from, const TopicInfo& topic, Channel& channel, 
 
 void SimNetwork::send_event(ProcessId from, Reader& reader, std::uint32_t sent) {
   const ProcessId to = reader.life->process;
-  const Duration delay = links_.find(from, to) ? links_.delay(from, to, rng_) : draw_delay();
+  const Duration delay = links_.find(from, to) ? links_.delay(from, to, rng_) : sample_delay();
   reader.last_event = std::max(reader.last_event, now_ + delay);
   deliver(reader, reader.last_event, sent, false);
 }

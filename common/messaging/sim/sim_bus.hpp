@@ -125,7 +125,7 @@ class SimNetwork {
   void send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message);
   void send_event(ProcessId from, Reader& reader, std::uint32_t sent);
   void deliver(Reader& reader, Time when, std::uint32_t sent, bool may_be_lost);
-  Duration draw_delay();
+  Duration sample_delay();
 
   Rng rng_;
   Time now_;

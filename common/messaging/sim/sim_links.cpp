@@ -32,7 +32,7 @@ Copies SimLinks::send(ProcessId from, ProcessId to, Rng& rng) {
 }
 
 Duration SimLinks::delay(ProcessId from, ProcessId to, Rng& rng) const {
-  return draw_delay(at(from, to).quality, rng);
+  return sample_delay(at(from, to).quality, rng);
 }
 
 }  // namespace sidestep

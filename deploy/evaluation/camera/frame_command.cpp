@@ -39,7 +39,7 @@ void overlay(const Image& image, const CameraModel& camera, const Scenario& scen
              const MarkingLayout& layout, cv::Mat3b& picture) {
   const FloorScene floor = floor_scene(scenario);
   const FrameTask task = frame_task(scenario, default_colours(image.view().format, layout).boxes, layout);
-  FrameReader reader(camera, task);
+  Detector reader(camera, task);
   msg::DetectionFrame seen;
   reader.read(image.view(), {}, {}, seen);
   FloorPen pen(picture, camera);

@@ -56,7 +56,7 @@ std::string polyline(const std::vector<Vec2>& way, const char* style) {
 }  // namespace
 
 std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
-                         const std::vector<Vec2>& way_m, const std::vector<Vec2>& smooth_way_m) {
+                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smooth_way_m) {
   const double width = kPixelsPerMetre * world.field.length_m, height = kPixelsPerMetre * world.field.width_m;
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}'>\n<rect x='{:.1f}' "
@@ -69,7 +69,7 @@ std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const P
     svg += std::visit([](const auto& s) { return picture_of(s); }, shape);
   svg += lines(drawing.tree, "#1f6feb") + lines(drawing.others, "#bf8700");
   for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
-  svg += polyline(way_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
+  svg += polyline(path_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
   svg += polyline(smooth_way_m, "stroke='#cf222e' stroke-width='4'");
   svg += disc(query.start_m, world.radius_m, "fill='#2da44e'");
   svg += disc(query.goal_m, world.radius_m, "fill='none' stroke='#cf222e' stroke-width='3'");

@@ -10,6 +10,6 @@ namespace sidestep {
 
 /// The world, what the planner looked at, and the way it found, before and after smoothing, as SVG.
 std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
-                         const std::vector<Vec2>& way_m, const std::vector<Vec2>& smooth_way_m);
+                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smooth_way_m);
 
 }  // namespace sidestep

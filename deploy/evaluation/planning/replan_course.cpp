@@ -47,10 +47,10 @@ DiscDomain ReplanCourse::domain() const {
   return {obstacles_, world_.field, world_.radius_m, at_m_, world_.queries[goal_].goal_m};
 }
 
-bool ReplanCourse::is_valid(const std::vector<Vec2>& way_m) const {
+bool ReplanCourse::is_valid(const std::vector<Vec2>& path_m) const {
   PlanWorld now = world_;
   for (std::uint32_t i = 0; i < now.obstacles.size(); ++i) now.obstacles[i] = obstacles_.shape(ObstacleId{i});
-  return !is_free(now, way_m.front()) || is_valid_way(now, way_m, 0.02, 1e-9);
+  return !is_free(now, path_m.front()) || is_valid_way(now, path_m, 0.02, 1e-9);
 }
 
 void ReplanCourse::move_circles() {

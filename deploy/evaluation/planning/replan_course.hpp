@@ -28,7 +28,7 @@ class ReplanCourse {
   /// The shortest way, if there is one.
   const Plan<Vec2>& shortest() const { return way_; }
   /// By distances, as is_valid_way does, but for a way that begins in an obstacle.
-  bool is_valid(const std::vector<Vec2>& way_m) const;
+  bool is_valid(const std::vector<Vec2>& path_m) const;
 
  private:
   void move_circles();

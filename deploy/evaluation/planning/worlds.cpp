@@ -209,7 +209,7 @@ void ask_across(PlanWorld& world, std::size_t queries, Rng& rng) {
 
 bool is_free(const PlanWorld& world, const Vec2& place_m) { return is_valid_way(world, {place_m}, 1, 0); }
 
-bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& way_m, double step_m, double slack_m) {
+bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& path_m, double step_m, double slack_m) {
   const double radius = world.radius_m - slack_m;
   const auto is_clear = [&](const Vec2& place) {
     if (!world.field.contains(place, radius)) return false;
@@ -217,8 +217,8 @@ bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& way_m, double
       if (signed_distance(place, shape) <= radius) return false;
     return true;
   };
-  for (std::size_t i = 0; i < way_m.size(); ++i) {
-    const Vec2 from = way_m[i > 0 ? i - 1 : 0], to = way_m[i];
+  for (std::size_t i = 0; i < path_m.size(); ++i) {
+    const Vec2 from = path_m[i > 0 ? i - 1 : 0], to = path_m[i];
     const auto steps = static_cast<int>(std::ceil((to - from).norm() / step_m)) + 1;
     for (int k = 1; k <= steps; ++k)
       if (!is_clear(from + double(k) / steps * (to - from))) return false;

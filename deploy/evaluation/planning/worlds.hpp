@@ -43,6 +43,6 @@ bool is_free(const PlanWorld& world, const Vec2& place_m);
 
 /// Whether a way keeps in the field and off the obstacles, by a distance query every `step_m`: independent of
 /// what planners ask. `slack_m`: how much too near a place may be.
-bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& way_m, double step_m, double slack_m);
+bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& path_m, double step_m, double slack_m);
 
 }  // namespace sidestep

@@ -50,7 +50,7 @@ int audit_recording(const AuditOptions& options) {
   const Scenario scenario = options.scenario_file.empty()
                                 ? parse_scenario(bus.head().text, bus.head().scenario + ".yaml")
                                 : load_scenario(options.scenario_file);
-  AuditHearing hearing;
+  AuditTrace hearing;
   hearing.is_complete = bus.head().is_complete;
   Auditor auditor(scenario, hearing);
   show(auditor, options.is_json);
@@ -66,7 +66,7 @@ int audit_recording(const AuditOptions& options) {
 
 int audit_live(const AuditOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
-  Auditor auditor(scenario, AuditHearing());
+  Auditor auditor(scenario, AuditTrace());
   show(auditor, options.is_json);
   DdsBus bus(options.dds);
   listen(bus, scenario, auditor);

@@ -85,9 +85,9 @@ bool is_sane(const msg::Version& version) {
   bool sane = version.phase_count() <= msg::MAX_PHASES && version.start_ns() >= 0 &&
               version.start_ns() <= kLatest_ns && within(version.x_m(), kFarthest_m) &&
               within(version.y_m(), kFarthest_m) && within(version.vx_mps(), kFastest_mps) &&
-              within(version.vy_mps(), kFastest_mps) && version.grown_m() >= 0 && version.grown_m() <= 10;
+              within(version.vy_mps(), kFastest_mps) && version.inflation_m() >= 0 && version.inflation_m() <= 10;
   for (int i = 0; sane && i < version.phase_count(); ++i) {
-    const msg::Phase& phase = version.phases()[static_cast<std::size_t>(i)];
+    const msg::MotionPhase& phase = version.phases()[static_cast<std::size_t>(i)];
     sane = phase.duration_ns() >= 0 && phase.duration_ns() <= kLongestPhase_ns &&
            within(phase.ax_mps2(), kHardest_mps2) && within(phase.ay_mps2(), kHardest_mps2);
   }
@@ -98,7 +98,7 @@ AuditPath::AuditPath(const msg::Version& version)
     : start_ns_(version.start_ns()), count_(version.phase_count()) {
   nodes_[0] = {0, version.x_m(), version.y_m(), version.vx_mps(), version.vy_mps(), 0, 0};
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
-    const msg::Phase& phase = version.phases()[i];
+    const msg::MotionPhase& phase = version.phases()[i];
     nodes_[i].ax = phase.ax_mps2();
     nodes_[i].ay = phase.ay_mps2();
     const double t = static_cast<double>(phase.duration_ns()) * 1e-9;

@@ -22,7 +22,7 @@ enum class AuditRule : std::uint8_t {
   kRest,
   kFloor,
   kObstacle,
-  kGrowth,
+  kInflation,
   kNumbers,
   kProposed,
   kAllRegistered,
@@ -43,9 +43,9 @@ enum class AuditRule : std::uint8_t {
   kPlace,
   kContact,
   kCrash,
-  kFirmwareJudge,
+  kFirmwareMonitor,
 };
-inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kFirmwareJudge) + 1;
+inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kFirmwareMonitor) + 1;
 
 struct AuditRuleInfo {
   const char* name;       ///< e.g. "clearance"

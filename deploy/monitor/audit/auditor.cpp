@@ -12,7 +12,7 @@ constexpr RobotId kMostRobots = 1024;
 
 }  // namespace
 
-Auditor::Auditor(const Scenario& scenario, const AuditHearing& hearing)
+Auditor::Auditor(const Scenario& scenario, const AuditTrace& hearing)
     : scenario_(scenario),
       how_(hearing),
       tracking_bound_m_(scenario.tracking_bound_m),
@@ -77,7 +77,7 @@ Known* Auditor::learn(AuditedRobot& robot, const msg::Version& version) {
     known.has_content = true;
     known.version = version;
     known.path = AuditPath(version);
-    most_grown_m_ = std::max(most_grown_m_, version.grown_m());
+    max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
     // A fact may have excluded it before it was heard of.
     if (robot.fact) known.excluded = excluded_by(*robot.fact, known);
     known.excluded_ns = known.excluded == Excluded::kNo ? kNever : to_ns(now_);

@@ -10,13 +10,13 @@
 #include "common/messaging/bus.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
 #include "deploy/monitor/audit/audited_robot.hpp"
-#include "deploy/monitor/audit/hands.hpp"
-#include "deploy/monitor/audit/hearing.hpp"
+#include "deploy/monitor/audit/disturbances.hpp"
+#include "deploy/monitor/audit/message_trace.hpp"
 
 namespace sidestep {
 
 /// How the auditor hears.
-struct AuditHearing {
+struct AuditTrace {
   /// Every message from the start on, at the moment when it is sent; only then is what was never heard
   /// evidence.
   bool is_complete = false;
@@ -30,7 +30,7 @@ struct AuditHearing {
 /// wrong. Memory is bounded by the roster.
 class Auditor {
  public:
-  Auditor(const Scenario& scenario, const AuditHearing& hearing);
+  Auditor(const Scenario& scenario, const AuditTrace& hearing);
 
   void on_proposal(const msg::Proposal& proposal, Time now);
   void on_verdict(const msg::Verdict& verdict, Time now);
@@ -134,19 +134,19 @@ class Auditor {
   /// Whether what has just become known of `mine` can be the last that was missing to prove that both were
   /// held at one time, and they lie near enough to each other.
   bool may_matter(const Live& mine, const Before& before, const Live& theirs) const;
-  double keep_m(const Known& a, const Known& b) const;
+  double min_separation_m(const Known& a, const Known& b) const;
   static Before state_of(const Known& known);
 
   Scenario scenario_;
-  AuditHearing how_;
+  AuditTrace how_;
   double tracking_bound_m_;
   std::int64_t clock_bound_ns_;
-  Hearing hearing_;
+  MessageTrace hearing_;
   Time now_{};
   std::vector<AuditedRobot> robots_;      ///< ascending by id
   std::vector<Whereabouts> whereabouts_;  ///< as robots_
   std::vector<std::vector<Live>> live_;   ///< as robots_
-  double most_grown_m_ = 0;               ///< that was heard of
+  double max_inflation_m_ = 0;               ///< that was heard of
   std::vector<bool> has_sound_clock_;
   std::vector<Sight> sights_;
   std::vector<std::optional<Vec2>> places_m_;  ///< in the last truth, as robots_

@@ -172,7 +172,7 @@ void Auditor::judge_tracking(AuditedRobot& robot, const Known& executing, const 
   if (feedback.is_off_reference() || feedback.is_lifted() || !robot.fact || robot.fact->is_off_reference)
     return;
   const double beyond_m =
-      feedback.tracking_error_m() - tracking_bound_m_ - executing.version.grown_m() - kLookedLater_m;
+      feedback.tracking_error_m() - tracking_bound_m_ - executing.version.inflation_m() - kLookedLater_m;
   if (!(beyond_m > 0)) return;
   // Between two facts that were not heard it may have been back.
   robot.beyond_since_ns = heard.is_next && before_ns != kNever ? before_ns : feedback.at_ns();
@@ -268,9 +268,9 @@ void Auditor::judge_place(AuditedRobot& robot, const msg::Feedback& feedback, co
   const AuditPath::Node reference = then->path.at_ns(at_ns);
   const double error = std::hypot(seen.x - reference.x, seen.y - reference.y);
   totals_.farthest_m = std::max(totals_.farthest_m, error);
-  totals_.beyond += error > tracking_bound_m_ + then->version.grown_m();
-  if (error <= tracking_bound_m_ + then->version.grown_m()) hands_.see_in_place(index_of(robot));
-  if (error <= scenario_.margin_m + then->version.grown_m()) return;
+  totals_.beyond += error > tracking_bound_m_ + then->version.inflation_m();
+  if (error <= tracking_bound_m_ + then->version.inflation_m()) hands_.see_in_place(index_of(robot));
+  if (error <= scenario_.margin_m + then->version.inflation_m()) return;
   if (hands_.are_on(index_of(robot))) {
     ++totals_.places_by_hand;
     return;
@@ -321,7 +321,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   const RobotId nobody = robots_.empty() ? 0 : robots_.front().id;
   if (truth.contacts() > last.contacts()) judge_contacts(truth, last.contacts());
   if (truth.firmware_violations() > last.firmware_violations())
-    report(AuditRule::kFirmwareJudge, nobody, nullptr, 0,
+    report(AuditRule::kFirmwareMonitor, nobody, nullptr, 0,
            fmt::format("{} so far", truth.firmware_violations()));
   if (truth.moving_crashes() > last.moving_crashes()) {
     report(AuditRule::kCrash, nobody, nullptr, 0,
@@ -341,7 +341,7 @@ void Auditor::see(const msg::GroundTruth& truth) {
     if (!place || !std::isfinite(seen.x_m()) || !std::isfinite(seen.y_m())) continue;
     sights_[*place] = {truth.at_ns(), seen.x_m(), seen.y_m()};
     places_m_[*place] = Vec2(seen.x_m(), seen.y_m());
-    if (seen.let_go_ns() >= 0) hands_.move(*place, time_from_ns(seen.let_go_ns()), at);
+    if (seen.disturbance_end_ns() >= 0) hands_.move(*place, time_from_ns(seen.disturbance_end_ns()), at);
   }
   hands_.step(at, places_m_, 2 * scenario_.radius_m + kTouching_m);
 }

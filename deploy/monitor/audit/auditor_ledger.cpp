@@ -190,13 +190,13 @@ void Auditor::judge_floor(const AuditedRobot& robot, const Known& known) {
            fmt::format("{:.6f} m over the edge", most));
   }
   for (const Circle& obstacle : scenario_.obstacles) {
-    const double keep = obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.grown_m();
+    const double keep = obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
     const double far = keep + known.path.reach_m();
     if (std::hypot(known.version.x_m() - obstacle.centre_m.x(), known.version.y_m() - obstacle.centre_m.y()) >
         far)
       continue;
     const Approach near = nearest(known.path, obstacle.centre_m.x(), obstacle.centre_m.y(), keep);
-    if (near.distance_m >= keep - kLength_m - known.version.grown_m()) continue;
+    if (near.distance_m >= keep - kLength_m - known.version.inflation_m()) continue;
     const bool was_near =
         base && base->has_content &&
         nearest(base->path, obstacle.centre_m.x(), obstacle.centre_m.y(), keep).distance_m <=
@@ -234,11 +234,11 @@ void Auditor::judge_base(const AuditedRobot& robot, const Known& known) {
                        jump_m, jump_mps, base->number,
                        static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9));
   }
-  const bool begins_at_rest = from.vx == 0 && from.vy == 0 && known.version.grown_m() == 0;
-  if (known.version.grown_m() != base->version.grown_m() && !begins_at_rest) {
-    report(AuditRule::kGrowth, robot.id, &known, known.granted_in,
-           fmt::format("grown by {:.6f} m, its base by {:.6f} m", known.version.grown_m(),
-                       base->version.grown_m()));
+  const bool begins_at_rest = from.vx == 0 && from.vy == 0 && known.version.inflation_m() == 0;
+  if (known.version.inflation_m() != base->version.inflation_m() && !begins_at_rest) {
+    report(AuditRule::kInflation, robot.id, &known, known.granted_in,
+           fmt::format("grown by {:.6f} m, its base by {:.6f} m", known.version.inflation_m(),
+                       base->version.inflation_m()));
   }
 }
 

@@ -21,8 +21,8 @@ Auditor::Before Auditor::state_of(const Known& known) {
   return {known.alive_until_ns, known.executed_until_ns, known.was_executed};
 }
 
-double Auditor::keep_m(const Known& a, const Known& b) const {
-  return 2 * scenario_.radius_m + scenario_.margin_m + a.version.grown_m() + b.version.grown_m();
+double Auditor::min_separation_m(const Known& a, const Known& b) const {
+  return 2 * scenario_.radius_m + scenario_.margin_m + a.version.inflation_m() + b.version.inflation_m();
 }
 
 std::optional<Epoch> Auditor::held_together(const Known& a, const Before& a_state, const Known& b,
@@ -56,7 +56,7 @@ bool Auditor::may_matter(const Live& mine, const Before& before, const Live& the
   if (!by_grant && !by_facts) return false;
   const double dx = mine.x - theirs.x, dy = mine.y - theirs.y;
   const double far =
-      mine.reach_m + theirs.reach_m + 2 * scenario_.radius_m + scenario_.margin_m + 2 * most_grown_m_;
+      mine.reach_m + theirs.reach_m + 2 * scenario_.radius_m + scenario_.margin_m + 2 * max_inflation_m_;
   return dx * dx + dy * dy <= far * far;
 }
 
@@ -72,7 +72,7 @@ void Auditor::judge_pairs_of(const AuditedRobot& robot, const std::vector<Before
     mine.add(own);
   }
   if (changed_.empty()) return;
-  const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 2 * most_grown_m_;
+  const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 2 * max_inflation_m_;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const Whereabouts& other = whereabouts_[i];
     const double far = mine.reach_m + other.reach_m + keep, dx = other.x - mine.x, dy = other.y - mine.y;
@@ -110,7 +110,7 @@ void Auditor::judge_new_pairs_of(AuditedRobot& robot, const Known& known) {
 
 void Auditor::judge_pair(const AuditedRobot& ra, const Known& a, const AuditedRobot& rb, const Known& b,
                          Epoch epoch) {
-  const double keep = keep_m(a, b);
+  const double keep = min_separation_m(a, b);
   ++totals_.pairs;
   const Approach near = nearest(a.path, b.path, keep);
   if (near.distance_m >= keep - kLength_m || (a.number == 0 && b.number == 0)) return;
@@ -140,7 +140,7 @@ std::optional<bool> Auditor::is_excused(const AuditedRobot& robot, const Known& 
   if (later.is_own || later.number == 0) return false;
   const Known* base = robot.find(later.version.base());
   if (!base || !base->has_content) return std::nullopt;
-  const double keep = keep_m(later, other);
+  const double keep = min_separation_m(later, other);
   const Approach before = nearest(base->path, other.path, keep, later.path.start_ns());
   return before.distance_m < keep && distance_m >= before.distance_m - kLength_m;
 }

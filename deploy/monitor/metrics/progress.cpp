@@ -18,19 +18,19 @@ const char* name_of(const RobotProgress& row) {
   if (row.arrived) return "arrived";
   if (!row.phase) return "silent";
   switch (*row.phase) {
-    case msg::AgentPhase::AGENT_FENCING:
+    case msg::AgentState::AGENT_FENCING:
       return "fencing";
-    case msg::AgentPhase::AGENT_REGISTERING:
+    case msg::AgentState::AGENT_REGISTERING:
       return "registering";
-    case msg::AgentPhase::AGENT_WAITING:
+    case msg::AgentState::AGENT_WAITING:
       return "waiting";
-    case msg::AgentPhase::AGENT_DRIVING:
+    case msg::AgentState::AGENT_DRIVING:
       return "driving";
-    case msg::AgentPhase::AGENT_ARRIVED:
+    case msg::AgentState::AGENT_ARRIVED:
       return "settling";
-    case msg::AgentPhase::AGENT_OFF_CLOCK:
+    case msg::AgentState::AGENT_OFF_CLOCK:
       return "off clock";
-    case msg::AgentPhase::AGENT_ABSENT:
+    case msg::AgentState::AGENT_ABSENT:
       return "absent";
   }
   return "?";
@@ -51,7 +51,7 @@ int terminal_rows() {
 
 }  // namespace
 
-std::string progress_line(const Judge& judge, Time now) {
+std::string progress_line(const RunMetrics& judge, Time now) {
   const Report report = judge.report();
   const auto since = judge.granting_since();
   const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
@@ -67,7 +67,7 @@ std::string progress_line(const Judge& judge, Time now) {
       milliseconds(report.negotiation.quantile(0.99)), clocks_of(report));
 }
 
-std::string progress_table(const Judge& judge, Time now, int max_rows) {
+std::string progress_table(const RunMetrics& judge, Time now, int max_rows) {
   std::string text = progress_line(judge, now) + "\n";
   text += "robot  team    state          to go      speed   grants  denials  negotiation p50 / p99\n";
   const auto rows = judge.progress();
@@ -97,7 +97,7 @@ void ProgressDisplay::say(const std::string& line) {
   if (is_terminal_) next_ = Time{};
 }
 
-void ProgressDisplay::update(const Judge& judge, Time now) {
+void ProgressDisplay::update(const RunMetrics& judge, Time now) {
   if (now < next_) return;
   if (is_terminal_) {
     next_ = now + kRedraw;

@@ -8,9 +8,9 @@
 namespace sidestep {
 
 /// One line about the whole run.
-std::string progress_line(const Judge& judge, Time now);
+std::string progress_line(const RunMetrics& judge, Time now);
 /// That line, and a line for each robot, at most `max_rows` of them.
-std::string progress_table(const Judge& judge, Time now, int max_rows);
+std::string progress_table(const RunMetrics& judge, Time now, int max_rows);
 
 /// Shows a run while it lasts: a table that is redrawn in a terminal, plain lines, one a second, elsewhere.
 class ProgressDisplay {
@@ -19,7 +19,7 @@ class ProgressDisplay {
   /// Prints a line that stays.
   void say(const std::string& line);
   /// Shows where the run stands, when it is time for it again.
-  void update(const Judge& judge, Time now);
+  void update(const RunMetrics& judge, Time now);
 
  private:
   void erase_table();

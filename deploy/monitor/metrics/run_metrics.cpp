@@ -71,7 +71,7 @@ double straight_time_s(const RobotSpec& robot, const MotionLimits& limits) {
   return total_s;
 }
 
-Judge::Judge(const Scenario& scenario) : scenario_(scenario) {
+RunMetrics::RunMetrics(const Scenario& scenario) : scenario_(scenario) {
   for (const RobotSpec& spec : scenario.robots) {
     Watched robot;
     robot.spec = &spec;
@@ -80,29 +80,29 @@ Judge::Judge(const Scenario& scenario) : scenario_(scenario) {
   }
 }
 
-Judge::Watched* Judge::find(RobotId robot) {
+RunMetrics::Watched* RunMetrics::find(RobotId robot) {
   const auto at =
       std::lower_bound(robots_.begin(), robots_.end(), robot,
                        [](const Watched& watched, RobotId wanted) { return watched.spec->id < wanted; });
   return at != robots_.end() && at->spec->id == robot ? &*at : nullptr;
 }
 
-const msg::AgentStatus* Judge::Watched::speaks() const {
+const msg::AgentStatus* RunMetrics::Watched::speaks() const {
   const auto found = std::ranges::find(
       lives, speaker, [](const msg::AgentStatus& life) { return life.head().incarnation(); });
   return found == lives.end() ? nullptr : &*found;
 }
 
-double Judge::to_go_m(const Watched& robot) const {
+double RunMetrics::to_go_m(const Watched& robot) const {
   return (robot.spec->goals.back().position_m - robot.position_m).norm();
 }
 
-bool Judge::has_arrived(const Watched& robot) const {
+bool RunMetrics::has_arrived(const Watched& robot) const {
   return robot.settled_since && robot.speaks() &&
-         robot.speaks()->agent_phase() == msg::AgentPhase::AGENT_ARRIVED;
+         robot.speaks()->agent_state() == msg::AgentState::AGENT_ARRIVED;
 }
 
-void Judge::on_truth(const msg::GroundTruth& truth) {
+void RunMetrics::on_truth(const msg::GroundTruth& truth) {
   const bool is_sound = std::isfinite(truth.penetration_m_s()) && !std::isnan(truth.min_clearance_m()) &&
                         std::isfinite(truth.crash_speed_mps()) &&
                         std::isfinite(truth.robot_crash_speed_mps()) && is_time(truth.at_ns());
@@ -141,10 +141,10 @@ void Judge::on_truth(const msg::GroundTruth& truth) {
   }
 }
 
-void Judge::on_status(const msg::AgentStatus& status) {
+void RunMetrics::on_status(const msg::AgentStatus& status) {
   Watched* robot = find(status.robot());
-  const bool is_phase = status.agent_phase() >= msg::AgentPhase::AGENT_FENCING &&
-                        status.agent_phase() <= msg::AgentPhase::AGENT_ABSENT;
+  const bool is_phase = status.agent_state() >= msg::AgentState::AGENT_FENCING &&
+                        status.agent_state() <= msg::AgentState::AGENT_ABSENT;
   msg::AgentStatus* life = robot && is_phase ? slot_for(robot->lives, status.head()) : nullptr;
   if (!life) {
     ++dropped_;
@@ -152,7 +152,7 @@ void Judge::on_status(const msg::AgentStatus& status) {
   }
   *life = status;
   // One that its robot does not obey says nothing for it while another one speaks.
-  const bool is_fencing = status.agent_phase() == msg::AgentPhase::AGENT_FENCING;
+  const bool is_fencing = status.agent_state() == msg::AgentState::AGENT_FENCING;
   if (is_fencing && robot->speaks() && robot->speaker != status.head().incarnation() &&
       ++robot->others < kSilentAfter)
     return;
@@ -160,7 +160,7 @@ void Judge::on_status(const msg::AgentStatus& status) {
   robot->others = 0;
 }
 
-void Judge::on_coordinator(const msg::CoordinatorState& state) {
+void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
   if (!is_time(state.head().stamp_ns())) {
     ++dropped_;
     return;
@@ -176,34 +176,34 @@ void Judge::on_coordinator(const msg::CoordinatorState& state) {
     return;
   }
   last = {state.head().message_number(), state.invalid()};
-  if (state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_STANDBY) return;
+  if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
   if (active_ && state.epoch() < active_->epoch()) return;
   active_ = state;
   if (state.conflicts() > 0 && find(state.conflict_first()) && find(state.conflict_second()))
     conflicts_.emplace(state.conflict_first(), state.conflict_second());
-  if (!granting_since_ && state.coordinator_phase() == msg::CoordinatorPhase::COORDINATOR_GRANTING) {
+  if (!granting_since_ && state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
     granting_since_ = time_from_ns(state.head().stamp_ns());
   }
 }
 
-void Judge::on_death(const std::string& process, const std::string& reason, Time at, bool restarted) {
+void RunMetrics::on_death(const std::string& process, const std::string& reason, Time at, bool restarted) {
   const double at_s = granting_since_ ? to_seconds(at - *granting_since_) : 0;
   deaths_.push_back({process, reason, at_s, restarted});
 }
 
-int Judge::arrived() const {
+int RunMetrics::arrived() const {
   return static_cast<int>(std::count_if(robots_.begin(), robots_.end(),
                                         [this](const Watched& robot) { return has_arrived(robot); }));
 }
 
-bool Judge::all_arrived() const { return arrived() == static_cast<int>(robots_.size()); }
+bool RunMetrics::all_arrived() const { return arrived() == static_cast<int>(robots_.size()); }
 
-bool Judge::all_at_rest() const {
+bool RunMetrics::all_at_rest() const {
   return std::all_of(robots_.begin(), robots_.end(),
                      [](const Watched& robot) { return robot.speed_mps < kAtRest_mps; });
 }
 
-std::vector<RobotId> Judge::silent_agents() const {
+std::vector<RobotId> RunMetrics::silent_agents() const {
   std::vector<RobotId> silent;
   for (const Watched& robot : robots_) {
     if (robot.lives.empty()) silent.push_back(robot.spec->id);
@@ -211,18 +211,18 @@ std::vector<RobotId> Judge::silent_agents() const {
   return silent;
 }
 
-std::vector<RobotId> Judge::unregistered() const {
+std::vector<RobotId> RunMetrics::unregistered() const {
   if (!active_) return {};
   return {active_->missing().begin(), active_->missing().end()};
 }
 
-std::vector<RobotProgress> Judge::progress() const {
+std::vector<RobotProgress> RunMetrics::progress() const {
   std::vector<RobotProgress> rows;
   for (const Watched& robot : robots_) {
     RobotProgress row;
     row.robot = robot.spec->id;
     row.team = robot.spec->team;
-    if (robot.speaks()) row.phase = robot.speaks()->agent_phase();
+    if (robot.speaks()) row.phase = robot.speaks()->agent_state();
     row.arrived = has_arrived(robot);
     row.distance_to_go_m = to_go_m(robot);
     row.speed_mps = robot.speed_mps;
@@ -236,7 +236,7 @@ std::vector<RobotProgress> Judge::progress() const {
   return rows;
 }
 
-Report Judge::report() const {
+Report RunMetrics::report() const {
   Report report;
   report.scenario = scenario_.name;
   report.robots = static_cast<int>(robots_.size());

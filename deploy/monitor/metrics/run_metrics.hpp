@@ -19,7 +19,7 @@ namespace sidestep {
 struct RobotProgress {
   RobotId robot = 0;
   Team team = Team::kBlue;
-  std::optional<msg::AgentPhase> phase;  ///< none: no status seen yet
+  std::optional<msg::AgentState> phase;  ///< none: no status seen yet
   bool arrived = false;
   double distance_to_go_m = 0;  ///< to the last goal, in ground truth
   double speed_mps = 0;
@@ -32,10 +32,10 @@ struct RobotProgress {
 /// Watches one run from outside and says how it went. A robot has arrived when ground truth has it at its
 /// last goal, nearly at rest, and its agent says so. Times count from the first moment on which a coordinator
 /// said that it grants. Counters of processes that were restarted are summed over their lives.
-class Judge {
+class RunMetrics {
  public:
   /// The scenario outlives the judge.
-  explicit Judge(const Scenario& scenario);
+  explicit RunMetrics(const Scenario& scenario);
 
   void on_truth(const msg::GroundTruth& truth);
   void on_status(const msg::AgentStatus& status);

@@ -25,8 +25,8 @@ constexpr const char* kReasons[] = {
     "granted",     "not tried",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
     "old version", "base unknown", "not continuous", "beyond limits", "not at rest",        "outside field",
     "obstacle",    "conflict",     "ledger full",    "absent"};
-constexpr const char* kCoordinatorPhases[] = {"standby", "registering", "granting"};
-constexpr const char* kAgentPhases[] = {"fencing", "registering", "waiting", "driving",
+constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
+constexpr const char* kAgentStates[] = {"fencing", "registering", "waiting", "driving",
                                         "arrived", "off clock",   "absent"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
 constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
@@ -51,13 +51,13 @@ Json head(const msg::Header& m) {
           {"stamp_ns", m.stamp_ns()}};
 }
 
-Json phase(const msg::Phase& m) {
+Json phase(const msg::MotionPhase& m) {
   return {{"duration_ns", m.duration_ns()}, {"ax_mps2", m.ax_mps2()}, {"ay_mps2", m.ay_mps2()}};
 }
 
 Json intent(const msg::Intent& m) {
   return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"hold_s", m.hold_s()},
-          {"way_x_m", m.way_x_m()},  {"way_y_m", m.way_y_m()}, {"goal_x_m", m.goal_x_m()},
+          {"via_x_m", m.via_x_m()},  {"via_y_m", m.via_y_m()}, {"goal_x_m", m.goal_x_m()},
           {"goal_y_m", m.goal_y_m()}};
 }
 
@@ -71,7 +71,7 @@ Json version(const msg::Version& m) {
           {"y_m", m.y_m()},
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
-          {"grown_m", m.grown_m()},
+          {"inflation_m", m.inflation_m()},
           {"has_intent", m.has_intent()},
           {"intended", intent(m.intended())},
           {"phase_count", m.phase_count()},
@@ -245,7 +245,7 @@ Json describe(const msg::CoordinatorState& m) {
   return {{"coordinator", m.coordinator()},
           {"head", head(m.head())},
           {"epoch", m.epoch()},
-          {"coordinator_phase", word(m.coordinator_phase(), kCoordinatorPhases)},
+          {"coordinator_mode", word(m.coordinator_mode(), kCoordinatorModes)},
           {"proposals", m.proposals()},
           {"grants", m.grants()},
           {"denials", m.denials()},
@@ -260,7 +260,7 @@ Json describe(const msg::CoordinatorState& m) {
 Json describe(const msg::AgentStatus& m) {
   return {{"robot", m.robot()},
           {"head", head(m.head())},
-          {"agent_phase", word(m.agent_phase(), kAgentPhases)},
+          {"agent_state", word(m.agent_state(), kAgentStates)},
           {"goal_index", m.goal_index()},
           {"distance_to_go_m", m.distance_to_go_m()},
           {"speed_mps", m.speed_mps()},
@@ -289,7 +289,7 @@ Json describe(const msg::GroundTruth& m) {
             {"vx_mps", r.vx_mps()},
             {"vy_mps", r.vy_mps()},
             {"reference_error_m", r.reference_error_m()},
-            {"let_go_ns", r.let_go_ns()}};
+            {"disturbance_end_ns", r.disturbance_end_ns()}};
   };
   const auto touch = [](const msg::Touch& t) -> Json {
     return {{"first", t.first()}, {"second", t.second()}};

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "deploy/simulate/campaign/search_summary.hpp"
+#include "deploy/simulate/campaign/campaign_summary.hpp"
 
 namespace sidestep {
 

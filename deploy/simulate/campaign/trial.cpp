@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "deploy/simulate/campaign/clock_draw.hpp"
-#include "deploy/simulate/campaign/fault_draw.hpp"
+#include "deploy/simulate/campaign/clock_sampler.hpp"
+#include "deploy/simulate/campaign/fault_sampler.hpp"
 #include "deploy/simulate/campaign/fault_player.hpp"
 #include "deploy/simulate/campaign/motion_meter.hpp"
-#include "deploy/simulate/campaign/scene_draw.hpp"
+#include "deploy/simulate/campaign/scene_sampler.hpp"
 
 namespace sidestep {
 namespace {
@@ -89,14 +89,14 @@ void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter
 
 }  // namespace
 
-Trial draw_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario) {
+Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario) {
   Rng rng(seed);
   Rng for_scene = rng.fork(), for_faults = rng.fork(), for_clocks = rng.fork();
-  Trial trial{seed, scenario ? *scenario : draw_scene(for_scene), {}, duration};
+  Trial trial{seed, scenario ? *scenario : sample_scene(for_scene), {}, duration};
   const Duration calm = std::min(kCalm, duration / 2);
   trial.plan =
-      draw_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration, calm, for_faults);
-  draw_clocks(trial.scenario, trial.plan, for_clocks);
+      sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration, calm, for_faults);
+  sample_clocks(trial.scenario, trial.plan, for_clocks);
   return trial;
 }
 

@@ -23,7 +23,7 @@ struct Trial {
 };
 
 /// Draws everything that the seed decides; the floor is the scenario's when there is one.
-Trial draw_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario);
+Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario);
 
 /// How a trial went. `failures` are in words; none: it passed.
 struct TrialResult {

@@ -54,7 +54,7 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       rng_(seed),
       clocks_(std::move(clocks)),
       begin_(kBegin),
-      bench_(std::make_shared<Workbench>(scenario_)),
+      bench_(std::make_shared<PlanningScratch>(scenario_)),
       network_(seed, kBegin, scenario.network),
       judge_(scenario_),
       auditor_(scenario_, {true, {}}),

@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-struct Workbench;
+struct PlanningScratch;
 
 /// The name of the second agent of a robot.
 std::string twin_process(RobotId robot);
@@ -59,10 +59,10 @@ class SimSystem {
   Time now() const { return network_.now(); }
   Time begin() const { return begin_; }
   SimNetwork& network() { return network_; }
-  Judge& judge() { return judge_; }
+  RunMetrics& judge() { return judge_; }
   /// Shows every ground truth that the judge sees.
   void on_truth(std::function<void(const msg::GroundTruth&)> watcher) { truth_watcher_ = std::move(watcher); }
-  const Judge& judge() const { return judge_; }
+  const RunMetrics& judge() const { return judge_; }
   /// Hears every message, whatever becomes of it; the judge's report says what it found.
   Auditor& auditor() { return auditor_; }
 
@@ -76,9 +76,9 @@ class SimSystem {
   Rng rng_;
   std::map<std::string, Duration> clocks_;
   Time begin_;
-  std::shared_ptr<Workbench> bench_;  // of all agents
+  std::shared_ptr<PlanningScratch> bench_;  // of all agents
   SimNetwork network_;
-  Judge judge_;
+  RunMetrics judge_;
   Auditor auditor_;
   SimBus judge_bus_;
   Writer<msg::Disturbance> hand_;

@@ -17,7 +17,7 @@ int in_disc(const Pixel& pixel, float x, float y, float radius) {
   return count;
 }
 
-int in_outline(const Pixel& pixel, const Outline& outline) {
+int in_outline(const Pixel& pixel, const TrajectoryBounds& outline) {
   const Points& about = *pixel.about;
   const float square = outline.radius * outline.radius, front = outline.front;
   int count = 0;
@@ -28,7 +28,7 @@ int in_outline(const Pixel& pixel, const Outline& outline) {
   return count;
 }
 
-int on_lines(const Points& plain, const Pixel& pixel, const Lines& lines, const Outline& outline) {
+int on_lines(const Points& plain, const Pixel& pixel, const Lines& lines, const TrajectoryBounds& outline) {
   const float square = outline.radius * outline.radius, front = outline.front;
   const Points& about = *pixel.about;
   const float lean = lines.lean, from_foot_x = pixel.x - lines.foot_x, from_foot_y = pixel.y - lines.foot_y;

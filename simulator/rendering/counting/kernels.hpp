@@ -8,7 +8,7 @@
 namespace sidestep::counting {
 
 /// A body's outline: a disc about the origin, cut off at x = front.
-struct Outline {
+struct TrajectoryBounds {
   float radius = 0;
   float front = 0;
 };
@@ -30,10 +30,10 @@ struct Kernels {
   const char* name;
   /// Within the radius of a place.
   int (*in_disc)(const Pixel& pixel, float x, float y, float radius);
-  int (*in_outline)(const Pixel& pixel, const Outline& outline);
+  int (*in_outline)(const Pixel& pixel, const TrajectoryBounds& outline);
   /// On lines that meet the outline: they start at the pixel's points, and lead where lines from `plain`,
   /// points about the same centre, do.
-  int (*on_lines)(const Points& plain, const Pixel& pixel, const Lines& lines, const Outline& outline);
+  int (*on_lines)(const Points& plain, const Pixel& pixel, const Lines& lines, const TrajectoryBounds& outline);
 };
 
 /// Those that this machine can run, the fastest last.

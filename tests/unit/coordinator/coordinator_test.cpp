@@ -103,7 +103,7 @@ TEST_CASE("a coordinator that stands by answers nobody, and begins with nothing 
   floor.register_both();
   floor.coordinator.begin_epoch(0);
   CHECK_FALSE(floor.coordinator.is_granting());
-  CHECK(floor.coordinator.state().coordinator_phase() == msg::COORDINATOR_STANDBY);
+  CHECK(floor.coordinator.state().coordinator_mode() == msg::COORDINATOR_STANDBY);
   CHECK(floor.coordinator.state().epoch() == 0);
   CHECK(floor.coordinator.state().missing().empty());
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
@@ -293,7 +293,7 @@ TEST_CASE("a robot that lost its reference is where it says, and who that is in 
   Floor floor;
   floor.register_both();
   Version stop = standing(1, {0.85, 0}, 1'000'000);
-  stop.grown_m = 0.01;
+  stop.inflation_m = 0.01;
   auto feedback = fact(stop, 1);
   floor.coordinator.on_feedback(feedback);
   CHECK(floor.coordinator.is_contradicted());  // it does not say that it lost its reference

@@ -59,12 +59,12 @@ double smallest_distance_m(const Trajectory& a, const Trajectory& b, Time from) 
 }
 
 /// How much nearer than they should two robots may come, by all of their versions; 0 when they keep clear.
-double shortfall_m(const Ledger& ledger, RobotId i, RobotId j, double keep_m) {
+double shortfall_m(const Ledger& ledger, RobotId i, RobotId j, double min_separation_m) {
   double worst = 0;
   for (const Version& v : ledger.versions(i)) {
     for (const Version& w : ledger.versions(j)) {
       const Time from = std::max(v.trajectory.start(), w.trajectory.start());
-      const double keep = keep_m + v.grown_m + w.grown_m;
+      const double keep = min_separation_m + v.inflation_m + w.inflation_m;
       worst = std::max(worst, keep - smallest_distance_m(v.trajectory, w.trajectory, from));
     }
   }
@@ -116,16 +116,16 @@ TEST_CASE("others keep clear of a robot's growth, and growth ends only where the
   CHECK(grown.ledger.grant(near).reason == msg::REASON_CONFLICT);
 
   Version moving = continued(stop, 1001, 0.52, {0, 1}), other = moving;
-  moving.grown_m = 0;
+  moving.inflation_m = 0;
   CHECK(two.ledger.grant(moving).reason == kNotContinuous);
-  other.grown_m = 0.02;
+  other.inflation_m = 0.02;
   CHECK(two.ledger.grant(other).reason == kNotContinuous);
-  other.grown_m = 0.05;
+  other.inflation_m = 0.05;
   CHECK(two.ledger.grant(other).granted());
   Version rested = continued(stop, 1002, 2, {0, 1});
   CHECK(two.ledger.grant(rested).granted());
   rested = continued(rested, 1003, 3, {0, 1});
-  rested.grown_m = 0.05;
+  rested.inflation_m = 0.05;
   CHECK(two.ledger.grant(rested).reason == kNotContinuous);  // nothing grows by a proposal
 }
 
@@ -235,10 +235,10 @@ TEST_CASE(
       const double start =
           std::max(now, to_seconds(base.trajectory.start().time_since_epoch()) + 1e-3) + 0.01;
       const Vec2 velocity = base.trajectory.state_at(at_s(start)).velocity_mps;
-      const Vec2 wish =
+      const Vec2 desired =
           limited(sample(velocity, rules.limits, rng), velocity, rules.limits, from_seconds(0.15));
-      Version candidate = continued(base, number, start, wish, 0.15);
-      candidate.grown_m = velocity.norm() == 0 && rng.chance(0.5) ? 0 : base.grown_m;
+      Version candidate = continued(base, number, start, desired, 0.15);
+      candidate.inflation_m = velocity.norm() == 0 && rng.chance(0.5) ? 0 : base.inflation_m;
       const bool granted = ledger.grant(candidate).granted();
       grants += granted;
       bool is_escape = false;
@@ -247,7 +247,7 @@ TEST_CASE(
           const Time from = std::max(candidate.trajectory.start(), w.trajectory.start());
           is_escape = is_escape ||
                       (granted && other != robot &&
-                       smallest_distance_m(candidate.trajectory, w.trajectory, from) < rules.keep_m() - 1e-6);
+                       smallest_distance_m(candidate.trajectory, w.trajectory, from) < rules.min_separation_m() - 1e-6);
         }
       }
       escapes += is_escape;
@@ -268,7 +268,7 @@ TEST_CASE(
     for (const RobotId i : roster) {
       for (const RobotId j : roster) {
         if (i >= j) continue;
-        const double worst = shortfall_m(ledger, i, j, rules.keep_m());
+        const double worst = shortfall_m(ledger, i, j, rules.min_separation_m());
         CAPTURE(number, i, j);
         if (!is_pushed || (i != robot && j != robot)) REQUIRE(worst <= shortfall[{i, j}] + 1e-6);
         shortfall[{i, j}] = worst;

@@ -168,9 +168,9 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
     const Version base = held[rng.below(held.size())];
     const double start = std::max(now, to_seconds(base.trajectory.start().time_since_epoch()) + 1e-3) + 0.01;
     const Vec2 velocity = base.trajectory.state_at(at_s(start)).velocity_mps;
-    const Vec2 wish =
+    const Vec2 desired =
         limited(sample(velocity, rules.limits, rng), velocity, rules.limits, from_seconds(0.15));
-    const Ruling ruling = ledger.grant(continued(base, number, start, wish, 0.15));
+    const Ruling ruling = ledger.grant(continued(base, number, start, desired, 0.15));
     grants += ruling.granted();
     conflicts += ruling.reason == msg::REASON_CONFLICT;
     if (rng.chance(0.5)) {
@@ -198,7 +198,7 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
               const Time t = from + from_seconds(0.02 * k);
               const double distance =
                   (v.trajectory.state_at(t).position_m - w.trajectory.state_at(t).position_m).norm();
-              REQUIRE(distance >= rules.keep_m());
+              REQUIRE(distance >= rules.min_separation_m());
             }
           }
         }

@@ -12,11 +12,11 @@ namespace sidestep {
 namespace {
 
 // The differential equation in tiny steps.
-State integrated(State state, Vec2& acceleration, const Vec2& wish, double lag_s) {
+State integrated(State state, Vec2& acceleration, const Vec2& desired, double lag_s) {
   const int parts = 2000;
   const double dt = kPhysicsStepSeconds / parts;
   for (int i = 0; i < parts; ++i) {
-    const Vec2 next = acceleration + (wish - acceleration) * (dt / lag_s);
+    const Vec2 next = acceleration + (desired - acceleration) * (dt / lag_s);
     state = state_after(state, 0.5 * (acceleration + next), dt);
     acceleration = next;
   }
@@ -31,11 +31,11 @@ TEST_CASE("a body follows its wish with a first-order lag") {
   Body body({1, 2}, 0, settings);
   State reference{{1, 2}, {0, 0}};
   Vec2 acceleration(0, 0);
-  Vec2 wish(0, 0);
+  Vec2 desired(0, 0);
   for (int step = 0; step < 300; ++step) {
-    if (step % 20 == 0) wish = rotated(Vec2(rng.uniform(0, 5), 0), rng.uniform(-3, 3));
-    body.step({wish, 0});
-    reference = integrated(reference, acceleration, wish, settings.lag_s);
+    if (step % 20 == 0) desired = rotated(Vec2(rng.uniform(0, 5), 0), rng.uniform(-3, 3));
+    body.step({desired, 0});
+    reference = integrated(reference, acceleration, desired, settings.lag_s);
   }
   CHECK((body.position_m() - reference.position_m).norm() < 1e-6);
   CHECK((body.velocity_mps() - reference.velocity_mps).norm() < 1e-5);

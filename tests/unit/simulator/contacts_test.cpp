@@ -62,12 +62,12 @@ TEST_CASE("contacts, penetration and clearance are those of a look at every pair
   }
   BruteForce slow{{{{side, side}, 0.2}, {{-side / 2 - 0.5, 0}, 0.3}}, {}, {}};
   Contacts contacts(slow.obstacles, kRadius_m, BodySettings{}.speed_mps);
-  std::vector<Vec2> wishes(bodies.size(), Vec2(0, 0));
+  std::vector<Vec2> desired_accelerations(bodies.size(), Vec2(0, 0));
   for (int step = 0; step < 3000; ++step) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      if (step % 100 == 0) wishes[i] = rotated(Vec2(6, 0), rng.uniform(-3.14, 3.14));
-      if (bodies[i].position_m().norm() > side) wishes[i] = -6 * bodies[i].position_m().normalized();
-      bodies[i].step({wishes[i], 0});
+      if (step % 100 == 0) desired_accelerations[i] = rotated(Vec2(6, 0), rng.uniform(-3.14, 3.14));
+      if (bodies[i].position_m().norm() > side) desired_accelerations[i] = -6 * bodies[i].position_m().normalized();
+      bodies[i].step({desired_accelerations[i], 0});
     }
     slow.step(bodies);
     contacts.step(bodies);

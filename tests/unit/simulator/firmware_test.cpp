@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
-#include "simulator/firmware_judge.hpp"
+#include "simulator/firmware_monitor.hpp"
 #include "tests/unit/simulator/commands.hpp"
 
 namespace sidestep {
@@ -307,7 +307,7 @@ TEST_CASE("the judge finds no rule broken whatever commands come") {
   CAPTURE(seed);
   Rng rng(seed);
   auto robot = firmware();
-  FirmwareJudge judge(robot.executing());
+  FirmwareMonitor judge(robot.executing());
   const auto switch_due = [&](Time now) {
     while (robot.switch_next(now)) judge.switched(robot.executing());
   };

@@ -84,8 +84,8 @@ class FollowedRobot {
     Trajectory trajectory(start, state);
     trajectory.append(scenario_.cycle, limited(wish_, state.velocity_mps, scenario_.limits, scenario_.cycle));
     append_stop(trajectory, scenario_.limits.deceleration_mps2);
-    const double grown_m = state.velocity_mps.isZero() ? 0 : executing->grown_m;
-    return Version{world_.id(robot_), 1, newest_, executing->number, trajectory, grown_m};
+    const double inflation_m = state.velocity_mps.isZero() ? 0 : executing->inflation_m;
+    return Version{world_.id(robot_), 1, newest_, executing->number, trajectory, inflation_m};
   }
 
   const Scenario& scenario_;

@@ -101,10 +101,10 @@ TEST_CASE("a shoved robot breaks off when the second frame after it has come") {
   const Version stop = floor.world.firmware(0).executing();
   CHECK(floor.world.firmware(0).is_off_reference());
   CHECK(stop.incarnation == 1);
-  CHECK(stop.grown_m > 0);
+  CHECK(stop.inflation_m > 0);
   CHECK(stop.trajectory.residual_speed_mps() < 1e-9);
   CHECK((floor.world.bodies()[0].position_m() - stop.trajectory.at_start().position_m).norm() <
-        floor.scenario.tracking_bound_m + stop.grown_m);
+        floor.scenario.tracking_bound_m + stop.inflation_m);
 }
 
 TEST_CASE("two noisy frames tell a robot that was moved past its wheels by a centimetre") {
@@ -148,7 +148,7 @@ TEST_CASE("a robot that slips breaks off, and lies within what it announces once
   for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
     CAPTURE(i);
     CHECK(floor.world.reference_error_m(i) <
-          floor.scenario.tracking_bound_m + floor.world.firmware(i).executing().grown_m);
+          floor.scenario.tracking_bound_m + floor.world.firmware(i).executing().inflation_m);
     CHECK(floor.world.bodies()[i].velocity_mps().norm() < 0.02);
   }
   CHECK(floor.world.firmware_violations() == 0);
@@ -174,7 +174,7 @@ TEST_CASE("a robot far from what it executes gets back to it without swinging ab
   for (int i = 0; i < 10; ++i) see(mark);
   for (int i = 0; i < 3; ++i) see(mark + Vec2(0.15, 0));
   const Version stop = world.firmware(0).executing();
-  REQUIRE(stop.grown_m > 0.1);
+  REQUIRE(stop.inflation_m > 0.1);
   REQUIRE((world.bodies()[0].position_m() - stop.trajectory.rest_position_m()).norm() > 0.1);
 
   double fastest_mps = 0, beyond_m = 0;

@@ -19,18 +19,18 @@ using std::chrono::milliseconds;
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 // Where somebody on a closed or reflected way is after a distance, by folding the distance.
-Vec2 along(const std::vector<Vec2>& way_m, bool is_round, double distance_m) {
+Vec2 along(const std::vector<Vec2>& path_m, bool is_round, double distance_m) {
   double length = 0;
-  for (std::size_t i = 1; i < way_m.size(); ++i) length += (way_m[i] - way_m[i - 1]).norm();
+  for (std::size_t i = 1; i < path_m.size(); ++i) length += (path_m[i] - path_m[i - 1]).norm();
   double left = std::fmod(distance_m, is_round ? length : 2 * length);
   if (left > length) left = 2 * length - left;
-  for (std::size_t i = 1; i < way_m.size(); ++i) {
-    const double leg = (way_m[i] - way_m[i - 1]).norm();
+  for (std::size_t i = 1; i < path_m.size(); ++i) {
+    const double leg = (path_m[i] - path_m[i - 1]).norm();
     if (left <= leg)
-      return leg > 0 ? Vec2(way_m[i - 1] + (way_m[i] - way_m[i - 1]) * (left / leg)) : way_m[i];
+      return leg > 0 ? Vec2(path_m[i - 1] + (path_m[i] - path_m[i - 1]) * (left / leg)) : path_m[i];
     left -= leg;
   }
-  return way_m.back();
+  return path_m.back();
 }
 
 TEST_CASE("an opponent goes its way at its speed, to and fro or round") {
@@ -40,12 +40,12 @@ TEST_CASE("an opponent goes its way at its speed, to and fro or round") {
   Rng rng(seed);
   OpponentSpec spec{0.1, rng.uniform(0.2, 3), {}};
   for (std::uint64_t i = 0; i < 3 + seed % 3; ++i)
-    spec.way_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
-  if (is_round) spec.way_m.push_back(spec.way_m.front());
+    spec.path_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  if (is_round) spec.path_m.push_back(spec.path_m.front());
   Opponents opponents(std::vector{spec}, 0.09, 2.5);
   for (int step = 1; step <= 20'000; ++step) {
     opponents.step({});
-    const Vec2 expected = along(spec.way_m, is_round, step * spec.speed_mps * kPhysicsStepSeconds);
+    const Vec2 expected = along(spec.path_m, is_round, step * spec.speed_mps * kPhysicsStepSeconds);
     REQUIRE((opponents.discs()[0].centre_m - expected).norm() < 1e-6);
   }
 }
@@ -126,7 +126,7 @@ TEST_CASE("crashes are counted as by a look at everything") {
   std::vector<OpponentSpec> specs;
   for (int i = 0; i < 4; ++i) {
     OpponentSpec spec{rng.uniform(0.05, 0.4), rng.uniform(0.5, 3), {}};
-    for (int k = 0; k < 3; ++k) spec.way_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+    for (int k = 0; k < 3; ++k) spec.path_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
     specs.push_back(spec);
   }
   std::vector<Body> robots;

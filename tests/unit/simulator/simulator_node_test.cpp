@@ -207,8 +207,8 @@ struct Wanderer {
     const State state = base->trajectory.state_at(start);
     Trajectory trajectory(start, state);
     const Duration cycle = scene.scenario.cycle;
-    const Vec2 wish = rotated(Vec2(20, 0), rng.uniform(-3.14, 3.14));
-    trajectory.append(cycle, limited(wish, state.velocity_mps, scene.scenario.limits, cycle));
+    const Vec2 desired = rotated(Vec2(20, 0), rng.uniform(-3.14, 3.14));
+    trajectory.append(cycle, limited(desired, state.velocity_mps, scene.scenario.limits, cycle));
     append_stop(trajectory, scene.scenario.limits.deceleration_mps2);
     newest = std::max(newest, base->number) + 1;
     scene.send(robot, test::command_with({base->robot, 1, newest, base->number, trajectory}));

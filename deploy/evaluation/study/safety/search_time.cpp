@@ -20,10 +20,10 @@ constexpr Duration kCycle{16'666'667};
 constexpr int kWarmUps = 2;
 
 /// Motions on a jittered grid that keep clear of each other; a robot that finds none stands.
-std::vector<Version> draw_versions(int robots, const FloorRules& rules, Rng& rng) {
+std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& rng) {
   const double cell_m = std::sqrt(kArea_m2);
   const int columns = static_cast<int>(std::ceil(std::sqrt(robots)));
-  const double jitter_m = 0.5 * (cell_m - rules.keep_m()) - 0.01;
+  const double jitter_m = 0.5 * (cell_m - rules.min_separation_m()) - 0.01;
   std::vector<Version> versions;
   for (int i = 0; i < robots; ++i) {
     const Vec2 corner = -0.5 * cell_m * (columns - 1) * Vec2(1, 1);
@@ -37,7 +37,7 @@ std::vector<Version> draw_versions(int robots, const FloorRules& rules, Rng& rng
           accelerate_then_stop(kNow, {place, velocity}, Vec2::Zero(), kCycle, rules.limits.deceleration_mps2);
       bool is_free = rules.field.contains(moving.rest_position_m(), rules.radius_m);
       for (const Version& other : versions)
-        is_free = is_free && is_clear(moving, other.trajectory, rules.keep_m());
+        is_free = is_free && is_clear(moving, other.trajectory, rules.min_separation_m());
       if (!is_free) continue;
       trajectory = moving;
       break;
@@ -54,23 +54,23 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
   FloorRules rules;
   const double side_m = std::sqrt(kArea_m2) * (std::ceil(std::sqrt(robots)) + 1);
   rules.field = {side_m, side_m};
-  const std::vector<Version> versions = draw_versions(robots, rules, rng);
+  const std::vector<Version> versions = sample_versions(robots, rules, rng);
   std::vector<SearchQuery> queries;
   for (const Version& version : versions) {
     const Time start = kNow + kCycle;
     const State there = version.trajectory.state_at(start);
     const Vec2 to_go(rng.uniform(-2, 2), rng.uniform(-2, 2));
-    const MotionWish wish = wished_motion(to_go, there.velocity_mps, rules.limits, kCycle, kCycle);
+    const AccelerationCommand desired = desired_acceleration(to_go, there.velocity_mps, rules.limits, kCycle, kCycle);
     SearchQuery query;
     query.start = start;
     query.at_start = there;
-    query.wish_mps2 = wish.acceleration_mps2;
+    query.desired_mps2 = desired.acceleration_mps2;
     query.phase = kCycle;
     query.robot = version.robot;
     queries.push_back(query);
   }
   SafetySearch search(rules, {});
-  Crowd crowd;
+  TrajectoryIndex crowd;
   double begin_us = 0;
   for (int round = 0; round <= kWarmUps; ++round) {
     begin_us = cpu_us();

@@ -40,9 +40,9 @@ class Loner {
     if (now >= base.trajectory.end() && (rest - goal()).norm() < scenario_.goal_tolerance_m) ++traversals_;
     if ((rest - goal()).norm() < kCloseEnough_m) return;
     const State there = base.trajectory.state_at(start);
-    const MotionWish wish = wished_motion(goal() - there.position_m, there.velocity_mps, scenario_.limits,
+    const AccelerationCommand desired = desired_acceleration(goal() - there.position_m, there.velocity_mps, scenario_.limits,
                                           scenario_.cycle, scenario_.cycle);
-    const Trajectory trajectory = accelerate_then_stop(start, there, wish.acceleration_mps2, wish.hold,
+    const Trajectory trajectory = accelerate_then_stop(start, there, desired.acceleration_mps2, desired.hold,
                                                        scenario_.limits.deceleration_mps2);
     msg::Command command;
     command.robot(spec_.id);

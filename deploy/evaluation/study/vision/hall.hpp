@@ -38,7 +38,7 @@ class Hall {
   const SceneBall& ball() const { return ball_; }
   const CameraModel& camera(std::size_t number) const { return renderers_[number].camera(); }
   const std::vector<msg::CameraImage>& images() const { return images_; }
-  const FrameReader& reader(std::size_t number) const { return reader_.camera(number); }
+  const Detector& reader(std::size_t number) const { return reader_.camera(number); }
   /// Lets vision see the images, up to the world's state at their time.
   void see();
   const std::vector<msg::DetectionFrame>& detections() const { return detections_; }

@@ -25,13 +25,13 @@ Scenario two_goals() {
 
 struct Driven {
   Scenario scenario = two_goals();
-  Agent agent{scenario, 3, kSelf, std::make_shared<Workbench>(scenario)};
+  Agent agent{scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario)};
 
   Driven() {
     report({0, 0}, 0.5);
     msg::CoordinatorState state;
     state.epoch(7);
-    state.coordinator_phase(msg::COORDINATOR_GRANTING);
+    state.coordinator_mode(msg::COORDINATOR_GRANTING);
     agent.on_coordinator_state(state, at_s(0.6));
     (void)agent.negotiation().registration();
   }
@@ -79,7 +79,7 @@ TEST_CASE("an agent plans towards its goal as long as vision sees its robot") {
   d.see(0, 0.6, 0.61);
   const auto query = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
   REQUIRE(query);
-  CHECK(query->wish_mps2.x() > 2);
+  CHECK(query->desired_mps2.x() > 2);
   CHECK(query->start == at_s(0.62 + kCycle_s));
   CHECK(d.plans(0.85));
   CHECK_FALSE(d.plans(0.95));
@@ -115,7 +115,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
   CHECK(d.agent.status(at_s(1)).goal_index() == 0);
   CHECK(d.agent.status(at_s(1)).distance_to_go_m() == Approx(1));
   CHECK(d.agent.command(at_s(1)).heading_rad() == 0);
-  Agent fresh(d.scenario, 3, kSelf, std::make_shared<Workbench>(d.scenario));
+  Agent fresh(d.scenario, 3, kSelf, std::make_shared<PlanningScratch>(d.scenario));
   msg::Feedback at_goal;
   at_goal.robot(3);
   at_goal.obeyed_incarnation(kSelf);
@@ -131,7 +131,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
 TEST_CASE("a robot whose held version ends at its goal has nothing to propose") {
   Scenario scenario = two_goals();
   scenario.robots[0].goals = {{{0, 0}, std::nullopt}};
-  Agent agent(scenario, 3, kSelf, std::make_shared<Workbench>(scenario));
+  Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
   msg::Feedback feedback;
   feedback.robot(3);
   feedback.obeyed_incarnation(kSelf);
@@ -140,7 +140,7 @@ TEST_CASE("a robot whose held version ends at its goal has nothing to propose") 
   agent.on_feedback(feedback);
   msg::CoordinatorState state;
   state.epoch(7);
-  state.coordinator_phase(msg::COORDINATOR_GRANTING);
+  state.coordinator_mode(msg::COORDINATOR_GRANTING);
   agent.on_coordinator_state(state, at_s(0.6));
   (void)agent.negotiation().registration();
   msg::WorldState world;
@@ -148,7 +148,7 @@ TEST_CASE("a robot whose held version ends at its goal has nothing to propose") 
   world.robots()[0].seen_at_ns(to_ns(at_s(0.6)));
   agent.on_world(world, at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
-  CHECK(agent.status(at_s(1)).agent_phase() == msg::AGENT_ARRIVED);
+  CHECK(agent.status(at_s(1)).agent_state() == msg::AGENT_ARRIVED);
 }
 
 TEST_CASE(
@@ -170,9 +170,9 @@ TEST_CASE("a robot's way leads round where somebody is who moves without asking"
   d.see_obstacle(0.6, 0.02, 0.6, 0.61);
   const auto query = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
   REQUIRE(query);
-  CHECK(std::abs(query->wish_mps2.y()) > 1);
+  CHECK(std::abs(query->desired_mps2.y()) > 1);
   d.see_obstacle(0, 1.8, 0.7, 0.71);
   const auto straight = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s));
   REQUIRE(straight);
-  CHECK(straight->wish_mps2.x() > 2);
+  CHECK(straight->desired_mps2.x() > 2);
 }

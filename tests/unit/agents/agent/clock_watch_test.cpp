@@ -123,9 +123,9 @@ TEST_CASE("an offset beyond the bound by more than the quickest messages take is
   CHECK(b.clocks.is_beyond_bound(at_s(1)));
   CHECK_FALSE(b.clocks.allows_motion(at_s(1)));
   msg::AgentStatus status;
-  status.agent_phase(msg::AGENT_WAITING);
+  status.agent_state(msg::AGENT_WAITING);
   b.clocks.fill(status, at_s(1));
-  CHECK(status.agent_phase() == msg::AGENT_OFF_CLOCK);
+  CHECK(status.agent_state() == msg::AGENT_OFF_CLOCK);
   CHECK(std::abs(status.clock_offset_s() - offset_s) <= status.clock_uncertainty_s());
   // Somebody sets it right.
   b.robot_s = 0;

@@ -30,7 +30,7 @@ inline msg::Feedback fact(const Version& executing, double at, Incarnation obeye
 inline msg::CoordinatorState life_sign(Epoch epoch, const std::vector<std::uint32_t>& missing = {}) {
   msg::CoordinatorState state;
   state.epoch(epoch);
-  state.coordinator_phase(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
+  state.coordinator_mode(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
   state.missing(missing);
   return state;
 }

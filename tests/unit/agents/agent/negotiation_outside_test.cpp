@@ -18,12 +18,12 @@ TEST_CASE(
   Version off = d.stand;
   off.number = kSelf + (VersionNumber{1} << 32);
   off.trajectory = stop;
-  off.grown_m = 0.02;
+  off.inflation_m = 0.02;
   auto feedback = fact(off, 0.98);
   feedback.is_off_reference(true);
   d.n.on_feedback(feedback);
   CHECK(d.n.executing().number == off.number);
-  CHECK(d.n.executing().grown_m == 0.02);
+  CHECK(d.n.executing().inflation_m == 0.02);
   CHECK(d.n.is_contradicted());
   CHECK(d.n.registration().version_count() == 1);
   // What was told before comes late.
@@ -33,7 +33,7 @@ TEST_CASE(
   const auto proposal = d.n.propose({&next, 1}, d.n.base_at(at_s(1.5)).number, at_s(1.4), 0.02);
   CHECK(proposal.candidates()[0].base() == off.number);
   CHECK(proposal.candidates()[0].version_number() > off.number);
-  CHECK(proposal.candidates()[0].grown_m() == 0.02);
+  CHECK(proposal.candidates()[0].inflation_m() == 0.02);
 }
 
 TEST_CASE("what the robot executes and this agent knows nothing of takes the place of all that it knew") {

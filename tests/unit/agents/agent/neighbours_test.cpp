@@ -37,7 +37,7 @@ msg::LedgerPage page_of(std::uint32_t index, std::uint64_t number, std::span<con
 
 std::vector<VersionNumber> held(Neighbours& neighbours, const Vec2& here, double horizon) {
   std::vector<VersionNumber> numbers;
-  Crowd crowd;
+  TrajectoryIndex crowd;
   neighbours.gather(here, horizon, crowd);
   for (std::size_t i = 0; i < crowd.size(); ++i) numbers.push_back(crowd.version(i).number);
   std::ranges::sort(numbers);

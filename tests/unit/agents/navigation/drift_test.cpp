@@ -11,13 +11,13 @@ using namespace sidestep;
 TEST_CASE("after the way that a robot may drive blindly one in 370 is beyond the bound, not more") {
   const double bound_m = 0.003;
   const Localisation known{0.0006, 0.002};
-  const double way_m = blind_way_m(known, bound_m);
+  const double path_m = blind_path_m(known, bound_m);
   Rng rng(5);
-  CAPTURE(way_m);
+  CAPTURE(path_m);
   int beyond = 0;
   constexpr int kRobots = 100'000;
   for (int i = 0; i < kRobots; ++i) {
-    const double error_m = known.deviation_m * rng.normal() + known.scale_deviation * rng.normal() * way_m;
+    const double error_m = known.deviation_m * rng.normal() + known.scale_deviation * rng.normal() * path_m;
     beyond += std::abs(error_m) > bound_m;
   }
   CHECK(beyond > kRobots / 500);
@@ -25,8 +25,8 @@ TEST_CASE("after the way that a robot may drive blindly one in 370 is beyond the
 }
 
 TEST_CASE("who knows its wheels drives far, and who does not know where it is stands") {
-  CHECK(blind_way_m({0, 0.005}, 0.003) == Approx(0.2));
-  CHECK(blind_way_m({0.0002, 0}, 0.003) > 100);
-  CHECK(blind_way_m({0.001, 0.001}, 0.003) == 0);
-  CHECK(blind_way_m({0.01, 0}, 0.003) == 0);
+  CHECK(blind_path_m({0, 0.005}, 0.003) == Approx(0.2));
+  CHECK(blind_path_m({0.0002, 0}, 0.003) > 100);
+  CHECK(blind_path_m({0.001, 0.001}, 0.003) == 0);
+  CHECK(blind_path_m({0.01, 0}, 0.003) == 0);
 }

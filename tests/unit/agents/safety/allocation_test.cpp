@@ -44,7 +44,7 @@ TEST_CASE("a search allocates nothing once warm, whoever is near") {
   FloorRules rules;
   rules.obstacles = {{{0.5, 0.5}, 0.1}};
   SafetySearch search(rules, {});
-  Crowd crowd;
+  TrajectoryIndex crowd;
   std::vector<std::vector<Version>> scenes(60);
   for (auto& scene : scenes) {
     for (RobotId robot = 1; robot <= 20; ++robot) scene.push_back(random_version(robot, rng));
@@ -62,10 +62,10 @@ TEST_CASE("a batch allocates nothing once warm") {
   Rng rng(2);
   ClearanceBatch batch;
   std::vector<Version> others;
-  std::vector<Outline> outlines;
+  std::vector<TrajectoryBounds> outlines;
   for (RobotId robot = 0; robot < 50; ++robot) {
     others.push_back(random_version(robot, rng));
-    outlines.push_back(outline_of(others.back().trajectory));
+    outlines.push_back(trajectory_bounds(others.back().trajectory));
   }
   std::size_t clear = 0;
   CHECK(allocations_once_warm([&] {
@@ -79,7 +79,7 @@ TEST_CASE("a batch allocates nothing once warm") {
 TEST_CASE("what the neighbours may be executing is kept without allocations once warm") {
   Rng rng(3);
   Neighbours neighbours(0);
-  Crowd crowd;
+  TrajectoryIndex crowd;
   neighbours.look_about({0, 0}, 2.5);
   std::vector<msg::LedgerPage> pages(40);
   for (std::size_t k = 0; k < pages.size(); ++k) {

@@ -61,11 +61,11 @@ void compare(const batch::Kernels& kernels, Maker maker, std::uint64_t seed, int
     const Trajectory one = maker(rng);
     const std::size_t count = rng.below(40);
     std::vector<Trajectory> others;
-    std::vector<Outline> outlines;
+    std::vector<TrajectoryBounds> outlines;
     std::vector<double> keep;
     for (std::size_t i = 0; i < count; ++i) {
       others.push_back(maker(rng));
-      outlines.push_back(outline_of(others.back()));
+      outlines.push_back(trajectory_bounds(others.back()));
       const double touching = clearance_m(one, others.back(), 0);
       keep.push_back(!rng.chance(0.2)  ? 0.19
                      : rng.chance(0.3) ? touching
@@ -109,10 +109,10 @@ TEST_CASE("of the pairs that agents and coordinators compare, a batch leaves few
     std::uint64_t pairs = 0;
     for (int round = 0; round < 2000; ++round) {
       std::vector<Trajectory> others;
-      std::vector<Outline> outlines;
+      std::vector<TrajectoryBounds> outlines;
       for (int i = 0; i < 32; ++i) {
         others.push_back(usual(rng));
-        outlines.push_back(outline_of(others.back()));
+        outlines.push_back(trajectory_bounds(others.back()));
       }
       batch.restart(kBegin);
       for (std::size_t i = 0; i < others.size(); ++i) batch.add(outlines[i], others[i], 0.19);
@@ -132,7 +132,7 @@ TEST_CASE("an empty batch has nothing to say, and one that was cleared has forgo
   batch.restart(kBegin);
   const Trajectory here = Trajectory::resting(kBegin, {0, 0}), there = Trajectory::resting(kBegin, {1, 0});
   CHECK(batch.compare(here).empty());
-  const Outline outline = outline_of(there);
+  const TrajectoryBounds outline = trajectory_bounds(there);
   batch.add(outline, there, 0.5);
   batch.add(outline, there, 1.5);
   const auto clear = batch.compare(here);

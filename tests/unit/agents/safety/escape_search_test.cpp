@@ -20,10 +20,10 @@ FloorRules rules_here() {
   return rules;
 }
 
-Version braking(RobotId robot, Vec2 place, Vec2 velocity, double grown_m = 0) {
+Version braking(RobotId robot, Vec2 place, Vec2 velocity, double inflation_m = 0) {
   Trajectory stop(kStart - kPhase, {place, velocity});
   append_stop(stop, 5);
-  return {robot, 1, 100, 0, stop, grown_m};
+  return {robot, 1, 100, 0, stop, inflation_m};
 }
 
 double sampled_distance_m(const Trajectory& a, const Trajectory& b) {
@@ -33,18 +33,18 @@ double sampled_distance_m(const Trajectory& a, const Trajectory& b) {
   return smallest;
 }
 
-SearchQuery query_on(const Version& base, Vec2 wish) {
+SearchQuery query_on(const Version& base, Vec2 desired) {
   SearchQuery query;
   query.start = kStart;
   query.at_start = base.trajectory.state_at(kStart);
-  query.wish_mps2 = wish;
+  query.desired_mps2 = desired;
   query.phase = kPhase;
-  query.grown_m = base.grown_m;
+  query.inflation_m = base.inflation_m;
   return query;
 }
 
-Crowd crowd_of(std::span<const Version> versions) {
-  Crowd crowd;
+TrajectoryIndex crowd_of(std::span<const Version> versions) {
+  TrajectoryIndex crowd;
   crowd.assign(versions);
   return crowd;
 }
@@ -60,10 +60,10 @@ TEST_CASE("ways out lead away from who is too near, and the wish comes first whe
   const Version base = braking(1, {0, 0}, {0, 0}), other = braking(2, {0.15, 0}, {0, 0});
   const auto towards = search_escape(query_on(base, {3, 0}), base, crowd_of({&other, 1}), rules_here());
   REQUIRE(towards.count == SearchResult::kMaxCandidates);
-  CHECK_FALSE(towards.wish_is_clear);
+  CHECK_FALSE(towards.desired_is_clear);
   CHECK(towards.candidates[0].rest_position_m().x() < -0.001);
   const auto away = search_escape(query_on(base, {-2, 0.5}), base, crowd_of({&other, 1}), rules_here());
-  CHECK(away.wish_is_clear);
+  CHECK(away.desired_is_clear);
   CHECK(away.candidates[0].rest_position_m().y() > 0);
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("robots that were pushed into an obstacle's room or off the field find
   for (const Vec2& place : {Vec2(1, 0.65), Vec2(0.7, 1.2), Vec2(1.98, 0), Vec2(-0.3, -2.1), Vec2(2.2, 2.2)}) {
     CAPTURE(place.x(), place.y());
     const Version base = braking(1, place, {0, 0});
-    CHECK(search_escape(query_on(base, {0, 0}), base, Crowd(), rules_here()).count > 0);
+    CHECK(search_escape(query_on(base, {0, 0}), base, TrajectoryIndex(), rules_here()).count > 0);
   }
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("no way out comes nearer to anybody than the base does, or than it sho
     for (std::size_t k = 0; k < result.count; ++k) {
       ++found;
       for (const Version& other : others) {
-        const double keep = rules.keep_m() + base.grown_m + other.grown_m;
+        const double keep = rules.min_separation_m() + base.inflation_m + other.inflation_m;
         const double kept = std::min(keep, sampled_distance_m(base.trajectory, other.trajectory));
         CAPTURE(i, k, other.robot);
         // The base's nearest point may lie between two samples.

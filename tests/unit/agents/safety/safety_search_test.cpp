@@ -25,11 +25,11 @@ Version moving_robot(RobotId id, Vec2 position, Vec2 velocity) {
 SearchResult slow_search(const FloorRules& rules, const SearchSettings& settings, const SearchQuery& query,
                          std::span<const Version> others, Rng& rng) {
   const Vec2& velocity = query.at_start.velocity_mps;
-  const Vec2 wish = limited(query.wish_mps2, velocity, rules.limits, query.phase);
-  std::vector<Vec2> drawn{wish};
+  const Vec2 desired = limited(query.desired_mps2, velocity, rules.limits, query.phase);
+  std::vector<Vec2> drawn{desired};
   for (int i = 0; i < settings.samples; ++i)
     drawn.push_back(limited(sample(velocity, rules.limits, rng), velocity, rules.limits, query.phase));
-  std::ranges::stable_sort(drawn, {}, [&](const Vec2& a) { return (a - wish).squaredNorm(); });
+  std::ranges::stable_sort(drawn, {}, [&](const Vec2& a) { return (a - desired).squaredNorm(); });
   SearchResult result;
   std::vector<Vec2> chosen;
   for (const Vec2& a : drawn) {
@@ -38,11 +38,11 @@ SearchResult slow_search(const FloorRules& rules, const SearchSettings& settings
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, a, query.phase, rules.limits.deceleration_mps2);
     const auto is_in_the_way = [&](const Version& other) {
-      return !is_clear(trajectory, other.trajectory, rules.keep_m() + query.grown_m + other.grown_m);
+      return !is_clear(trajectory, other.trajectory, rules.min_separation_m() + query.inflation_m + other.inflation_m);
     };
     if (check_place(trajectory, rules) != msg::REASON_GRANTED || std::ranges::any_of(others, is_in_the_way))
       continue;
-    result.wish_is_clear = result.wish_is_clear || a == wish;
+    result.desired_is_clear = result.desired_is_clear || a == desired;
     chosen.push_back(a);
     result.candidates[result.count++] = trajectory;
   }
@@ -69,7 +69,7 @@ Scene random_scene(Rng& rng) {
     Version version =
         moving_robot(id, random_vector(rng, 0.9), rng.chance(0.2) ? Vec2(0, 0) : random_vector(rng, 1.4));
     if (rng.chance(0.3)) version.trajectory = random_trajectory(rng, kStart);
-    if (rng.chance(0.1)) version.grown_m = rng.uniform(0, 0.1);
+    if (rng.chance(0.1)) version.inflation_m = rng.uniform(0, 0.1);
     scene.others.push_back(version);
   }
   return scene;
@@ -80,10 +80,10 @@ Scene random_scene(Rng& rng) {
 TEST_CASE("with nobody near, the wish itself is the first candidate") {
   SafetySearch search({}, {});
   Rng rng(1);
-  Crowd nobody;
+  TrajectoryIndex nobody;
   const auto result = search.search({kStart, {{0, 0}, {1, 0}}, {2, 1}, kCycle}, nobody, rng);
   REQUIRE(result.count == SearchResult::kMaxCandidates);
-  CHECK(result.wish_is_clear);
+  CHECK(result.desired_is_clear);
   CHECK((result.candidates[0].phases()[0].acceleration_mps2 - Vec2(2, 1)).norm() < 1e-12);
 }
 
@@ -96,7 +96,7 @@ TEST_CASE(
   rules.field = {6, 6};
   rules.obstacles = {{{0.5, 0.5}, 0.1}, {{-0.6, 0.2}, 0.15}};
   SafetySearch search(rules, {});
-  Crowd crowd;
+  TrajectoryIndex crowd;
   std::size_t found = 0, blocked = 0;
   for (int scene = 0; scene < 3000; ++scene) {
     std::vector<Version> others;
@@ -106,17 +106,17 @@ TEST_CASE(
     }
     crowd.assign(others);
     const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
-    const Vec2 wish = 5 * Vec2(rng.uniform(-1, 1), rng.uniform(-1, 1));
-    const auto result = search.search({kStart, {{0, 0}, velocity}, wish, kCycle}, crowd, rng);
+    const Vec2 desired = 5 * Vec2(rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const auto result = search.search({kStart, {{0, 0}, velocity}, desired, kCycle}, crowd, rng);
     ++(result.count ? found : blocked);
-    const Vec2 reachable = limited(wish, velocity, rules.limits, kCycle);
+    const Vec2 reachable = limited(desired, velocity, rules.limits, kCycle);
     double last = -1;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
       REQUIRE(check_limits(candidate, rules.limits) == msg::REASON_GRANTED);
       REQUIRE(check_place(candidate, rules) == msg::REASON_GRANTED);
       for (const Version& other : others)
-        REQUIRE(clearance_m(candidate, other.trajectory, rules.keep_m()) >= 0);
+        REQUIRE(clearance_m(candidate, other.trajectory, rules.min_separation_m()) >= 0);
       const double distance = (candidate.phases()[0].acceleration_mps2 - reachable).norm();
       REQUIRE(distance >= last);
       last = distance;
@@ -134,7 +134,7 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(seed, kernels.name);
     SafetySearch search(rules, {}, kernels);
-    Crowd crowd(kernels);
+    TrajectoryIndex crowd(kernels);
     Rng scenes(seed), rng(seed), slow_rng(seed);
     int found = 0, refused_wishes = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -144,7 +144,7 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
       const auto result = search.search(scene.query, crowd, rng);
       const auto expected = slow_search(rules, {}, scene.query, scene.others, slow_rng);
       REQUIRE(result.count == expected.count);
-      REQUIRE(result.wish_is_clear == expected.wish_is_clear);
+      REQUIRE(result.desired_is_clear == expected.desired_is_clear);
       for (std::size_t k = 0; k < result.count; ++k) {
         const auto phases = result.candidates[k].phases(), wanted = expected.candidates[k].phases();
         REQUIRE(phases.size() == wanted.size());
@@ -154,7 +154,7 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
         }
       }
       found += result.count > 0;
-      refused_wishes += !result.wish_is_clear;
+      refused_wishes += !result.desired_is_clear;
     }
     CHECK(found > 1000);
     CHECK(refused_wishes > 1000);
@@ -164,7 +164,7 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
 TEST_CASE("the same seed gives the same candidates") {
   SafetySearch one({}, {}), two({}, {});
   Rng rng_one(9), rng_two(9);
-  Crowd nobody;
+  TrajectoryIndex nobody;
   for (int i = 0; i < 20; ++i) {
     const SearchQuery query{kStart, {{0, 0}, {0.1 * i, 0}}, {1, 1}, kCycle};
     const auto a = one.search(query, nobody, rng_one), b = two.search(query, nobody, rng_two);
@@ -182,7 +182,7 @@ TEST_CASE("whatever moves without asking, every candidate is at rest before it c
   FloorRules rules;
   rules.field = {6, 6};
   SafetySearch search(rules, {});
-  Crowd nobody;
+  TrajectoryIndex nobody;
   std::size_t found = 0, blocked = 0, refused = 0;
   for (int scene = 0; scene < 1000; ++scene) {
     std::vector<MovingObstacle> moving;

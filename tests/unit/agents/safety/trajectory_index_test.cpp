@@ -14,7 +14,7 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
   Rng rng(seed);
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(kernels.name);
-    Crowd crowd(kernels);
+    TrajectoryIndex crowd(kernels);
     for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 63u, 64u, 65u, 300u, 2000u}) {
       CAPTURE(count);
       const double half_side = rng.chance(0.5) ? 0.5 : rng.uniform(1, 200);
@@ -24,7 +24,7 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
         version.robot = static_cast<RobotId>(i);
         version.trajectory = Trajectory({}, {random_vector(rng, half_side), random_vector(rng, 2)});
         append_stop(version.trajectory, 5);
-        if (rng.chance(0.01)) version.grown_m = rng.uniform(0, 0.5);
+        if (rng.chance(0.01)) version.inflation_m = rng.uniform(0, 0.5);
         versions.push_back(version);
       }
       crowd.assign(versions);
@@ -45,7 +45,7 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
 }
 
 TEST_CASE("a disc in the outline of a crowd's version is larger by what the robot has grown") {
-  Crowd crowd;
+  TrajectoryIndex crowd;
   Version version{1, 1, 1, 0, Trajectory::resting({}, {0, 0}), 0.25};
   crowd.add(version);
   CHECK(crowd.outline(0).disc.radius_m == Approx(0.25).margin(1e-5));

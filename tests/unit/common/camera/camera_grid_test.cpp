@@ -13,7 +13,7 @@ TEST_CASE("cameras in a grid see the field with its overlaps") {
   spec.columns = 2;
   spec.rows = 2;
   spec.overlap_m = 0.25;
-  const auto cameras = hang_grid(field, spec, HangingCamera{});
+  const auto cameras = hang_grid(field, spec, OverheadCamera{});
   REQUIRE(cameras.size() == 4);
   Rng rng(66);
   for (int i = 0; i < 2000; ++i) {

@@ -32,7 +32,7 @@ TEST_CASE("a camera projects as the league defines it") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 2000; ++i) {
-    const HangingCamera hanging = random_hanging_camera(rng);
+    const OverheadCamera hanging = random_overhead_camera(rng);
     const CameraModel camera = hang(hanging);
     const Vec2 p = random_point_in(hanging.view_m, rng);
     const Vec3 point(p.x(), p.y(), rng.uniform(0, 0.15));
@@ -48,7 +48,7 @@ TEST_CASE("a point goes to its pixel and comes back") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 5000; ++i) {
-    const HangingCamera hanging = random_hanging_camera(rng);
+    const OverheadCamera hanging = random_overhead_camera(rng);
     const CameraModel camera = hang(hanging);
     const Vec2 p = random_point_in(hanging.view_m, rng);
     const double height_m = rng.uniform(0, 0.3);
@@ -71,7 +71,7 @@ TEST_CASE("pixels per metre are the slope of the projection") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 2000; ++i) {
-    const HangingCamera hanging = random_hanging_camera(rng);
+    const OverheadCamera hanging = random_overhead_camera(rng);
     const CameraModel camera = hang(hanging);
     const Vec2 p = random_point_in(hanging.view_m, rng);
     const Vec3 point(p.x(), p.y(), rng.uniform(0, 0.15));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/camera/hanging_camera.hpp"
+#include "common/camera/overhead_camera.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
 /// Somewhere over the floor, tilted up to 30 degrees or so, with a barrel distortion or none.
-inline HangingCamera random_hanging_camera(Rng& rng) {
-  HangingCamera camera;
+inline OverheadCamera random_overhead_camera(Rng& rng) {
+  OverheadCamera camera;
   const Vec2 centre(rng.uniform(-5, 5), rng.uniform(-4, 4));
   const Vec2 half(rng.uniform(0.5, 3.5), rng.uniform(0.5, 3));
   camera.view_m = {centre - half, centre + half};

@@ -91,8 +91,8 @@ coordinators: 3
 ball: {position_m: [1, 2], velocity_mps: [-1, 0.5]}
 obstacles: [{centre_m: [3, 3], radius_m: 0.5}]
 opponents:
-  - {radius_m: 0.3, speed_mps: 0.75, way_m: [[4, 1], [4, -1], [3, -1]]}
-  - {radius_m: 0.2, speed_mps: 2.5, way_m: [[-4, 0]]}
+  - {radius_m: 0.3, speed_mps: 0.75, path_m: [[4, 1], [4, -1], [3, -1]]}
+  - {radius_m: 0.2, speed_mps: 2.5, path_m: [[-4, 0]]}
 opponent_speed_mps: 2.5
 robots:
   - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, clock_offset_ms: -1.25, absent: true, goals_m: [[2, 2], [-2, 2, -0.5]]}
@@ -144,7 +144,7 @@ robots:
   REQUIRE(s.opponents.size() == 2);
   CHECK(s.opponents[0].radius_m == 0.3);
   CHECK(s.opponents[0].speed_mps == 0.75);
-  CHECK(s.opponents[0].way_m == std::vector<Vec2>{{4, 1}, {4, -1}, {3, -1}});
+  CHECK(s.opponents[0].path_m == std::vector<Vec2>{{4, 1}, {4, -1}, {3, -1}});
   REQUIRE(s.robots.size() == 2);
   CHECK(s.robots[0].id == 3);
   CHECK_FALSE(s.robots[0].is_absent);

@@ -37,23 +37,23 @@ TEST_CASE("a margin below the safety budget is refused with the margin that is n
 
 TEST_CASE("opponents that make no sense are refused with their line") {
   const auto opponent = [](const std::string& keys) { return kRobot + "opponents:\n- {" + keys + "}\n"; };
-  CHECK(refusal(opponent("radius_m: 0.1, speed_mps: 1.5, way_m: [[2, 2]]")) == "accepted");
-  check_refused(opponent("speed_mps: 1, way_m: [[2, 2]]"), 3, "key \"radius_m\" is missing");
-  check_refused(opponent("radius_m: 0.1, way_m: [[2, 2]]"), 3, "key \"speed_mps\" is missing");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1"), 3, "key \"way_m\" is missing");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: []"), 3, "expected at least one point");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, 2, 2]]"), 3, "a list of 2 numbers, got 3");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[2, .nan]]"), 3, "expected");
-  check_refused(opponent("radius_m: 0, speed_mps: 1, way_m: [[2, 2]]"), 3, "radius_m: expected 0.01 to 5");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 0, way_m: [[2, 2]]"), 3,
+  CHECK(refusal(opponent("radius_m: 0.1, speed_mps: 1.5, path_m: [[2, 2]]")) == "accepted");
+  check_refused(opponent("speed_mps: 1, path_m: [[2, 2]]"), 3, "key \"radius_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, path_m: [[2, 2]]"), 3, "key \"speed_mps\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1"), 3, "key \"path_m\" is missing");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, path_m: []"), 3, "expected at least one point");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, path_m: [[2, 2, 2]]"), 3, "a list of 2 numbers, got 3");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, path_m: [[2, .nan]]"), 3, "expected");
+  check_refused(opponent("radius_m: 0, speed_mps: 1, path_m: [[2, 2]]"), 3, "radius_m: expected 0.01 to 5");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 0, path_m: [[2, 2]]"), 3,
                 "speed_mps: expected 0.01 to 20");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]"), 3,
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1.6, path_m: [[2, 2]]"), 3,
                 "opponents[0].speed_mps: expected at most opponent_speed_mps, 1.5, got 1.6");
-  CHECK(refusal("opponent_speed_mps: 1.6\n" + opponent("radius_m: 0.1, speed_mps: 1.6, way_m: [[2, 2]]")) ==
+  CHECK(refusal("opponent_speed_mps: 1.6\n" + opponent("radius_m: 0.1, speed_mps: 1.6, path_m: [[2, 2]]")) ==
         "accepted");
-  check_refused(opponent("radius_m: 0.1, speed_mps: 1, way_m: [[0.1, 0.16]]"), 1, "where an opponent begins");
+  check_refused(opponent("radius_m: 0.1, speed_mps: 1, path_m: [[0.1, 0.16]]"), 1, "where an opponent begins");
   std::string many = kRobot + "opponents:\n";
-  for (int i = 0; i < 17; ++i) many += "- {radius_m: 0.1, speed_mps: 1, way_m: [[2, 2]]}\n";
+  for (int i = 0; i < 17; ++i) many += "- {radius_m: 0.1, speed_mps: 1, path_m: [[2, 2]]}\n";
   check_refused(many, 3, "expected at most 16 elements, got 17");
 }
 

@@ -92,8 +92,8 @@ TEST_CASE("a version that means to do what makes no sense is refused") {
   for (const float bad : {nan, inf, -inf, 1e30F}) {
     for (const auto set :
          {+[](msg::Intent&m, float v) { m.vx_mps(v); }, +[](msg::Intent&m, float v) { m.vy_mps(v); },
-          +[](msg::Intent&m, float v) { m.hold_s(v); }, +[](msg::Intent&m, float v) { m.way_x_m(v); },
-          +[](msg::Intent&m, float v) { m.way_y_m(v); }, +[](msg::Intent&m, float v) { m.goal_x_m(v); },
+          +[](msg::Intent&m, float v) { m.hold_s(v); }, +[](msg::Intent&m, float v) { m.via_x_m(v); },
+          +[](msg::Intent&m, float v) { m.via_y_m(v); }, +[](msg::Intent&m, float v) { m.goal_x_m(v); },
           +[](msg::Intent&m, float v) { m.goal_y_m(v); }}) {
       auto spoilt = good;
       set(spoilt.intended(), bad);

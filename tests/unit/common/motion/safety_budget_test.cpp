@@ -29,7 +29,7 @@ TEST_CASE("bodies off their references and clocks off each other within the budg
     for (const Trajectory* trajectory : {&a, &b}) {
       State state = trajectory->at_start();
       budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
-      for (const Phase& phase : trajectory->phases()) {
+      for (const MotionPhase& phase : trajectory->phases()) {
         state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
         budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
       }

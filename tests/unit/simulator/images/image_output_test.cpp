@@ -21,7 +21,7 @@ robots:
   - {id: 20, team: yellow, start_m: [1, -0.5], goals_m: [[1, 1]]}
   - {id: 5, start_m: [0, 0], goals_m: [[0, 1]], absent: true}
 obstacles: [{centre_m: [-0.6, -0.7], radius_m: 0.2}]
-opponents: [{radius_m: 0.12, speed_mps: 1, way_m: [[0, 1.2], [1, 1.2]]}]
+opponents: [{radius_m: 0.12, speed_mps: 1, path_m: [[0, 1.2], [1, 1.2]]}]
 )";
 
 struct Hall {

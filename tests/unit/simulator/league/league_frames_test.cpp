@@ -7,7 +7,7 @@
 
 #include "common/random/rng.hpp"
 #include "simulator/league/league_geometry.hpp"
-#include "simulator/rendering/carpet.hpp"
+#include "simulator/rendering/field_surface.hpp"
 
 namespace sidestep {
 namespace {

@@ -21,7 +21,7 @@ Points random_points(Rng& rng) {
 }
 
 /// Steps along the line; whether a point of it lies well within the outline, and whether one is near it.
-std::pair<bool, bool> slow_meets(double x, double y, double dx, double dy, const Outline& outline) {
+std::pair<bool, bool> slow_meets(double x, double y, double dx, double dy, const TrajectoryBounds& outline) {
   bool is_inside = false, is_near = false;
   for (int i = 0; i <= 1000; ++i) {
     const double px = x + dx * i / 1000, py = y + dy * i / 1000;
@@ -43,7 +43,7 @@ TEST_CASE("all instruction sets count the same points") {
     const Points plain = random_points(rng), moved = rng.chance(0.5) ? plain : random_points(rng);
     const Pixel points{static_cast<float>(rng.uniform(-0.02, 0.02)),
                        static_cast<float>(rng.uniform(-0.02, 0.02)), &moved};
-    const Outline outline{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
+    const TrajectoryBounds outline{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
     const Lines lines{static_cast<float>(rng.uniform(0, 0.1)), static_cast<float>(rng.uniform(-3, 3)),
                       static_cast<float>(rng.uniform(-3, 3))};
     for (const Kernels& kernels : available_kernels()) {
@@ -66,7 +66,7 @@ TEST_CASE("points are counted as one by one") {
     const Points about = random_points(rng);
     const Pixel points{static_cast<float>(rng.uniform(-0.02, 0.02)),
                        static_cast<float>(rng.uniform(-0.02, 0.02)), &about};
-    const Outline outline{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
+    const TrajectoryBounds outline{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
     const Lines lines{static_cast<float>(rng.uniform(0.01, 0.1)), static_cast<float>(rng.uniform(-2, 2)),
                       static_cast<float>(rng.uniform(-2, 2))};
     int disc = 0, inside = 0, least = 0, most = 0;

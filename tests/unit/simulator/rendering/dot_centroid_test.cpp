@@ -71,7 +71,7 @@ MarkingLayout with_and_without() {
   return layout;
 }
 
-Bias bias_of_dots(const HangingCamera& hanging, int count, Rng& rng) {
+Bias bias_of_dots(const OverheadCamera& hanging, int count, Rng& rng) {
   const MarkingLayout layout = with_and_without();
   const CameraModel camera = hang(hanging);
   const RenderSpec spec = plain_spec();
@@ -103,7 +103,7 @@ TEST_CASE("a rendered dot lies where a tilted camera projects it") {
   const std::uint64_t seed = 42;
   CAPTURE(seed);
   Rng rng(seed);
-  HangingCamera hanging = quarter_field();
+  OverheadCamera hanging = quarter_field();
   hanging.aside_m = Vec2(-1.5, 1);
   // On the far side a dot has a radius of 1.5 pixels, and a whole level is a larger share of it.
   check(bias_of_dots(hanging, 200, rng), 0.035);

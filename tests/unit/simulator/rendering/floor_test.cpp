@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/marking/butterfly.hpp"
-#include "simulator/rendering/carpet.hpp"
+#include "simulator/rendering/field_surface.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
 using namespace sidestep;

@@ -189,7 +189,7 @@ TEST_CASE("robots wear their team and id and hide what they are told to") {
 }
 
 TEST_CASE("an odd width is refused for YUV") {
-  HangingCamera hanging = quarter_field();
+  OverheadCamera hanging = quarter_field();
   hanging.width_px = 781;
   RenderSpec spec;
   CHECK_THROWS_AS(FrameRenderer(hang(hanging), kField, butterfly(), spec, Rng(1)), std::invalid_argument);
@@ -199,7 +199,7 @@ TEST_CASE("an odd width is refused for YUV") {
 
 TEST_CASE("robots at places that no camera sees are left out") {
   RenderSpec spec = plain_spec();
-  HangingCamera hanging = quarter_field();
+  OverheadCamera hanging = quarter_field();
   hanging.aside_m = Vec2(-6, 0);  // far tilted: half of the world is behind it
   FrameRenderer renderer(hang(hanging), kField, butterfly(), spec, Rng(1));
   const Image empty = renderer.render(Scene{});

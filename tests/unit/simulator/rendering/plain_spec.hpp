@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/camera/hanging_camera.hpp"
+#include "common/camera/overhead_camera.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
 
@@ -19,7 +19,7 @@ inline RenderSpec plain_spec() {
 }
 
 /// A quarter of a division A field in 780 x 580 pixels, from 4 m above.
-inline HangingCamera quarter_field() { return {}; }
+inline OverheadCamera quarter_field() { return {}; }
 
 inline cv::Mat3b rgb_of(Image& image) {
   return cv::Mat3b(image.view().height_px, image.view().width_px,

@@ -50,7 +50,7 @@ std::size_t found(const std::string& scenario_file, const std::string& colours_f
   spec.format = colours.format;
   std::size_t sum = 0;
   for (const CameraModel& camera : hang_grid(scenario)) {
-    FrameReader reader(camera, task_of(scenario, colours.boxes));
+    Detector reader(camera, task_of(scenario, colours.boxes));
     msg::DetectionFrame frame;
     reader.read(rendered_start(scenario, camera, spec, 2).view(), {}, {}, frame);
     sum += found_at_start(scenario, frame);

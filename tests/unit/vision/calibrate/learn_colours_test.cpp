@@ -30,7 +30,7 @@ TEST_CASE("colours learned from one frame find robots and obstacles in frames of
 
   spec.colour_gain = {1 + drift, 1, 1 - drift};
   spec.far_light = 0.7;
-  FrameReader reader(camera, task_of(scenario, learned.thresholds.boxes));
+  Detector reader(camera, task_of(scenario, learned.thresholds.boxes));
   msg::DetectionFrame frame;
   for (std::uint64_t seed = 2; seed < 7; ++seed) {
     CAPTURE(seed);

@@ -6,7 +6,7 @@
 #include "common/marking/butterfly.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
-#include "vision/frames/frame_reader.hpp"
+#include "vision/detection/detector.hpp"
 
 namespace sidestep::test {
 

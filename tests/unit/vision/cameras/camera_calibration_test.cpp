@@ -41,7 +41,7 @@ TEST_CASE("a camera is found again from points without noise") {
   int settled = 0;
   for (int i = 0; i < 60; ++i) {
     CAPTURE(i);
-    const HangingCamera hanging = random_hanging_camera(rng);
+    const OverheadCamera hanging = random_overhead_camera(rng);
     const CameraModel camera = hang(hanging);
     const auto points = seen_points(camera, hanging.view_m, 30, {0, 0.15, 0.5}, 0, rng);
     const CalibrationResult found = calibrate_camera(points, start_of(camera));
@@ -65,7 +65,7 @@ TEST_CASE("noisy points give a camera that is right on the floor and at the heig
   const std::uint64_t seed = 10;
   CAPTURE(seed);
   Rng rng(seed);
-  HangingCamera hanging;
+  OverheadCamera hanging;
   hanging.aside_m = Vec2(0.4, -0.3);
   const CameraModel camera = hang(hanging);
   CalibrationSettings settings;
@@ -100,7 +100,7 @@ TEST_CASE("what was known before stays as it was") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
-  HangingCamera hanging;
+  OverheadCamera hanging;
   const CameraModel camera = hang(hanging);  // straight from above, points on the floor alone
   const auto points = seen_points(camera, hanging.view_m, 40, {0}, 0.1, rng);
   CameraParameters start = camera.parameters();
@@ -123,7 +123,7 @@ TEST_CASE("points that do not settle the camera are refused with the reason") {
   const std::uint64_t seed = 12;
   CAPTURE(seed);
   Rng rng(seed);
-  HangingCamera hanging;
+  OverheadCamera hanging;
   const CameraModel camera = hang(hanging);
   const CameraParameters start = start_of(camera);
   const auto fault = [&](const std::vector<CalibrationPoint>& points) {
@@ -152,7 +152,7 @@ TEST_CASE("a tilted camera needs no more than the floor") {
   const std::uint64_t seed = 13;
   CAPTURE(seed);
   Rng rng(seed);
-  HangingCamera hanging;
+  OverheadCamera hanging;
   hanging.aside_m = Vec2(-2.5, 1);
   const CameraModel camera = hang(hanging);
   const auto points = seen_points(camera, hanging.view_m, 100, {0}, 0.1, rng);

@@ -65,7 +65,7 @@ TEST_CASE("cameras come back from a file to the last bit") {
   Rng rng(seed);
   std::vector<NumberedCamera> cameras;
   for (std::uint32_t id = 0; id < 20; ++id)
-    cameras.push_back({id, hang(random_hanging_camera(rng)).parameters()});
+    cameras.push_back({id, hang(random_overhead_camera(rng)).parameters()});
   const std::string path =
       (std::filesystem::temp_directory_path() / ("cameras-" + std::to_string(getpid()) + ".yaml")).string();
   save_cameras(cameras, path);

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/image/pixel_writing.hpp"
-#include "tests/unit/vision/frames/painted_floor.hpp"
-#include "tests/unit/vision/frames/score.hpp"
+#include "tests/unit/vision/detection/painted_floor.hpp"
+#include "tests/unit/vision/detection/score.hpp"
 #include "vision/colours/colour_learner.hpp"
 
 using namespace sidestep;
@@ -73,7 +73,7 @@ TEST_CASE("robots are found and placed with the default colours in bad light too
   task.boxes = default_colours(format).boxes;
   task.layout = butterfly();
   task.roster = roster_of(floor.scattered_robots(11));
-  FrameReader reader(floor.camera, task);
+  Detector reader(floor.camera, task);
   Score score;
   msg::DetectionFrame frame;
   int balls = 0;

@@ -17,10 +17,10 @@ constexpr double kPi = 3.14159265358979323846;
 /// by sampling; its ways are at most 1.4 % longer than the shortest that keeps off by the grid's width.
 class SlowGrid {
  public:
-  SlowGrid(const PlanWorld& world, double step_m, double keep_m) : world_(world), step_m_(step_m) {
+  SlowGrid(const PlanWorld& world, double step_m, double min_separation_m) : world_(world), step_m_(step_m) {
     cells_ = static_cast<int>(world.field.length_m / step_m);
     PlanWorld grown = world;
-    grown.radius_m += keep_m;
+    grown.radius_m += min_separation_m;
     free_.resize(static_cast<std::size_t>(cells_ * cells_));
     for (int i = 0; i < cells_; ++i)
       for (int j = 0; j < cells_; ++j) free_[index(i, j)] = is_free(grown, centre(i, j));

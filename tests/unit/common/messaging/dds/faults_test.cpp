@@ -66,7 +66,7 @@ TEST_CASE("a cut lets nothing through but an operator's orders, until it is ende
                        }));
   REQUIRE(talk.talk_until([&] { return talk.numbers.size() > 5; }));
 
-  DdsOrders orders(test_settings("operator"), topics::kNetworkFault);
+  OperatorChannel orders(test_settings("operator"), topics::kNetworkFault);
   REQUIRE(run_until([&] { return orders.takers() == std::vector<std::string>{"disturbed"}; }, talk.there));
   CHECK(run_until([&] { return orders.is_written(channel_name(topics::kVerdict, kRobot)); }, talk.there));
   CHECK_FALSE(orders.is_written("verdict/99"));

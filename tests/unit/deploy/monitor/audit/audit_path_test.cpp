@@ -55,7 +55,7 @@ TEST_CASE("what no robot could mean is no version") {
     version.phase_count(1);
     version.phases()[0].duration_ns(-5);
   }
-  SECTION("shrunk") { version.grown_m(-0.1); }
+  SECTION("shrunk") { version.inflation_m(-0.1); }
   CHECK_FALSE(is_sane(version));
 }
 

@@ -147,7 +147,7 @@ TEST_CASE("what truth says against the promise is named") {
       truth.touches()[0].first(2);
       truth.touches()[0].second(3);
     });
-    const AuditTotals totals = audit_of(history, hears_all ? kComplete : AuditHearing{});
+    const AuditTotals totals = audit_of(history, hears_all ? kComplete : AuditTrace{});
     CHECK(count(totals, AuditRule::kContact) > 0);
   }
   SECTION("who touches one that was pushed and has parted from it, and who touches that one") {
@@ -183,7 +183,7 @@ TEST_CASE("what truth says against the promise is named") {
     });
   }
   SECTION("what the simulator's judge has seen") {
-    require_caught(AuditRule::kFirmwareJudge, [](History& h) {
+    require_caught(AuditRule::kFirmwareMonitor, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.firmware_violations(2); });
     });
   }

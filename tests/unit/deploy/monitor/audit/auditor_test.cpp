@@ -41,7 +41,7 @@ TEST_CASE("versions too near to each other are found, also by those who hear bad
   History history = hears_badly ? badly_heard(crossing(), 5, 0.2, Duration{0}) : crossing();
   // As if they had all been granted with half a centimetre too little.
   history.scenario.margin_m += 0.005;
-  const AuditTotals totals = audit_of(history, hears_badly ? AuditHearing{} : kComplete);
+  const AuditTotals totals = audit_of(history, hears_badly ? AuditTrace{} : kComplete);
   CHECK(count(totals, AuditRule::kClearance) > 0);
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("every breach of what may be granted is named") {
     require_caught(AuditRule::kLimits, [](History& h) {
       const Switch s = a_switch(h);
       h.each_mention(s.robot, s.number, [](msg::Version& v) {
-        for (msg::Phase& phase : v.phases()) phase.ax_mps2(phase.ax_mps2() + 6);
+        for (msg::MotionPhase& phase : v.phases()) phase.ax_mps2(phase.ax_mps2() + 6);
       });
     });
   }
@@ -100,9 +100,9 @@ TEST_CASE("every breach of what may be granted is named") {
     });
   }
   SECTION("growth out of nothing") {
-    require_caught(AuditRule::kGrowth, [](History& h) {
+    require_caught(AuditRule::kInflation, [](History& h) {
       const Switch s = a_switch(h);
-      h.each_mention(s.robot, s.number, [](msg::Version& v) { v.grown_m(0.001); });
+      h.each_mention(s.robot, s.number, [](msg::Version& v) { v.inflation_m(0.001); });
     });
   }
   SECTION("a base above the version") {

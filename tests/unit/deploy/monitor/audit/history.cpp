@@ -27,7 +27,7 @@ void History::push(RobotId pushed, Time at) {
   each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time heard_at) {
     if (heard_at < at) return;
     for (msg::TruthRobot& robot : truth.robots()) {
-      if (robot.robot() == pushed) robot.let_go_ns(to_ns(at));
+      if (robot.robot() == pushed) robot.disturbance_end_ns(to_ns(at));
     }
   });
 }
@@ -63,7 +63,7 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
   return history;
 }
 
-AuditTotals audit_of(const History& history, const AuditHearing& hearing) {
+AuditTotals audit_of(const History& history, const AuditTrace& hearing) {
   Auditor auditor(history.scenario, hearing);
   struct Hear {
     Auditor& auditor;

@@ -48,7 +48,7 @@ struct History {
 /// What the system says in a scenario for so long; the same for the same seed.
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
 
-AuditTotals audit_of(const History& history, const AuditHearing& hearing);
+AuditTotals audit_of(const History& history, const AuditTrace& hearing);
 
 /// What a listener hears who joins late, and whose messages are lost, doubled, and late by up to 20 ms.
 History badly_heard(const History& history, std::uint64_t seed, double loss, Duration joined_after);

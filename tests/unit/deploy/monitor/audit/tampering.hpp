@@ -11,7 +11,7 @@ namespace sidestep {
 /// A true history of crossing.yaml, the same at each call.
 const History& crossing();
 
-inline constexpr AuditHearing kComplete{true, {}};
+inline constexpr AuditTrace kComplete{true, {}};
 
 std::uint64_t count(const AuditTotals& totals, AuditRule rule);
 

@@ -15,13 +15,13 @@ const Scenario kFive = parse_scenario("circle: {count: 5, spacing_m: 0.5}\n", "f
 }  // namespace
 
 TEST_CASE("a progress line says that the run is starting, then the time since the first grant") {
-  Judge judge(kFive);
+  RunMetrics judge(kFive);
   CHECK_THAT(progress_line(judge, time_from_ns(0)), Catch::StartsWith("starting  0 of 5 arrived"));
   msg::CoordinatorState state;
   state.head().incarnation(1);
   state.head().message_number(1);
   state.head().stamp_ns(2'000'000'000);
-  state.coordinator_phase(msg::CoordinatorPhase::COORDINATOR_GRANTING);
+  state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   judge.on_coordinator(state);
   const std::string line = progress_line(judge, time_from_ns(5'500'000'000));
   CHECK_THAT(line, Catch::StartsWith("  3.5 s  0 of 5 arrived"));
@@ -30,7 +30,7 @@ TEST_CASE("a progress line says that the run is starting, then the time since th
 }
 
 TEST_CASE("a progress line shows the largest offset between clocks that was measured") {
-  Judge judge(kFive);
+  RunMetrics judge(kFive);
   const auto say = [&](std::uint32_t robot, std::uint64_t number, double offset_s, double uncertainty_s) {
     msg::AgentStatus status;
     status.robot(robot);
@@ -54,12 +54,12 @@ TEST_CASE("a progress line shows the largest offset between clocks that was meas
 }
 
 TEST_CASE("a progress table has a line for each robot, and says how many do not fit") {
-  Judge judge(kFive);
+  RunMetrics judge(kFive);
   msg::AgentStatus status;
   status.robot(2);
   status.head().incarnation(1);
   status.head().message_number(1);
-  status.agent_phase(msg::AgentPhase::AGENT_DRIVING);
+  status.agent_state(msg::AgentState::AGENT_DRIVING);
   status.grants(123);
   judge.on_status(status);
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };

@@ -49,33 +49,33 @@ msg::GroundTruth truth(std::uint64_t number, double at_s, const std::vector<msg:
   return message;
 }
 
-msg::AgentStatus status(RobotId robot, std::uint64_t number, msg::AgentPhase phase,
+msg::AgentStatus status(RobotId robot, std::uint64_t number, msg::AgentState phase,
                         std::uint64_t incarnation = 1) {
   msg::AgentStatus message;
   message.robot(robot);
   message.head(head(incarnation, number, 0));
-  message.agent_phase(phase);
+  message.agent_state(phase);
   return message;
 }
 
-msg::CoordinatorState state(std::uint64_t number, double at_s, msg::CoordinatorPhase phase,
+msg::CoordinatorState state(std::uint64_t number, double at_s, msg::CoordinatorMode phase,
                             std::uint64_t incarnation = 1) {
   msg::CoordinatorState message;
   message.head(head(incarnation, number, at_s));
-  message.coordinator_phase(phase);
+  message.coordinator_mode(phase);
   return message;
 }
 
-constexpr auto kRegistering = msg::CoordinatorPhase::COORDINATOR_REGISTERING;
-constexpr auto kGranting = msg::CoordinatorPhase::COORDINATOR_GRANTING;
-constexpr auto kDriving = msg::AgentPhase::AGENT_DRIVING;
-constexpr auto kFencing = msg::AgentPhase::AGENT_FENCING;
-constexpr auto kArrived = msg::AgentPhase::AGENT_ARRIVED;
+constexpr auto kRegistering = msg::CoordinatorMode::COORDINATOR_REGISTERING;
+constexpr auto kGranting = msg::CoordinatorMode::COORDINATOR_GRANTING;
+constexpr auto kDriving = msg::AgentState::AGENT_DRIVING;
+constexpr auto kFencing = msg::AgentState::AGENT_FENCING;
+constexpr auto kArrived = msg::AgentState::AGENT_ARRIVED;
 
 }  // namespace
 
 TEST_CASE("arrivals count from the first grant to the moment from which a robot stays at its last goal") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_coordinator(state(1, 0.5, kRegistering));
   CHECK_FALSE(judge.granting_since());
   judge.on_coordinator(state(2, 1.0, kGranting));
@@ -113,7 +113,7 @@ TEST_CASE("arrivals count from the first grant to the moment from which a robot 
 }
 
 TEST_CASE("a robot that leaves its goal has not arrived") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_coordinator(state(1, 0, kGranting));
   judge.on_status(status(3, 1, kArrived));
   judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
@@ -146,7 +146,7 @@ TEST_CASE("the straight-line time agrees with slow integration") {
 }
 
 TEST_CASE("counters are summed over the lives of restarted agents, simulators and coordinators") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   const auto agent = [](std::uint64_t incarnation, std::uint64_t number, std::uint64_t base) {
     msg::AgentStatus message = status(3, number, kDriving, incarnation);
     message.proposals(base);
@@ -202,7 +202,7 @@ TEST_CASE("counters are summed over the lives of restarted agents, simulators an
 }
 
 TEST_CASE("an agent that began on a clock that was ahead, and died, does not speak for the one after it") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_coordinator(state(1, 0, kGranting));
   judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
   judge.on_status(status(3, 1, kFencing, 5));
@@ -215,7 +215,7 @@ TEST_CASE("an agent that began on a clock that was ahead, and died, does not spe
 }
 
 TEST_CASE("an agent that does not get through to its robot does not speak for it while another one does") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_coordinator(state(1, 0, kGranting));
   judge.on_truth(truth(1, 1, {body(3, 1, 0)}));
   const std::uint64_t other = GENERATE(4u, 6u);
@@ -235,16 +235,16 @@ TEST_CASE("an agent that does not get through to its robot does not speak for it
 }
 
 TEST_CASE("of several coordinators the one with the highest epoch speaks, and the counts of all are summed") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   const auto of = [](std::uint32_t number, Epoch epoch, std::uint64_t message_number, double at_s,
-                     msg::CoordinatorPhase phase) {
+                     msg::CoordinatorMode phase) {
     msg::CoordinatorState message = state(message_number, at_s, phase, 10 - number);
     message.coordinator(number);
     message.epoch(epoch);
     message.invalid(10 + number);
     return message;
   };
-  judge.on_coordinator(of(1, 0, 1, 0.5, msg::CoordinatorPhase::COORDINATOR_STANDBY));
+  judge.on_coordinator(of(1, 0, 1, 0.5, msg::CoordinatorMode::COORDINATOR_STANDBY));
   CHECK_FALSE(judge.coordinator_seen());
   auto registering = of(0, 100, 1, 1, kRegistering);
   registering.missing({3, 7});
@@ -257,7 +257,7 @@ TEST_CASE("of several coordinators the one with the highest epoch speaks, and th
   CHECK(judge.unregistered() == std::vector<RobotId>{7});
   judge.on_coordinator(of(0, 100, 3, 4, kGranting));  // has not heard of it yet
   CHECK(judge.unregistered() == std::vector<RobotId>{7});
-  judge.on_coordinator(of(0, 0, 4, 5, msg::CoordinatorPhase::COORDINATOR_STANDBY));
+  judge.on_coordinator(of(0, 0, 4, 5, msg::CoordinatorMode::COORDINATOR_STANDBY));
   CHECK(judge.unregistered() == std::vector<RobotId>{7});
   CHECK(judge.granting_since() == after(2));
   CHECK(judge.report().invalid_messages == 21);
@@ -265,7 +265,7 @@ TEST_CASE("of several coordinators the one with the highest epoch speaks, and th
 }
 
 TEST_CASE("pairs of robots that the coordinator names as in conflict are remembered") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   auto message = state(1, 1, kGranting);
   message.conflicts(1);
   message.conflict_first(3);
@@ -284,7 +284,7 @@ TEST_CASE("pairs of robots that the coordinator names as in conflict are remembe
 }
 
 TEST_CASE("old and repeated ground truth does not move robots back") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_truth(truth(5, 5, {body(3, 1, 0)}));
   judge.on_truth(truth(4, 4, {body(3, 0, 0)}));
   judge.on_truth(truth(5, 5, {body(3, 0, 0)}));
@@ -294,9 +294,9 @@ TEST_CASE("old and repeated ground truth does not move robots back") {
 }
 
 TEST_CASE("messages that make no sense are counted and dropped") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_status(status(4, 1, kDriving));                          // nobody's
-  judge.on_status(status(3, 1, static_cast<msg::AgentPhase>(77)));  // no phase
+  judge.on_status(status(3, 1, static_cast<msg::AgentState>(77)));  // no phase
   auto bad = truth(1, 1, {});
   bad.penetration_m_s(kNaN);
   judge.on_truth(bad);
@@ -317,7 +317,7 @@ TEST_CASE("messages that make no sense are counted and dropped") {
 }
 
 TEST_CASE("a stream of invented lives is cut off") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   for (std::uint64_t life = 1; life <= 3000; ++life) {
     judge.on_truth(truth(1, 1, {}, life));
     judge.on_coordinator(state(1, 1, kRegistering, life));
@@ -326,7 +326,7 @@ TEST_CASE("a stream of invented lives is cut off") {
 }
 
 TEST_CASE("deaths are told with name, reason and time after the first grant") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   judge.on_coordinator(state(1, 1, kGranting));
   judge.on_death("agent 3", "signal 9 (SIGKILL)", after(3.31), true);
   const Report report = judge.report();
@@ -336,7 +336,7 @@ TEST_CASE("deaths are told with name, reason and time after the first grant") {
 }
 
 TEST_CASE("progress has a row for each robot and says who is silent or moving") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   CHECK_FALSE(judge.truth_seen());
   CHECK(judge.all_at_rest());
   judge.on_truth(truth(1, 1, {body(3, 0.25, 0, 0.5), body(7, 0, 1)}));
@@ -357,7 +357,7 @@ TEST_CASE("progress has a row for each robot and says who is silent or moving") 
 }
 
 TEST_CASE("crashes are summed over the simulator's lives, and of speeds the largest counts") {
-  Judge judge(kTwo);
+  RunMetrics judge(kTwo);
   auto message = truth(1, 0.1, {});
   message.crashes(2);
   message.moving_crashes(1);

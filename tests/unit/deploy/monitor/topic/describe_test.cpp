@@ -139,15 +139,15 @@ TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by
     disturbance.disturbance_kind(static_cast<msg::DisturbanceKind>(value));
     return describe(disturbance)["disturbance_kind"];
   });
-  check("AgentPhase", "AGENT_", [](std::uint32_t value) -> std::string {
+  check("AgentState", "AGENT_", [](std::uint32_t value) -> std::string {
     msg::AgentStatus status;
-    status.agent_phase(static_cast<msg::AgentPhase>(value));
-    return describe(status)["agent_phase"];
+    status.agent_state(static_cast<msg::AgentState>(value));
+    return describe(status)["agent_state"];
   });
-  check("CoordinatorPhase", "COORDINATOR_", [](std::uint32_t value) -> std::string {
+  check("CoordinatorMode", "COORDINATOR_", [](std::uint32_t value) -> std::string {
     msg::CoordinatorState state;
-    state.coordinator_phase(static_cast<msg::CoordinatorPhase>(value));
-    return describe(state)["coordinator_phase"];
+    state.coordinator_mode(static_cast<msg::CoordinatorMode>(value));
+    return describe(state)["coordinator_mode"];
   });
 }
 

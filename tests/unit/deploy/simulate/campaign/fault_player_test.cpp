@@ -95,7 +95,7 @@ TEST_CASE("when everything heals the weather is gone and partitions end") {
 TEST_CASE("a trial that is run again gives the same result, and another seed another one") {
   const auto outcome = [](std::uint64_t seed) {
     Report report;
-    run_trial(draw_trial(seed, 10s, std::nullopt), &report);
+    run_trial(sample_trial(seed, 10s, std::nullopt), &report);
     report.plan = report.search = DurationHistogram{};
     return to_json(report);
   };

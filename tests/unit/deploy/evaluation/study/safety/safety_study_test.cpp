@@ -47,11 +47,11 @@ TEST_CASE("robots that nobody holds back traverse as fast as their limits allow"
     CAPTURE(seed);
     const Scenario scenario = traversal_scenario(settings, seed);
     const RobotSpec& robot = scenario.robots.front();
-    const double way_m = (robot.goals.front().position_m - robot.start_m).norm();
+    const double path_m = (robot.goals.front().position_m - robot.start_m).norm();
     // To full speed and back takes (v/F + v/D), and half of v times that as a way.
     const double ramps_s = scenario.limits.speed_mps *
                            (1 / scenario.limits.acceleration_mps2 + 1 / scenario.limits.deceleration_mps2);
-    const double straight_s = ramps_s / 2 + way_m / scenario.limits.speed_mps;
+    const double straight_s = ramps_s / 2 + path_m / scenario.limits.speed_mps;
     const auto result = traverse_without_search(scenario, 10 * straight_s);
     CHECK(result.traversals >= 8);
     CHECK(result.traversals <= 10);

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/overhead_camera.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+constexpr int kPointsPerSide = 64;
+
+/// Its rows are the camera's axes.
+Eigen::Matrix3d axes_of(const OverheadCamera& camera, const Vec3& position_m, const Vec2& centre_m) {
+  const Vec2 size_m = camera.view_m.max_m - camera.view_m.min_m;
+  const bool is_landscape = camera.width_px >= camera.height_px;
+  const bool is_wide = size_m.x() >= size_m.y();
+  const Vec3 right = is_landscape == is_wide ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY());
+  const Vec3 ahead = (Vec3(centre_m.x(), centre_m.y(), 0) - position_m).normalized();
+  const Vec3 down = ahead.cross(right).normalized();
+  Eigen::Matrix3d axes;
+  axes << down.cross(ahead).transpose(), down.transpose(), ahead.transpose();
+  return axes;
+}
+
+/// The longest focal length with which the model's image holds a point. The model's own is 1.
+double longest_focal_length(const CameraModel& model, const Vec3& point_m) {
+  const std::optional<Vec2> pixel = model.pixel_of(point_m);
+  if (!pixel) throw std::invalid_argument("the camera cannot see all of its rectangle");
+  const CameraParameters& p = model.parameters();
+  const Vec2 from_middle = (*pixel - p.principal_point_px).cwiseAbs();
+  return std::min(p.width_px / 2.0 / from_middle.x(), p.height_px / 2.0 / from_middle.y());
+}
+
+}  // namespace
+
+CameraModel hang(const OverheadCamera& camera) {
+  const Vec2 size_m = camera.view_m.max_m - camera.view_m.min_m;
+  if (!(size_m.minCoeff() > 0)) throw std::invalid_argument("the camera's rectangle is empty");
+  if (!(camera.height_m > camera.top_m)) throw std::invalid_argument("the camera hangs too low");
+  const Vec2 centre_m = (camera.view_m.min_m + camera.view_m.max_m) / 2;
+  const Vec2 above_m = centre_m + camera.aside_m;
+  const Vec3 position_m(above_m.x(), above_m.y(), camera.height_m);
+
+  CameraParameters result;
+  result.width_px = camera.width_px;
+  result.height_px = camera.height_px;
+  result.principal_point_px = Vec2(camera.width_px - 1, camera.height_px - 1) / 2;
+  result.distortion = camera.distortion;
+  const Eigen::Matrix3d axes = axes_of(camera, position_m, centre_m);
+  result.rotation = Eigen::Quaterniond(axes);
+  result.translation_m = -(axes * position_m);
+  result.focal_length_px = 1;
+
+  const CameraModel model(result);
+  double focal_length_px = 1e6;
+  const auto corners = corners_of(camera.view_m);
+  for (std::size_t side = 0; side < corners.size(); ++side) {
+    const Vec2 from = corners[side], to = corners[(side + 1) % corners.size()];
+    for (int i = 0; i < kPointsPerSide; ++i) {
+      const Vec2 p = from + (to - from) * i / kPointsPerSide;
+      for (const double z : {0.0, camera.top_m})
+        focal_length_px = std::min(focal_length_px, longest_focal_length(model, Vec3(p.x(), p.y(), z)));
+    }
+  }
+  result.focal_length_px = focal_length_px;
+  return CameraModel(result);
+}
+
+}  // namespace sidestep

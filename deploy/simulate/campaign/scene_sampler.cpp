@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/campaign/scene_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "common/config/scenario_check.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kGoals = 150;
+constexpr int kTries = 200;
+
+/// Draws places that keep clear of walls, obstacles and, where asked for, of each other.
+class Places {
+ public:
+  Places(const Scenario& scenario, Rng& rng) : scenario_(scenario), rng_(rng) {}
+
+  bool is_free(const Vec2& p) const {
+    const double room = scenario_.radius_m + scenario_.margin_m + 0.01;
+    return scenario_.field.contains(p, room) &&
+           std::ranges::none_of(scenario_.obstacles,
+                                [&](const Circle& o) { return (p - o.centre_m).norm() < o.radius_m + room; });
+  }
+  bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const {
+    const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 0.01;
+    return std::ranges::none_of(others, [&](const Vec2& other) { return (p - other).norm() < keep; });
+  }
+  /// Within the middle `share` of the field, if there is a place.
+  Vec2 draw(double share = 1) {
+    for (int i = 0;; ++i) {
+      const double part = i < kTries ? share / 2 : 0.5;
+      const Vec2 p(rng_.uniform(-part, part) * scenario_.field.length_m,
+                   rng_.uniform(-part, part) * scenario_.field.width_m);
+      if (is_free(p)) return p;
+    }
+  }
+  Vec2 sample_apart(const std::vector<Vec2>& others) {
+    for (;;) {
+      const Vec2 p = draw();
+      if (is_apart(p, others)) return p;
+    }
+  }
+  /// The nearest to a wished place that is found free and apart.
+  Vec2 near(const Vec2& desired, const std::vector<Vec2>& others) {
+    for (int i = 0; i < kTries; ++i) {
+      const double spread = 0.005 * i;
+      const Vec2 p = desired + Vec2(rng_.uniform(-spread, spread), rng_.uniform(-spread, spread));
+      if (is_free(p) && is_apart(p, others)) return p;
+    }
+    return sample_apart(others);
+  }
+
+ private:
+  const Scenario& scenario_;
+  Rng& rng_;
+};
+
+void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
+  const double area_m2 = static_cast<double>(robots) * 0.5 * std::pow(6, rng.uniform());
+  const double aspect = rng.uniform(1, 2);
+  scenario.field = {std::sqrt(area_m2 * aspect), std::sqrt(area_m2 / aspect)};
+  for (std::uint64_t left = rng.chance(0.5) ? rng.below(6) : 0; left > 0; --left) {
+    const double most_m = std::min(0.4, scenario.field.width_m / 6);
+    scenario.obstacles.push_back(
+        {{rng.uniform(-0.4, 0.4) * scenario.field.length_m, rng.uniform(-0.4, 0.4) * scenario.field.width_m},
+         rng.uniform(0.05, most_m)});
+  }
+}
+
+void sample_sensors(Scenario& scenario, Rng& rng) {
+  if (rng.chance(0.3)) scenario.command_loss = rng.uniform(0, 0.3);
+  if (rng.chance(0.3)) scenario.vision.missed = rng.uniform(0, 0.3);
+  if (rng.chance(0.3)) scenario.vision.delay = from_seconds(rng.uniform(0.002, 0.04));
+  if (rng.chance(0.3)) scenario.limits.speed_mps = rng.uniform(0.8, scenario.limits.speed_mps);
+}
+
+/// Starts, and ways that go on and on.
+void sample_paths(Scenario& scenario, Rng& rng) {
+  enum Pattern { kAnywhere, kThroughTheMiddle, kCircle, kSides, kPatterns };
+  const auto pattern = static_cast<Pattern>(rng.below(kPatterns));
+  Places places(scenario, rng);
+  const double spread = rng.uniform(0.5, 0.9);
+  const double circle_m = 0.42 * scenario.field.width_m;
+  const auto count = static_cast<double>(scenario.robots.size());
+  std::vector<Vec2> starts, lasts;
+  for (RobotSpec& robot : scenario.robots) {
+    const auto i = static_cast<double>(robot.id);
+    const Vec2 arm = rotated(Vec2(circle_m, 0), 2 * std::numbers::pi * i / count);
+    const double side = robot.id % 2 == 0 ? 1 : -1;
+    const Vec2 beside(side * 0.42 * scenario.field.length_m,
+                      rng.uniform(-0.45, 0.45) * scenario.field.width_m);
+    robot.start_m = pattern == kCircle  ? places.near(arm, starts)
+                    : pattern == kSides ? places.near(beside, starts)
+                                        : places.sample_apart(starts);
+    starts.push_back(robot.start_m);
+    robot.start_heading_rad = rng.uniform(-3, 3);
+    while (robot.goals.size() + 1 < kGoals) {
+      const double turn = robot.goals.size() % 2 == 0 ? -1 : 1;
+      const Vec2 across(turn * beside.x(), rng.uniform(-0.45, 0.45) * scenario.field.width_m);
+      robot.goals.push_back({pattern == kCircle             ? places.near(turn * arm, {})
+                             : pattern == kSides            ? places.near(across, {})
+                             : pattern == kThroughTheMiddle ? places.draw(spread)
+                                                            : places.draw(),
+                             std::nullopt});
+    }
+    lasts.push_back(places.sample_apart(lasts));
+    robot.goals.push_back({lasts.back(), std::nullopt});
+  }
+}
+
+}  // namespace
+
+Scenario sample_scene(Rng& rng) {
+  Scenario scenario;
+  scenario.name = "drawn";
+  const std::size_t robots = 5 + rng.below(26);
+  sample_floor(scenario, robots, rng);
+  sample_sensors(scenario, rng);
+  scenario.robots.resize(robots);
+  std::vector<RobotLines> lines(robots);
+  for (std::size_t i = 0; i < robots; ++i) {
+    scenario.robots[i].id = static_cast<RobotId>(i);
+    scenario.robots[i].team = i % 2 == 0 ? Team::kBlue : Team::kYellow;
+    lines[i] = {1, std::vector<int>(kGoals, 1)};
+  }
+  sample_paths(scenario, rng);
+  const double u = rng.uniform();
+  scenario.coordinators = u < 0.25 ? 1 : u < 0.85 ? 2 : 3;
+  check_placement(scenario, lines, scenario.name);
+  return scenario;
+}
+
+std::string floor_in_words(const Scenario& scenario) {
+  return fmt::format(
+      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; commands lost "
+      "{:.1f} %, vision "
+      "{:.1f} ms late, "
+      "robots missed {:.1f} %",
+      scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
+      scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
+      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.missed);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/rendering/vertical_body.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <vector>
+
+#include "common/camera/overhead_camera.hpp"
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+const Light kGround(40, 100, 50);
+
+Canvas empty_canvas(const CameraModel& camera) {
+  Canvas canvas(camera.parameters().height_px, camera.parameters().width_px);
+  canvas = bytes_of(kGround);
+  return canvas;
+}
+
+bool is_in_outline(const VerticalBody& body, const Vec2& p) {
+  return p.norm() <= body.radius_m && p.x() <= body.front_m;
+}
+
+/// What the ray through a point of the image meets first, from the top down in small steps.
+Light slow_light(const VerticalBody& body, const CameraModel& camera, const Vec2& pixel) {
+  const auto in_frame = [&](double height_m) {
+    return rotated(*camera.point_at(pixel, height_m) - body.position_m, -body.heading_rad);
+  };
+  const Vec2 top = in_frame(body.height_m), floor = in_frame(0);
+  if (is_in_outline(body, top)) {
+    for (const TopDot& dot : body.dots)
+      if ((top - dot.position_m).norm() <= dot.radius_m) return dot.light;
+    return body.top;
+  }
+  constexpr int kSteps = 400;
+  for (int i = 1; i <= kSteps; ++i)
+    if (is_in_outline(body, top + (floor - top) * i / kSteps)) return body.side;
+  return kGround;
+}
+
+Light slow_pixel(const VerticalBody& body, const CameraModel& camera, int x, int y) {
+  constexpr int kSteps = 12;
+  Light sum(0, 0, 0);
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j)
+      sum += slow_light(body, camera, Vec2(x + (i + 0.5) / kSteps - 0.5, y + (j + 0.5) / kSteps - 0.5));
+  return sum / (kSteps * kSteps);
+}
+
+const std::vector<TopDot> kDots{{{0, 0}, 0.025, Light(20, 80, 220)},
+                                {{0.035, 0.054}, 0.018, Light(240, 60, 160)},
+                                {{0.035, -0.054}, 0.018, Light(70, 220, 80)},
+                                {{-0.054, 0.035}, 0.018, Light(240, 60, 160)},
+                                {{-0.054, -0.035}, 0.018, Light(70, 220, 80)}};
+
+VerticalBody random_body(const Box& view_m, Rng& rng) {
+  VerticalBody body;
+  body.position_m = {rng.uniform(view_m.min_m.x(), view_m.max_m.x()),
+                     rng.uniform(view_m.min_m.y(), view_m.max_m.y())};
+  body.heading_rad = rng.uniform(-3, 3);
+  body.front_m = rng.chance(0.7) ? 0.055 : 1e3;
+  body.height_m = rng.uniform(0.02, 0.3);
+  body.top = Light(20, 22, 24);
+  body.side = Light(60, 30, 90);
+  body.dots = kDots;
+  return body;
+}
+
+OverheadCamera random_view(Rng& rng) {
+  OverheadCamera hanging;
+  hanging.view_m = {{-1.2, -0.9}, {1.2, 0.9}};
+  hanging.height_m = rng.uniform(1.5, 4);
+  hanging.aside_m = {rng.uniform(-1, 1), rng.uniform(-1, 1)};
+  hanging.width_px = 320;
+  hanging.height_px = 240;
+  return hanging;
+}
+
+}  // namespace
+
+TEST_CASE("a body looks as rays that are followed one by one see it") {
+  const std::uint64_t seed = 51;
+  CAPTURE(seed);
+  Rng rng(seed);
+  double squares = 0;
+  int edges = 0;
+  for (int i = 0; i < 25; ++i) {
+    CAPTURE(i);
+    const OverheadCamera hanging = random_view(rng);
+    const CameraModel camera = hang(hanging);
+    const VerticalBody body = random_body(hanging.view_m, rng);
+    Canvas canvas = empty_canvas(camera);
+    const cv::Rect rect = draw(body, camera, 0, canvas);
+    REQUIRE(!rect.empty());
+    for (int y = 0; y < canvas.rows; ++y) {
+      for (int x = 0; x < canvas.cols; ++x) {
+        if (!rect.contains({x, y})) {
+          REQUIRE(light_of(canvas(y, x)) == kGround);
+          continue;
+        }
+        const Light slow = slow_pixel(body, camera, x, y);
+        const double error = (slow - light_of(canvas(y, x))).cwiseAbs().maxCoeff();
+        CAPTURE(x, y, canvas(y, x), slow.transpose());
+        // An edge of 220 levels, counted over 128 points here and 144 there.
+        REQUIRE(error <= 16);
+        if (error == 0) continue;
+        squares += error * error;
+        ++edges;
+      }
+    }
+  }
+  INFO(fmt::format("RMS {:.2f} levels over {} pixels", std::sqrt(squares / edges), edges));
+  CHECK(std::sqrt(squares / edges) < 3);
+}
+
+TEST_CASE("nothing is seen beyond the place that draw names and the image") {
+  const std::uint64_t seed = 52;
+  CAPTURE(seed);
+  Rng rng(seed);
+  int partly = 0, outside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const OverheadCamera hanging = random_view(rng);
+    const CameraModel camera = hang(hanging);
+    const VerticalBody body = random_body(grown(hanging.view_m, 1), rng);
+    Canvas canvas = empty_canvas(camera);
+    const cv::Rect rect = draw(body, camera, 0, canvas);
+    const cv::Rect image(0, 0, canvas.cols, canvas.rows);
+    REQUIRE((rect & image) == rect);
+    ++(rect.empty() ? outside : partly);
+    if (i % 20 != 0) continue;
+    Canvas masked = canvas.clone();
+    masked(rect) = bytes_of(kGround);
+    REQUIRE(cv::countNonZero(masked.reshape(1) != empty_canvas(camera).reshape(1)) == 0);
+  }
+  CHECK(partly > 100);
+  CHECK(outside > 100);
+}
+
+TEST_CASE("a body that moves while the shutter is open looks like the mean of its instants") {
+  const std::uint64_t seed = 53;
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int i = 0; i < 8; ++i) {
+    const OverheadCamera hanging = random_view(rng);
+    const CameraModel camera = hang(hanging);
+    VerticalBody body = random_body(grown(hanging.view_m, -0.2), rng);
+    body.velocity_mps = {rng.uniform(-2, 2), rng.uniform(-2, 2)};
+    body.angular_radps = rng.uniform(-6, 6);
+    const double exposure_s = 0.01;
+    Canvas blurred = empty_canvas(camera);
+    draw(body, camera, exposure_s, blurred);
+    cv::Mat3f sum(blurred.size(), cv::Vec3f(0, 0, 0));
+    constexpr int kInstants = 101;
+    for (int j = 0; j < kInstants; ++j) {
+      const double t = exposure_s * ((j + 0.5) / kInstants - 0.5);
+      VerticalBody still = body;
+      still.position_m += t * body.velocity_mps;
+      still.heading_rad += t * body.angular_radps;
+      still.velocity_mps = {0, 0};
+      still.angular_radps = 0;
+      Canvas sharp = empty_canvas(camera);
+      draw(still, camera, 0, sharp);
+      cv::Mat3f exact;
+      sharp.convertTo(exact, CV_32F);
+      sum += exact / kInstants;
+    }
+    cv::Mat3f exact;
+    blurred.convertTo(exact, CV_32F);
+    double largest = 0, squares = 0;
+    int changed = 0;
+    for (int y = 0; y < sum.rows; ++y) {
+      for (int x = 0; x < sum.cols; ++x) {
+        const cv::Vec3f d = sum(y, x) - exact(y, x);
+        const double error = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+        largest = std::max(largest, error);
+        squares += error * error;
+        changed += error > 0.01;
+      }
+    }
+    INFO(fmt::format("largest {:.1f}, RMS {:.2f} levels over {} pixels", largest,
+                     std::sqrt(squares / changed), changed));
+    CHECK(largest < 24);
+    CHECK(std::sqrt(squares / changed) < 4);
+  }
+}
