@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
 int main(int argc, char** argv) {
@@ -11,9 +11,9 @@ int main(int argc, char** argv) {
   RobotId robot = 0;
   Program program;
   program.name = "sidestep-agent";
-  program.description = "Drives one robot: plans its way and negotiates every move with the coordinator.";
-  program.add_options = [&](CLI::App& app) {
-    app.add_option("--robot", robot, "the robot's id in the scenario")->required();
+  program.description = "Drives one robot: plans its route and negotiates every motion with the coordinator.";
+  program.add_options = [&](const Command& app) {
+    app.add_option("--robot", robot, "id of the robot in the scenario").required();
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   program.fault_target = [&] { return robot; };
@@ -23,11 +23,12 @@ int main(int argc, char** argv) {
                                   std::to_string(robot));
     }
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
-    auto node =
-        std::make_shared<AgentNode>(bus, scenario, robot, incarnation, std::make_shared<PlanningScratch>(scenario));
-    // It does not end: a supervisor would start it again, and it would take the robot from the later one.
+    auto node = std::make_shared<AgentNode>(bus, scenario, robot, incarnation,
+                                            std::make_shared<PlanningScratch>(scenario));
+    // The process keeps running: a supervisor would restart it, and it would take the robot from the later
+    // agent.
     node->on_superseded([robot] {
-      fmt::print(stderr, "agent-{}: superseded, a later agent drives this robot; it is quiet from now on\n",
+      fmt::print(stderr, "agent-{}: superseded: a later agent drives this robot; this one stays silent\n",
                  robot);
     });
     return node;

@@ -8,12 +8,12 @@
 namespace sidestep {
 namespace {
 
-// A registered version has to end at rest, but for rounding.
+// A registered version must end at rest; speeds below this are rounding errors.
 constexpr double kAtRest_mps = 1e-6;
 
 bool ends_at_rest(const Version& version) { return version.trajectory.residual_speed_mps() <= kAtRest_mps; }
 
-/// What a registration says, or nullopt where it makes no sense.
+/// The registered versions; nullopt if the registration is malformed.
 std::optional<std::vector<Version>> versions_of(const msg::Registration& registration) {
   if (registration.is_absent() != (registration.version_count() == 0)) return std::nullopt;
   if (registration.version_count() > VersionSet::kCapacity) return std::nullopt;
@@ -35,7 +35,7 @@ std::optional<std::vector<Version>> versions_of(const msg::Registration& registr
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
     : ledger_(rules, std::move(roster)),
       epoch_(epoch),
-      missing_(ledger_.roster().size()),
+      unregistered_count_(ledger_.roster().size()),
       records_(kMaxRobots) {}
 
 void Coordinator::begin_epoch(Epoch epoch) {
@@ -43,41 +43,41 @@ void Coordinator::begin_epoch(Epoch epoch) {
   contradicted_ = false;
   ledger_.clear();
   for (Record& record : records_) record = {};
-  missing_ = ledger_.roster().size();
+  unregistered_count_ = ledger_.roster().size();
 }
 
 std::optional<msg::Verdict> Coordinator::on_registration(const msg::Registration& registration) {
   if (!is_active()) return std::nullopt;
-  if (!ledger_.knows(registration.robot()) || registration.head().sender() != registration.robot()) {
+  if (!ledger_.has_robot(registration.robot()) || registration.header().sender() != registration.robot()) {
     ++invalid_;
     return std::nullopt;
   }
   msg::Verdict answer;
   answer.robot(registration.robot());
   answer.epoch(epoch_);
-  answer.asked_stamp_ns(registration.head().stamp_ns());
-  answer.reasons().fill(enter(registration));
+  answer.request_stamp_ns(registration.header().stamp_ns());
+  answer.reasons().fill(register_agent(registration));
   if (answer.reasons().front() == msg::REASON_MALFORMED) ++invalid_;
   return answer;
 }
 
-msg::Reason Coordinator::enter(const msg::Registration& registration) {
+msg::Reason Coordinator::register_agent(const msg::Registration& registration) {
   const RobotId robot = registration.robot();
   const auto versions = versions_of(registration);
   if (!versions) return msg::REASON_MALFORMED;
   if (registration.epoch() != epoch_) return msg::REASON_WRONG_EPOCH;
 
   Record& record = record_of(robot);
-  const Incarnation agent = registration.head().incarnation();
+  const Incarnation agent = registration.header().incarnation();
   if (record.registered && agent == record.incarnation) return msg::REASON_GRANTED;
   if (record.registered && agent < record.incarnation) return msg::REASON_OLD_INCARNATION;
   if (!record.registered) {
-    ledger_.enter(robot, *versions);
+    ledger_.register_robot(robot, *versions);
     record.registered = true;
-    --missing_;
+    --unregistered_count_;
   } else {
-    // A new agent for the robot: what its robot executes is in the ledger already, and nothing may be added
-    // unchecked.
+    // A new agent of a registered robot: its robot's versions are in the ledger already, and nothing may be
+    // added without checks.
     const auto known = [&](const Version& v) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });
@@ -85,7 +85,7 @@ msg::Reason Coordinator::enter(const msg::Registration& registration) {
     if (!std::ranges::all_of(*versions, known)) return msg::REASON_MALFORMED;
   }
   record.incarnation = agent;
-  record.answered = 0;
+  record.verdict_count = 0;
   return msg::REASON_GRANTED;
 }
 
@@ -93,17 +93,18 @@ void Coordinator::on_feedback(const msg::Feedback& feedback) {
   const RobotId robot = feedback.robot();
   if (!is_active()) return;
   const auto executing = decode(feedback.executing());
-  const bool is_sound = ledger_.knows(robot) && feedback.head().sender() == robot && executing &&
+  const bool is_sound = ledger_.has_robot(robot) && feedback.header().sender() == robot && executing &&
                         executing->robot == robot && ends_at_rest(*executing);
   if (!is_sound) {
     ++invalid_;
     return;
   }
   if (!record_of(robot).registered) return;
-  const Time at = time_from_ns(feedback.at_ns());
+  const Time at = time_from_ns(feedback.valid_at_ns());
   if (feedback.is_lifted() && executing->number == 0) {
     ledger_.on_lifted(robot, at);
-  } else if (ledger_.on_executing(*executing, at, feedback.is_off_reference()) == FactUse::kContradiction) {
+  } else if (ledger_.on_executing(*executing, at, feedback.is_off_reference()) ==
+             FactOutcome::kContradiction) {
     contradicted_ = true;
   }
 }
@@ -111,7 +112,7 @@ void Coordinator::on_feedback(const msg::Feedback& feedback) {
 std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& proposal) {
   const RobotId robot = proposal.robot();
   if (!is_active()) return std::nullopt;
-  if (!ledger_.knows(robot) || proposal.head().sender() != robot) {
+  if (!ledger_.has_robot(robot) || proposal.header().sender() != robot) {
     ++invalid_;
     return std::nullopt;
   }
@@ -120,46 +121,46 @@ std::optional<msg::Verdict> Coordinator::on_proposal(const msg::Proposal& propos
   verdict.robot(robot);
   verdict.epoch(epoch_);
   verdict.proposal_number(proposal.candidates().front().version_number());
-  verdict.asked_stamp_ns(proposal.head().stamp_ns());
-  verdict.granted(0);
-  if (const auto refusal = refusal_of(proposal, record); refusal != msg::REASON_GRANTED) {
+  verdict.request_stamp_ns(proposal.header().stamp_ns());
+  verdict.granted_version(0);
+  if (const auto refusal = refusal_reason(proposal, record); refusal != msg::REASON_GRANTED) {
     if (refusal == msg::REASON_MALFORMED) ++invalid_;
     verdict.reasons().fill(refusal);
     return verdict;
   }
-  if (const msg::Verdict* known = remembered(record, verdict.proposal_number())) {
+  if (const msg::Verdict* known = find_verdict(record, verdict.proposal_number())) {
     msg::Verdict again = *known;
-    again.asked_stamp_ns(verdict.asked_stamp_ns());
+    again.request_stamp_ns(verdict.request_stamp_ns());
     return again;
   }
   ++proposals_;
-  verdict.reasons().fill(msg::REASON_NOT_TRIED);
-  rule_on(proposal, record, verdict);
-  ++(verdict.granted() ? grants_ : denials_);
-  record.verdicts[record.answered++ % kRememberedVerdicts] = verdict;
+  verdict.reasons().fill(msg::REASON_NOT_EVALUATED);
+  decide(proposal, record, verdict);
+  ++(verdict.granted_version() ? grants_ : denials_);
+  record.verdicts[record.verdict_count++ % kVerdictHistory] = verdict;
   return verdict;
 }
 
-msg::Reason Coordinator::refusal_of(const msg::Proposal& proposal, const Record& record) const {
+msg::Reason Coordinator::refusal_reason(const msg::Proposal& proposal, const Record& record) const {
   if (proposal.epoch() != epoch_) return msg::REASON_WRONG_EPOCH;
-  if (!is_granting() || proposal.head().incarnation() > record.incarnation)
+  if (!is_granting() || proposal.header().incarnation() > record.incarnation)
     return msg::REASON_NOT_ALL_REGISTERED;
-  if (proposal.head().incarnation() < record.incarnation) return msg::REASON_OLD_INCARNATION;
+  if (proposal.header().incarnation() < record.incarnation) return msg::REASON_OLD_INCARNATION;
   if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES) {
     return msg::REASON_MALFORMED;
   }
   return msg::REASON_GRANTED;
 }
 
-const msg::Verdict* Coordinator::remembered(const Record& record, std::uint64_t proposal_number) const {
-  const std::size_t count = std::min<std::size_t>(record.answered, kRememberedVerdicts);
+const msg::Verdict* Coordinator::find_verdict(const Record& record, std::uint64_t proposal_number) const {
+  const std::size_t count = std::min<std::size_t>(record.verdict_count, kVerdictHistory);
   for (std::size_t i = 0; i < count; ++i) {
     if (record.verdicts[i].proposal_number() == proposal_number) return &record.verdicts[i];
   }
   return nullptr;
 }
 
-void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict) {
+void Coordinator::decide(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict) {
   const auto& first = proposal.candidates().front();
   for (std::size_t i = 0; i < proposal.candidate_count(); ++i) {
     const auto& message = proposal.candidates()[i];
@@ -167,14 +168,14 @@ void Coordinator::rule_on(const msg::Proposal& proposal, Record& record, msg::Ve
     Ruling ruling{msg::REASON_MALFORMED};
     if (candidate && candidate->robot == proposal.robot() && candidate->incarnation == record.incarnation &&
         message.base() == first.base() && message.start_ns() == first.start_ns()) {
-      ruling =
-          candidate->number > record.newest ? ledger_.grant(*candidate) : Ruling{msg::REASON_OLD_VERSION};
-      record.newest = std::max(record.newest, candidate->number);
+      ruling = candidate->number > record.newest_number ? ledger_.grant(*candidate)
+                                                        : Ruling{msg::REASON_OLD_VERSION};
+      record.newest_number = std::max(record.newest_number, candidate->number);
     }
     verdict.reasons()[i] = ruling.reason;
     verdict.blockers()[i] = ruling.blocker;
-    if (ruling.granted()) {
-      verdict.granted(candidate->number);
+    if (ruling.is_granted()) {
+      verdict.granted_version(candidate->number);
       break;
     }
   }
@@ -184,8 +185,8 @@ msg::CoordinatorState Coordinator::state() const {
   msg::CoordinatorState state;
   state.epoch(epoch_);
   state.coordinator_mode(!is_active()    ? msg::COORDINATOR_STANDBY
-                          : is_granting() ? msg::COORDINATOR_GRANTING
-                                          : msg::COORDINATOR_REGISTERING);
+                         : is_granting() ? msg::COORDINATOR_GRANTING
+                                         : msg::COORDINATOR_REGISTERING);
   state.proposals(proposals_);
   state.grants(grants_);
   state.denials(denials_);

@@ -7,14 +7,8 @@
 namespace sidestep {
 namespace {
 
-// A standby says that it is there in one of so many periods.
-constexpr int kStandbySign = 10;
-
-std::vector<RobotId> roster_of(const Scenario& scenario) {
-  std::vector<RobotId> roster;
-  for (const RobotSpec& robot : scenario.robots) roster.push_back(robot.id);
-  return roster;
-}
+// A standby announces itself every kStandbyAnnouncePeriod heartbeat periods.
+constexpr int kStandbyAnnouncePeriod = 10;
 
 }  // namespace
 
@@ -34,32 +28,33 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   }
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
     failover_.on_coordinator_state(state, bus_.now());
-    follow_failover();
+    apply_epoch();
   });
   bus_.subscribe(topics::kRegistration,
                  [this](const msg::Registration& registration) { on_registration(registration); });
   bus_.subscribe(topics::kProposal, [this](const msg::Proposal& proposal) { on_proposal(proposal); });
-  look();
+  update_failover();
   publish_state_periodically();
   publish_ledger();
 }
 
 template <typename Message>
 void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
-  message.head().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
-  message.head().incarnation(self_.incarnation);
+  message.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
+  message.header().incarnation(self_.incarnation);
   writer.publish(message, bus_.now());
 }
 
 template <typename Message>
-void CoordinatorNode::note_epoch(const Message& message, Epoch epoch) {
-  if (message.head().sender() != message.robot() || !coordinator_.ledger().knows(message.robot())) return;
+void CoordinatorNode::observe_epoch(const Message& message, Epoch epoch) {
+  if (message.header().sender() != message.robot() || !coordinator_.ledger().has_robot(message.robot()))
+    return;
   failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
-  follow_failover();
+  apply_epoch();
 }
 
 void CoordinatorNode::on_registration(const msg::Registration& registration) {
-  note_epoch(registration, registration.epoch());
+  observe_epoch(registration, registration.epoch());
   const bool was_granting = coordinator_.is_granting();
   if (auto answer = coordinator_.on_registration(registration)) {
     publish(verdict_writers_.at(answer->robot()), *answer);
@@ -68,29 +63,29 @@ void CoordinatorNode::on_registration(const msg::Registration& registration) {
 }
 
 void CoordinatorNode::on_feedback(const msg::Feedback& feedback) {
-  note_epoch(feedback, feedback.obeyed_epoch());
+  observe_epoch(feedback, feedback.obeyed_epoch());
   coordinator_.on_feedback(feedback);
   if (!coordinator_.is_contradicted()) return;
   failover_.begin_epoch(bus_.now());
-  follow_failover();
+  apply_epoch();
 }
 
 void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {
-  note_epoch(proposal, proposal.epoch());
+  observe_epoch(proposal, proposal.epoch());
   if (auto verdict = coordinator_.on_proposal(proposal))
     publish(verdict_writers_.at(verdict->robot()), *verdict);
 }
 
-void CoordinatorNode::follow_failover() {
+void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
   publish_state();
 }
 
-void CoordinatorNode::look() {
-  bus_.at(bus_.now() + Failover::kLook, [this] { look(); });
+void CoordinatorNode::update_failover() {
+  bus_.at(bus_.now() + Failover::kUpdatePeriod, [this] { update_failover(); });
   failover_.update(bus_.now());
-  follow_failover();
+  apply_epoch();
 }
 
 void CoordinatorNode::publish_state() {
@@ -101,8 +96,8 @@ void CoordinatorNode::publish_state() {
 }
 
 void CoordinatorNode::publish_state_periodically() {
-  bus_.at(bus_.now() + Failover::kSignOfLife, [this] { publish_state_periodically(); });
-  if (coordinator_.is_active() || periods_++ % kStandbySign == 0) publish_state();
+  bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
+  if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }
 
 void CoordinatorNode::publish_ledger() {

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Connects a coordinator to the bus: answers proposals and registrations at once, publishes the ledger every
-/// cycle and its signs of life, and takes over from other coordinators.
+/// Connects a coordinator to the bus: answers proposals and registrations immediately, publishes the ledger
+/// every cycle and heartbeats, and takes over from other coordinators.
 class CoordinatorNode {
  public:
   CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, bool is_standby);
@@ -22,15 +22,15 @@ class CoordinatorNode {
  private:
   template <typename Message>
   void publish(Writer<Message>& writer, Message& message);
-  /// Hears of an epoch that the sender obeys.
+  /// Notes the epoch that the sender obeys.
   template <typename Message>
-  void note_epoch(const Message& message, Epoch epoch);
+  void observe_epoch(const Message& message, Epoch epoch);
   void on_registration(const msg::Registration& registration);
   void on_feedback(const msg::Feedback& feedback);
   void on_proposal(const msg::Proposal& proposal);
-  /// Begins the epoch that the succession has begun, or stands by with it, and says so.
-  void follow_failover();
-  void look();
+  /// Adopts the epoch of failover_, or stands by with it, and publishes the new state.
+  void apply_epoch();
+  void update_failover();
   void publish_state();
   void publish_state_periodically();
   void publish_ledger();
@@ -43,7 +43,7 @@ class CoordinatorNode {
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
-  int periods_ = 0;  // of signs of life, while standing by
+  int standby_periods_ = 0;  // heartbeat periods while standing by
 };
 
 }  // namespace sidestep

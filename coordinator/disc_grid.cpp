@@ -6,22 +6,22 @@
 namespace sidestep {
 namespace {
 
-// A robot's versions usually fit a disc of half that radius.
-constexpr double kSmallestCell_m = 1;
-constexpr double kMostCellsAcross = 64;
+// A robot's versions usually fit in a disc of half this radius.
+constexpr double kMinCell_m = 1;
+constexpr double kMaxCellsAcross = 64;
 
 }  // namespace
 
 DiscGrid::DiscGrid(const Field& field, std::size_t count)
     : low_m_(-field.length_m / 2, -field.width_m / 2),
-      cell_m_(std::max(kSmallestCell_m, std::max(field.length_m, field.width_m) / kMostCellsAcross)),
+      cell_m_(std::max(kMinCell_m, std::max(field.length_m, field.width_m) / kMaxCellsAcross)),
       columns_(static_cast<std::size_t>(field.length_m / cell_m_) + 1),
       rows_(static_cast<std::size_t>(field.width_m / cell_m_) + 1),
       cells_(columns_ * rows_ + 1),
       circles_(count),
-      cell_of_(count, kNowhere) {}
+      cell_of_(count, kNoCell) {}
 
-// What lies beyond the field is kept, and looked for, at its border.
+// Positions beyond the field belong to its border cells.
 std::size_t DiscGrid::column_of(double x) const {
   return static_cast<std::size_t>(
       std::clamp((x - low_m_.x()) / cell_m_, 0.0, static_cast<double>(columns_ - 1)));
@@ -35,7 +35,7 @@ std::size_t DiscGrid::row_of(double y) const {
 void DiscGrid::set(std::uint32_t disc, const Circle& circle) {
   circles_[disc] = circle;
   const Vec2& centre = circle.centre_m;
-  // Written so that what is not a number is always found.
+  // A NaN radius does not fit, so such a disc goes into the last cell, which every search includes.
   const bool fits = circle.radius_m <= cell_m_;
   const std::size_t cell = fits ? row_of(centre.y()) * columns_ + column_of(centre.x()) : columns_ * rows_;
   if (cell_of_[disc] == cell) return;
@@ -45,14 +45,14 @@ void DiscGrid::set(std::uint32_t disc, const Circle& circle) {
 }
 
 void DiscGrid::remove(std::uint32_t disc) {
-  if (cell_of_[disc] == kNowhere) return;
+  if (cell_of_[disc] == kNoCell) return;
   std::erase(cells_[cell_of_[disc]], disc);
-  cell_of_[disc] = kNowhere;
+  cell_of_[disc] = kNoCell;
 }
 
 void DiscGrid::find(const Circle& circle, std::vector<std::uint32_t>& found) const {
   found.clear();
-  const auto look_at = [&](const std::vector<std::uint32_t>& cell) {
+  const auto search_cell = [&](const std::vector<std::uint32_t>& cell) {
     for (const std::uint32_t disc : cell) {
       if (touch(circles_[disc], circle)) found.push_back(disc);
     }
@@ -62,9 +62,9 @@ void DiscGrid::find(const Circle& circle, std::vector<std::uint32_t>& found) con
   const std::size_t right = column_of(circle.centre_m.x() + far);
   const std::size_t top = row_of(circle.centre_m.y() + far);
   for (std::size_t row = row_of(circle.centre_m.y() - far); row <= top; ++row) {
-    for (std::size_t column = left; column <= right; ++column) look_at(cells_[row * columns_ + column]);
+    for (std::size_t column = left; column <= right; ++column) search_cell(cells_[row * columns_ + column]);
   }
-  look_at(cells_.back());
+  search_cell(cells_.back());
   std::ranges::sort(found);
 }
 

@@ -10,29 +10,46 @@
 namespace sidestep {
 namespace {
 
-// A stand lies still, but for rounding.
+// Speeds below this are rounding errors.
 constexpr double kAtRest_mps = 1e-6;
 
-bool is_stand(const Version& version) {
+bool is_rest_version(const Version& version) {
   return version.base == 0 && version.trajectory.phases().empty() &&
          version.trajectory.residual_speed_mps() == 0;
 }
 
-/// Growth ends where a robot rests, and changes nowhere else.
-bool may_have_inflation(const Version& candidate, const Version& base) {
+/// A version has its base's inflation, or 0 if it begins at rest.
+bool is_inflation_allowed(const Version& candidate, const Version& base) {
   if (candidate.inflation_m == base.inflation_m) return true;
   return candidate.inflation_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;
 }
 
-/// Whether two versions of one number are one version.
+/// Whether two versions with equal numbers have equal contents.
 bool is_same(const Version& a, const Version& b) {
   const State &from = a.trajectory.at_start(), &other = b.trajectory.at_start();
   return a.base == b.base && a.trajectory.start() == b.trajectory.start() &&
          from.position_m == other.position_m && from.velocity_mps == other.velocity_mps &&
          a.inflation_m == b.inflation_m &&
-         std::ranges::equal(a.trajectory.phases(), b.trajectory.phases(), [](const MotionPhase& p, const MotionPhase& q) {
-           return p.duration == q.duration && p.acceleration_mps2 == q.acceleration_mps2;
-         });
+         std::ranges::equal(a.trajectory.phases(), b.trajectory.phases(),
+                            [](const MotionPhase& p, const MotionPhase& q) {
+                              return p.duration == q.duration && p.acceleration_mps2 == q.acceleration_mps2;
+                            });
+}
+
+msg::Reason reason_of(Validity validity) {
+  switch (validity) {
+    case Validity::kValid:
+      return msg::REASON_GRANTED;
+    case Validity::kBeyondLimits:
+      return msg::REASON_BEYOND_LIMITS;
+    case Validity::kNotAtRest:
+      return msg::REASON_NOT_AT_REST;
+    case Validity::kOutsideField:
+      return msg::REASON_OUTSIDE_FIELD;
+    case Validity::kObstacle:
+      return msg::REASON_OBSTACLE;
+  }
+  return msg::REASON_MALFORMED;
 }
 
 }  // namespace
@@ -42,7 +59,7 @@ Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster)
       roster_(std::move(roster)),
       index_(kMaxRobots, roster_.size()),
       entries_(roster_.size()),
-      places_(rules.field, roster_.size()) {
+      grid_(rules.field, roster_.size()) {
   std::sort(roster_.begin(), roster_.end());
   for (std::size_t i = 0; i < roster_.size(); ++i) index_.at(roster_[i]) = i;
 }
@@ -52,13 +69,13 @@ std::size_t Ledger::index_of(RobotId robot) const {
 }
 
 std::span<const Version> Ledger::versions(RobotId robot) const {
-  return knows(robot) ? entries_[index_of(robot)].set.versions() : std::span<const Version>{};
+  return has_robot(robot) ? entries_[index_of(robot)].set.versions() : std::span<const Version>{};
 }
 
-void Ledger::enter(RobotId robot, std::span<const Version> versions) {
+void Ledger::register_robot(RobotId robot, std::span<const Version> versions) {
   Entry& entry = entry_of(robot);
   for (const Version& version : versions) entry.set.add(version);
-  bound(index_of(robot));
+  update_bounds(index_of(robot));
   find_conflicts(robot);
 }
 
@@ -66,69 +83,72 @@ Ruling Ledger::grant(const Version& candidate) {
   Entry& entry = entry_of(candidate.robot);
   const Version* base = entry.set.find(candidate.base);
   const bool is_absent = entry.set.versions().empty();
-  if (is_absent && !is_stand(candidate)) return {msg::REASON_ABSENT};
+  if (is_absent && !is_rest_version(candidate)) return {msg::REASON_ABSENT};
   if (!is_absent && !base) return {msg::REASON_BASE_UNKNOWN};
   if (entry.set.is_full()) return {msg::REASON_LEDGER_FULL};
-  if (const auto refusal = refusal_of(candidate, base); refusal != msg::REASON_GRANTED) return {refusal};
-  if (const auto blocker = blocker_of(candidate, base)) return {msg::REASON_CONFLICT, *blocker};
+  if (const auto refusal = refusal_reason(candidate, base); refusal != msg::REASON_GRANTED) return {refusal};
+  if (const auto blocker = find_blocker(candidate, base)) return {msg::REASON_CONFLICT, *blocker};
   entry.set.add(candidate);
-  bound(index_of(candidate.robot));
+  update_bounds(index_of(candidate.robot));
   return {};
 }
 
-msg::Reason Ledger::refusal_of(const Version& candidate, const Version* base) const {
+msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base) const {
   const Trajectory& trajectory = candidate.trajectory;
-  if (!base) return candidate.inflation_m == 0 ? check_place(trajectory, rules_) : msg::REASON_NOT_CONTINUOUS;
+  if (!base) {
+    return candidate.inflation_m == 0 ? reason_of(check_workspace(trajectory, rules_))
+                                      : msg::REASON_NOT_CONTINUOUS;
+  }
   if (candidate.number <= base->number) return msg::REASON_OLD_VERSION;
-  if (!continues(trajectory, base->trajectory) || !may_have_inflation(candidate, *base))
+  if (!continues(trajectory, base->trajectory) || !is_inflation_allowed(candidate, *base))
     return msg::REASON_NOT_CONTINUOUS;
-  if (const auto reason = check_limits(trajectory, rules_.limits); reason != msg::REASON_GRANTED)
-    return reason;
-  return check_place_after(candidate, base->trajectory, rules_);
+  if (const auto validity = check_limits(trajectory, rules_.limits); validity != Validity::kValid)
+    return reason_of(validity);
+  return reason_of(check_workspace_with_escape(candidate, base->trajectory, rules_));
 }
 
-FactUse Ledger::on_executing(const Version& executing, Time at, bool is_off_reference) {
+FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference) {
   Entry& entry = entry_of(executing.robot);
   const auto versions = entry.set.versions();
   const auto is_older = [&](const Version& held) { return held.number < executing.number; };
-  if (at <= entry.lifted_at) return FactUse::kLate;
+  if (at <= entry.lifted_at) return FactOutcome::kStale;
   if (const Version* held = entry.set.find(executing.number)) {
-    if (!is_same(*held, executing)) return FactUse::kContradiction;
+    if (!is_same(*held, executing)) return FactOutcome::kContradiction;
     entry.set.forget(executing.number, at);
-    bound(index_of(executing.robot));
+    update_bounds(index_of(executing.robot));
     end_conflicts(executing.robot);
-    return FactUse::kUsed;
+    return FactOutcome::kApplied;
   }
-  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactUse::kLate;
-  if (!is_off_reference || !std::ranges::all_of(versions, is_older)) return FactUse::kContradiction;
+  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
+  if (!is_off_reference || !std::ranges::all_of(versions, is_older)) return FactOutcome::kContradiction;
   entry.set.clear();
   entry.set.add(executing);
-  bound(index_of(executing.robot));
+  update_bounds(index_of(executing.robot));
   find_conflicts(executing.robot);
-  return FactUse::kUsed;
+  return FactOutcome::kApplied;
 }
 
 void Ledger::on_lifted(RobotId robot, Time at) {
   Entry& entry = entry_of(robot);
   entry.lifted_at = std::max(entry.lifted_at, at);
   entry.set.forget_started(at);
-  bound(index_of(robot));
+  update_bounds(index_of(robot));
   end_conflicts(robot);
 }
 
 void Ledger::clear() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     entries_[i] = {};
-    bound(i);
+    update_bounds(i);
   }
   conflicts_.clear();
 }
 
-void Ledger::bound(std::size_t index) {
+void Ledger::update_bounds(std::size_t index) {
   Entry& entry = entries_[index];
   const auto versions = entry.set.versions();
   if (versions.empty()) {
-    places_.remove(static_cast<std::uint32_t>(index));
+    grid_.remove(static_cast<std::uint32_t>(index));
     return;
   }
   for (std::size_t i = 0; i < versions.size(); ++i) {
@@ -140,26 +160,27 @@ void Ledger::bound(std::size_t index) {
     const double offset = (entry.discs[i].centre_m - all.centre_m).norm();
     all.radius_m = std::max(all.radius_m, offset + entry.discs[i].radius_m);
   }
-  places_.set(static_cast<std::uint32_t>(index), all);
+  grid_.set(static_cast<std::uint32_t>(index), all);
 }
 
-bool Ledger::may_both(const Version& candidate, const Version* base, const Version& other) const {
-  const double keep = rules_.min_separation_m() + candidate.inflation_m + other.inflation_m;
-  if (is_clear(candidate.trajectory, other.trajectory, keep)) return true;
+bool Ledger::are_compatible(const Version& candidate, const Version* base, const Version& other) const {
+  const double separation = rules_.min_separation_m() + candidate.inflation_m + other.inflation_m;
+  if (is_clear(candidate.trajectory, other.trajectory, separation)) return true;
   if (!base) return false;
-  const double kept = kept_distance_m(base->trajectory, candidate.trajectory.start(), other.trajectory, keep);
-  return kept < keep && is_clear(candidate.trajectory, other.trajectory, kept);
+  const double relaxed =
+      relaxed_separation_m(base->trajectory, candidate.trajectory.start(), other.trajectory, separation);
+  return relaxed < separation && is_clear(candidate.trajectory, other.trajectory, relaxed);
 }
 
-std::optional<RobotId> Ledger::blocker_of(const Version& candidate, const Version* base) {
-  Circle around = disc_of(candidate.trajectory);
-  around.radius_m += candidate.inflation_m + rules_.min_separation_m() + kClearanceTolerance_m;
-  places_.find(around, near_);
-  for (const std::uint32_t index : near_) {
+std::optional<RobotId> Ledger::find_blocker(const Version& candidate, const Version* base) {
+  Circle search_disc = disc_of(candidate.trajectory);
+  search_disc.radius_m += candidate.inflation_m + rules_.min_separation_m() + kClearanceTolerance_m;
+  grid_.find(search_disc, nearby_);
+  for (const std::uint32_t index : nearby_) {
     if (roster_[index] == candidate.robot) continue;
     const auto versions = entries_[index].set.versions();
     for (std::size_t i = 0; i < versions.size(); ++i) {
-      if (touch(entries_[index].discs[i], around) && !may_both(candidate, base, versions[i]))
+      if (touch(entries_[index].discs[i], search_disc) && !are_compatible(candidate, base, versions[i]))
         return roster_[index];
     }
   }
@@ -168,7 +189,8 @@ std::optional<RobotId> Ledger::blocker_of(const Version& candidate, const Versio
 
 bool Ledger::are_in_conflict(const Entry& a, const Entry& b) const {
   return std::ranges::any_of(a.set.versions(), [&](const Version& v) {
-    return std::ranges::any_of(b.set.versions(), [&](const Version& w) { return !may_both(v, nullptr, w); });
+    return std::ranges::any_of(b.set.versions(),
+                               [&](const Version& w) { return !are_compatible(v, nullptr, w); });
   });
 }
 
@@ -176,10 +198,10 @@ void Ledger::find_conflicts(RobotId robot) {
   std::erase_if(conflicts_, [=](const Conflict& c) { return c.first == robot || c.second == robot; });
   const Entry& entry = entry_of(robot);
   for (std::size_t i = 0; i < entry.set.versions().size(); ++i) {
-    Circle around = entry.discs[i];
-    around.radius_m += rules_.min_separation_m() + kClearanceTolerance_m;
-    places_.find(around, near_);
-    for (const std::uint32_t index : near_) {
+    Circle search_disc = entry.discs[i];
+    search_disc.radius_m += rules_.min_separation_m() + kClearanceTolerance_m;
+    grid_.find(search_disc, nearby_);
+    for (const std::uint32_t index : nearby_) {
       const Conflict pair{std::min(robot, roster_[index]), std::max(robot, roster_[index])};
       if (roster_[index] == robot || std::ranges::count(conflicts_, pair) > 0) continue;
       if (are_in_conflict(entry, entries_[index])) conflicts_.push_back(pair);

@@ -7,58 +7,59 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/disc_grid.hpp"
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
+#include "coordinator/disc_grid.hpp"
+#include "idl/negotiation.h"
 
 namespace sidestep {
 
-/// Why a version is not granted, and who is in the way if somebody is.
+/// Why a version is refused, and for REASON_CONFLICT the conflicting robot.
 struct Ruling {
   msg::Reason reason = msg::REASON_GRANTED;
   RobotId blocker = 0;
 
-  bool granted() const { return reason == msg::REASON_GRANTED; }
+  bool is_granted() const { return reason == msg::REASON_GRANTED; }
 };
 
-/// What became of a fact that a robot has told.
-enum class FactUse {
-  kUsed,
-  kLate,           ///< says nothing any more
-  kContradiction,  ///< cannot be true if the ledger is: the ledger is wrong
+/// Effect of a fact reported by a robot.
+enum class FactOutcome {
+  kApplied,
+  kStale,          ///< superseded by a later fact
+  kContradiction,  ///< inconsistent with the ledger, so the ledger is wrong
 };
 
-/// Two robots that may come nearer to each other than they should, the lower number first.
+/// Two robots that may come closer than their margin and inflations permit; the lower number first.
 using Conflict = std::pair<RobotId, RobotId>;
 
-/// For every robot, the versions that it may be executing, now or later (safety-protocol, "The ledger's
-/// rules"). Invariant: every version of one robot is clear of every version of every other robot, but for the
-/// pairs of robots in conflicts(), which something outside has brought too near; those come no nearer by what
-/// is granted. A robot without versions is not on the floor.
+/// For every robot, the versions that it may execute, now or later; implements the rules of PROTOCOL.md, "The
+/// ledger". Invariant: every version of one robot is clear of every version of every other robot, except for
+/// the pairs in conflicts(), which external events have brought too close; no grant brings those closer. A
+/// robot without versions is not on the floor.
 class Ledger {
  public:
-  /// Robots that are not on the roster do not exist.
+  /// `roster`: the robots that the ledger covers.
   Ledger(const FloorRules& rules, std::vector<RobotId> roster);
 
-  bool knows(RobotId robot) const { return index_of(robot) < roster_.size(); }
+  bool has_robot(RobotId robot) const { return index_of(robot) < roster_.size(); }
   std::span<const RobotId> roster() const { return roster_; }
   std::span<const Version> versions(RobotId robot) const;
 
-  /// Enters, unchecked, what a robot may be executing when a coordinator's life begins. The robot has to be
-  /// known and to have no versions yet.
-  void enter(RobotId robot, std::span<const Version> versions);
+  /// Adds, without checks, the versions that a robot may execute when an epoch begins. Precondition: the
+  /// robot is on the roster and has no versions.
+  void register_robot(RobotId robot, std::span<const Version> versions);
 
-  /// Rule 1: adds the candidate if it may be granted, removes nothing. A refused one changes nothing. A robot
-  /// that is not on the floor is granted nothing but a stand.
-  Ruling grant(const Version& candidate);
+  /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
+  [[nodiscard]] Ruling grant(const Version& candidate);
 
-  /// Rule 2: "executing f at time t". Off its reference, a robot executes what it made itself, and that
-  /// replaces all older versions, unchecked.
-  FactUse on_executing(const Version& executing, Time at, bool is_off_reference);
-  /// "Off the floor and executing nothing at time t": drops every version whose start is not after it.
+  /// Rules 2, 3 and 6, for the fact "executing f at time t". Off its reference, a robot executes a stop of
+  /// its own, which replaces all older versions without checks.
+  [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference);
+  /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
+  /// before t.
   void on_lifted(RobotId robot, Time at);
 
-  /// Pairs of robots that may come too near, in no order.
+  /// In no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
 
   void clear();
@@ -66,30 +67,31 @@ class Ledger {
  private:
   struct Entry {
     VersionSet set;
-    std::array<Circle, VersionSet::kCapacity>
-        discs;         // that the set's versions, with their growth, never leave
-    Time lifted_at{};  // when it was last known to execute nothing
+    // Bounding disc of each version's motion, including its inflation.
+    std::array<Circle, VersionSet::kCapacity> discs;
+    Time lifted_at{};  // latest time at which it was reported off the floor
   };
   std::size_t index_of(RobotId robot) const;
   Entry& entry_of(RobotId robot) { return entries_[index_of(robot)]; }
-  /// Finds the discs of the robot's versions, and of all together, anew.
-  void bound(std::size_t index);
-  msg::Reason refusal_of(const Version& candidate, const Version* base) const;
-  /// Whether both of them may be taken, where `base` (may be nullptr) is what the candidate continues.
-  bool may_both(const Version& candidate, const Version* base, const Version& other) const;
-  std::optional<RobotId> blocker_of(const Version& candidate, const Version* base);
+  /// Recomputes the bounding discs of the robot's versions.
+  void update_bounds(std::size_t index);
+  msg::Reason refusal_reason(const Version& candidate, const Version* base) const;
+  /// Whether the candidate is clear of `other`, or allowed by the escape rule for its base (null: no escape
+  /// rule).
+  bool are_compatible(const Version& candidate, const Version* base, const Version& other) const;
+  std::optional<RobotId> find_blocker(const Version& candidate, const Version* base);
   bool are_in_conflict(const Entry& a, const Entry& b) const;
-  /// Finds the robot's conflicts anew.
+  /// Recomputes the robot's conflicts.
   void find_conflicts(RobotId robot);
-  /// Drops those of the robot's conflicts that are over.
+  /// Removes the robot's conflicts that have ended.
   void end_conflicts(RobotId robot);
 
   FloorRules rules_;
   std::vector<RobotId> roster_;     // ascending
   std::vector<std::size_t> index_;  // by robot
-  std::vector<Entry> entries_;      // as roster_
-  DiscGrid places_;                 // of the entries that have versions
-  std::vector<std::uint32_t> near_;
+  std::vector<Entry> entries_;      // parallel to roster_
+  DiscGrid grid_;                   // bounding discs of all entries with versions
+  std::vector<std::uint32_t> nearby_;
   std::vector<Conflict> conflicts_;
 };
 

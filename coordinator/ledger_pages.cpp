@@ -10,62 +10,62 @@
 namespace sidestep {
 namespace {
 
-struct Placed {
+struct PlacedRobot {
   std::span<const Version> versions;
-  Vec2 place_m;
+  Vec2 position_m;
 };
 
 std::size_t pages_for(std::size_t robots) { return (robots + kRobotsPerPage - 1) / kRobotsPerPage; }
 
-/// Into strips along y, as wide as makes their pages about square, one up and the next one down: so a page
-/// that begins in one and ends in the next is no larger than the others.
-void put_in_order(std::vector<Placed>& robots) {
+/// Sorts the robots into strips along y whose width makes pages about square. Strips alternate between
+/// ascending and descending y, so a page that spans two strips stays compact.
+void sort_into_tiles(std::vector<PlacedRobot>& robots) {
   if (robots.size() <= kRobotsPerPage) return;
   const double pages = static_cast<double>(pages_for(robots.size()));
   const auto strips = static_cast<std::size_t>(std::ceil(std::sqrt(pages)));
   const std::size_t strip = (robots.size() + strips - 1) / strips;
-  // Stable: equal places stay in the roster's order.
-  std::ranges::stable_sort(robots, {}, [](const Placed& robot) { return robot.place_m.x(); });
-  double up = 1;
+  // Stable, so robots at equal positions stay in the roster's order.
+  std::ranges::stable_sort(robots, {}, [](const PlacedRobot& robot) { return robot.position_m.x(); });
+  double direction = 1;
   for (std::size_t i = 0; i < robots.size(); i += strip) {
-    std::ranges::stable_sort(std::span(robots).subspan(i, std::min(strip, robots.size() - i)), {},
-                             [up](const Placed& robot) { return up * robot.place_m.y(); });
-    up = -up;
+    std::ranges::stable_sort(
+        std::span(robots).subspan(i, std::min(strip, robots.size() - i)), {},
+        [direction](const PlacedRobot& robot) { return direction * robot.position_m.y(); });
+    direction = -direction;
   }
 }
 
-void fill(msg::LedgerPage& page, std::span<const Placed> robots) {
+void fill(msg::LedgerPage& page, std::span<const PlacedRobot> robots) {
   std::size_t count = 0;
-  for (const Placed& robot : robots) count += robot.versions.size();
+  for (const PlacedRobot& robot : robots) count += robot.versions.size();
   page.versions().reserve(count);
   Vec2 low(0, 0), high(0, 0);
-  for (const Placed& robot : robots) {
+  for (const PlacedRobot& robot : robots) {
     for (const Version& version : robot.versions) {
-      const Vec2& place = version.trajectory.at_start().position_m;
-      low = page.versions().empty() ? place : Vec2(low.cwiseMin(place));
-      high = page.versions().empty() ? place : Vec2(high.cwiseMax(place));
+      const Vec2& start = version.trajectory.at_start().position_m;
+      low = page.versions().empty() ? start : Vec2(low.cwiseMin(start));
+      high = page.versions().empty() ? start : Vec2(high.cwiseMax(start));
       page.versions().push_back(encode(version));
     }
   }
-  page.low_x_m(low.x());
-  page.low_y_m(low.y());
-  page.high_x_m(high.x());
-  page.high_y_m(high.y());
+  page.min_x_m(low.x());
+  page.min_y_m(low.y());
+  page.max_x_m(high.x());
+  page.max_y_m(high.y());
 }
 
 }  // namespace
 
 std::vector<msg::LedgerPage> ledger_pages(const Ledger& ledger, Epoch epoch) {
-  std::vector<Placed> robots;
+  std::vector<PlacedRobot> robots;
   robots.reserve(ledger.roster().size());
   for (const RobotId robot : ledger.roster()) {
     const auto versions = ledger.versions(robot);
     robots.push_back(
         {versions, versions.empty() ? Vec2(0, 0) : versions.front().trajectory.at_start().position_m});
   }
-  put_in_order(robots);
-  // As many as the roster needs, however many versions there are: a page that was there once is written
-  // again.
+  sort_into_tiles(robots);
+  // The number of pages depends on the roster only, so every page that was ever published is overwritten.
   std::vector<msg::LedgerPage> pages(pages_for(robots.size()));
   for (std::size_t i = 0; i < pages.size(); ++i) {
     const std::size_t begin = i * kRobotsPerPage;

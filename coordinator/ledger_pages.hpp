@@ -8,11 +8,11 @@
 
 namespace sidestep {
 
-/// A page holds the versions of so many robots at most.
+/// Maximum number of robots on a page.
 inline constexpr std::size_t kRobotsPerPage = 32;
 
-/// The ledger in pages, each of robots that are near to each other (sort-tile-recursive packing; Leutenegger,
-/// Lopez, Edgington 1997), so that agents need to look at few of them. Heads are the sender's.
+/// The ledger, divided into pages of nearby robots (sort-tile-recursive packing; Leutenegger, Lopez,
+/// Edgington 1997), so that an agent needs few of them. The sender fills in the headers.
 std::vector<msg::LedgerPage> ledger_pages(const Ledger& ledger, Epoch epoch);
 
 }  // namespace sidestep

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "common/messaging/senders.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "coordinator/coordinator_node.hpp"
 
@@ -14,11 +14,12 @@ int main(int argc, char** argv) {
   Program program;
   program.name = "sidestep-coordinator";
   program.description =
-      "Keeps the ledger of what every robot may be executing, and grants what is clear of it.";
-  program.add_options = [&](CLI::App& app) {
-    app.add_flag("--standby", is_standby, "listen, and take over when no other coordinator is heard");
-    app.add_option("--number", number, "which of several coordinators it is; 0, or 1 with --standby")
-        ->check(CLI::Range(CoordinatorNumber{0}, kMaxCoordinators - 1));
+      "Keeps the ledger of the versions that robots may execute, and grants versions that are clear of it.";
+  program.add_options = [&](const Command& app) {
+    app.add_flag("--standby", is_standby, "listen, and take over when no other coordinator is active");
+    app.add_option("--number", number,
+                   "number of this coordinator among several; default 0, or 1 with --standby")
+        .check(in_range(CoordinatorNumber{0}, kMaxCoordinators - 1));
   };
   program.participant = [&] {
     return own_number() == 0 ? program.name : "coordinator-" + std::to_string(own_number());

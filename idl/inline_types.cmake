@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Makes what the generator wrote of the plain types as cheap as a struct: their accessors are defined in the header,
-# where they can be inlined, and they are copied as the compiler does it, so that a copy is a plain move of memory.
-# cmake -D DIRECTORY=... -D NAMES=... -P inline_types.cmake
-# What is no longer matched because the generator has changed does not compile or does not link.
+# Makes the generated plain types as cheap as structs: their accessors are defined in the header, where they can be
+# inlined, and their constructors and assignments are defaulted, so that a copy is a plain move of memory.
+#   cmake -D DIRECTORY=... -D NAMES=... -P inline_types.cmake
+# If a pattern does not match the generator's output, the result does not compile or does not link.
 function(replace pattern by)
   string(REGEX REPLACE "${pattern}" "${by}" text "${text}")
   set(text "${text}" PARENT_SCOPE)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "common/messaging/senders.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "simulator/images/image_output.hpp"
 #include "simulator/league/league_output.hpp"
@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-/// Simulators send where no real cameras do.
+/// The multicast address of simulators, distinct from that of real cameras.
 constexpr const char* kSimulatedVision = "224.5.23.2:10020";
 
 struct Options {
@@ -19,13 +19,13 @@ struct Options {
   std::string league_interface = league::kLeagueInterface;
 };
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--seed", options.seed, "of all noise and loss")->capture_default_str();
-  add_optional_value(app, "--ssl-vision", options.ssl_vision, kSimulatedVision,
-                     "send SSL-Vision's packets too, to this ADDRESS:PORT");
+void add_options(const Command& app, Options& options) {
+  app.add_option("--seed", options.seed, "seed of all noise and loss").show_default();
+  app.add_optional_value("--ssl-vision", options.ssl_vision, kSimulatedVision,
+                         "also send SSL-Vision packets, to this ADDRESS:PORT");
   app.add_option("--league-interface", options.league_interface,
-                 "address of the network interface for the league's packets")
-      ->capture_default_str();
+                 "address of the network interface for league packets")
+      .show_default();
 }
 
 struct Nodes {
@@ -47,8 +47,9 @@ int main(int argc, char** argv) {
   sidestep::Options options;
   sidestep::Program program;
   program.name = "sidestep-simulator";
-  program.description = "The floor: robot bodies and their firmware, the ball, and the cameras over it.";
-  program.add_options = [&options](CLI::App& app) { sidestep::add_options(app, options); };
+  program.description =
+      "Simulates the floor: robot bodies and their firmware, the ball, opponents, and the cameras above.";
+  program.add_options = [&options](const sidestep::Command& app) { sidestep::add_options(app, options); };
   program.fault_target = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::Bus& bus,
                              const sidestep::Scenario& scenario) -> std::shared_ptr<void> {

@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// How often this program has called operator new so far. Only in programs that list counted_allocations.cpp
-/// among their sources, which replaces the operator.
-std::size_t allocations();
+/// The number of calls of operator new in this program so far. Requires counted_allocations.cpp, which replaces the
+/// operator, among the program's sources.
+std::size_t allocation_count();
 
 }  // namespace sidestep

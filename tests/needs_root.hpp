@@ -4,8 +4,7 @@
 #include <catch2/catch.hpp>
 #include <unistd.h>
 
-/// Ends a test case that cannot be made without root; ctest then says that it was skipped, and tests/run how
-/// many were.
+/// Ends a test case that needs root. ctest then reports it as skipped, and tests/run counts it.
 #define SIDESTEP_NEEDS_ROOT()      \
   do {                             \
     if (geteuid() != 0) {          \

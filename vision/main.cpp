@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "common/messaging/senders.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
+#include "vision/images/image_arguments.hpp"
 #include "vision/league/log_commands.hpp"
 #include "vision/view/view_command.hpp"
 #include "vision/vision_service.hpp"
@@ -16,13 +17,13 @@ int run_service(int argc, char** argv) {
   VisionOptions options;
   Program program;
   program.name = "sidestep-vision";
-  program.description = "Turns what the cameras see into one tracked world.";
-  program.add_options = [&options](CLI::App& app) {
+  program.description = "Fuses the cameras' detections into one tracked world.";
+  program.add_options = [&options](const Command& app) {
     add_league_options(app, options);
     add_image_options(app, options.images);
-    app.footer(
-        "Commands, each with --help: sidestep-vision view, calibrate SCENARIO FRAME..., replay FILE, "
-        "record FILE.");
+    app.add_footer(
+        "Commands, each with --help: sidestep-vision view, calibrate SCENARIO FRAME..., calibrate --geometry "
+        "POINTS, replay FILE, record FILE.");
   };
   program.fault_target = [] { return static_cast<std::uint32_t>(Sender::kVision); };
   program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {

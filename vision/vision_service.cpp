@@ -1,35 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/vision_service.hpp"
 
-#include <CLI/CLI.hpp>
-
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
 namespace sidestep {
 namespace {
 
 FrameSource source_of(const Scenario& scenario, const VisionOptions& options) {
-  const bool is_bus = !options.is_league_source && !scenario.vision.images;
-  return is_bus ? FrameSource::kBus : FrameSource::kCaller;
+  const bool uses_bus = !options.is_league_source && !scenario.vision.images;
+  return uses_bus ? FrameSource::kBus : FrameSource::kCaller;
 }
 
 }  // namespace
 
-void add_league_options(CLI::App& app, VisionOptions& options) {
-  CLI::Option* const source =
-      app.add_option_function<std::string>(
+void add_league_options(const Command& app, VisionOptions& options) {
+  const Option source =
+      app.add_option(
              "--source", [&options](const std::string& name) { options.is_league_source = name == "ssl"; },
-             "where frames come from: the cameras over DDS, or SSL-Vision's multicast")
-          ->check(CLI::IsMember({"dds", "ssl"}))
-          ->default_str("dds");
-  app.add_option("--ssl-vision", options.league_vision, "ADDRESS:PORT of SSL-Vision's packets")
-      ->needs(source)
-      ->capture_default_str();
-  add_optional_value(app, "--tracked", options.tracked, league::kTrackedEndpoint,
-                     "publish tracked packets, at this ADDRESS:PORT");
+             "source of detections: the cameras over DDS, or SSL-Vision's multicast")
+          .check(one_of({"dds", "ssl"}))
+          .show_default("dds");
+  app.add_option("--ssl-vision", options.league_vision, "ADDRESS:PORT of the multicast group of SSL-Vision")
+      .needs(source)
+      .show_default();
+  app.add_optional_value("--tracked", options.tracked, league::kTrackedEndpoint,
+                         "send tracked packets to this ADDRESS:PORT");
   app.add_option("--league-interface", options.league_interface,
-                 "address of the network interface for the league's packets")
-      ->capture_default_str();
+                 "address of the network interface for league packets")
+      .show_default();
 }
 
 VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation,
@@ -42,7 +41,7 @@ VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation 
   }
   if (!options.tracked) return;
   tracked_.emplace(scenario, incarnation);
-  tracked_sender_.emplace(league::multicast_endpoint(*options.tracked), options.league_interface);
+  tracked_sender_.emplace(league::parse_multicast_endpoint(*options.tracked), options.league_interface);
   node_.set_listener([this](const msg::WorldState& world) {
     tracked_sender_->send(league::encode(tracked_->packet_of(world)));
   });

@@ -4,32 +4,30 @@
 #include <optional>
 #include <string>
 
+#include "common/process/command_line.hpp"
 #include "vision/images/image_input.hpp"
 #include "vision/images/image_options.hpp"
 #include "vision/league/league_input.hpp"
 #include "vision/league/tracked_output.hpp"
-#include "vision/vision_node.hpp"
-
-namespace CLI {
-class App;
-}
+#include "vision/tracking/vision_node.hpp"
 
 namespace sidestep {
 
-/// What the vision service is asked for beyond the scenario.
+/// Options of the vision service beyond the scenario.
 struct VisionOptions {
-  bool is_league_source = false;  ///< the league's packets instead of what the bus brings
+  bool is_league_source = false;  ///< detections come from the league's packets instead of the bus
   std::string league_vision = league::kVisionEndpoint;
-  std::optional<std::string> tracked;  ///< tracked packets go there
+  std::optional<std::string> tracked;  ///< endpoint to which tracked packets are sent
   std::string league_interface = league::kLeagueInterface;
   ImageOptions images;
 };
 
 /// Adds --source, --ssl-vision, --tracked and --league-interface.
-void add_league_options(CLI::App& app, VisionOptions& options);
+void add_league_options(const Command& app, VisionOptions& options);
 
-/// The vision service with the sources and outputs that were asked for. The bus must not call back any more
-/// when this has gone. Throws as MulticastReceiver, LeagueSource and image_reader() do.
+/// The vision service with the sources and outputs that the options select. Precondition: the bus makes no
+/// callbacks after the service's destruction. Throws as MulticastReceiver, LeagueSource and image_reader()
+/// do.
 class VisionService {
  public:
   VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const VisionOptions& options);

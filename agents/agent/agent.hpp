@@ -6,11 +6,12 @@
 
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
-#include "agents/agent/seen_obstacles.hpp"
+#include "agents/agent/observed_obstacles.hpp"
 #include "agents/agent/planning_scratch.hpp"
+#include "agents/agent/planning_settings.hpp"
 #include "agents/navigation/deadlock_recovery.hpp"
 #include "agents/navigation/motion_control.hpp"
-#include "agents/navigation/ways.hpp"
+#include "agents/navigation/route_planner.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
 #include "idl/disturbance.h"
@@ -19,96 +20,127 @@
 
 namespace sidestep {
 
-/// One robot's mind: from what it sees and is told to what it proposes and commands, one decision a cycle.
-/// All times are by the robot's clock, as far as the caller knows it.
+/// A desired motion: the query for the safety search, and what is proposed along with its result.
+struct MotionPlan {
+  SearchQuery query;
+  VersionNumber base = 0;  ///< the version that the motion continues
+  Intent intent;           ///< what the robot intends after the motion
+};
+
+/// The decisions of one robot, once per cycle: from observations and messages to proposals and commands. All
+/// times are by the robot's clock, as far as the caller knows it.
 class Agent {
  public:
-  /// `scenario` has to have the robot, and the bench has to be one for it.
-  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation, std::shared_ptr<PlanningScratch> bench);
+  /// What a verdict leads to.
+  struct VerdictResult {
+    std::optional<msg::Command> command;  ///< forwards the granted version
+    std::optional<Duration> round_trip;   ///< from the proposal to its verdict
+  };
 
-  void on_feedback(const msg::Feedback& feedback);
-  /// `now`: the latest that it can be by the robot's clock.
+  /// Precondition: `scenario` contains the robot, and `scratch` was made for the scenario.
+  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
+        std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings = {});
+
+  /// Returns whether the agent should propose again at once, because the robot does not execute the version
+  /// that the last proposal was based on.
+  bool on_feedback(const msg::Feedback& feedback);
+  /// `now`: upper bound of the time by the robot's clock.
   void on_world(const msg::WorldState& world, Time now);
-  /// `beside` as for Neighbours::on_page().
-  void on_ledger(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
-  /// Somebody's hand: hears where a robot that was lifted shall be put down.
+  /// `attachment` as in Neighbours::on_page().
+  void on_ledger(const msg::LedgerPage& page, MessageAttachment* attachment = nullptr);
+  /// Learns where a lifted robot is to be put down.
   void on_disturbance(const msg::Disturbance& disturbance);
   void on_coordinator_state(const msg::CoordinatorState& state, Time now);
-  /// The command that forwards a granted version.
-  std::optional<msg::Command> on_verdict(const msg::Verdict& verdict, Time now);
+  VerdictResult on_verdict(const msg::Verdict& verdict, Time now);
+  /// Closes the cycle that ends now: proposals for it without a verdict are given up.
+  void close_cycle(Time now) { negotiation_.close_cycle(now); }
 
-  /// What to do from `start` on, if anything: nothing when what the robot holds already ends at its goal, or
-  /// when vision has lost the robot: then it must not rely on where it believes to be.
-  std::optional<SearchQuery> plan(Time now, Time start);
-  /// The proposal for what was planned; none when nothing that is clear comes to mind (then the robot
-  /// brakes).
-  std::optional<msg::Proposal> search(const SearchQuery& query, Time now);
+  // State of the negotiation; see Negotiation.
+  Incarnation incarnation() const { return negotiation_.incarnation(); }
+  Epoch epoch() const { return negotiation_.epoch(); }
+  bool is_superseded() const { return negotiation_.is_superseded(); }
+  bool needs_registration() const { return negotiation_.needs_registration(); }
+  bool may_propose(Time now) const { return negotiation_.may_propose(now); }
+  bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
-  /// Whether the robot is not on the floor, and may ask for the place where it shall be put down.
-  bool wants_stand(Time now) const;
-  /// The proposal to stand there. Precondition: wants_stand().
-  msg::Proposal propose_stand(Time now, Time start);
+  msg::Registration registration() { return negotiation_.registration(); }
+  /// The earliest start for a new version: the next cycle, or a later one on a slow network.
+  Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
+  /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
+  std::optional<Time> start_to_propose(Time now, Time next_cycle) const;
 
-  /// Fences the robot, forwards what vision saw of it, and once more a granted version whose start is still
-  /// to come.
+  /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
+  /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
+  /// estimate.
+  [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start);
+  /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
+  [[nodiscard]] std::optional<msg::Proposal> search(const MotionPlan& plan, Time now);
+
+  /// Whether the robot is off the floor, and a rest version may be proposed where it is to be put down.
+  bool needs_rest_version(Time now) const;
+  /// The proposal of that rest version. Precondition: needs_rest_version().
+  [[nodiscard]] msg::Proposal propose_rest_version(Time now, Time start);
+
+  /// The command of the cycle. It fences the robot, forwards the latest observation, and repeats a granted
+  /// version until its start.
   msg::Command command(Time now);
-  Negotiation& negotiation() { return negotiation_; }
 
   /// Without the durations, which the caller measures.
   msg::AgentStatus status(Time now) const;
 
  private:
+  /// Takes over the robot's own estimate; false if the feedback is invalid or another robot's.
+  bool update_estimate(const msg::Feedback& feedback);
+  /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
+  void update_goal(const msg::Feedback& feedback);
   const Goal& goal() const { return robot_.goals[goal_index_]; }
-  /// Finds the ways to the goal anew when what is in the way, robots that stand and what moves without asking
-  /// included, has changed.
-  void update_ways(Time now);
-  std::vector<Circle> in_the_way(Time now);
-  std::vector<Circle> moving_in_the_way(Time now);
-  /// How far from the edge of what is in the way a robot's centre stays where it plans.
+  /// Replaces the route planner if stationary robots or moving obstacles have changed.
+  void update_route_planner(Time now);
+  std::vector<Circle> temporary_obstacles(Time now);
+  std::vector<Circle> moving_obstacles(Time now);
+  /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
-  /// What a version on this base has to be taken for larger: as the base, until vision has seen the robot at
-  /// rest.
+  /// Inflation of a version on this base: the base's, until vision has observed the robot at rest.
   double inflation_from(const Version& base, Time start) const;
-  /// Two robots that begin farther apart than this cannot come near to each other with what they do next.
+  /// Versions that start farther apart than this cannot conflict.
   double search_horizon_m() const;
-  /// Of the others who begin farther away than this, an agent need not know.
+  /// As search_horizon_m(), plus the distance that robots drive while a ledger page ages.
   double page_horizon_m() const;
-  /// What to make for from where the robot will be at `start`, among what the others mean to do.
-  Intent steer(const State& there, Time start, const Route& route);
-  AccelerationCommand desired_for(const Intent& intent, const State& there, const Route& route) const;
-  /// The way's direction, turned right to get out of a jam as far as obstacles allow.
-  Vec2 direction_beside(const Vec2& here_m, const Route& route) const;
+  /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
+  Intent steer(const State& at_start, Time start, const Route& route);
+  AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route) const;
+  /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
+  Vec2 recovery_direction(const Vec2& position_m, const Route& route) const;
 
   const RobotSpec robot_;
-  const std::shared_ptr<PlanningScratch> bench_;
+  const PlanningSettings settings_;
+  const std::shared_ptr<PlanningScratch> scratch_;
   const FloorRules& rules_;
-  const Duration clocks_differ_;  // any two of those that keep the bound, at most
+  const Duration max_clock_difference_;  // between any two clocks within the bound
   const Duration cycle_;
   const double tracking_bound_m_;
   const double goal_tolerance_m_;
   Negotiation negotiation_;
   Neighbours neighbours_;
-  SeenObstacles obstacles_;
+  ObservedObstacles obstacles_;
   LastChoice last_choice_;
   Rng rng_;
   std::size_t goal_index_ = 0;
-  std::optional<Ways> ways_;        // to the current goal
-  std::vector<Circle> in_the_way_;  // that ways_ leads round, besides the scenario's obstacles
+  std::optional<RoutePlanner> route_planner_;  // to the current goal
+  std::vector<Circle> temporary_obstacles_;    // of route_planner_, in addition to the scenario's obstacles
   DeadlockRecovery recovery_;
   bool arrived_ = false;
-  State estimate_;                   // the robot's own,
-  double blind_path_m_ = 0;           // and how far from there it may drive without being seen again
-  std::optional<msg::PoseFix> fix_;  // seen, not yet forwarded
+  State estimate_;                   // the robot's own
+  double max_dead_reckoning_m_ = 0;  // path from estimate_ that the robot may drive without being observed
+  std::optional<msg::PoseFix> fix_;  // observed, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
-  std::size_t in_world_ = 0;  // the robot's place in the last world that it was in
+  std::size_t world_index_ = 0;  // of the robot in the last world that contained it
   std::optional<Version> forwarded_;
-  std::optional<Vec2> place_m_;      // where the robot shall be put down
-  std::uint64_t invalid_ = 0;        // sights that made no sense
-  std::uint64_t off_reference_ = 0;  // times the robot made a stop of its own,
-  VersionNumber last_stop_ = 0;      // and the newest
-  VersionNumber base_ = 0;           // of the query that plan() made,
-  Intent intent_;                    // and what is wished for with it
-  Time steered_for_{};
+  std::optional<Vec2> placement_m_;     // where the robot is to be put down
+  std::uint64_t invalid_ = 0;           // invalid observations
+  std::uint64_t reference_losses_ = 0;  // number of times that the robot stopped off its reference
+  VersionNumber last_own_stop_ = 0;     // newest of those stops
+  Time last_steered_start_{};
 };
 
 }  // namespace sidestep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an agent would like its robot to go next.
+// The agent's planning: from the route to the goal to a proposal.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,59 +9,32 @@
 namespace sidestep {
 namespace {
 
-// For so long a robot may go on as fast as it may before it stops: a few cycles of what is granted ahead.
-constexpr double kAhead_s = 0.15;
-// By so much a page of the ledger may be older than the search that it is for.
-constexpr double kPageAge_s = 0.1;
-// Robots keep this much more from obstacles where they plan than where they must.
-constexpr double kPlanningRoom_m = 0.03;
-// Evading leads only where nothing stands for so far, and is held for so long.
-constexpr double kLookAhead_m = 0.5;
-constexpr double kEvading_s = 0.3;
-// A robot that has been at rest for so long is an obstacle that others plan round; at most so many of them.
-constexpr Duration kStandsAfter{500'000'000};
-constexpr std::size_t kMostStanding = 8;
-// Ways lead round the nearest few of what moves without asking, as far from it as it comes in so long.
-constexpr std::size_t kMostAvoided = 4;
-constexpr double kAvoidedFrom_m = 1.5;
-constexpr double kAvoidedStep_m = 0.05;
-constexpr Duration kAvoidedAhead{150'000'000};
-// A robot that vision has not seen for so long stops: its own odometry drifts by half a per cent of its way
-// and more.
-constexpr Duration kLostAfter{300'000'000};
-// Nearer to the goal than this a robot does not try to do better, and others take it for being there.
-constexpr double kCloseEnough_m = 0.001;
-constexpr double kThere_m = 0.02;
-// Slower than this a velocity is rest, and slower than a share of what it may a robot waits.
-constexpr double kRest_mps = 0.01;
-constexpr double kWaiting = 0.5;
-// Robots with lower and with higher numbers have the right of way in turns, for so long each.
-constexpr Duration kRightOfWay{10'000'000'000};
-
-/// Where a version's robot will be, and how fast it would still be if it did not stop as the version must.
-State state_going_on(const Trajectory& trajectory, Time t) {
+/// The state of a robot that does not brake: at a time on its trajectory, with the velocity at the end of the
+/// first phase.
+State state_if_continued(const Trajectory& trajectory, Time t) {
   State state = trajectory.state_at(t);
   if (trajectory.phases().empty() || t >= trajectory.end()) return state;
-  const Time held = trajectory.start() + trajectory.phases().front().duration;
-  if (t > held) state.velocity_mps = trajectory.state_at(held).velocity_mps;
+  const Time first_end = trajectory.start() + trajectory.phases().front().duration;
+  if (t > first_end) state.velocity_mps = trajectory.state_at(first_end).velocity_mps;
   return state;
 }
 
-/// Who makes way for whom has to be the same for all, or choices chase each other; and nobody shall always be
-/// the one who does.
-bool has_right_of_way(RobotId other, RobotId self, Time t) {
-  const bool low_first = t.time_since_epoch() / kRightOfWay % 2 == 0;
-  return (other < self) == low_first;
+/// All robots must agree on who yields: if every robot yields to every other, their choices oscillate. The
+/// order is reversed periodically, so that no robot always yields.
+bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
+  const bool is_low_first = t.time_since_epoch() / period % 2 == 0;
+  return (other < self) == is_low_first;
 }
 
-/// What is left at a time of what a version's robot means to do; nullopt when it will stay where it is.
-std::optional<Intent> intent_at(const Version& version, Time t) {
+/// The remaining intent of a version's robot at a time; nullopt if the robot will stay at its goal.
+std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m) {
   if (!version.intent) return std::nullopt;
-  const bool rests = t >= version.trajectory.end();
-  if (rests && (version.trajectory.rest_position_m() - version.intent->goal_m).norm() < kThere_m)
+  const bool is_at_rest = t >= version.trajectory.end();
+  if (is_at_rest && (version.trajectory.rest_position_m() - version.intent->goal_m).norm() < at_goal_m)
     return std::nullopt;
   Intent intent = *version.intent;
-  intent.hold_s = std::max(0.0, intent.hold_s - to_seconds(t - version.trajectory.start()));
+  intent.velocity_duration_s =
+      std::max(0.0, intent.velocity_duration_s - to_seconds(t - version.trajectory.start()));
   return intent;
 }
 
@@ -69,140 +42,158 @@ std::optional<Intent> intent_at(const Version& version, Time t) {
 
 double Agent::search_horizon_m() const {
   const double speed = rules_.limits.speed_mps;
-  return 2 * speed * (kAhead_s + speed / (2 * rules_.limits.deceleration_mps2)) + rules_.min_separation_m();
+  return 2 * speed * (settings_.max_speed_hold_s + speed / (2 * rules_.limits.deceleration_mps2)) +
+         rules_.min_separation_m();
 }
 
-double Agent::page_horizon_m() const { return search_horizon_m() + 2 * rules_.limits.speed_mps * kPageAge_s; }
+double Agent::page_horizon_m() const {
+  return search_horizon_m() + 2 * rules_.limits.speed_mps * settings_.max_page_age_s;
+}
 
-double Agent::planning_separation_m() const { return rules_.radius_m + rules_.margin_m + kPlanningRoom_m; }
+double Agent::planning_separation_m() const {
+  return rules_.radius_m + rules_.margin_m + settings_.extra_clearance_m;
+}
 
-std::vector<Circle> Agent::moving_in_the_way(Time now) {
-  const Vec2& here = estimate_.position_m;
+std::vector<Circle> Agent::moving_obstacles(Time now) {
+  const Vec2& position = estimate_.position_m;
+  const double grid_m = settings_.moving_grid_m;
   std::vector<Circle> found;
-  for (const MovingObstacle& seen : obstacles_.recent(now)) {
-    if ((seen.position_m - here).norm() > kAvoidedFrom_m) continue;
-    // In steps, so that ways are not found anew in every cycle.
-    const Vec2 place = (seen.position_m / kAvoidedStep_m).array().round().matrix() * kAvoidedStep_m;
-    const double radius = std::round(seen.radius_m / kAvoidedStep_m) * kAvoidedStep_m;
-    // As much room as there is before the goal.
-    const double room = (place - goal().position_m).norm() - radius - planning_separation_m() - kCloseEnough_m;
-    const double wanted = kAvoidedStep_m + seen.speed_mps * to_seconds(kAvoidedAhead);
-    found.push_back({place, radius + std::clamp(room, 0.0, wanted)});
+  for (const MovingObstacle& obstacle : obstacles_.recent(now)) {
+    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) continue;
+    const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
+    const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
+    // The inflated circle must not cover the goal.
+    const double max_inflation =
+        (centre - goal().position_m).norm() - radius - planning_separation_m() - settings_.at_goal_m;
+    const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
+    found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
   }
-  std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - here).squaredNorm(); });
-  if (found.size() > kMostAvoided) found.resize(kMostAvoided);
+  std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
+  if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
   std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });
   return found;
 }
 
-std::vector<Circle> Agent::in_the_way(Time now) {
-  std::vector<Circle> found = moving_in_the_way(now);
-  for (const Vec2& place : neighbours_.standing(now - kStandsAfter, estimate_.position_m, kMostStanding)) {
-    found.push_back({place, rules_.radius_m});
+std::vector<Circle> Agent::temporary_obstacles(Time now) {
+  std::vector<Circle> found = moving_obstacles(now);
+  for (const Vec2& position : neighbours_.find_stationary(now - settings_.stationary_after,
+                                                          estimate_.position_m, settings_.max_stationary)) {
+    found.push_back({position, rules_.radius_m});
   }
-  // Whoever is on the goal is no obstacle on the way to it.
+  // What covers the goal does not block the route to it.
   std::erase_if(found, [&](const Circle& circle) {
     return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_separation_m();
   });
   return found;
 }
 
-void Agent::update_ways(Time now) {
-  std::vector<Circle> found = in_the_way(now);
+void Agent::update_route_planner(Time now) {
+  std::vector<Circle> found = temporary_obstacles(now);
   const auto is_same = [](const Circle& a, const Circle& b) {
     return a.centre_m == b.centre_m && a.radius_m == b.radius_m;
   };
-  if (ways_ && std::ranges::equal(found, in_the_way_, is_same)) return;
-  in_the_way_ = std::move(found);
+  if (route_planner_ && std::ranges::equal(found, temporary_obstacles_, is_same)) return;
+  temporary_obstacles_ = std::move(found);
   std::vector<Circle> obstacles = rules_.obstacles;
-  obstacles.insert(obstacles.end(), in_the_way_.begin(), in_the_way_.end());
-  ways_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m, kPlanningRoom_m,
-                goal().position_m);
+  obstacles.insert(obstacles.end(), temporary_obstacles_.begin(), temporary_obstacles_.end());
+  route_planner_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m,
+                         settings_.extra_clearance_m, goal().position_m);
 }
 
-std::optional<SearchQuery> Agent::plan(Time now, Time start) {
-  const Duration unseen = now - time_from_ns(last_fix_ns_);
-  // Farther in the future than it can be unknown what the robot's clock shows, somebody has set a clock.
-  const bool is_lost = unseen > kLostAfter || unseen < -kLostAfter;
+std::optional<MotionPlan> Agent::plan(Time now, Time start) {
+  const Duration fix_age = now - time_from_ns(last_fix_ns_);
+  // A fix far in the future means that a clock has been set.
+  const bool is_lost = fix_age > settings_.max_fix_age || fix_age < -settings_.max_fix_age;
   if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
   const double inflation_m = inflation_from(base, start);
-  const bool is_there = (rest - goal().position_m).norm() < kCloseEnough_m && inflation_m == base.inflation_m;
-  if (is_there || start <= base.trajectory.start()) return std::nullopt;
-  base_ = base.number;
-  const State there = base.trajectory.state_at(start);
-  update_ways(now);
-  const Route straight{goal().position_m, (goal().position_m - there.position_m).norm()};
-  const Route route = ways_->route_from(there.position_m).value_or(straight);
-  intent_ = steer(there, start, route);
-  const AccelerationCommand desired = desired_for(intent_, there, route);
-  return SearchQuery{start, there, desired.acceleration_mps2, desired.hold, inflation_m, obstacles_.recent(now)};
+  const bool ends_at_goal =
+      (rest - goal().position_m).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
+  if (ends_at_goal || start <= base.trajectory.start()) return std::nullopt;
+  const State at_start = base.trajectory.state_at(start);
+  update_route_planner(now);
+  const Route straight{goal().position_m, (goal().position_m - at_start.position_m).norm()};
+  const Route route = route_planner_->route_from(at_start.position_m).value_or(straight);
+  const Intent intent = steer(at_start, start, route);
+  const AccelerationCommand desired = follow(intent, at_start, route);
+  return MotionPlan{
+      {start, at_start, desired.acceleration_mps2, desired.hold, inflation_m, obstacles_.recent(now)},
+      base.number,
+      intent};
 }
 
-Intent Agent::steer(const State& there, Time start, const Route& route) {
-  if (recovery_.is_needed()) {
-    return {rules_.limits.speed_mps * direction_beside(there.position_m, route), kEvading_s, route.waypoint_m,
-            goal().position_m};
+Intent Agent::steer(const State& at_start, Time start, const Route& route) {
+  if (recovery_.is_active()) {
+    return {rules_.limits.speed_mps * recovery_direction(at_start.position_m, route),
+            settings_.recovery_hold_s, route.waypoint_m, goal().position_m};
   }
-  Steering& steering = bench_->steering;
+  Steering& steering = scratch_->steering;
   steering.clear();
-  for (const Version* version : neighbours_.newest(there.position_m, page_horizon_m())) {
-    const State state = state_going_on(version->trajectory, start);
-    const double keep = rules_.min_separation_m() + version->inflation_m;
-    const std::optional<Intent> intent = intent_at(*version, start);
+  for (const Version* version : neighbours_.newest(at_start.position_m, page_horizon_m())) {
+    const State state = state_if_continued(version->trajectory, start);
+    const double separation = rules_.min_separation_m() + version->inflation_m;
+    const std::optional<Intent> intent = intent_at(*version, start, settings_.neighbour_at_goal_m);
     if (!intent)
-      steering.add_standing(state.position_m, keep);
-    else if (has_right_of_way(version->robot, robot_.id, start))
-      steering.add_moving(state, *intent, keep);
+      steering.add_stationary(state.position_m, separation);
+    else if (has_right_of_way(version->robot, robot_.id, start, settings_.right_of_way_period))
+      steering.add_moving(state, *intent, separation);
   }
   for (const Circle& obstacle : rules_.obstacles)
-    steering.add_standing(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
-  const double since = std::max(0.0, to_seconds(start - steered_for_));
-  steered_for_ = start;
-  return steering.choose(there, route.waypoint_m, goal().position_m, since, last_choice_);
+    steering.add_stationary(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
+  const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));
+  last_steered_start_ = start;
+  return steering.choose(at_start, route.waypoint_m, goal().position_m, elapsed_s, last_choice_);
 }
 
-AccelerationCommand Agent::desired_for(const Intent& intent, const State& there, const Route& route) const {
-  // It comes to rest before it would drift too far were it never seen again.
-  const double blind_m = std::max(0.0, blind_path_m_ - (there.position_m - estimate_.position_m).norm());
-  const double length = std::min(route.length_m, blind_m);
+AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route) const {
+  // If it is not observed again, the robot comes to rest before its drift exceeds the tracking bound.
+  const double dead_reckoning_m =
+      std::max(0.0, max_dead_reckoning_m_ - (at_start.position_m - estimate_.position_m).norm());
+  const double length = std::min(route.length_m, dead_reckoning_m);
   MotionLimits limits = rules_.limits;
-  Vec2 to_go = length * (intent.waypoint_m - there.position_m).stableNormalized();
-  if (intent.hold_s > 0) {
+  Vec2 displacement = length * (intent.waypoint_m - at_start.position_m).stableNormalized();
+  if (intent.velocity_duration_s > 0) {
     const double speed = intent.velocity_mps.norm();
-    to_go = speed < kRest_mps ? Vec2::Zero() : Vec2(length / speed * intent.velocity_mps);
-    if (speed >= kRest_mps) limits.speed_mps = speed;
+    const bool is_standstill = speed < settings_.standstill_mps;
+    displacement = is_standstill ? Vec2::Zero() : Vec2(length / speed * intent.velocity_mps);
+    if (!is_standstill) limits.speed_mps = speed;
   }
-  return desired_acceleration(to_go, there.velocity_mps, limits, cycle_, cycle_ * negotiation_.lead());
+  return desired_acceleration(displacement, at_start.velocity_mps, limits, cycle_,
+                              cycle_ * negotiation_.lead());
 }
 
 double Agent::inflation_from(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
-  const bool was_seen_there = last_fix_ns_ > to_ns(base.trajectory.end());
-  return is_at_rest && was_seen_there ? 0 : base.inflation_m;
+  const bool was_observed_at_rest = last_fix_ns_ > to_ns(base.trajectory.end());
+  return is_at_rest && was_observed_at_rest ? 0 : base.inflation_m;
 }
 
-Vec2 Agent::direction_beside(const Vec2& here, const Route& route) const {
-  const Vec2 straight = (route.waypoint_m - here).stableNormalized();
-  const double look_ahead = std::min(route.length_m, kLookAhead_m);
-  for (const double share : {1.0, 0.75, 0.5, 0.25}) {
-    const Vec2 direction = rotated(straight, -share * recovery_.angle_rad());
-    const Vec2 ahead = here + look_ahead * direction;
-    if (rules_.field.contains(ahead, rules_.radius_m) && ways_->sees(here, ahead)) return direction;
+Vec2 Agent::recovery_direction(const Vec2& position, const Route& route) const {
+  const Vec2 straight = (route.waypoint_m - position).stableNormalized();
+  const double length = std::min(route.length_m, settings_.recovery_clear_path_m);
+  for (const double fraction : {1.0, 0.75, 0.5, 0.25}) {
+    const Vec2 direction = rotated(straight, -fraction * recovery_.angle_rad());
+    const Vec2 end = position + length * direction;
+    if (rules_.field.contains(end, rules_.radius_m) && route_planner_->is_line_free(position, end))
+      return direction;
   }
   return straight;
 }
 
-std::optional<msg::Proposal> Agent::search(const SearchQuery& query, Time now) {
-  TrajectoryIndex& others = bench_->crowd;
-  neighbours_.gather(query.at_start.position_m, search_horizon_m(), others);
-  SearchResult result = bench_->safety_search.search(query, others, rng_);
+std::optional<msg::Proposal> Agent::search(const MotionPlan& plan, Time now) {
+  const SearchQuery& query = plan.query;
+  TrajectoryIndex& others = scratch_->others;
+  neighbours_.collect(query.at_start.position_m, search_horizon_m(), others);
+  SearchResult result = scratch_->safety_search.search(query, others, rng_);
   if (result.count == 0) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
-  const bool waits = intent_.hold_s > 0 && intent_.velocity_mps.norm() < kWaiting * rules_.limits.speed_mps;
-  recovery_.update(result.desired_is_clear && !waits, query.at_start.velocity_mps.norm(), now);
+  const bool is_waiting =
+      plan.intent.velocity_duration_s > 0 &&
+      plan.intent.velocity_mps.norm() < settings_.waiting_speed_fraction * rules_.limits.speed_mps;
+  recovery_.update(result.desired_is_clear && !is_waiting, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
-  return negotiation_.propose({result.candidates.data(), result.count}, base_, now, query.inflation_m, intent_);
+  return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, query.inflation_m,
+                              plan.intent);
 }
 
 }  // namespace sidestep

@@ -9,17 +9,17 @@ void LedgerView::assign(const msg::LedgerPage& page) {
   const std::size_t count = page.versions().size();
   entries.clear();
   versions.clear();
-  outlines.clear();
+  bounds.clear();
   ends.clear();
   entries.reserve(count);
   versions.reserve(count);
-  outlines.reserve(count);
+  bounds.reserve(count);
   ends.reserve(count);
   for (const msg::Version& message : page.versions()) {
     const auto version = decode(message);
     entries.push_back({{message.x_m(), message.y_m()}, message.robot(), version.has_value()});
     versions.push_back(version.value_or(Version{}));
-    outlines.push_back(trajectory_bounds(versions.back().trajectory));
+    bounds.push_back(trajectory_bounds(versions.back().trajectory));
     ends.push_back(versions.back().trajectory.end());
   }
 }

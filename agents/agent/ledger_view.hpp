@@ -9,23 +9,22 @@
 
 namespace sidestep {
 
-/// A page of the ledger as agents need it: decoded, and with what is computed from each version alone. It is
-/// the same for all agents, so those of one process can share it.
+/// A decoded page of the ledger, with quantities that depend on a single version only. It is the same for all
+/// agents, so the agents of one process can share it.
 struct LedgerView {
-  /// Where a version begins, as the page says; the version itself makes no sense where it is not sound.
   struct Entry {
-    Vec2 place_m;
+    Vec2 position_m;  ///< start of the version, as the page says
     RobotId robot;
-    bool is_sound;
+    bool is_valid;  ///< if false, the version could not be decoded
   };
 
   /// Allocates nothing once warm.
   void assign(const msg::LedgerPage& page);
 
-  // All four as the page's versions.
+  // All in the order of the page's versions.
   std::vector<Entry> entries;
   std::vector<Version> versions;
-  std::vector<TrajectoryBounds> outlines;
+  std::vector<TrajectoryBounds> bounds;
   std::vector<Time> ends;
 };
 

@@ -7,29 +7,34 @@
 
 #include "agents/agent/ledger_view.hpp"
 #include "agents/safety/trajectory_index.hpp"
+#include "common/messaging/attachment.hpp"
 #include "idl/negotiation.h"
 
 namespace sidestep {
 
-/// What the other robots nearby may be executing, as the coordinator last published it. The coordinator has
-/// the last word; this is for proposing what it will grant. Allocates nothing once warm.
+/// The versions that nearby robots may be executing, from the coordinator's ledger pages. The agent uses them
+/// to propose candidates that are likely to be granted; safety rests on the coordinator's verdict alone.
+/// Allocates nothing once warm.
 class Neighbours {
  public:
   explicit Neighbours(RobotId self) : self_(self) {}
 
-  /// From now on versions that begin farther than `horizon_m` from `here` are left out.
-  void look_about(const Vec2& here_m, double horizon_m);
-  /// Takes over a page of the ledger, unless it is older than what is known of that page. `beside`, if any,
-  /// is where the page's readers share their view of it.
-  void on_page(const msg::LedgerPage& page, std::shared_ptr<void>* beside = nullptr);
+  /// Pages that arrive from now on are filtered: versions that begin farther than `horizon_m` from `centre_m`
+  /// are dropped.
+  void set_horizon(const Vec2& centre_m, double horizon_m);
+  /// Stores a page of the ledger, unless a newer message of that page is known. `attachment`, if not null, is
+  /// the slot in which all readers of the message share their decoded view of it.
+  void on_page(const msg::LedgerPage& page, MessageAttachment* attachment = nullptr);
 
-  /// Makes the crowd those that begin within `horizon_m` of `here`. Valid until the next page.
-  void gather(const Vec2& here_m, double horizon_m, TrajectoryIndex& crowd) const;
-  /// The newest version of each of those that begin within `horizon_m`. Valid until the next page, or call.
-  std::span<const Version* const> newest(const Vec2& here_m, double horizon_m);
-  /// Where the nearest others stand, and will until somebody grants them something: those who have been at
-  /// rest since `since`, at most `most` of them, in the order of their ids. Valid until the next call.
-  std::span<const Vec2> standing(Time since, const Vec2& here_m, std::size_t most);
+  /// Fills the index with the versions that begin within `horizon_m` of `centre_m`. Valid until the next
+  /// page.
+  void collect(const Vec2& centre_m, double horizon_m, TrajectoryIndex& index) const;
+  /// The newest version of each robot that has versions within `horizon_m`. Valid until the next page or
+  /// call.
+  std::span<const Version* const> newest(const Vec2& centre_m, double horizon_m);
+  /// Rest positions of the robots that have been at rest since `since` and hold no version that moves later.
+  /// Returns the `max_count` nearest ones, ordered by robot id. Valid until the next call.
+  std::span<const Vec2> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
   std::uint64_t invalid() const { return invalid_; }
 
  private:
@@ -37,28 +42,28 @@ class Neighbours {
     Epoch epoch = 0;
     std::uint64_t number = 0;
     std::shared_ptr<LedgerView> view;
-    std::vector<std::uint32_t> held;  // what of the view was within the horizon
+    std::vector<std::uint32_t> nearby;  // indices into the view of the versions within the horizon
   };
-  void take(const msg::LedgerPage& message, Page& page, std::shared_ptr<void>* beside);
-  struct Stand {
+  void store(const msg::LedgerPage& message, Page& page, MessageAttachment* attachment);
+  struct Stationary {
     RobotId robot;
-    Vec2 place_m;
+    Vec2 position_m;
     double distance2;
   };
   /// Whether any of the robot's versions ends after `since`.
-  bool moves(RobotId robot, Time since) const;
+  bool is_moving(RobotId robot, Time since) const;
 
-  /// Nothing is held of the page, nor will be.
-  bool is_of_no_concern(const msg::LedgerPage& page) const;
+  /// Whether the page is out of range and nothing is stored of its previous message.
+  bool can_skip(const msg::LedgerPage& page) const;
 
-  // Most pages are about places far away: what tells that is together, first in memory.
-  Vec2 here_m_{0, 0};
+  // Most pages are out of range. The members that can_skip() reads come first, to share a cache line.
+  Vec2 centre_m_{0, 0};
   double horizon_m_ = 0;
-  std::uint64_t in_use_ = 0;  // bit k: of page k something is held
+  std::uint64_t nonempty_pages_ = 0;  // bit k: versions of page k are stored
   RobotId self_;
   std::vector<Page> pages_;
-  std::vector<Stand> standing_;
-  std::vector<Vec2> places_;
+  std::vector<Stationary> stationary_;
+  std::vector<Vec2> positions_;
   std::vector<const Version*> newest_;
   std::uint64_t invalid_ = 0;
 };

@@ -4,12 +4,13 @@
 #include "agents/navigation/steering.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "agents/safety/trajectory_index.hpp"
-#include "common/motion/validity.hpp"
+#include "common/config/scenario.hpp"
+#include "common/motion/floor_rules.hpp"
 
 namespace sidestep {
 
-/// What an agent computes with and need not remember from one cycle to the next. The agents of a simulation
-/// live in one thread and share one, which stays in the processor's caches while theirs come and go.
+/// Working memory of planning, which holds nothing from one cycle to the next. The agents of a simulation run
+/// in one thread and share one instance, which therefore stays in the processor's caches.
 struct PlanningScratch {
   explicit PlanningScratch(const Scenario& scenario)
       : rules(floor_rules(scenario)),
@@ -17,7 +18,7 @@ struct PlanningScratch {
         safety_search(rules, {}) {}
 
   const FloorRules rules;
-  TrajectoryIndex crowd;
+  TrajectoryIndex others;
   Steering steering;
   SafetySearch safety_search;
 };

@@ -6,58 +6,59 @@
 namespace sidestep {
 namespace {
 
-// Half a second ahead is as far as it goes.
-constexpr int kLongestLead = 30;
-constexpr int kMostSpare = 6;
-// One version that comes too late is bad luck, two in a row are a bad network.
-constexpr int kLateToSpare = 2;
-constexpr int kTakenToTrust = 10;
+// Half a second at 60 cycles per second.
+constexpr int kMaxLead = 30;
+constexpr int kMaxSpare = 6;
+// A single late version is no reason to propose earlier.
+constexpr int kLateBeforeSpare = 2;
+constexpr int kTakenBeforeRelease = 10;
 
 }  // namespace
 
 void ProposalPacing::on_round_trip(Duration duration) {
-  round_trips_[count_++ % kRoundTrips] = duration;
-  const std::size_t count = std::min(count_, kRoundTrips);
-  std::array<Duration, kRoundTrips / 8 + 1> slowest;
+  round_trips_[count_++ % kHistorySize] = duration;
+  const std::size_t count = std::min(count_, kHistorySize);
+  std::array<Duration, kHistorySize / 8 + 1> slowest;
   slowest.fill(Duration::min());
   for (std::size_t i = 0; i < count; ++i) {
-    Duration falling = round_trips_[i];
-    for (Duration& place : slowest) {
-      const Duration lower = std::min(place, falling);
-      place = std::max(place, falling);
-      falling = lower;
+    // Insertion into the sorted list of the slowest round trips.
+    Duration value = round_trips_[i];
+    for (Duration& slot : slowest) {
+      const Duration lower = std::min(slot, value);
+      slot = std::max(slot, value);
+      value = lower;
     }
   }
   slow_round_trip_ = slowest[count / 8];
   update();
 }
 
-void ProposalPacing::on_taken() {
+void ProposalPacing::on_version_taken() {
   late_in_a_row_ = 0;
-  if (++taken_in_a_row_ < kTakenToTrust) return;
+  if (++taken_in_a_row_ < kTakenBeforeRelease) return;
   taken_in_a_row_ = 0;
-  spare_ = std::max(0, spare_ - 1);
+  spare_cycles_ = std::max(0, spare_cycles_ - 1);
   update();
 }
 
-void ProposalPacing::on_late() {
+void ProposalPacing::on_version_late() {
   taken_in_a_row_ = 0;
-  if (++late_in_a_row_ < kLateToSpare) return;
+  if (++late_in_a_row_ < kLateBeforeSpare) return;
   late_in_a_row_ = 0;
-  spare_ = std::min(kMostSpare, spare_ + 1);
+  spare_cycles_ = std::min(kMaxSpare, spare_cycles_ + 1);
   update();
 }
 
 void ProposalPacing::reset() { *this = ProposalPacing(cycle_); }
 
-Duration ProposalPacing::patience() const { return std::max(cycle_, slow_round_trip_); }
+Duration ProposalPacing::answer_timeout() const { return std::max(cycle_, slow_round_trip_); }
 
 void ProposalPacing::update() {
-  // The command to the robot takes half a round trip more.
+  // The command to the robot takes another half of a round trip.
   const Duration needed = slow_round_trip_ + slow_round_trip_ / 2;
   const auto cycles =
-      static_cast<int>(std::min<std::int64_t>(kLongestLead, (needed + cycle_ - Duration{1}) / cycle_));
-  lead_ = std::min(std::max(1, cycles) + spare_, kLongestLead);
+      static_cast<int>(std::min<std::int64_t>(kMaxLead, (needed + cycle_ - Duration{1}) / cycle_));
+  lead_ = std::min(std::max(1, cycles) + spare_cycles_, kMaxLead);
 }
 
 }  // namespace sidestep

@@ -7,33 +7,35 @@
 
 namespace sidestep {
 
-/// How many cycles ahead an agent proposes, and holds an acceleration: as many as the network's round trips
-/// take, and a few to spare, for asking again, where messages keep getting lost.
+/// Decides how many cycles ahead an agent proposes, which is also the upper bound of the cycles for which it
+/// holds an acceleration. The lead covers the network's round trips, plus spare cycles for retries if
+/// messages are lost often.
 class ProposalPacing {
  public:
   explicit ProposalPacing(Duration cycle) : cycle_(cycle) {}
 
-  /// From a proposal to its verdict, late ones too.
+  /// Records the time from a proposal to its verdict, late verdicts included.
   void on_round_trip(Duration duration);
-  void on_taken();
-  void on_late();
-  /// Forgets the network: another coordinator answers now.
+  void on_version_taken();
+  void on_version_late();
+  /// Forgets all measurements, because another coordinator answers from now on.
   void reset();
 
+  /// Cycles.
   int lead() const { return lead_; }
-  /// An answer that has not come after so long is not to be expected any more.
-  Duration patience() const;
+  /// How long to wait for an answer before proposing again.
+  Duration answer_timeout() const;
 
  private:
-  static constexpr std::size_t kRoundTrips = 16;
+  static constexpr std::size_t kHistorySize = 16;
   void update();
 
   Duration cycle_;
-  std::array<Duration, kRoundTrips> round_trips_{};
+  std::array<Duration, kHistorySize> round_trips_{};
   std::size_t count_ = 0;
-  Duration slow_round_trip_{0};  // all but the slowest few are faster; zero until something is known
+  Duration slow_round_trip_{0};  // exceeded by one in eight round trips at most; 0 before the first
   int taken_in_a_row_ = 0, late_in_a_row_ = 0;
-  int spare_ = 0;
+  int spare_cycles_ = 0;
   int lead_ = 1;
 };
 

@@ -7,10 +7,10 @@
 
 namespace sidestep::batch {
 
-/// The kernels that this machine can run, the fastest last.
-const std::vector<Kernels>& available_kernels();
+/// Kernels for the instruction sets that this machine supports, in order of increasing speed.
+[[nodiscard]] const std::vector<Kernels>& available_kernels();
 
-/// The fastest of them.
-const Kernels& best_kernels();
+/// The fastest available kernels.
+[[nodiscard]] const Kernels& best_kernels();
 
 }  // namespace sidestep::batch

@@ -1,63 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Compiled once for each instruction set: nothing here may be an inline function that linkers merge.
+// Included by sources compiled for different instruction sets: this header must not contain inline functions,
+// because the linker would merge their copies.
 #include <cstddef>
 #include <cstdint>
 
 namespace sidestep::batch {
 
-inline constexpr std::size_t kLanes = 8;  ///< of a block, whatever the machine's vectors hold
-inline constexpr std::size_t kSteps = 8;  ///< into which a comparison divides its time
+inline constexpr std::size_t kLanes = 8;  ///< lanes of a block, independent of the machine's vector width
+inline constexpr std::size_t kSteps = 8;  ///< steps into which a comparison divides its time span
 inline constexpr std::size_t kSamples = kSteps + 1;
 
-/// A number for each of a block's lanes.
+/// One number for each lane of a block.
 struct alignas(64) Row {
   double lane[kLanes];
 };
 
-/// Motions of two phases and a rest each.
+/// Motions with two phases of constant acceleration, followed by rest.
 struct MotionBlock {
   Row start_s;
   Row first_s, x_m, y_m, vx_mps, vy_mps, half_ax, half_ay;
   Row second_s, second_vx, second_vy, second_half_ax, second_half_ay;
 };
 
-/// Where motions are at kSamples times, equally far apart.
+/// Positions of motions at kSamples equidistant times.
 struct TrackBlock {
   Row x_m[kSamples], y_m[kSamples];
 };
+/// Positions of a single motion.
 struct Track {
   double x_m[kSamples], y_m[kSamples];
 };
 
-/// What each lane brings to a comparison. What happens before `start_s` does not count.
-struct KeepBlock {
+/// Per-lane inputs of a comparison. Times before `start_s` are ignored. `acceleration_mps2` is the upper
+/// bound of the lane's acceleration.
+struct SeparationBlock {
   Row start_s, min_separation_m, acceleration_mps2;
 };
 
-/// What a comparison decides by: chords of the relative motion are farther apart than the distance to keep
-/// and `clear_room_m`, or come nearer than it less `blocked_room_m`; both also have room for how far the
-/// motion may be from its chords.
+/// Thresholds of a comparison. A lane is clear if all chords of the relative motion stay farther away than
+/// the minimum separation plus `clear_slack_m`. It is blocked if a chord comes nearer than the minimum
+/// separation less `blocked_slack_m`. Both tests also allow for the largest deviation of the motion from its
+/// chords.
 struct ComparisonSettings {
-  double begin_s, step_s;    ///< when the comparison begins, on the lanes' clock
-  double acceleration_mps2;  ///< of the one that all are compared with
-  double clear_room_m, blocked_room_m;
+  double begin_s, step_s;    ///< on the lanes' time axis
+  double acceleration_mps2;  ///< upper bound for the motion that the lanes are compared with
+  double clear_slack_m, blocked_slack_m;
 };
 
-/// The decisions, summed up over comparisons: clear where `clear` >= 0, in the way where `blocked` < 0.
+/// Results accumulated over comparisons: a lane is clear where `clear` >= 0, and blocked where `blocked` < 0.
 struct GapBlock {
   Row clear, blocked;
 };
 
-/// Accelerations and how far they are from the wished one, squared; infinitely far: not to be chosen.
+/// Accelerations and their squared distance from the desired one. An infinite distance excludes the lane.
 struct AccelerationBlock {
   Row x, y, distance2;
 };
 
-/// The state from which accelerations are held, the limits, and the wish.
+/// State in which the accelerations begin, motion limits, and the desired acceleration.
 struct LimitSettings {
-  double forward_x, forward_y;  ///< the direction in which drawn accelerations lie ahead
+  double forward_x, forward_y;  ///< x axis of the frame in which accelerations were sampled
   double vx_mps, vy_mps;
   bool is_at_rest;
   double inverse_acceleration2, inverse_deceleration2, inverse_speed;
@@ -65,40 +69,43 @@ struct LimitSettings {
   double desired_x, desired_y;
 };
 
-/// Accelerations that are held and followed by the stop manoeuvre.
+/// State in which the accelerations begin, how long they are held, and the deceleration of the stop that
+/// follows.
 struct StopSettings {
   double x_m, y_m, vx_mps, vy_mps, hold_s, deceleration_mps2;
 };
 
-/// Finding and comparing.
-struct ComparingKernels {
-  /// Sets bit k of a block's mask where the discs of lane k and of the query touch.
-  void (*touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
-                   double y, double radius, std::uint8_t* masks);
-  /// The latest time at which a motion rests, of those that rest by `latest_s`, or `earliest_s`; sets the
-  /// bits of those that do not.
-  double (*rest)(const MotionBlock* motions, std::size_t blocks, double earliest_s, double latest_s,
-                 std::uint8_t* later);
+/// Kernels that compare discs and motions.
+struct ComparisonKernels {
+  /// Sets bit k of a block's mask if the discs of lane k and of the query touch.
+  void (*find_touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
+                        double y, double radius, std::uint8_t* masks);
+  /// Returns the latest time at which a motion comes to rest, among the motions that rest by `latest_s`, and
+  /// at least `earliest_s`. Sets the bits of motions that rest later than `latest_s`.
+  double (*find_rest)(const MotionBlock* motions, std::size_t blocks, double earliest_s, double latest_s,
+                      std::uint8_t* later);
   void (*sample)(const MotionBlock* motions, std::size_t blocks, double begin_s, double step_s,
                  TrackBlock* tracks);
-  /// What `one` has to each lane; lowers the gaps to that if they are to be kept. `keeps` has one block for
-  /// all or one for each.
-  void (*compare)(const ComparisonSettings& settings, const Track& one, const TrackBlock* lanes,
-                  const KeepBlock* keeps, bool one_for_all, std::size_t blocks, bool keep_gaps,
+  /// Computes the gaps between `reference` and each lane. With `accumulate`, existing gaps are lowered to the
+  /// new ones; otherwise they are overwritten. `separations` has one block per block of lanes, or a single
+  /// block if `is_shared`.
+  void (*compare)(const ComparisonSettings& settings, const Track& reference, const TrackBlock* lanes,
+                  const SeparationBlock* separations, bool is_shared, std::size_t blocks, bool accumulate,
                   GapBlock* gaps);
-  /// Sets the bits of lanes that are clear, and of those in the way.
+  /// Sets the bits of clear lanes and of blocked lanes.
   void (*decide)(const GapBlock* gaps, std::size_t blocks, std::uint8_t* clear, std::uint8_t* blocked);
 };
 
-/// Drawing and choosing candidates. Every instruction set gives the same bits.
-struct ChoosingKernels {
-  /// Turns accelerations drawn in the frame of the velocity to the floor's, limits them (as limited() does)
-  /// and measures their distances from the wish.
+/// Kernels that limit, expand and choose candidate accelerations. All instruction sets give the same bits.
+struct ChoiceKernels {
+  /// Rotates accelerations from the velocity's frame to the field's, limits them as limit_acceleration()
+  /// does, and computes their squared distances from the desired acceleration.
   void (*limit)(const LimitSettings& settings, AccelerationBlock* accelerations, std::size_t blocks);
+  /// Builds the motions that hold each acceleration and then stop.
   void (*stop)(const StopSettings& settings, const AccelerationBlock* accelerations, std::size_t blocks,
                MotionBlock* motions);
-  /// Takes those within the spread of (x, y), and whatever is blocked, out of the choice; returns the nearest
-  /// that is left, or the number of lanes.
+  /// Excludes accelerations whose squared distance from (x, y) is below `spread2`, and blocked ones. Returns
+  /// the remaining lane nearest to the desired acceleration, or the number of lanes if none remains.
   std::size_t (*choose)(double x, double y, double spread2, AccelerationBlock* accelerations,
                         const GapBlock* gaps, std::size_t blocks);
 };
@@ -106,59 +113,61 @@ struct ChoosingKernels {
 inline constexpr std::size_t kPredictionSteps = 16;
 inline constexpr double kPredictionStep_s = 0.1;
 inline constexpr std::size_t kPredictionSamples = kPredictionSteps + 1;
-/// As near to its way point a robot turns to its goal.
-inline constexpr double kPassed_m = 0.2;
+/// Distance from its waypoint at which a robot turns towards its goal.
+inline constexpr double kWaypointRadius_m = 0.2;
 
-/// Looking ahead, which nobody relies on, is done in single precision.
+/// Predictions use single precision: safety does not depend on them.
 inline constexpr std::size_t kPredictionLanes = 2 * kLanes;
 struct alignas(64) PredictionRow {
   float lane[kPredictionLanes];
 };
 
-/// States, and what their robots mean to do: hold a velocity for so long, then make for a goal past a way
-/// point.
+/// States and intents of robots: hold the intent's velocity for `velocity_duration_s`, then head for the goal
+/// by way of the waypoint.
 struct CourseBlock {
   PredictionRow x_m, y_m, vx_mps, vy_mps;
-  PredictionRow hold_vx, hold_vy, hold_s;
-  PredictionRow way_x, way_y, goal_x, goal_y;
+  PredictionRow intent_vx, intent_vy, velocity_duration_s;
+  PredictionRow waypoint_x, waypoint_y, goal_x, goal_y;
 };
 
-/// Where robots are expected at the ends of steps, and when each has come to its goal.
+/// Predicted positions at the ends of the steps, and predicted arrival times at the goals.
 struct PredictionBlock {
   PredictionRow x_m[kPredictionSamples], y_m[kPredictionSamples];
   PredictionRow arrival_s;
 };
-/// One robot's.
+/// Predicted positions of a single robot.
 struct Prediction {
   float x_m[kPredictionSamples], y_m[kPredictionSamples];
 };
 
-/// What robots can do.
+/// Motion limits of the predicted robots.
 struct DrivingSettings {
   float speed_mps, acceleration_mps2, deceleration_mps2;
 };
 
-/// Looking ahead. Every instruction set gives the same bits.
+/// Kernels that predict motions and rate them. All instruction sets give the same bits.
 struct PredictionKernels {
-  void (*drive)(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
-                PredictionBlock* forecasts);
-  /// Adds, for each step after the sample `from` in which a lane comes nearer to `one` than `min_separation_m`, the
-  /// step's weight times the square of 1 - (distance / min_separation_m)²; steps that end later than `after_s` after a
-  /// lane's arrival do not count.
-  void (*meet)(const Prediction& one, std::size_t from, float min_separation_m, const float* weights, float after_s,
-               const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers);
-  /// The same for each sample outside a rectangle about the origin, once its weight for each `deep_m`
-  /// outside.
-  void (*leave)(float half_length_m, float half_width_m, float deep_m, const float* weights,
-                const PredictionBlock* lanes, std::size_t blocks, PredictionRow* dangers);
+  void (*roll_out)(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
+                   PredictionBlock* predictions);
+  /// For each step after sample `from` in which a lane comes nearer to `reference` than `min_separation_m`,
+  /// adds the step's weight times (1 - (distance / min_separation_m)²)². Ignores steps that end more than
+  /// `after_arrival_s` after the lane's arrival.
+  void (*add_proximity_danger)(const Prediction& reference, std::size_t from, float min_separation_m,
+                               const float* weights, float after_arrival_s, const PredictionBlock* lanes,
+                               std::size_t blocks, PredictionRow* dangers);
+  /// For each sample outside a rectangle centred on the origin, adds the sample's weight times the smaller of
+  /// 1 and distance outside / `full_danger_m`.
+  void (*add_outside_danger)(float half_length_m, float half_width_m, float full_danger_m,
+                             const float* weights, const PredictionBlock* lanes, std::size_t blocks,
+                             PredictionRow* dangers);
 };
 
-/// The inner loops of safety layer and steering for one instruction set.
+/// Inner loops of the safety search and of steering for one instruction set.
 struct Kernels {
   const char* name;
-  ComparingKernels comparing;
-  ChoosingKernels choosing;
-  PredictionKernels forecasting;
+  ComparisonKernels comparison;
+  ChoiceKernels choice;
+  PredictionKernels prediction;
 };
 
 }  // namespace sidestep::batch

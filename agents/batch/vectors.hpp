@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Included by sources that are compiled for one instruction set, after they say how many doubles its vectors
-// hold, and whether they compute in single precision. They must not include anything that has inline
-// functions: the linker would keep one copy, perhaps that of an instruction set which the machine does not
-// have.
+// Vector types for sources that are compiled for one instruction set. Before including it, a source defines
+// the number of doubles in a vector, and whether it computes in single precision. Such a source must not
+// include headers with inline functions: the linker keeps a single copy of each, possibly one with
+// instructions that the machine lacks.
 #include "agents/batch/kernels.hpp"
 
 namespace sidestep::batch {
@@ -28,10 +28,10 @@ inline Vector load(const NumberRow& row, std::size_t at) {
 inline void store(NumberRow& row, std::size_t at, const Vector& v) {
   __builtin_memcpy(&row.lane[at], &v, sizeof v);
 }
-inline Vector all(Number value) { return value - Vector{}; }
-inline Vector smaller(const Vector& a, const Vector& b) { return a < b ? a : b; }
-inline Vector larger(const Vector& a, const Vector& b) { return a > b ? a : b; }
-inline Vector root(const Vector& v) {
+inline Vector broadcast(Number value) { return value - Vector{}; }
+inline Vector min(const Vector& a, const Vector& b) { return a < b ? a : b; }
+inline Vector max(const Vector& a, const Vector& b) { return a > b ? a : b; }
+inline Vector square_root(const Vector& v) {
   Vector result;
 #ifdef SIDESTEP_SINGLE_PRECISION
   for (std::size_t i = 0; i < kWidth; ++i) result[i] = __builtin_sqrtf(v[i]);
@@ -40,12 +40,12 @@ inline Vector root(const Vector& v) {
 #endif
   return result;
 }
-/// Bit k: whether lane `at` + k is a.lane <= b.lane.
-inline unsigned not_above(const Vector& a, const Vector& b) {
+/// Bit k is set if a[k] <= b[k].
+inline unsigned less_equal_bits(const Vector& a, const Vector& b) {
   const auto is = a <= b;
   unsigned bits = 0;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    // In one expression with the shift, g++ 12 takes a wrong lane under -fsanitize=shift.
+    // With -fsanitize=shift, g++ 12 selects a wrong lane if this is one expression with the shift.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
   }

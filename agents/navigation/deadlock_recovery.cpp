@@ -7,23 +7,23 @@
 namespace sidestep {
 namespace {
 
-// One decision does not stand for a longer time than this.
-constexpr double kLongestStep_s = 0.1;
+// Upper bound of the time that one decision accounts for.
+constexpr double kMaxStep_s = 0.1;
 
 }  // namespace
 
 void DeadlockRecovery::update(bool is_free, double speed_mps, Time now) {
-  const double passed_s = std::clamp(to_seconds(now - last_), 0.0, kLongestStep_s);
-  const double step = settings_.rate_radps * passed_s;
+  const double elapsed_s = std::clamp(to_seconds(now - last_), 0.0, kMaxStep_s);
+  const double step = settings_.turn_rate_radps * elapsed_s;
   last_ = now;
   if (is_free) {
-    free_s_ += passed_s;
-    if (!is_needed() || free_s_ > settings_.leaves_s) angle_rad_ -= step;
+    free_time_s_ += elapsed_s;
+    if (!is_active() || free_time_s_ > settings_.release_delay_s) angle_rad_ -= step;
   } else {
-    free_s_ = 0;
-    if (speed_mps < settings_.slow_mps) angle_rad_ += step;
+    free_time_s_ = 0;
+    if (speed_mps < settings_.blocked_speed_mps) angle_rad_ += step;
   }
-  // Once round, it begins anew.
+  // After a full circle the angle starts again from 0.
   if (angle_rad_ < 0 || angle_rad_ > 2 * std::numbers::pi) angle_rad_ = 0;
 }
 

@@ -6,29 +6,30 @@
 namespace sidestep {
 
 struct DeadlockRecoverySettings {
-  double slow_mps = 0.3;  ///< a robot that is kept from what it wishes and slower than this is blocked
-  double rate_radps = 3;  ///< how fast it turns farther right while blocked, and back when it is free
-  double needed_rad = 1;  ///< from here on it goes where it has turned to,
-  double leaves_s = 0.5;  ///< and for so long once it is free, to make room for others
+  double blocked_speed_mps = 0.3;  ///< a robot denied its desired motion is blocked below this speed
+  double turn_rate_radps = 3;      ///< rate at which the angle grows while blocked and shrinks when free
+  double activation_rad = 1;       ///< recovery is active while the angle exceeds this
+  double release_delay_s = 0.5;    ///< how long an active recovery holds its angle once the robot is free
 };
 
-/// The way out of a jam: a robot that is blocked for long turns farther and farther right, whatever there is
-/// to be gained, once round if need be. All do, so a crowd that is jammed begins to turn round its middle and
-/// comes apart.
+/// Resolves deadlocks: the longer a robot is blocked, the farther right of its route it turns, up to a full
+/// circle. Since all robots turn the same way, a jammed group starts to rotate about its centre and
+/// dissolves.
 class DeadlockRecovery {
  public:
   explicit DeadlockRecovery(const DeadlockRecoverySettings& settings = {}) : settings_(settings) {}
 
-  /// Once for each decision: whether the robot could do what it wished, how fast it is, and when that is.
+  /// Call once per decision, with its time. `is_free`: the robot got its desired motion.
   void update(bool is_free, double speed_mps, Time now);
-  /// The angle to the right of its way.
+  /// Angle to turn right of the route, from 0 to 2 pi.
   double angle_rad() const { return angle_rad_; }
-  bool is_needed() const { return angle_rad_ > settings_.needed_rad; }
+  /// Whether the robot should follow the recovery angle instead of its steering.
+  bool is_active() const { return angle_rad_ > settings_.activation_rad; }
 
  private:
   DeadlockRecoverySettings settings_;
   double angle_rad_ = 0;
-  double free_s_ = 0;  // since when it has been
+  double free_time_s_ = 0;  // uninterrupted time since the robot was last blocked
   Time last_{};
 };
 

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "agents/navigation/trapezoid.hpp"
+#include "agents/navigation/trapezoidal_profile.hpp"
 
 namespace sidestep {
 
-AccelerationCommand desired_acceleration(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
-                         Duration shortest, Duration longest) {
-  const Trapezoid2d profile(to_go_m, velocity_mps, limits);
-  const Duration hold = std::clamp(from_seconds(profile.along().first_stretch_s()), shortest, longest);
+AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2& velocity_mps, const MotionLimits& limits,
+                         Duration min_hold, Duration max_hold) {
+  const TrapezoidalProfile2d profile(displacement_m, velocity_mps, limits);
+  const Duration hold = std::clamp(from_seconds(profile.along().first_phase_s()), min_hold, max_hold);
   const double seconds = to_seconds(hold);
   return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
 }

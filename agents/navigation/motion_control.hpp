@@ -7,15 +7,17 @@
 
 namespace sidestep {
 
-/// An acceleration, and for how long to hold it.
+/// An acceleration and how long to hold it.
 struct AccelerationCommand {
   Vec2 acceleration_mps2{0, 0};
   Duration hold{};
 };
 
-/// Trapezoidal motion control (Bruce, app. B) from a state to rest at the offset `to_go_m`. The acceleration
-/// is held for as long as the profile holds it, but at least for `shortest` and at most for `longest`.
-AccelerationCommand desired_acceleration(const Vec2& to_go_m, const Vec2& velocity_mps, const MotionLimits& limits,
-                         Duration shortest, Duration longest);
+/// Returns the first acceleration of the trapezoidal motion (Bruce 2006, appendix B) that comes to rest at
+/// `displacement_m` from the current position. It is held for the duration of the profile's first phase,
+/// clamped to [min_hold, max_hold]; min_hold > 0.
+[[nodiscard]] AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2& velocity_mps,
+                                                       const MotionLimits& limits, Duration min_hold,
+                                                       Duration max_hold);
 
 }  // namespace sidestep

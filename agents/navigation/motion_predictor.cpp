@@ -22,33 +22,33 @@ std::size_t MotionPredictor::add(const State& state, const Intent& intent) {
   set(c.y_m, state.position_m.y());
   set(c.vx_mps, state.velocity_mps.x());
   set(c.vy_mps, state.velocity_mps.y());
-  set(c.hold_vx, intent.velocity_mps.x());
-  set(c.hold_vy, intent.velocity_mps.y());
-  set(c.hold_s, intent.hold_s);
-  set(c.way_x, intent.waypoint_m.x());
-  set(c.way_y, intent.waypoint_m.y());
+  set(c.intent_vx, intent.velocity_mps.x());
+  set(c.intent_vy, intent.velocity_mps.y());
+  set(c.velocity_duration_s, intent.velocity_duration_s);
+  set(c.waypoint_x, intent.waypoint_m.x());
+  set(c.waypoint_y, intent.waypoint_m.y());
   set(c.goal_x, intent.goal_m.x());
   set(c.goal_y, intent.goal_m.y());
   return lane;
 }
 
-void MotionPredictor::drive() {
-  if (driven_.size() < block_count()) driven_.resize(block_count());
-  kernels_->forecasting.drive(settings_, courses_.data(), block_count(), driven_.data());
+void MotionPredictor::predict() {
+  if (predictions_.size() < block_count()) predictions_.resize(block_count());
+  kernels_->prediction.roll_out(settings_, courses_.data(), block_count(), predictions_.data());
 }
 
-batch::Prediction MotionPredictor::of(std::size_t lane) const {
-  const batch::PredictionBlock& block = driven_[lane / kPredictionLanes];
-  batch::Prediction forecast;
+batch::Prediction MotionPredictor::prediction_of(std::size_t lane) const {
+  const batch::PredictionBlock& block = predictions_[lane / kPredictionLanes];
+  batch::Prediction prediction;
   for (std::size_t i = 0; i < kPredictionSamples; ++i) {
-    forecast.x_m[i] = block.x_m[i].lane[lane % kPredictionLanes];
-    forecast.y_m[i] = block.y_m[i].lane[lane % kPredictionLanes];
+    prediction.x_m[i] = block.x_m[i].lane[lane % kPredictionLanes];
+    prediction.y_m[i] = block.y_m[i].lane[lane % kPredictionLanes];
   }
-  return forecast;
+  return prediction;
 }
 
 double MotionPredictor::arrival_s(std::size_t lane) const {
-  return driven_[lane / kPredictionLanes].arrival_s.lane[lane % kPredictionLanes];
+  return predictions_[lane / kPredictionLanes].arrival_s.lane[lane % kPredictionLanes];
 }
 
 }  // namespace sidestep

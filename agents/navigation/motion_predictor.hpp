@@ -10,24 +10,26 @@
 
 namespace sidestep {
 
-/// Robots driven in thought, with the limits that they have and what they mean to do, over steps of
-/// batch::kPredictionStep_s. Nobody promises to move like that. Allocates nothing once warm.
+/// Predicts the motion of robots from their states and intents within their motion limits, in steps of
+/// batch::kPredictionStep_s. Predictions are not commitments: safety does not depend on them. Does not
+/// allocate once warm.
 class MotionPredictor {
  public:
   explicit MotionPredictor(const MotionLimits& limits, const batch::Kernels& kernels = batch::best_kernels());
 
   void clear() { size_ = 0; }
-  /// Returns the robot's lane.
+  /// Adds a robot and returns its lane.
   std::size_t add(const State& state, const Intent& intent);
-  /// Drives all that were added.
-  void drive();
+  /// Computes the predictions of all robots added.
+  void predict();
 
   std::size_t size() const { return size_; }
   std::size_t block_count() const;
-  const batch::PredictionBlock* blocks() const { return driven_.data(); }
-  /// Where a robot is expected at the ends of the steps.
-  batch::Prediction of(std::size_t lane) const;
-  /// When it is expected at its goal, after its state; beyond the forecast by what is left of its way.
+  const batch::PredictionBlock* blocks() const { return predictions_.data(); }
+  /// Predicted positions of a robot at the ends of the steps.
+  batch::Prediction prediction_of(std::size_t lane) const;
+  /// Predicted time from the robot's state to its arrival at the goal. For arrivals beyond the prediction
+  /// horizon, the time for the remaining path is estimated and added.
   double arrival_s(std::size_t lane) const;
 
  private:
@@ -35,7 +37,7 @@ class MotionPredictor {
   batch::DrivingSettings settings_;
   std::size_t size_ = 0;
   std::vector<batch::CourseBlock> courses_;
-  std::vector<batch::PredictionBlock> driven_;
+  std::vector<batch::PredictionBlock> predictions_;
 };
 
 }  // namespace sidestep

@@ -5,69 +5,69 @@
 #include <optional>
 #include <vector>
 
-#include "common/geometry/field.hpp"
 #include "agents/navigation/motion_predictor.hpp"
+#include "common/geometry/field.hpp"
 
 namespace sidestep {
 
-/// What is weighed against the seconds that a way takes.
+/// Costs in seconds, added to the predicted time to the goal, and preferred clearances.
 struct SteeringSettings {
-  double danger_s = 1;             ///< of being where another one is for one step of the forecast, now
-  double late_danger = 0.08;       ///< as a share of it, at the end of the forecast
-  double fade = 1.75;              ///< how quickly danger gets less with time
-  double left_s = 0.16;            ///< of turning left: where both turn right they come past each other
-  double change_s = 0.06;          ///< of going round in another way than was chosen last,
-  double harmless_s = 0.02;        ///< which is not looked for while the danger of the last one is less
-  double extra_clearance_m = 0.035;           ///< by so much more than they must, robots like to keep from each other,
-  double standing_room_m = 0.016;  ///< and from what stands
+  double danger_s = 1;                  ///< of sharing a robot's position for one prediction step, at once
+  double final_danger_fraction = 0.08;  ///< danger at the end of the prediction, as a fraction of `danger_s`
+  double danger_decay_exponent = 1.75;  ///< shape of the decay in between
+  double left_turn_penalty_s = 0.16;    ///< of turning left: robots that all turn right pass each other
+  double switch_penalty_s = 0.06;       ///< of giving up the previous detour for another candidate
+  double tolerable_danger_s = 0.02;     ///< below it, the previous detour is kept without comparing others
+  double extra_clearance_m = 0.035;     ///< preferred beyond the minimum separation from moving robots
+  double stationary_clearance_m = 0.016;  ///< the same for stationary obstacles
 };
 
-/// What a robot chose last.
+/// A robot's previous choice.
 struct LastChoice {
-  std::optional<Intent> way_round;  ///< a velocity that is held, or a bend
-  std::uint64_t changes = 0;        ///< times that something else was chosen than to go on with it
+  std::optional<Intent> detour;  ///< a velocity that is held, or a via point; none: the direct path
+  std::uint64_t changes = 0;     ///< number of choices that did not continue the previous one
 };
 
-/// Chooses what a robot makes for among others who move. As long as the straight way is free it is taken;
-/// else ways round are driven in thought against what the others mean to do (their Intent), and weighed by
-/// the time that they take and by how near they come to whom, how soon: velocities to hold for some time, and
-/// bends to go past. Whoever has chosen says so to the others. Safety does not rest on it. Allocates nothing
-/// once warm.
+/// Chooses a robot's intent among other robots. The direct path is taken while it is predicted free.
+/// Otherwise candidate detours (velocities held for some time, and via points) are predicted against the
+/// intents of the other robots, and compared by time to goal and danger: how near they come to others, and
+/// how soon. The choice is published as the robot's own intent. Safety does not depend on it. Does not
+/// allocate once warm.
 class Steering {
  public:
   Steering(const Field& field, double radius_m, const MotionLimits& limits,
            const SteeringSettings& settings = {}, const batch::Kernels& kernels = batch::best_kernels());
 
-  /// Forgets the others.
+  /// Forgets the other robots and obstacles.
   void clear();
-  /// Somebody who moves, to make way for; centres are to stay `min_separation_m` apart.
+  /// A moving robot to yield to; centres should stay `min_separation_m` apart.
   void add_moving(const State& state, const Intent& intent, double min_separation_m);
-  /// Somebody or something that stays where it is.
-  void add_standing(const Vec2& place_m, double min_separation_m);
+  /// A stationary robot or obstacle.
+  void add_stationary(const Vec2& position_m, double min_separation_m);
 
-  /// What to do from a state on. `since_s`: so much earlier was the state of the robot's last choice, which
-  /// is kept unless something is gained by another one.
-  Intent choose(const State& at, const Vec2& waypoint_m, const Vec2& goal_m, double since_s,
-                LastChoice& last);
+  /// Chooses the intent from a state on. `elapsed_s` is the time since the state of the last choice. Updates
+  /// `last`; the last choice is kept unless another one is better by more than the switch penalty.
+  [[nodiscard]] Intent choose(const State& at, const Vec2& waypoint_m, const Vec2& goal_m, double elapsed_s,
+                              LastChoice& last);
 
  private:
   struct Other {
-    batch::Prediction forecast;
+    batch::Prediction prediction;
     double min_separation_m;
   };
-  void forecast_others();
-  void offer(const State& at, const Intent& intent, double extra_s = 0);
-  void offer_last(const State& at, const Vec2& waypoint, const Vec2& goal, double since_s,
-                  const LastChoice& last);
-  void offer_turns(const State& at, const Intent& direct);
-  void offer_bends(const State& at, const Vec2& goal);
-  /// Drives what is offered in thought and finds how dangerous it is.
-  void weigh(const Vec2& at_m);
-  /// The sample before which a robot from here cannot meet another one.
-  std::size_t first_reach(const Other& other, const Vec2& from_m) const;
+  void predict_others();
+  void add_candidate(const State& at, const Intent& intent, double extra_s = 0);
+  void add_last_choice(const State& at, const Vec2& waypoint, const Vec2& goal, double elapsed_s,
+                       const LastChoice& last);
+  void add_velocity_candidates(const State& at, const Intent& direct);
+  void add_via_point_candidates(const State& at, const Vec2& goal);
+  /// Predicts the candidates and computes their dangers.
+  void evaluate(const Vec2& at_m);
+  /// The prediction sample before which a robot that starts at `from_m` cannot meet `other`.
+  std::size_t first_reachable_sample(const Other& other, const Vec2& from_m) const;
 
   double danger_s(std::size_t lane) const;
-  /// The lane with the least cost.
+  /// The lane with the lowest cost.
   std::size_t best() const;
 
   const batch::Kernels* kernels_;
@@ -76,11 +76,11 @@ class Steering {
   float half_length_m_, half_width_m_;
   float weights_[batch::kPredictionSamples];
   MotionPredictor moving_;
-  std::vector<double> keeps_m_;  // as moving_
+  std::vector<double> min_separations_m_;  // by lane of moving_
   std::vector<Other> others_;
-  MotionPredictor offered_;
-  std::vector<Intent> intents_;  // as offered_, and what each costs besides time and danger
-  std::vector<double> extra_s_;
+  MotionPredictor candidates_;
+  std::vector<Intent> intents_;  // by lane of candidates_
+  std::vector<double> extra_s_;  // penalty by lane of candidates_, besides time and danger
   std::vector<batch::PredictionRow> dangers_;
 };
 

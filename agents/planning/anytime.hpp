@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Has another planner plan again and again until the budget is spent, smooths each way, and keeps the
-/// shortest: the first way comes as soon as ever, and what time is left makes it better.
+/// Repeats another planner until the budget is spent, smooths each path, and keeps the shortest. The first
+/// path takes no longer than with the planner alone; the remaining time improves it.
 template <StraightDomain D, typename Planner>
 class Anytime {
  public:
@@ -19,7 +19,7 @@ class Anytime {
   explicit Anytime(Planner planner, const SmoothingSettings& settings = {})
       : planner_(std::move(planner)), smoother_(settings) {}
 
-  /// The result is this planner's, until its next plan.
+  /// The result belongs to this planner and is valid until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
     best_ = planner_.plan(domain, start, budget, rng);
     smoother_.smooth(domain, best_);

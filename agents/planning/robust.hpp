@@ -8,22 +8,22 @@
 
 namespace sidestep {
 
-/// Plans also where the goal touches an obstacle: to the nearest free place that the planner can reach. That
-/// the start may touch obstacles is the domain's business. `planner` is any with plan(domain, start, budget,
-/// rng); each place that is tried has the whole budget.
+/// Plans to the goal or, if the goal touches an obstacle, to the nearest free position that the planner can
+/// reach. A start that touches obstacles is handled by the domain. `planner` is any planner with
+/// plan(domain, start, budget, rng); each attempt gets the whole budget.
 template <typename Planner>
 const Plan<Vec2>& plan_robustly(Planner& planner, const DiscDomain& domain, const Vec2& start,
                                 const Budget& budget, Rng& rng) {
   const Plan<Vec2>* plan = &planner.plan(domain, start, budget, rng);
   if (plan->arrives() || !domain.goal_is_blocked()) return *plan;
-  // What sees a place that cannot be reached cannot be reached either.
+  // A position connected to an unreachable one by a straight motion is unreachable too.
   std::vector<Vec2> tried{domain.goal(start)};
-  for (const Vec2& place : domain.places_near_goal()) {
-    const auto sees = [&](const Vec2& other) { return domain.check(place, other); };
-    if (std::any_of(tried.begin(), tried.end(), sees)) continue;
-    const Plan<Vec2>& next = planner.plan(domain.with_goal_at(place), start, budget, rng);
+  for (const Vec2& position : domain.free_positions_near_goal()) {
+    const auto is_connected = [&](const Vec2& other) { return domain.check(position, other); };
+    if (std::any_of(tried.begin(), tried.end(), is_connected)) continue;
+    const Plan<Vec2>& next = planner.plan(domain.with_goal_at(position), start, budget, rng);
     if (next.arrives()) return next;
-    tried.push_back(place);
+    tried.push_back(position);
   }
   return planner.plan(domain, start, budget, rng);
 }

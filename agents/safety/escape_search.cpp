@@ -12,44 +12,43 @@
 namespace sidestep {
 namespace {
 
-/// Another robot's version, and how near to it a candidate may come.
+/// Another robot's version, and the distance that a candidate must keep from it.
 struct Other {
   const Trajectory* trajectory;
-  double kept_m;
+  double separation_m;
 };
 
 struct Surroundings {
   std::vector<Other> others;
-  bool is_too_near = false;
-  Vec2 away{0, 0};  // from those that are
+  bool is_in_conflict = false;
+  Vec2 away{0, 0};  // sum of unit vectors away from the conflicts
 };
 
-Surroundings surroundings_of(const SearchQuery& query, const Version& base, const TrajectoryIndex& others,
-                             const FloorRules& rules) {
+Surroundings find_surroundings(const SearchQuery& query, const Version& base, const TrajectoryIndex& others,
+                               const FloorRules& rules) {
   Surroundings found;
-  const Vec2& here = query.at_start.position_m;
-  const double reach = reach_m(accelerate_then_stop(query.start, query.at_start, Vec2::Zero(), query.phase,
-                                                    rules.limits.deceleration_mps2)) +
-                       rules.limits.speed_mps * to_seconds(query.phase);
+  const Vec2& position = query.at_start.position_m;
+  const double reach = reach_m(accelerate_then_stop(query.start, query.at_start, Vec2::Zero(),
+                                                    query.hold_time, rules.limits.deceleration_mps2)) +
+                       rules.limits.speed_mps * to_seconds(query.hold_time);
   for (std::size_t i = 0; i < others.size(); ++i) {
     const Version& other = others.version(i);
-    const double keep = rules.min_separation_m() + query.inflation_m + other.inflation_m;
-    const double far = reach + keep + reach_m(other.trajectory);
-    if ((other.trajectory.at_start().position_m - here).squaredNorm() > far * far) continue;
-    const double kept = kept_distance_m(base.trajectory, query.start, other.trajectory, keep);
-    found.others.push_back({&other.trajectory, kept});
-    if (kept == keep) continue;
-    found.is_too_near = true;
-    found.away += (here - other.trajectory.rest_position_m()).stableNormalized();
+    const double full_separation = rules.min_separation_m() + query.inflation_m + other.inflation_m;
+    const double max_distance = reach + full_separation + reach_m(other.trajectory);
+    if ((other.trajectory.at_start().position_m - position).squaredNorm() > max_distance * max_distance)
+      continue;
+    const double separation =
+        relaxed_separation_m(base.trajectory, query.start, other.trajectory, full_separation);
+    found.others.push_back({&other.trajectory, separation});
+    if (separation == full_separation) continue;
+    found.is_in_conflict = true;
+    found.away += (position - other.trajectory.rest_position_m()).stableNormalized();
   }
-  const Version rest{
-      base.robot,   base.incarnation, base.number, base.base, rest_of(base.trajectory, query.start),
-      query.inflation_m};
-  FloorRules grown = rules;
-  grown.margin_m += query.inflation_m;
-  if (check_place(rest.trajectory, grown) != msg::REASON_GRANTED) {
-    found.is_too_near = true;
-    found.away -= here.stableNormalized();  // the field's middle is as good a direction as any
+  FloorRules inflated = rules;
+  inflated.margin_m += query.inflation_m;
+  if (check_workspace(remaining_trajectory(base.trajectory, query.start), inflated) != Validity::kValid) {
+    found.is_in_conflict = true;
+    found.away -= position.stableNormalized();  // towards the centre of the field
   }
   return found;
 }
@@ -59,32 +58,35 @@ Surroundings surroundings_of(const SearchQuery& query, const Version& base, cons
 SearchResult search_escape(const SearchQuery& query, const Version& base, const TrajectoryIndex& others,
                            const FloorRules& rules) {
   SearchResult result;
-  const Surroundings around = surroundings_of(query, base, others, rules);
-  if (!around.is_too_near) return result;
-  const auto consider = [&](const Vec2& desired) {
+  const Surroundings surroundings = find_surroundings(query, base, others, rules);
+  if (!surroundings.is_in_conflict) return result;
+  const auto try_acceleration = [&](const Vec2& desired) {
     if (result.count == SearchResult::kMaxCandidates) return;
-    const Vec2 acceleration = limited(desired, query.at_start.velocity_mps, rules.limits, query.phase);
-    const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, acceleration, query.phase,
-                                                       rules.limits.deceleration_mps2);
+    const Vec2 acceleration =
+        limit_acceleration(desired, query.at_start.velocity_mps, rules.limits, query.hold_time);
+    const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, acceleration,
+                                                       query.hold_time, rules.limits.deceleration_mps2);
     const Version candidate{base.robot,  base.incarnation, base.number + 1,
                             base.number, trajectory,       query.inflation_m};
     if (trajectory.residual_speed_mps() > 1e-6 ||
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;
-    result.checks += static_cast<int>(around.others.size());
-    if (!rests_before_all(trajectory, query.moving, rules.radius_m + rules.margin_m + query.inflation_m)) return;
-    if (check_place_after(candidate, base.trajectory, rules) != msg::REASON_GRANTED) return;
-    const bool is_clear_of_all = std::ranges::all_of(around.others, [&](const Other& other) {
-      return is_clear(trajectory, *other.trajectory, other.kept_m);
+    result.checks += static_cast<int>(surroundings.others.size());
+    if (!is_passively_safe_from_all(trajectory, query.moving,
+                                    rules.radius_m + rules.margin_m + query.inflation_m))
+      return;
+    if (check_workspace_with_escape(candidate, base.trajectory, rules) != Validity::kValid) return;
+    const bool is_clear_of_all = std::ranges::all_of(surroundings.others, [&](const Other& other) {
+      return is_clear(trajectory, *other.trajectory, other.separation_m);
     });
     if (is_clear_of_all) result.candidates[result.count++] = trajectory;
   };
-  consider(query.desired_mps2);
+  try_acceleration(query.desired_mps2);
   result.desired_is_clear = result.count == 1;
   const Vec2 away = rules.limits.acceleration_mps2 *
-                    (around.away.isZero() ? Vec2(1, 0) : Vec2(around.away.stableNormalized()));
-  for (const double eighths : {0, 1, -1, 2, -2, 3, -3, 4})
-    consider(rotated(away, eighths * std::numbers::pi / 4));
+                    (surroundings.away.isZero() ? Vec2(1, 0) : Vec2(surroundings.away.stableNormalized()));
+  for (const double eighth_turns : {0, 1, -1, 2, -2, 3, -3, 4})
+    try_acceleration(rotated(away, eighth_turns * std::numbers::pi / 4));
   return result;
 }
 

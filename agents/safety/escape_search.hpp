@@ -6,10 +6,11 @@
 
 namespace sidestep {
 
-/// Ways out for a robot whose base is too near to somebody already, or in an obstacle's room or off the
-/// field: what comes no nearer than the base does, the wish first, then accelerations away from whoever is
-/// too near. Nothing where the base is clear of everybody: then it is for the safety search to find a way.
-SearchResult search_escape(const SearchQuery& query, const Version& base, const TrajectoryIndex& others,
-                           const FloorRules& rules);
+/// Searches candidates for a robot whose base is in conflict: too near to another robot's version or to an
+/// obstacle, or off the field. Candidates come no nearer than the base does. The desired acceleration comes
+/// first, then accelerations away from the conflicts. Returns no candidates if the base is free of conflicts:
+/// that case is the safety search's.
+[[nodiscard]] SearchResult search_escape(const SearchQuery& query, const Version& base,
+                                         const TrajectoryIndex& others, const FloorRules& rules);
 
 }  // namespace sidestep

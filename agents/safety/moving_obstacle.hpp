@@ -9,27 +9,29 @@
 
 namespace sidestep {
 
-/// Something that moves without asking, an opponent or a person, as it was last seen: from then on it may be
-/// anywhere that its speed takes it.
+/// An opponent or a person, which does not take part in the protocol, as last observed. After the observation
+/// it may be anywhere within reach of its maximum speed.
 struct MovingObstacle {
   Vec2 position_m{0, 0};
-  double radius_m = 0;  ///< its own, and what its position is uncertain by
-  Time seen_at{};
-  double speed_mps = 0;  ///< that it never exceeds
+  double radius_m = 0;  ///< includes the uncertainty of the position
+  Time observed_at{};
+  double speed_mps = 0;  ///< upper bound
 
-  /// How far from position_m its edge may be at a time; before it was seen it may have been elsewhere, too.
-  double reach_m(Time t) const;
+  /// Largest possible distance of the obstacle's edge from position_m at a time, also before the observation.
+  [[nodiscard]] double reach_m(Time t) const;
 };
 
-/// Whether the robot comes to rest before the obstacle could reach it: at every time of the trajectory before
-/// its end the robot's centre is farther than `min_separation_m` (its radius and the margin) from wherever the
-/// obstacle's edge may be. Afterwards the robot is at rest, and that is all that it can promise. The answer
-/// yes is never wrong; no may be, within a micrometre.
+/// Whether the robot is at rest before the obstacle could reach it (passive safety): until the trajectory
+/// ends, the robot's centre stays farther than `min_separation_m`, its radius plus the margin, from every
+/// possible position of the obstacle's edge. Conservative: never falsely true; false negatives only within 1
+/// µm.
 ///
-/// Squared distance less squared reach is a quartic on each phase. In Bernstein form its least coefficient
-/// bounds it from below, and halving the phase brings the bound up to the quartic itself (Lane, Riesenfeld
-/// 1981).
-bool rests_before(const Trajectory& trajectory, const MovingObstacle& obstacle, double min_separation_m);
-bool rests_before_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles, double min_separation_m);
+/// Squared distance less squared reach is a quartic in each phase. The smallest coefficient of its Bernstein
+/// form is a lower bound, which converges to the quartic as the phase is halved (Lane, Riesenfeld 1981).
+[[nodiscard]] bool is_passively_safe(const Trajectory& trajectory, const MovingObstacle& obstacle,
+                                     double min_separation_m);
+[[nodiscard]] bool is_passively_safe_from_all(const Trajectory& trajectory,
+                                              std::span<const MovingObstacle> obstacles,
+                                              double min_separation_m);
 
 }  // namespace sidestep

@@ -6,77 +6,79 @@
 #include <span>
 #include <vector>
 
-#include "agents/safety/candidate_choice.hpp"
-#include "agents/safety/trajectory_index.hpp"
+#include "agents/safety/candidate_set.hpp"
 #include "agents/safety/moving_obstacle.hpp"
+#include "agents/safety/trajectory_index.hpp"
 #include "common/motion/validity.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
-/// What the search is asked: where the robot will be when the new version starts, and what it would like to
-/// do then.
+/// The state in which the new version starts, and the desired motion from there on.
 struct SearchQuery {
   Time start{};
   State at_start;
   Vec2 desired_mps2{0, 0};
-  Duration phase{};                          ///< how long the acceleration is held before the stop
-  double inflation_m = 0;                        ///< how much larger than its radius the robot has to be taken
-  std::span<const MovingObstacle> moving{};  ///< to be at rest before
-  std::optional<RobotId> robot{};  ///< whose own versions, if they are among the others, do not count
+  Duration hold_time{};                      ///< how long the acceleration is held before the stop
+  double inflation_m = 0;                    ///< added to the robot's radius
+  std::span<const MovingObstacle> moving{};  ///< obstacles that the robot must be passively safe from
+  std::optional<RobotId> robot{};            ///< if set, this robot's versions in the index are ignored
 };
 
 struct SearchSettings {
-  int samples = 48;          ///< accelerations drawn from A(v) besides the wish
-  double spread_mps2 = 0.5;  ///< candidates of one proposal differ by at least this
+  int samples = 48;          ///< accelerations sampled from A(v) in addition to the desired one
+  double spread_mps2 = 0.5;  ///< minimum difference between the accelerations of two candidates
 };
 
-/// Clear trajectories, the one nearest to the wish first.
+/// Clear trajectories in order of their distance from the desired acceleration, nearest first.
 struct SearchResult {
   static constexpr std::size_t kMaxCandidates = 5;
   std::array<Trajectory, kMaxCandidates> candidates;
   std::size_t count = 0;
-  bool desired_is_clear = false;  ///< the first candidate is the wish itself
-  int checks = 0;              ///< pairs of trajectories compared
+  bool desired_is_clear = false;  ///< the first candidate is the desired acceleration itself
+  int checks = 0;                 ///< pairs of trajectories compared
 };
 
-/// Dynamics safety search (Bruce, ch. 5): the wished acceleration first, then random ones from A(v), each
-/// held for one phase and followed by the stop manoeuvre; kept are those that stay on the field and clear of
-/// the obstacles and of everything that others may be executing, ranked by their distance from the wish.
+/// Dynamics safety search (Bruce, CMU-CS-06-181, ch. 5). Tests the desired acceleration and random ones from
+/// A(v). Each is held for `hold_time` and followed by the stop manoeuvre. The search keeps the candidates
+/// that stay on the field and clear of the obstacles and of every version that other robots may be executing.
 /// Allocates nothing once warm.
 class SafetySearch {
  public:
   SafetySearch(const FloorRules& rules, const SearchSettings& settings,
                const batch::Kernels& kernels = batch::best_kernels());
 
-  SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
+  [[nodiscard]] SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
  private:
-  /// Somebody or something that a candidate may come near to.
+  /// A trajectory or a static obstacle that a candidate may come near to.
   struct Other {
-    const Trajectory* trajectory;  // nullptr: an obstacle
+    const Trajectory* trajectory;  // nullptr for an obstacle
     Vec2 centre_m;
     double min_separation_m;
     bool is_clear(const Trajectory& candidate) const;
   };
-  void draw(const SearchQuery& query, const Vec2& desired_mps2, Rng& rng);
-  void find_near(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
-  void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m, int& checks);
+  /// Collects everything that a candidate within the disc may come near to.
+  void find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
+  void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
+               int& checks);
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
   SearchSettings settings_;
   std::vector<TrajectoryBounds> obstacles_;  // as rules_.obstacles
-  CandidateChoice choice_;
-  std::vector<std::uint32_t> found_;
-  batch::Lanes lanes_;               // of the others who may be near, and
-  std::vector<Other> others_;        // who they are;
-  std::vector<Other> near_, exact_;  // those who are near, and those of them whom batches cannot compare
+  CandidateSet candidates_;
+  std::vector<std::uint32_t> found_indices_;
+  batch::Lanes lanes_;         // lane i: others_[i]
+  std::vector<Other> others_;  // all that may be near
+  std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
+  std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
 };
 
-/// An acceleration held for a phase, then the stop manoeuvre.
-Trajectory accelerate_then_stop(Time start, const State& at_start, const Vec2& acceleration_mps2,
-                                Duration phase, double deceleration_mps2);
+/// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.
+[[nodiscard]] Trajectory accelerate_then_stop(Time start, const State& at_start,
+                                              const Vec2& acceleration_mps2, Duration hold_time,
+                                              double deceleration_mps2);
 
 }  // namespace sidestep

@@ -11,25 +11,26 @@
 
 namespace sidestep {
 
-/// What others may be executing, laid out for being found by place: a grid of cells, and in each the discs
-/// that versions never leave. Allocates nothing once warm.
+/// Spatial index of the versions that other robots may be executing. Cells of a grid hold the bounding discs
+/// of the versions' trajectories. Allocates nothing once warm.
 class TrajectoryIndex {
  public:
   explicit TrajectoryIndex(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
 
   void clear();
-  /// The version is read until clear() or assign().
+  /// Stores a reference: the version must stay valid until clear() or assign().
   void add(const Version& version) { add(version, trajectory_bounds(version.trajectory)); }
-  /// The same with the outline of its trajectory.
-  void add(const Version& version, const TrajectoryBounds& outline);
+  /// The same for a version whose bounds are known.
+  void add(const Version& version, const TrajectoryBounds& bounds);
   void assign(std::span<const Version> versions);
 
   std::size_t size() const { return versions_.size(); }
   const Version& version(std::size_t index) const { return *versions_[index]; }
-  const TrajectoryBounds& outline(std::size_t index) const { return outlines_[index]; }
+  /// The bounds of the version's trajectory. The disc includes the version's inflation.
+  const TrajectoryBounds& bounds(std::size_t index) const { return bounds_[index]; }
 
-  /// Adds the indices of the versions whose discs, inflation_m larger, touch the circle. In no particular order,
-  /// but the same one for the same versions added in the same order.
+  /// Appends the indices of the versions whose discs touch the circle. Their order is unspecified but
+  /// deterministic: it depends only on the versions and the order in which they were added.
   void find(const Circle& circle, std::vector<std::uint32_t>& found);
 
  private:
@@ -41,16 +42,16 @@ class TrajectoryIndex {
 
   const batch::Kernels* kernels_;
   std::vector<const Version*> versions_;
-  std::vector<TrajectoryBounds> outlines_;
+  std::vector<TrajectoryBounds> bounds_;
   bool is_built_ = true;
-  Vec2 low_m_{0, 0};
+  Vec2 min_m_{0, 0};
   double cell_m_ = 1;
   std::size_t columns_ = 1, rows_ = 1;
-  double largest_m_ = 0;                          // radius of a disc
+  double max_radius_m_ = 0;
   std::vector<std::uint32_t> cell_of_;            // by version
-  std::vector<std::uint32_t> first_of_cell_;      // and one more
-  std::vector<std::uint32_t> order_;              // versions by cell, those of a row of cells side by side
-  std::vector<batch::Row> x_m_, y_m_, radius_m_;  // in that order
+  std::vector<std::uint32_t> cell_begin_;         // by cell, into order_; one entry more than cells
+  std::vector<std::uint32_t> order_;              // indices of versions, sorted by cell in row-major order
+  std::vector<batch::Row> x_m_, y_m_, radius_m_;  // discs in the order of order_
   std::vector<std::uint8_t> masks_;
 };
 

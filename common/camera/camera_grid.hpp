@@ -8,14 +8,16 @@
 
 namespace sidestep {
 
-/// The cameras over a scenario's field, row by row from its corner of lowest x and y, along x first: each
-/// hangs over its share, and sees it and the overlap. Height, distortion and image size are those of `like`.
-/// Throws std::invalid_argument as hang() does.
-std::vector<CameraModel> hang_grid(const Field& field, const VisionSpec& spec, const OverheadCamera& like);
-/// The same with what the scenario says of images.
-std::vector<CameraModel> hang_grid(const Scenario& scenario);
+/// The overhead cameras of a field, row by row from the corner with the lowest x and y, along x first. Each
+/// camera is mounted above its cell of the grid and sees the cell and the overlap around it. Height,
+/// distortion and image size come from `prototype`. Throws std::invalid_argument as overhead_camera_model()
+/// does.
+std::vector<CameraModel> camera_grid(const Field& field, const VisionSpec& spec,
+                                     const OverheadCamera& prototype);
+/// The same with the images of the scenario.
+std::vector<CameraModel> camera_grid(const Scenario& scenario);
 
-/// A camera's size, height and distortion.
-OverheadCamera hanging(const ImageSpec& images);
+/// An overhead camera with the image size, height and distortion of a scenario's images.
+OverheadCamera overhead_camera_of(const ImageSpec& images);
 
 }  // namespace sidestep

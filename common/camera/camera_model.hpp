@@ -10,50 +10,51 @@
 
 namespace sidestep {
 
-/// The fields of the league's SSL_GeometryCameraCalibration, in metres, and the image's size. Pixels: x to
-/// the right, y down, and whole numbers are the centres of pixels, everywhere in this project: the image
-/// reaches from -0.5 to width - 0.5.
+/// The fields of the league's SSL_GeometryCameraCalibration in metres, and the image size. Pixel coordinates
+/// everywhere in this project: x to the right, y down, integers at pixel centres. The image extends from -0.5
+/// to width - 0.5.
 struct CameraParameters {
   int width_px = 780;
   int height_px = 580;
   double focal_length_px = 600;
   Vec2 principal_point_px{389.5, 289.5};
   double distortion = 0;  ///< k of common/camera/lens.hpp
-  /// A point p of the world stands at rotation · p + translation_m before the camera: x to the right, y down,
-  /// z along the optical axis. The league's q0 to q3 are its x, y, z, w.
+  /// A world point p has the camera coordinates rotation · p + translation_m: x to the right, y down, z along
+  /// the optical axis. The league's q0 to q3 are the quaternion's x, y, z, w.
   Eigen::Quaterniond rotation{0, 1, 0, 0};
   Vec3 translation_m{0, 0, 4};
 };
 
-/// Empty when the numbers make a camera, else what is wrong with them.
-std::string fault_of(const CameraParameters& parameters);
+/// What is wrong with the parameters; empty when they are valid.
+[[nodiscard]] std::string validation_error(const CameraParameters& parameters);
 
-/// What a camera does to points: the league's pinhole with radial distortion. The world's z is up, and 0 on
+/// Projects points: the league's pinhole model with radial distortion. The world's z points up and is 0 on
 /// the floor.
 class CameraModel {
  public:
-  /// The rotation is normalised. Throws std::invalid_argument with fault_of() when there is one.
+  /// Normalises the rotation. Throws std::invalid_argument with validation_error() if the parameters are
+  /// invalid.
   explicit CameraModel(const CameraParameters& parameters);
 
-  /// Where a point is seen, maybe outside the image. Nothing for a point that is not before the camera, or
-  /// beyond the lens's domain.
+  /// The projection of a point, possibly outside the image. nullopt for a point that is not in front of the
+  /// camera or lies outside the lens's domain.
   std::optional<Vec2> pixel_of(const Vec3& point_m) const;
 
-  /// The point at a height, 0 for the floor, that a pixel shows. Nothing beyond the lens's domain, or when
-  /// the ray goes up, or when the camera hangs lower.
+  /// The point at a height (0 is the floor) on a pixel's viewing ray. nullopt outside the lens's domain, and
+  /// if the ray does not descend to that height from the camera.
   std::optional<Vec2> point_at(const Vec2& pixel, double height_m) const;
 
-  /// How the pixel moves with the point, in pixels per metre along x, y and z; the two columns at the left
-  /// belong to motion on the floor. Nothing where pixel_of() has nothing.
-  std::optional<Eigen::Matrix<double, 2, 3>> pixels_per_metre(const Vec3& point_m) const;
+  /// The Jacobian of pixel_of(), in pixels per metre along x, y and z; its first two columns describe motion
+  /// on the floor. nullopt where pixel_of() has no value.
+  std::optional<Eigen::Matrix<double, 2, 3>> projection_jacobian(const Vec3& point_m) const;
 
   /// Whether the pixel lies in the image.
-  bool shows(const Vec2& pixel) const {
+  bool is_in_image(const Vec2& pixel) const {
     return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < parameters_.width_px - 0.5 &&
            pixel.y() < parameters_.height_px - 0.5;
   }
 
-  /// Where the camera hangs.
+  /// The position of the camera in the world.
   const Vec3& position_m() const { return position_m_; }
   const CameraParameters& parameters() const { return parameters_; }
 

@@ -7,28 +7,29 @@
 namespace sidestep::lens {
 
 /// The league's radial distortion with one coefficient k (ssl-vision): a point at the distorted radius r_d
-/// from the optical axis, at depth 1, was at r_u = r_d (1 + k r_d²) before the lens. Barrel distortion has
-/// k > 0 and no limit. With k < 0 r_u has a maximum, at k r_d² = -1/3, behind which the lens folds the
-/// picture over: the functions' domain ends a little before it, where dr_u/dr_d has fallen from 1 to 0.1.
-inline constexpr double kLeastBend = -0.3;         ///< of k r_d²
-inline constexpr double kLeastSightBend = -0.147;  ///< of k r_u², at the same point: -0.3 · 0.7²
+/// from the optical axis, at depth 1, has the undistorted radius r_u = r_d (1 + k r_d²). Barrel distortion
+/// has k > 0 and an unbounded domain. With k < 0, r_u has a maximum at k r_d² = -1/3, beyond which the image
+/// would fold over; the domain of the functions ends a little before it, where dr_u/dr_d has fallen from 1 to
+/// 0.1.
+inline constexpr double kMinDistortedKr2 = -0.3;      ///< of k r_d²
+inline constexpr double kMinUndistortedKr2 = -0.147;  ///< of k r_u², at the same point: -0.3 · 0.7²
 
-/// r_u / r_d at bend = k r_d²; not a number outside the domain.
-inline double undistorting_factor(double bend) {
-  return bend >= kLeastBend ? 1 + bend : std::numeric_limits<double>::quiet_NaN();
+/// r_u / r_d at kr2 = k r_d²; NaN outside the domain.
+inline double undistortion_factor(double kr2) {
+  return kr2 >= kMinDistortedKr2 ? 1 + kr2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// r_d / r_u at sight_bend = k r_u²: the root of s (1 + c s²) = 1, to the last bits; not a number outside the
-/// domain. Newton's steps from 1 never pass the root: the cubic is convex with c > 0 and s comes down to it,
-/// concave with c < 0 and s goes up.
-inline double distorting_factor(double sight_bend) {
-  const double c = sight_bend;
-  if (!(c >= kLeastSightBend) || !std::isfinite(c)) return std::numeric_limits<double>::quiet_NaN();
+/// r_d / r_u at kr2 = k r_u²: the root of s (1 + c s²) = 1 with c = kr2, to the last bits; NaN outside the
+/// domain. Newton's method from s = 1 never overshoots the root: with c > 0 the cubic is convex and s
+/// decreases to it, with c < 0 it is concave and s increases to it.
+inline double distortion_factor(double kr2) {
+  const double c = kr2;
+  if (!(c >= kMinUndistortedKr2) || !std::isfinite(c)) return std::numeric_limits<double>::quiet_NaN();
   double s = 1;
   for (int step = 0; step < 80; ++step) {
-    const double cube = c * s * s;
-    const double next = (1 + 2 * cube * s) / (1 + 3 * cube);
-    // The error is now less than seven times this step's square.
+    const double cs2 = c * s * s;
+    const double next = (1 + 2 * cs2 * s) / (1 + 3 * cs2);
+    // The error of `next` is less than seven times the square of this step.
     if (std::abs(next - s) <= 1e-8 * s) return next;
     s = next;
   }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPointsPerSide = 64;
 
-/// Its rows are the camera's axes.
+/// The rotation from world to camera: its rows are the camera axes in world coordinates.
 Eigen::Matrix3d axes_of(const OverheadCamera& camera, const Vec3& position_m, const Vec2& centre_m) {
   const Vec2 size_m = camera.view_m.max_m - camera.view_m.min_m;
   const bool is_landscape = camera.width_px >= camera.height_px;
@@ -22,24 +22,28 @@ Eigen::Matrix3d axes_of(const OverheadCamera& camera, const Vec3& position_m, co
   return axes;
 }
 
-/// The longest focal length with which the model's image holds a point. The model's own is 1.
-double longest_focal_length(const CameraModel& model, const Vec3& point_m) {
+/// The maximum focal length that keeps a point in the image. Precondition: the focal length of the model
+/// is 1.
+double max_focal_length(const CameraModel& model, const Vec3& point_m) {
   const std::optional<Vec2> pixel = model.pixel_of(point_m);
-  if (!pixel) throw std::invalid_argument("the camera cannot see all of its rectangle");
+  if (!pixel)
+    throw std::invalid_argument(
+        "overhead camera: the view rectangle exceeds the domain of the lens distortion");
   const CameraParameters& p = model.parameters();
-  const Vec2 from_middle = (*pixel - p.principal_point_px).cwiseAbs();
-  return std::min(p.width_px / 2.0 / from_middle.x(), p.height_px / 2.0 / from_middle.y());
+  const Vec2 offset = (*pixel - p.principal_point_px).cwiseAbs();
+  return std::min(p.width_px / 2.0 / offset.x(), p.height_px / 2.0 / offset.y());
 }
 
 }  // namespace
 
-CameraModel hang(const OverheadCamera& camera) {
+CameraModel overhead_camera_model(const OverheadCamera& camera) {
   const Vec2 size_m = camera.view_m.max_m - camera.view_m.min_m;
-  if (!(size_m.minCoeff() > 0)) throw std::invalid_argument("the camera's rectangle is empty");
-  if (!(camera.height_m > camera.top_m)) throw std::invalid_argument("the camera hangs too low");
+  if (!(size_m.minCoeff() > 0)) throw std::invalid_argument("overhead camera: the view rectangle is empty");
+  if (!(camera.height_m > camera.object_height_m))
+    throw std::invalid_argument("overhead camera: the camera is not above the objects in view");
   const Vec2 centre_m = (camera.view_m.min_m + camera.view_m.max_m) / 2;
-  const Vec2 above_m = centre_m + camera.aside_m;
-  const Vec3 position_m(above_m.x(), above_m.y(), camera.height_m);
+  const Vec2 mount_m = centre_m + camera.lateral_offset_m;
+  const Vec3 position_m(mount_m.x(), mount_m.y(), camera.height_m);
 
   CameraParameters result;
   result.width_px = camera.width_px;
@@ -58,8 +62,8 @@ CameraModel hang(const OverheadCamera& camera) {
     const Vec2 from = corners[side], to = corners[(side + 1) % corners.size()];
     for (int i = 0; i < kPointsPerSide; ++i) {
       const Vec2 p = from + (to - from) * i / kPointsPerSide;
-      for (const double z : {0.0, camera.top_m})
-        focal_length_px = std::min(focal_length_px, longest_focal_length(model, Vec3(p.x(), p.y(), z)));
+      for (const double z : {0.0, camera.object_height_m})
+        focal_length_px = std::min(focal_length_px, max_focal_length(model, Vec3(p.x(), p.y(), z)));
     }
   }
   result.focal_length_px = focal_length_px;

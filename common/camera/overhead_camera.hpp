@@ -6,21 +6,21 @@
 
 namespace sidestep {
 
-/// A camera that hangs somewhere over the floor and is to see a rectangle of it.
+/// A camera mounted above the floor that covers a rectangle of it.
 struct OverheadCamera {
-  Box view_m{{-3, -2.25}, {3, 2.25}};  ///< of the floor
-  double top_m = 0.15;                 ///< what stands in the rectangle is seen up to this height
+  Box view_m{{-3, -2.25}, {3, 2.25}};  ///< the rectangle on the floor
+  double object_height_m = 0.15;       ///< objects in the rectangle are in view up to this height
   double height_m = 4;                 ///< of the camera
-  Vec2 aside_m{0, 0};                  ///< of the rectangle's centre; it tilts the camera
+  Vec2 lateral_offset_m{0, 0};         ///< from the rectangle's centre; tilts the camera
   int width_px = 780;
   int height_px = 580;
   double distortion = 0.1;  ///< k of common/camera/lens.hpp
 };
 
-/// The camera that looks at the rectangle's centre, with the longest focal length that leaves the whole
-/// rectangle in the image, the principal point in its middle, and the rectangle's longer side along the
-/// image's longer one. Throws std::invalid_argument when there is no such camera: no rectangle, too low, or a
-/// distortion whose domain is too small.
-CameraModel hang(const OverheadCamera& camera);
+/// The model of a camera that points at the rectangle's centre, with the principal point in the middle of the
+/// image, the longer side of the rectangle along the longer side of the image, and the maximum focal length
+/// that keeps the whole rectangle in view. Throws std::invalid_argument if there is no such camera: an empty
+/// rectangle, a camera that is too low, or a distortion whose domain is too small.
+CameraModel overhead_camera_model(const OverheadCamera& camera);
 
 }  // namespace sidestep

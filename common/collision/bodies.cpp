@@ -9,8 +9,8 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMoreRecords =
-    128;  // than slots, as words of bits have, and one of bits that are not there
+// Records beyond the slots: kernels may look up any bit of the last word, and index 64 for a missing bit.
+constexpr std::size_t kPaddingRecords = 128;
 
 bool touches_one(const void* bodies, Slot slot, const double* from_m, const double* to_m, double radius_m) {
   return static_cast<const Bodies*>(bodies)->touches(
@@ -22,10 +22,10 @@ bool touches_one(const void* bodies, Slot slot, const double* from_m, const doub
 float rounded_down(double value) { return std::nextafter(static_cast<float>(value), -kInfinite); }
 float rounded_up(double value) { return std::nextafter(static_cast<float>(value), kInfinite); }
 
-Bodies::Bodies(std::vector<Shape> shapes) : records_(kMoreRecords) {
+Bodies::Bodies(std::vector<Shape> shapes) : records_(kPaddingRecords) {
   if (shapes.empty()) return;
   Box box = bounds(shapes.front());
-  for (const Shape& shape : shapes) box = around(box, bounds(shape));
+  for (const Shape& shape : shapes) box = united(box, bounds(shape));
   origin_m_ = 0.5 * box.min_m + 0.5 * box.max_m;
   for (Shape& shape : shapes) add(std::move(shape));
 }
@@ -34,59 +34,59 @@ Slot Bodies::add(Shape shape) {
   Slot slot = end();
   if (free_.empty()) {
     shapes_.push_back(std::move(shape));
-    places_.push_back(kNowhere);
+    indices_.push_back(kUnused);
     records_.emplace_back();
   } else {
     slot = free_.back();
     free_.pop_back();
     shapes_[slot] = std::move(shape);
   }
-  places_[slot] = static_cast<std::uint32_t>(slots_.size());
+  indices_[slot] = static_cast<std::uint32_t>(slots_.size());
   slots_.push_back(slot);
-  records_[slot].edges = kNowhere;
-  record(slot);
+  records_[slot].edges = kUnused;
+  write_record(slot);
   return slot;
 }
 
 void Bodies::replace(Slot slot, Shape shape) {
   shapes_[slot] = std::move(shape);
-  record(slot);
+  write_record(slot);
 }
 
 void Bodies::remove(Slot slot) {
-  places_[slots_.back()] = places_[slot];
-  slots_[places_[slot]] = slots_.back();
+  indices_[slots_.back()] = indices_[slot];
+  slots_[indices_[slot]] = slots_.back();
   slots_.pop_back();
-  places_[slot] = kNowhere;
+  indices_[slot] = kUnused;
   shapes_[slot] = Circle{};
-  if (records_[slot].edges != kNowhere) unused_edges_ += edges_[records_[slot].edges].more + 1;
-  if (unused_edges_ > edges_.size() / 2) compact();
+  if (records_[slot].edges != kUnused) unused_edges_ += edges_[records_[slot].edges].following + 1;
+  if (unused_edges_ > edges_.size() / 2) rebuild_edges();
   free_.push_back(slot);
 }
 
-void Bodies::record(Slot slot) {
+void Bodies::write_record(Slot slot) {
   const Shape& shape = shapes_[slot];
   const Box box = bounds(shape);
-  farthest_m_ = std::max({farthest_m_, (box.min_m - origin_m_).cwiseAbs().maxCoeff(),
+  max_coordinate_m_ = std::max({max_coordinate_m_, (box.min_m - origin_m_).cwiseAbs().maxCoeff(),
                           (box.max_m - origin_m_).cwiseAbs().maxCoeff()});
   if (const auto* circle = std::get_if<Circle>(&shape)) {
     const Vec2 centre = circle->centre_m - origin_m_;
     records_[slot] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
-                      static_cast<float>(circle->radius_m), kNowhere};
-    largest_radius_m_ = std::max(largest_radius_m_, circle->radius_m);
+                      static_cast<float>(circle->radius_m), kUnused};
+    max_radius_m_ = std::max(max_radius_m_, circle->radius_m);
   } else if (std::holds_alternative<Box>(shape)) {
-    record_edges(slot, corners_of(std::get<Box>(shape)));
+    write_edges(slot, corners_of(std::get<Box>(shape)));
   } else if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) {
-    record_edges(slot, polygon->corners_m);
+    write_edges(slot, polygon->corners_m);
   } else {
-    record_edges(slot, std::array{std::get<Segment>(shape).from_m, std::get<Segment>(shape).to_m});
+    write_edges(slot, std::array{std::get<Segment>(shape).from_m, std::get<Segment>(shape).to_m});
   }
 }
 
-void Bodies::record_edges(Slot slot, std::span<const Vec2> corners) {
+void Bodies::write_edges(Slot slot, std::span<const Vec2> corners) {
   const auto blocks = static_cast<std::uint32_t>((corners.size() + 3) / 4);
   std::uint32_t& first = records_[slot].edges;
-  if (first == kNowhere) {
+  if (first == kUnused) {
     first = static_cast<std::uint32_t>(edges_.size());
     edges_.resize(edges_.size() + blocks);
   }
@@ -94,24 +94,24 @@ void Bodies::record_edges(Slot slot, std::span<const Vec2> corners) {
   for (std::uint32_t i = 0; i < 4 * blocks; ++i) {
     collision::EdgeBlock& block = edges_[first + i / 4];
     const std::size_t at = std::min<std::size_t>(i, corners.size() - 1);
-    const Vec2 begin = corners[at] - origin_m_, way = corners[(at + 1) % corners.size()] - corners[at];
-    const Vec2 along = way / std::max(way.squaredNorm(), 1e-24);
+    const Vec2 begin = corners[at] - origin_m_, edge = corners[(at + 1) % corners.size()] - corners[at];
+    const Vec2 along = edge / std::max(edge.squaredNorm(), 1e-24);
     block.x_m[i % 4] = static_cast<float>(begin.x());
     block.y_m[i % 4] = static_cast<float>(begin.y());
-    block.via_x_m[i % 4] = static_cast<float>(way.x());
-    block.via_y_m[i % 4] = static_cast<float>(way.y());
+    block.edge_x_m[i % 4] = static_cast<float>(edge.x());
+    block.edge_y_m[i % 4] = static_cast<float>(edge.y());
     block.along_x_per_m[i % 4] = static_cast<float>(along.x());
     block.along_y_per_m[i % 4] = static_cast<float>(along.y());
-    block.more = blocks - 1 - i / 4;
+    block.following = blocks - 1 - i / 4;
   }
 }
 
-void Bodies::compact() {
+void Bodies::rebuild_edges() {
   edges_.clear();
   unused_edges_ = 0;
   for (const Slot slot : slots_) {
-    records_[slot].edges = kNowhere;
-    record(slot);
+    records_[slot].edges = kUnused;
+    write_record(slot);
   }
 }
 
@@ -127,30 +127,31 @@ void Bodies::compare(Slot slot, const Vec2& at, NearestSlot& nearest) const {
 
 NearestSlot Bodies::nearest(const Vec2& at) const {
   NearestSlot nearest;
-  const Vec2 place = at - origin_m_;
-  const double slack_m = 8 * 0x1p-24 * (farthest_m_ + largest_radius_m_);
+  const Vec2 location = at - origin_m_;
+  const double slack_m = 8 * 0x1p-24 * (max_coordinate_m_ + max_radius_m_);
   for (const Slot slot : slots_) {
     const collision::BodyRecord& circle = records_[slot];
-    const double dx = circle.x_m - place.x(), dy = circle.y_m - place.y();
+    const double dx = circle.x_m - location.x(), dy = circle.y_m - location.y();
     const double reach = nearest.distance_m + circle.radius_m + slack_m;
-    // Also what has no number for a radius, as it is no circle.
+    // Negated, so that shapes other than circles, whose radius is NaN, are compared too.
     if (!(dx * dx + dy * dy > reach * reach)) compare(slot, at, nearest);
   }
   return nearest;
 }
 
 collision::BodiesView Bodies::view() const {
-  // Places up to L from the origin are wrong by a rounding of L each, their differences by that of 2 L: with
-  // what the way's foot adds, across the way, distances are wrong by less than 16 of them.
+  // A coordinate up to L has a rounding error of L * kRounding, a difference of two coordinates one of 2 L *
+  // kRounding. With the error of the projection onto the path, perpendicular to it, distances are wrong by
+  // less than 16 L * kRounding.
   constexpr double kRounding = 0x1p-24;
-  const double limit_m = 4 * farthest_m_, error_m = 16 * kRounding * limit_m;
-  // Near a reach R, a squared distance with an error e is wrong by at most 2 R e + e^2; and edges may cross
-  // that come out 2 e apart.
+  const double limit_m = 4 * max_coordinate_m_, error_m = 16 * kRounding * limit_m;
+  // With an error e of the distance, a squared distance near the squared sum of radii R is wrong by at most
+  // 2 R e + e^2. Crossing edges may appear up to 2 e apart.
   return {{origin_m_.x(), origin_m_.y()},
           rounded_down(limit_m),
           rounded_up(error_m),
           rounded_up(2 * error_m),
-          rounded_up(2 * error_m * (largest_radius_m_ + 5 * error_m)),
+          rounded_up(2 * error_m * (max_radius_m_ + 5 * error_m)),
           records_.data(),
           edges_.data(),
           touches_one,

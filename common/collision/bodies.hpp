@@ -11,64 +11,65 @@
 
 namespace sidestep {
 
-/// Where an obstacle is kept: a small number, given again once it is free.
+/// Index under which an obstacle is stored; reused after removal.
 using Slot = std::uint32_t;
 
-/// The obstacle nearest to a point: infinitely far where there is none.
+/// The obstacle nearest to a point; infinitely far if there is none.
 struct NearestSlot {
   double distance_m = std::numeric_limits<double>::infinity();
   Slot slot = 0xffffffffu;
 };
 
-/// Shapes by slot, and the exact comparison with each.
+/// The shapes of a world by slot, in double precision and as records for kernels, and exact comparisons.
 class Bodies {
  public:
-  /// Takes shapes in the slots 0, 1, 2, …; they have to be right ones (see check). Their middle is the origin
-  /// that positions in single precision are from.
+  /// Stores the shapes in slots 0, 1, 2, …. They have to be valid (see check). The centre of their bounding
+  /// box becomes the origin of positions in single precision.
   explicit Bodies(std::vector<Shape> shapes);
 
   Slot add(Shape shape);
   void replace(Slot slot, Shape shape);
   void remove(Slot slot);
 
-  bool has(Slot slot) const { return slot < places_.size() && places_[slot] != kNowhere; }
+  bool has(Slot slot) const { return slot < indices_.size() && indices_[slot] != kUnused; }
   const Shape& shape(Slot slot) const { return shapes_[slot]; }
-  /// Slots in use, in no order.
+  /// Slots in use, in no particular order.
   const std::vector<Slot>& slots() const { return slots_; }
-  /// All slots, in use or not, are below.
+  /// Upper bound of all slots, in use or not.
   Slot end() const { return static_cast<Slot>(shapes_.size()); }
   const Vec2& origin_m() const { return origin_m_; }
-  /// All obstacles are within, and ever were.
-  Box bounds_m() const { return grown({origin_m_, origin_m_}, farthest_m_); }
+  /// A box that contains all obstacles, past ones included.
+  Box bounds_m() const { return inflated({origin_m_, origin_m_}, max_coordinate_m_); }
 
-  /// Exact but for the last digits.
+  /// The comparison in double precision.
   bool touches(Slot slot, const Sweep& sweep) const;
-  /// Takes the obstacle for the nearest one if it is nearer.
+  /// Updates `nearest` if the obstacle is nearer.
   void compare(Slot slot, const Vec2& at_m, NearestSlot& nearest) const;
-  /// Compares all.
+  /// The nearest obstacle, by comparison with all.
   NearestSlot nearest(const Vec2& at_m) const;
-  /// For kernels, until anything changes.
+  /// A view for kernels; invalidated by any change.
   collision::BodiesView view() const;
 
  private:
-  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+  static constexpr std::uint32_t kUnused = 0xffffffffu;
 
-  void record(Slot slot);
-  void record_edges(Slot slot, std::span<const Vec2> corners);
-  /// Takes edges anew, without those of shapes that are gone.
-  void compact();
+  void write_record(Slot slot);
+  void write_edges(Slot slot, std::span<const Vec2> corners);
+  /// Rewrites the edges of all shapes, dropping those of removed shapes.
+  void rebuild_edges();
 
   std::vector<Shape> shapes_;
-  std::vector<std::uint32_t> places_;  // in slots_, by slot
+  std::vector<std::uint32_t> indices_;  // by slot: its index in slots_
   std::vector<Slot> slots_, free_;
   Vec2 origin_m_{0, 0};
-  double farthest_m_ = 0, largest_radius_m_ = 0;  // of anything, from the origin along an axis; of a circle
-  std::vector<collision::BodyRecord> records_;    // by slot, and some more
+  double max_coordinate_m_ = 0;  // largest coordinate of any shape so far, relative to the origin
+  double max_radius_m_ = 0;      // of the circles so far
+  std::vector<collision::BodyRecord> records_;  // by slot, with padding
   std::vector<collision::EdgeBlock> edges_;
   std::size_t unused_edges_ = 0;  // blocks
 };
 
-/// A number in single precision that is surely not above, or not below.
+/// A number in single precision that is certainly not above, or not below, the value.
 float rounded_down(double value);
 float rounded_up(double value);
 

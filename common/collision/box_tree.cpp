@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr std::uint32_t kFewest = 4;  // lanes of a node in use, but for the root's
+constexpr std::uint32_t kMinChildren = 4;  // of a node other than the root
 
 FloatBox lane_box(const TreeNode& node, std::uint32_t lane) {
   return {node.boxes.min_x_m[lane], node.boxes.min_y_m[lane], node.boxes.max_x_m[lane],
@@ -34,9 +34,9 @@ bool equal(const FloatBox& a, const FloatBox& b) {
 
 }  // namespace
 
-BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), places_(bodies.end()) {
+BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), locations_(bodies.end()) {
   std::vector<Item> slots;
-  for (const Slot slot : bodies.slots()) slots.push_back({box_in_floats(bounds(bodies.shape(slot))), slot});
+  for (const Slot slot : bodies.slots()) slots.push_back({rounded_outwards(bounds(bodies.shape(slot))), slot});
   root_ = build(slots);
 }
 
@@ -65,7 +65,7 @@ BoxTree::NodeId BoxTree::build(std::span<Item> slots) {
     for (const Item& slot : slots) append(id, slot);
     return id;
   }
-  // The largest is split until there are as many as a node holds.
+  // Split the largest group until there are as many groups as lanes.
   std::vector<std::span<Item>> groups{slots};
   const auto smaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
   while (groups.size() < kLanes) {
@@ -83,14 +83,14 @@ BoxTree::NodeId BoxTree::build(std::span<Item> slots) {
   return id;
 }
 
-FloatBox BoxTree::box_in_floats(const Box& box) const {
+FloatBox BoxTree::rounded_outwards(const Box& box) const {
   const Vec2 low = box.min_m - origin_m_, high = box.max_m - origin_m_;
   return {rounded_down(low.x()), rounded_down(low.y()), rounded_up(high.x()), rounded_up(high.y())};
 }
 
 FloatBox BoxTree::box_of(NodeId id) const {
-  FloatBox box = kNoBox;
-  for (std::uint32_t lane = 0; lane < nodes_[id].count; ++lane) box = around(box, lane_box(nodes_[id], lane));
+  FloatBox box = kEmptyBox;
+  for (std::uint32_t lane = 0; lane < nodes_[id].count; ++lane) box = united(box, lane_box(nodes_[id], lane));
   return box;
 }
 
@@ -99,7 +99,7 @@ void BoxTree::put(NodeId id, std::uint32_t lane, const Item& item) {
   set_lane_box(node, lane, item.box);
   node.children[lane] = item.id;
   if (node.is_leaf) {
-    places_[item.id] = {id, lane};
+    locations_[item.id] = {id, lane};
   } else {
     nodes_[item.id].parent = id;
     nodes_[item.id].lane = lane;
@@ -108,7 +108,7 @@ void BoxTree::put(NodeId id, std::uint32_t lane, const Item& item) {
 
 void BoxTree::append(NodeId id, const Item& item) { put(id, nodes_[id].count++, item); }
 
-void BoxTree::take_out(NodeId id, std::uint32_t lane) {
+void BoxTree::remove_lane(NodeId id, std::uint32_t lane) {
   TreeNode& node = nodes_[id];
   const std::uint32_t last = --node.count;
   if (lane != last) put(id, lane, {lane_box(node, last), node.children[last]});
@@ -131,13 +131,13 @@ void BoxTree::insert(const Item& slot) {
   while (!nodes_[id].is_leaf) {
     const TreeNode& node = nodes_[id];
     std::uint32_t best = 0;
-    float least_growth = std::numeric_limits<float>::infinity(), least_size = least_growth;
+    float min_enlargement = std::numeric_limits<float>::infinity(), min_size = min_enlargement;
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
       const FloatBox box = lane_box(node, lane);
-      const float size = half_perimeter(box), growth = half_perimeter(around(box, slot.box)) - size;
-      if (growth > least_growth || (growth == least_growth && size >= least_size)) continue;
-      least_growth = growth;
-      least_size = size;
+      const float size = half_perimeter(box), enlargement = half_perimeter(united(box, slot.box)) - size;
+      if (enlargement > min_enlargement || (enlargement == min_enlargement && size >= min_size)) continue;
+      min_enlargement = enlargement;
+      min_size = size;
       best = lane;
     }
     id = node.children[best];
@@ -147,12 +147,12 @@ void BoxTree::insert(const Item& slot) {
   refit(id);
 }
 
-void BoxTree::split(NodeId id, const Item& more) {
-  std::vector<Item> items{more};
+void BoxTree::split(NodeId id, const Item& extra) {
+  std::vector<Item> items{extra};
   for (std::uint32_t lane = 0; lane < kLanes; ++lane)
     items.push_back({lane_box(nodes_[id], lane), nodes_[id].children[lane]});
   const std::size_t cut = split_by_heuristic(std::span<Item>(items));
-  while (nodes_[id].count > 0) take_out(id, nodes_[id].count - 1);
+  while (nodes_[id].count > 0) remove_lane(id, nodes_[id].count - 1);
   const NodeId sibling = new_node(nodes_[id].is_leaf);
   for (std::size_t i = 0; i < items.size(); ++i) append(i < cut ? id : sibling, items[i]);
   NodeId parent = nodes_[id].parent;
@@ -169,15 +169,15 @@ void BoxTree::split(NodeId id, const Item& more) {
 }
 
 void BoxTree::erase(Slot slot) {
-  NodeId id = places_[slot].node;
-  take_out(id, places_[slot].lane);
-  // What is left of nodes with too few is put in anew.
-  std::vector<Item> loose;
-  while (nodes_[id].parent != kNone && nodes_[id].count < kFewest) {
+  NodeId id = locations_[slot].node;
+  remove_lane(id, locations_[slot].lane);
+  // Nodes with too few children are dissolved, and their slots inserted again.
+  std::vector<Item> orphans;
+  while (nodes_[id].parent != kNone && nodes_[id].count < kMinChildren) {
     const NodeId parent = nodes_[id].parent;
     const std::uint32_t lane = nodes_[id].lane;
-    collect(id, loose);
-    take_out(parent, lane);
+    collect(id, orphans);
+    remove_lane(parent, lane);
     id = parent;
   }
   refit(id);
@@ -186,7 +186,7 @@ void BoxTree::erase(Slot slot) {
     root_ = nodes_[root_].count == 1 ? nodes_[root_].children[0] : new_node(true);
     nodes_[root_].parent = nodes_[root_].lane = kNone;
   }
-  for (const Item& item : loose) insert(item);
+  for (const Item& item : orphans) insert(item);
 }
 
 void BoxTree::collect(NodeId id, std::vector<Item>& slots) {
@@ -200,19 +200,19 @@ void BoxTree::collect(NodeId id, std::vector<Item>& slots) {
 }
 
 void BoxTree::add(Slot slot, const Shape& shape) {
-  if (slot >= places_.size()) places_.resize(slot + 1);
-  insert({box_in_floats(bounds(shape)), slot});
+  if (slot >= locations_.size()) locations_.resize(slot + 1);
+  insert({rounded_outwards(bounds(shape)), slot});
 }
 
 void BoxTree::replace(Slot slot, const Shape& shape) {
-  const Item item{box_in_floats(bounds(shape)), slot};
-  const Place place = places_[slot];
-  const TreeNode& node = nodes_[place.node];
-  const bool stays = node.parent == kNone || equal(around(lane_box(nodes_[node.parent], node.lane), item.box),
+  const Item item{rounded_outwards(bounds(shape)), slot};
+  const Location location = locations_[slot];
+  const TreeNode& node = nodes_[location.node];
+  const bool stays = node.parent == kNone || equal(united(lane_box(nodes_[node.parent], node.lane), item.box),
                                                    lane_box(nodes_[node.parent], node.lane));
   if (stays) {
-    put(place.node, place.lane, item);
-    refit(place.node);
+    put(location.node, location.lane, item);
+    refit(location.node);
   } else {
     erase(slot);
     insert(item);
@@ -228,32 +228,32 @@ NearestSlot BoxTree::nearest(const Vec2& at, const Bodies& bodies) const {
 void BoxTree::find_nearest(NodeId id, const Vec2& at, const Bodies& bodies, NearestSlot& nearest) const {
   const TreeNode& node = nodes_[id];
   const double x = at.x() - origin_m_.x(), y = at.y() - origin_m_.y();
-  // Lower bounds, also to borders within: nothing in a box is deeper than the box. Lanes without one are
-  // passed over.
+  // Lower bounds of signed distances: inside a box, no shape is penetrated deeper than the box itself. Empty
+  // lanes are skipped below.
   double distances_m[kLanes];
   for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
     const double left = node.boxes.min_x_m[lane] - x, right = x - node.boxes.max_x_m[lane];
     const double below = node.boxes.min_y_m[lane] - y, above = y - node.boxes.max_y_m[lane];
     const double dx = left > right ? left : right, dy = below > above ? below : above;
-    const double out_x = dx > 0 ? dx : 0, out_y = dy > 0 ? dy : 0, deep = dx > dy ? dx : dy;
-    const double out = std::sqrt(out_x * out_x + out_y * out_y);
-    distances_m[lane] = deep > 0 ? out : deep;
+    const double outside_x = dx > 0 ? dx : 0, outside_y = dy > 0 ? dy : 0, penetration = dx > dy ? dx : dy;
+    const double outside_distance = std::sqrt(outside_x * outside_x + outside_y * outside_y);
+    distances_m[lane] = penetration > 0 ? outside_distance : penetration;
   }
-  std::uint32_t open = (1u << node.count) - 1;
-  while (open != 0) {
+  std::uint32_t remaining = (1u << node.count) - 1;
+  while (remaining != 0) {
     std::uint32_t nearest_lane = 0;
-    double least_m = std::numeric_limits<double>::infinity();
-    for (std::uint32_t bits = open; bits != 0; bits &= bits - 1) {
+    double min_distance_m = std::numeric_limits<double>::infinity();
+    for (std::uint32_t bits = remaining; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
       if (distances_m[lane] >= nearest.distance_m) {
-        open &= ~(1u << lane);
-      } else if (distances_m[lane] < least_m) {
-        least_m = distances_m[lane];
+        remaining &= ~(1u << lane);
+      } else if (distances_m[lane] < min_distance_m) {
+        min_distance_m = distances_m[lane];
         nearest_lane = lane;
       }
     }
-    if (open == 0) return;
-    open &= ~(1u << nearest_lane);
+    if (remaining == 0) return;
+    remaining &= ~(1u << nearest_lane);
     if (node.is_leaf)
       bodies.compare(node.children[nearest_lane], at, nearest);
     else

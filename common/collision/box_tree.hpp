@@ -13,10 +13,9 @@ struct FloatBox {
   float min_x_m, min_y_m, max_x_m, max_y_m;
 };
 
-/// A tree of axis-aligned boxes in a flat array, with up to sixteen boxes to a node, which are compared at
-/// once. It is built from the top by the surface area heuristic (MacDonald and Booth 1990), here on half
-/// perimeters; afterwards it lives as an R-tree does (Guttman 1984), with the same heuristic to split nodes
-/// that overflow.
+/// A tree of axis-aligned boxes in a flat array. Up to sixteen boxes per node are compared at once. It is
+/// built top-down by the surface area heuristic (MacDonald and Booth 1990) on half perimeters, and updated
+/// like an R-tree (Guttman 1984), with the same heuristic for splitting full nodes.
 class BoxTree {
  public:
   explicit BoxTree(const Bodies& bodies);
@@ -25,10 +24,10 @@ class BoxTree {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Calls for each slot whose box overlaps the box.
+  /// Calls `call(slot)` for each slot whose box overlaps `box`.
   template <typename Call>
   void each_overlapping(const Box& box, const Call& call) const {
-    each_overlapping(root_, box_in_floats(box), call);
+    each_overlapping(root_, rounded_outwards(box), call);
   }
   NearestSlot nearest(const Vec2& at_m, const Bodies& bodies) const;
 
@@ -37,12 +36,12 @@ class BoxTree {
  private:
   using NodeId = std::uint32_t;
 
-  /// A slot or a node, and its box.
+  /// A slot (in leaves) or a node, and its box.
   struct Item {
     FloatBox box;
     std::uint32_t id;
   };
-  struct Place {
+  struct Location {
     NodeId node;
     std::uint32_t lane;
   };
@@ -64,16 +63,16 @@ class BoxTree {
 
   NodeId new_node(bool is_leaf);
   NodeId build(std::span<Item> slots);
-  FloatBox box_in_floats(const Box& box) const;
+  FloatBox rounded_outwards(const Box& box) const;
   FloatBox box_of(NodeId node) const;
 
-  /// Writes the item to the lane, and there to itself.
+  /// Writes an item to a lane, and updates its back reference.
   void put(NodeId node, std::uint32_t lane, const Item& item);
-  void take_out(NodeId node, std::uint32_t lane);
+  void remove_lane(NodeId node, std::uint32_t lane);
   void insert(const Item& slot);
   void append(NodeId node, const Item& item);
-  void split(NodeId node, const Item& more);
-  /// Gives every box above what it holds now.
+  void split(NodeId node, const Item& extra);
+  /// Updates the boxes of a node in all its ancestors.
   void refit(NodeId node);
   void erase(Slot slot);
   void collect(NodeId node, std::vector<Item>& slots);
@@ -81,7 +80,7 @@ class BoxTree {
   Vec2 origin_m_;
   std::vector<collision::TreeNode> nodes_;
   std::vector<NodeId> free_nodes_;
-  std::vector<Place> places_;  // by slot
+  std::vector<Location> locations_;  // by slot
   NodeId root_ = 0;
 };
 

@@ -17,7 +17,7 @@ constexpr std::size_t kBits = 64;
 ExtentMasks::ExtentMasks(const Bodies& bodies)
     : words_(std::max<std::size_t>(1, (bodies.end() + kBits - 1) / kBits)), origin_m_(bodies.origin_m()) {
   Box box{origin_m_, origin_m_};
-  for (const Slot slot : bodies.slots()) box = around(box, bounds(bodies.shape(slot)));
+  for (const Slot slot : bodies.slots()) box = united(box, bounds(bodies.shape(slot)));
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto row = static_cast<Eigen::Index>(axis);
     const double range_m = box.max_m[row] - box.min_m[row], per_m = range_m > 1e-15 ? kBuckets / range_m : 0;
@@ -31,31 +31,31 @@ ExtentMasks::ExtentMasks(const Bodies& bodies)
 
 void ExtentMasks::add(Slot slot, const Shape& shape) {
   if (slot >= words_ * kBits) widen(2 * words_);
-  if (slot >= ends_.size()) ends_.resize(slot + 1, kNone);
+  if (slot >= extents_.size()) extents_.resize(slot + 1, kNone);
   replace(slot, shape);
 }
 
 void ExtentMasks::replace(Slot slot, const Shape& shape) {
   const Box box = bounds(shape);
-  Ends ends{};
+  Extents extents{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto at = static_cast<Eigen::Index>(axis);
-    ends[axis] = static_cast<std::uint16_t>(bucket(axis, box.max_m[at] - origin_m_[at]) + 1);
-    ends[axis + 2] = static_cast<std::uint16_t>(bucket(axis, box.min_m[at] - origin_m_[at]));
+    extents[axis] = static_cast<std::uint16_t>(bucket(axis, box.max_m[at] - origin_m_[at]) + 1);
+    extents[axis + 2] = static_cast<std::uint16_t>(bucket(axis, box.min_m[at] - origin_m_[at]));
   }
-  set_ends(slot, ends);
+  set_extents(slot, extents);
 }
 
-void ExtentMasks::remove(Slot slot) { set_ends(slot, kNone); }
+void ExtentMasks::remove(Slot slot) { set_extents(slot, kNone); }
 
-void ExtentMasks::set_ends(Slot slot, const Ends& ends) {
+void ExtentMasks::set_extents(Slot slot, const Extents& extents) {
   const std::uint64_t bit = std::uint64_t{1} << (slot % kBits);
   for (std::size_t table = 0; table < kTables; ++table) {
-    const std::size_t before = ends_[slot][table], after = ends[table];
+    const std::size_t before = extents_[slot][table], after = extents[table];
     for (std::size_t row = std::min(before, after); row < std::max(before, after); ++row)
       rows_[(table * kBuckets + row) * words_ + slot / kBits] ^= bit;
   }
-  ends_[slot] = ends;
+  extents_[slot] = extents;
 }
 
 std::size_t ExtentMasks::bucket(std::size_t axis, double at_m) const {

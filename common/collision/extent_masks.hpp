@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// Extent masks (Bruce 2006, chapter 3) that take a query four look-ups: for each bucket of an axis a bit
-/// mask of the obstacles that begin before its end, and one of those that do not end before it; the obstacles
-/// whose box the query's overlaps are in the masks of the query's four bounds. Instead of the sorted end
-/// points of the original, buckets are equally wide: finding one takes a product, and an obstacle that moves
-/// changes only its own bits. Obstacles outside of the range of the first ones count for the outermost
-/// buckets.
+/// Extent masks (Bruce 2006, chapter 3) with four look-ups per query. For each bucket of an axis, one bit
+/// mask marks the obstacles that begin before its end, another the obstacles that do not end before it. The
+/// intersection of the masks for the four bounds of a query's box contains all obstacles whose boxes it
+/// overlaps. Unlike the sorted end points of the original, buckets have equal width: finding one takes a
+/// multiplication, and moving an obstacle changes only its own bits. Obstacles outside the range of the
+/// initial obstacles fall into the outermost buckets.
 class ExtentMasks {
  public:
   explicit ExtentMasks(const Bodies& bodies);
@@ -22,7 +22,7 @@ class ExtentMasks {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Calls for each slot whose box may overlap the box.
+  /// Calls `call(slot)` for each slot whose box may overlap `box`.
   template <typename Call>
   void each_overlapping(const Box& box, const Call& call) const {
     const std::uint64_t* row[4];
@@ -37,23 +37,23 @@ class ExtentMasks {
   collision::MasksView view() const { return {rows_.data(), words_, per_m_, shift_}; }
 
  private:
-  /// Of a number in metres from the origin.
+  /// The bucket of a coordinate relative to the origin.
   std::size_t bucket(std::size_t axis, double at_m) const;
   void find_rows(const Box& box, const std::uint64_t* (&row)[4]) const;
-  /// How many of a table's first rows have the slot's bit set, or, of those of begins, do not: 0 and all for
-  /// none.
-  using Ends = std::array<std::uint16_t, 4>;
-  static constexpr Ends kNone{0, 0, collision::kBuckets, collision::kBuckets};
+  /// By table: in the first two tables, the number of leading rows in which the slot's bit is set; in the
+  /// last two, the number of leading rows in which it is not set. 0 and kBuckets for an unused slot.
+  using Extents = std::array<std::uint16_t, 4>;
+  static constexpr Extents kNone{0, 0, collision::kBuckets, collision::kBuckets};
 
-  /// Changes the slot's bits where the ends differ.
-  void set_ends(Slot slot, const Ends& ends);
+  /// Flips the slot's bits in the rows between its old and its new extents.
+  void set_extents(Slot slot, const Extents& extents);
   void widen(std::size_t words);
 
   std::size_t words_ = 1;
   Vec2 origin_m_;
   float per_m_[4], shift_[4];
   std::vector<std::uint64_t> rows_;
-  std::vector<Ends> ends_;  // by slot
+  std::vector<Extents> extents_;  // by slot
 };
 
 }  // namespace sidestep

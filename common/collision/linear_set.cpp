@@ -12,7 +12,7 @@ using collision::kLanes;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kNowhere_m = 1e18f;
+constexpr float kEmptyLane_m = 1e18f;
 
 void copy_lane(const CircleBlock& from, std::size_t from_lane, CircleBlock& to, std::size_t to_lane) {
   to.x_m[to_lane] = from.x_m[from_lane];
@@ -36,45 +36,45 @@ LinearSet::LinearSet(const Bodies& bodies) : origin_m_(bodies.origin_m()) {
 void LinearSet::add(Slot slot, const Shape& shape) {
   const bool is_circle = std::holds_alternative<Circle>(shape);
   auto& slots = is_circle ? circle_slots_ : box_slots_;
-  const Place place{static_cast<std::uint32_t>(slots.size()), is_circle};
-  if (place.lane % kLanes == 0) {
+  const Location location{static_cast<std::uint32_t>(slots.size()), is_circle};
+  if (location.lane % kLanes == 0) {
     if (is_circle)
       circles_.emplace_back();
     else
       boxes_.emplace_back();
-    for (std::uint32_t lane = place.lane; lane < place.lane + kLanes; ++lane) clear({lane, is_circle});
+    for (std::uint32_t lane = location.lane; lane < location.lane + kLanes; ++lane) clear({lane, is_circle});
   }
   slots.push_back(slot);
-  if (slot >= places_.size()) places_.resize(slot + 1);
-  places_[slot] = place;
-  put(place, shape);
+  if (slot >= locations_.size()) locations_.resize(slot + 1);
+  locations_[slot] = location;
+  put(location, shape);
 }
 
-void LinearSet::replace(Slot slot, const Shape& shape) { put(places_[slot], shape); }
+void LinearSet::replace(Slot slot, const Shape& shape) { put(locations_[slot], shape); }
 
 void LinearSet::remove(Slot slot) {
-  const Place place = places_[slot];
-  auto& slots = place.is_circle ? circle_slots_ : box_slots_;
-  const Place last{static_cast<std::uint32_t>(slots.size() - 1), place.is_circle};
-  const std::size_t block = place.lane / kLanes, lane = place.lane % kLanes, last_lane = last.lane % kLanes;
-  if (place.is_circle)
+  const Location location = locations_[slot];
+  auto& slots = location.is_circle ? circle_slots_ : box_slots_;
+  const Location last{static_cast<std::uint32_t>(slots.size() - 1), location.is_circle};
+  const std::size_t block = location.lane / kLanes, lane = location.lane % kLanes, last_lane = last.lane % kLanes;
+  if (location.is_circle)
     copy_lane(circles_.back(), last_lane, circles_[block], lane);
   else
     copy_lane(boxes_.back(), last_lane, boxes_[block], lane);
   clear(last);
-  slots[place.lane] = slots.back();
-  places_[slots.back()] = place;
+  slots[location.lane] = slots.back();
+  locations_[slots.back()] = location;
   slots.pop_back();
   if (last_lane != 0) return;
-  if (place.is_circle)
+  if (location.is_circle)
     circles_.pop_back();
   else
     boxes_.pop_back();
 }
 
-void LinearSet::put(Place place, const Shape& shape) {
-  const std::size_t block = place.lane / kLanes, lane = place.lane % kLanes;
-  if (place.is_circle) {
+void LinearSet::put(Location location, const Shape& shape) {
+  const std::size_t block = location.lane / kLanes, lane = location.lane % kLanes;
+  if (location.is_circle) {
     const auto& circle = std::get<Circle>(shape);
     const Vec2 centre = circle.centre_m - origin_m_;
     circles_[block].x_m[lane] = static_cast<float>(centre.x());
@@ -90,10 +90,10 @@ void LinearSet::put(Place place, const Shape& shape) {
   }
 }
 
-void LinearSet::clear(Place place) {
-  const std::size_t block = place.lane / kLanes, lane = place.lane % kLanes;
-  if (place.is_circle) {
-    circles_[block].x_m[lane] = circles_[block].y_m[lane] = kNowhere_m;
+void LinearSet::clear(Location location) {
+  const std::size_t block = location.lane / kLanes, lane = location.lane % kLanes;
+  if (location.is_circle) {
+    circles_[block].x_m[lane] = circles_[block].y_m[lane] = kEmptyLane_m;
     circles_[block].radius_m[lane] = 0;
   } else {
     boxes_[block].min_x_m[lane] = boxes_[block].min_y_m[lane] = kNan;

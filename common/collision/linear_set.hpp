@@ -5,8 +5,7 @@
 
 namespace sidestep {
 
-/// All obstacles side by side, to be compared as many at once as the machine's vectors hold: circles
-/// themselves, of other shapes the boxes first.
+/// All obstacles in arrays, compared in vector lanes: circles exactly, other shapes by their boxes first.
 class LinearSet {
  public:
   explicit LinearSet(const Bodies& bodies);
@@ -20,20 +19,20 @@ class LinearSet {
   }
 
  private:
-  /// Which lane of the circles or of the boxes a slot has.
-  struct Place {
+  /// The lane of a slot in the circles or in the boxes.
+  struct Location {
     std::uint32_t lane = 0;
     bool is_circle = false;
   };
 
-  void put(Place place, const Shape& shape);
-  void clear(Place place);
+  void put(Location location, const Shape& shape);
+  void clear(Location location);
 
   Vec2 origin_m_;
   std::vector<collision::CircleBlock> circles_;
   std::vector<collision::BoxBlock> boxes_;
   std::vector<Slot> circle_slots_, box_slots_;  // by lane
-  std::vector<Place> places_;                   // by slot
+  std::vector<Location> locations_;                   // by slot
 };
 
 }  // namespace sidestep

@@ -5,8 +5,7 @@
 
 namespace sidestep {
 
-/// Names an obstacle of one world from when it is added until it is removed; then the number may be given
-/// again.
+/// Identifies an obstacle of a world until it is removed; afterwards the number may be reused.
 enum class ObstacleId : std::uint32_t {};
 
 inline constexpr ObstacleId kNoObstacle{0xffffffffu};

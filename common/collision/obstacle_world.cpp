@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMostInLine = 8, kMostInMasks = 512;
+constexpr std::size_t kMaxLinear = 8, kMaxMasks = 512;
 
 std::vector<Shape> checked(std::vector<Shape> shapes) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -29,8 +29,8 @@ using Sets = std::variant<LinearSet, ExtentMasks, BoxTree>;
 Sets set_of(const Bodies& bodies, Structure structure) {
   const std::size_t size = bodies.slots().size();
   if (structure == Structure::kAutomatic)
-    structure = size <= kMostInLine    ? Structure::kLinear
-                : size <= kMostInMasks ? Structure::kMasks
+    structure = size <= kMaxLinear    ? Structure::kLinear
+                : size <= kMaxMasks ? Structure::kMasks
                                        : Structure::kTree;
   if (structure == Structure::kLinear) return LinearSet(bodies);
   if (structure == Structure::kMasks) return ExtentMasks(bodies);
@@ -51,18 +51,18 @@ ObstacleWorld::ObstacleWorld(std::vector<Shape> shapes, Structure structure,
         return Parts{&kernels, structure, std::move(bodies), std::move(set), size};
       }()) {}
 
-ObstacleWorld::ObstacleWorld(Parts parts) : parts_(std::move(parts)) { look(); }
+ObstacleWorld::ObstacleWorld(Parts parts) : parts_(std::move(parts)) { update_view(); }
 
 ObstacleWorld& ObstacleWorld::operator=(const ObstacleWorld& other) {
   parts_ = other.parts_;
-  look();
+  update_view();
   return *this;
 }
 
-void ObstacleWorld::look() {
+void ObstacleWorld::update_view() {
   view_.bodies = parts_.bodies.view();
-  if (const auto* line = std::get_if<LinearSet>(&parts_.set)) {
-    view_.linear = line->view();
+  if (const auto* linear = std::get_if<LinearSet>(&parts_.set)) {
+    view_.linear = linear->view();
     sweep_ = parts_.kernels->linear;
   } else if (const auto* masks = std::get_if<ExtentMasks>(&parts_.set)) {
     view_.masks = masks->view();
@@ -85,22 +85,22 @@ std::optional<Contact> ObstacleWorld::first_contact(const Vec2& from, const Vec2
   const Sweep sweep(from, to, radius);
   const Box box = sweep.bounds();
   std::optional<Contact> first;
-  const auto meet = [&](Slot slot) {
-    const std::optional<double> part = time_of_impact(sweep, parts_.bodies.shape(slot));
-    if (part && !(first && first->part <= *part)) first = Contact{*part, ObstacleId{slot}};
+  const auto consider = [&](Slot slot) {
+    const std::optional<double> fraction = time_of_impact(sweep, parts_.bodies.shape(slot));
+    if (fraction && !(first && first->fraction <= *fraction)) first = Contact{*fraction, ObstacleId{slot}};
   };
   if (const auto* masks = std::get_if<ExtentMasks>(&parts_.set))
-    masks->each_overlapping(box, meet);
+    masks->each_overlapping(box, consider);
   else if (const auto* tree = std::get_if<BoxTree>(&parts_.set))
-    tree->each_overlapping(box, meet);
+    tree->each_overlapping(box, consider);
   else
     for (const Slot slot : parts_.bodies.slots())
-      if (overlap(bounds(parts_.bodies.shape(slot)), box)) meet(slot);
+      if (overlap(bounds(parts_.bodies.shape(slot)), box)) consider(slot);
   return first;
 }
 
 Nearest ObstacleWorld::nearest(const Vec2& at) const {
-  if (!at.allFinite()) throw std::invalid_argument("a place from which the nearest is asked is not finite");
+  if (!at.allFinite()) throw std::invalid_argument("the position of a nearest-obstacle query is not finite");
   const auto* tree = std::get_if<BoxTree>(&parts_.set);
   const NearestSlot nearest = tree != nullptr ? tree->nearest(at, parts_.bodies) : parts_.bodies.nearest(at);
   return {nearest.distance_m, ObstacleId{nearest.slot}};
@@ -109,31 +109,31 @@ Nearest ObstacleWorld::nearest(const Vec2& at) const {
 ObstacleId ObstacleWorld::add(Shape shape) {
   check(shape);
   const Slot slot = parts_.bodies.add(std::move(shape));
-  if (size() <= 2 * parts_.size_when_built + kMostInLine) {
+  if (size() <= 2 * parts_.size_when_built + kMaxLinear) {
     std::visit([&](auto& set) { set.add(slot, parts_.bodies.shape(slot)); }, parts_.set);
   } else {
     parts_.set = set_of(parts_.bodies, parts_.structure);
     parts_.size_when_built = size();
   }
-  look();
+  update_view();
   return ObstacleId{slot};
 }
 
 void ObstacleWorld::move(ObstacleId obstacle, const Vec2& by) {
   const Slot slot = slot_of(obstacle);
   Shape shape = moved(parts_.bodies.shape(slot), by);
-  if (!is_near_enough(bounds(shape)))
+  if (!is_in_range(bounds(shape)))
     throw std::invalid_argument("an obstacle would be moved farther than 1e15 m from the origin");
   parts_.bodies.replace(slot, std::move(shape));
   std::visit([&](auto& set) { set.replace(slot, parts_.bodies.shape(slot)); }, parts_.set);
-  look();
+  update_view();
 }
 
 void ObstacleWorld::remove(ObstacleId obstacle) {
   const Slot slot = slot_of(obstacle);
   std::visit([&](auto& set) { set.remove(slot); }, parts_.set);
   parts_.bodies.remove(slot);
-  look();
+  update_view();
 }
 
 const Shape& ObstacleWorld::shape(ObstacleId obstacle) const {

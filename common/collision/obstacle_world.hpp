@@ -12,53 +12,54 @@
 
 namespace sidestep {
 
-/// How a world finds the obstacles that a query may touch.
+/// The search structure by which a world finds the obstacles that a query may touch.
 enum class Structure {
-  kAutomatic,  ///< by the number of obstacles
+  kAutomatic,  ///< chosen by the number of obstacles
   kLinear,     ///< see LinearSet
   kMasks,      ///< see ExtentMasks
   kTree,       ///< see BoxTree
 };
 
-/// The obstacle nearest to a point: infinitely far, and none, in an empty world.
+/// The obstacle nearest to a point. In an empty world: kNoObstacle, infinitely far.
 struct Nearest {
-  double distance_m = std::numeric_limits<double>::infinity();  ///< to its border, negative inside
+  double distance_m = std::numeric_limits<double>::infinity();  ///< to its boundary, negative inside
   ObstacleId obstacle = kNoObstacle;
 };
 
-/// Where a disc on its way touches for the first time.
+/// The first contact of a moving disc.
 struct Contact {
-  double part = 0;  ///< of the way that is free, 0 to 1
+  double fraction = 0;  ///< of the path that is free, 0 to 1
   ObstacleId obstacle = kNoObstacle;
 };
 
-/// Obstacles and what touches them; touching is having a point in common. Obstacles come, move and go without
-/// the rest being built anew. Const functions may be called by many threads at a time and do not allocate.
-/// Whatever is not finite, a negative radius, a wrong shape (see check) and an id that is not in use are
-/// refused with std::invalid_argument.
+/// A set of obstacles for contact and distance queries. Shapes touch if they have a point in common.
+/// Obstacles are added, moved and removed without rebuilding the structure for the others. Const functions
+/// are thread-safe and, except obstacles(), do not allocate. Throws std::invalid_argument for numbers that
+/// are not finite, negative radii, invalid shapes (see check) and ids that are not in use.
 class ObstacleWorld {
  public:
   explicit ObstacleWorld(std::vector<Shape> shapes = {}, Structure structure = Structure::kAutomatic);
-  /// With the inner loops of an instruction set that is not the best, for comparisons.
+  /// With the kernels of a given instruction set, for tests and benchmarks.
   ObstacleWorld(std::vector<Shape> shapes, Structure structure, const collision::Kernels& kernels);
 
   ObstacleWorld(const ObstacleWorld& other) : ObstacleWorld(Parts(other.parts_)) {}
   ObstacleWorld& operator=(const ObstacleWorld& other);
 
-  /// Whether a disc at a place touches an obstacle.
+  /// Whether a disc at a position touches an obstacle.
   bool touches(const Vec2& at_m, double radius_m) const { return touches(at_m, at_m, radius_m); }
-  /// Whether a disc touches an obstacle anywhere on its straight way.
+  /// Whether a disc that moves straight from one position to another touches an obstacle.
   bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const {
     const collision::Answer answer = sweep_(view_, from_m.data(), to_m.data(), radius_m);
-    if (answer == collision::Answer::kInDoubt) [[unlikely]]
+    if (answer == collision::Answer::kUndecided) [[unlikely]]
       return touches_exactly(from_m, to_m, radius_m);
     return answer == collision::Answer::kTouches;
   }
-  /// How far the disc can go; none if it can go all the way, but for ways that touch no more than rounding.
+  /// The first contact of a disc that moves straight; none if the whole path is free. Paths in contact within
+  /// rounding may be reported either way.
   std::optional<Contact> first_contact(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
   Nearest nearest(const Vec2& at_m) const;
 
-  /// The shapes given to the constructor have the ids 0, 1, 2, … in their order.
+  /// The shapes passed to the constructor have the ids 0, 1, 2, … in their order.
   ObstacleId add(Shape shape);
   void move(ObstacleId obstacle, const Vec2& by_m);
   void remove(ObstacleId obstacle);
@@ -66,13 +67,13 @@ class ObstacleWorld {
   std::size_t size() const { return parts_.bodies.slots().size(); }
   bool has(ObstacleId obstacle) const { return parts_.bodies.has(static_cast<Slot>(obstacle)); }
   const Shape& shape(ObstacleId obstacle) const;
-  /// One of the size() obstacles, in no order.
+  /// The i-th of size() obstacles, in no particular order; changes when obstacles are added or removed.
   ObstacleId obstacle(std::size_t i) const { return ObstacleId{parts_.bodies.slots()[i]}; }
-  /// Of all obstacles, in no order; until one is added or removed.
+  /// The ids of all obstacles, in no particular order.
   std::vector<ObstacleId> obstacles() const;
 
  private:
-  /// All but what points to it.
+  /// Everything except view_, which points into it.
   struct Parts {
     const collision::Kernels* kernels;
     Structure structure;
@@ -82,7 +83,7 @@ class ObstacleWorld {
   };
 
   explicit ObstacleWorld(Parts parts);
-  void look();
+  void update_view();
   Slot slot_of(ObstacleId obstacle) const;
   bool touches_exactly(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
 

@@ -12,52 +12,52 @@
 
 namespace sidestep {
 
-/// Heights over a grid, row by row: the first in the corner with the smallest x and y, then along x.
+/// Terrain heights at the points of a regular grid, row by row along x.
 struct HeightField {
-  Vec2 corner_m{0, 0};
+  Vec2 corner_m{0, 0};  ///< position of the first point, which has the smallest x and y
   double spacing_m = 1;
   std::size_t columns = 0, rows = 0;
   std::vector<double> heights_m;
 };
 
-/// Ground of triangles, none of which lies over another, in a K-D tree with a box for each node (Bruce 2006,
-/// chapter 3). Distances are searched for in near boxes first, and not at all in boxes that are too far.
+/// Terrain made of triangles, none of which lies above another, in a K-D tree with a box per node (Bruce
+/// 2006, chapter 3). Answers distance, height and contact queries, such as those of an aircraft planner. Near
+/// boxes are searched first; boxes too far away are skipped.
 class TerrainTree {
  public:
   using Corners = std::array<std::uint32_t, 3>;
 
-  /// Two triangles to each square of the grid. Throws std::invalid_argument where there is no square, the
-  /// number of heights is wrong, or something is not finite.
+  /// Uses two triangles per grid square. Throws std::invalid_argument if there are fewer than two columns or
+  /// rows, the number of heights is wrong, the spacing is not above 0, or a height is not finite.
   explicit TerrainTree(const HeightField& field);
-  /// Throws std::invalid_argument where there are no triangles, or corners that do not exist or are not
-  /// finite.
+  /// Throws std::invalid_argument if there are no triangles, or a corner does not exist or is not finite.
   TerrainTree(std::vector<Vec3> points_m, std::vector<Corners> triangles);
 
-  /// To the nearest point of the ground. Places that are not finite are refused with std::invalid_argument,
-  /// as they are in all that follows.
-  double distance_m(const Vec3& at_m) const { return distance_m(at_m, at_m); }
-  /// The smallest between points of the segment and of the ground.
-  double distance_m(const Vec3& from_m, const Vec3& to_m) const;
-  /// The smallest height of a point of the segment over the ground, negative below, infinite where there is
-  /// no ground.
-  double height_m(const Vec3& from_m, const Vec3& to_m) const;
-  /// Whether a ball comes to the ground on its way, or is below it.
-  bool touches(const Vec3& from_m, const Vec3& to_m, double radius_m) const;
+  /// The distance from a point to the terrain. This and the following queries throw std::invalid_argument if
+  /// a number is not finite.
+  [[nodiscard]] double distance_m(const Vec3& at_m) const { return distance_m(at_m, at_m); }
+  /// The distance between a segment and the terrain.
+  [[nodiscard]] double distance_m(const Vec3& from_m, const Vec3& to_m) const;
+  /// The smallest height of a segment's points above the terrain: negative below it, infinite if there is no
+  /// terrain below or above the segment.
+  [[nodiscard]] double min_height_m(const Vec3& from_m, const Vec3& to_m) const;
+  /// Whether a ball that moves along a segment touches the terrain, or starts below it.
+  [[nodiscard]] bool touches(const Vec3& from_m, const Vec3& to_m, double radius_m) const;
 
  private:
   struct Node {
     Vec3 min_m, max_m;
     std::uint32_t first = 0, count = 0;  // triangles
-    std::uint32_t second_child = 0;      // the first one is next; 0: a leaf
+    std::uint32_t second_child = 0;      // the first child is the next node; 0: a leaf
   };
-  struct Line;
+  struct QuerySegment;
 
-  void build(std::uint32_t first, std::uint32_t count, std::vector<Vec3>& middles,
+  void build(std::uint32_t first, std::uint32_t count, std::vector<Vec3>& centroids,
              std::vector<std::uint32_t>& order);
   Triangle triangle(std::uint32_t at) const;
-  static double height_over(const Line& line, const Triangle& triangle);
-  void find_nearest(std::uint32_t node, const Line& line, double enough2_m2, double& nearest2_m2) const;
-  void find_lowest(std::uint32_t node, const Line& line, double& lowest_m) const;
+  static double height_above(const QuerySegment& segment, const Triangle& triangle);
+  void find_nearest(std::uint32_t node, const QuerySegment& segment, double sufficient2_m2, double& nearest2_m2) const;
+  void find_min_height(std::uint32_t node, const QuerySegment& segment, double& min_height_m) const;
 
   std::vector<Vec3> points_m_;
   std::vector<Corners> triangles_;

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The part of the way, 0 to 1, after which the disc touches the shape for the first time. A way that touches
-/// no more than rounding may be found to touch or not.
-std::optional<double> time_of_impact(const Sweep& sweep, const Shape& shape);
+/// The fraction of the path, 0 to 1, after which the disc first touches the shape; none without contact.
+/// Paths in contact within rounding may be reported either way.
+[[nodiscard]] std::optional<double> time_of_impact(const Sweep& sweep, const Shape& shape);
 
 }  // namespace sidestep

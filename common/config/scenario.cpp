@@ -7,6 +7,16 @@
 
 namespace sidestep {
 
+FloorRules floor_rules(const Scenario& scenario) {
+  return {scenario.field, scenario.obstacles, scenario.limits, scenario.radius_m, scenario.margin_m};
+}
+
+std::vector<RobotId> roster_of(const Scenario& scenario) {
+  std::vector<RobotId> roster;
+  for (const RobotSpec& robot : scenario.robots) roster.push_back(robot.id);
+  return roster;
+}
+
 SafetyBudget budget_of(const Scenario& scenario) {
   return {scenario.tracking_bound_m, scenario.clock_bound_s, scenario.limits.speed_mps};
 }
@@ -25,13 +35,12 @@ const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t n
   return at != scenario.robots.end() ? &*at : nullptr;
 }
 
-void require_own_numbers(const Scenario& scenario) {
+void require_unique_numbers(const Scenario& scenario) {
   for (const RobotSpec& robot : scenario.robots) {
     const RobotSpec* const first = find_robot(scenario, robot.team, number_of(robot.id));
     if (first->id == robot.id) continue;
     throw std::invalid_argument(fmt::format(
-        "robots {} and {} both have number {} (the id modulo 16) of the {} team and cannot be told apart, "
-        "expected at most one robot of each number in a team",
+        "robots {} and {} both have number {} (the id modulo 16) in the {} team, expected different numbers",
         first->id, robot.id, number_of(robot.id), robot.team == Team::kBlue ? "blue" : "yellow"));
   }
 }

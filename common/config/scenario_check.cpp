@@ -3,21 +3,21 @@
 
 #include <fmt/format.h>
 
-#include "common/config/scenario_loader.hpp"
+#include "common/config/config_error.hpp"
 
 namespace sidestep {
 namespace {
 
-/// Files give millimetres or generated points: rounding must not refuse a distance that is meant to be exact.
+/// Allows for rounding where a file or a generator gives the exact minimum distance.
 constexpr double kRounding_m = 1e-9;
 
-struct Checker {
+struct PlacementCheck {
   const Scenario& scenario;
   const std::string& file;
 
-  void place(const Vec2& point, int line, const std::string& what) const {
+  void check_workspace(const Vec2& point, int line, const std::string& what) const {
     if (!scenario.field.contains(point, scenario.radius_m - kRounding_m)) {
-      throw ScenarioError(
+      throw ConfigError(
           file, line,
           fmt::format("{} ({}, {}) is outside the field: expected |x| <= {:g} and |y| <= {:g}", what,
                       point.x(), point.y(), scenario.field.length_m / 2 - scenario.radius_m,
@@ -25,39 +25,40 @@ struct Checker {
     }
     for (const Circle& obstacle : scenario.obstacles) {
       const double distance = (point - obstacle.centre_m).norm();
-      const double least = obstacle.radius_m + scenario.radius_m + scenario.margin_m;
-      if (distance >= least - kRounding_m) continue;
-      throw ScenarioError(
+      const double min_distance = obstacle.radius_m + scenario.radius_m + scenario.margin_m;
+      if (distance >= min_distance - kRounding_m) continue;
+      throw ConfigError(
           file, line,
           fmt::format(
               "{} ({}, {}) is inside the obstacle at ({}, {}): distance {:.4f} m, expected at least {:.4f} "
               "(obstacle + robot radius + margin)",
-              what, point.x(), point.y(), obstacle.centre_m.x(), obstacle.centre_m.y(), distance, least));
+              what, point.x(), point.y(), obstacle.centre_m.x(), obstacle.centre_m.y(), distance,
+              min_distance));
     }
   }
 
-  void clear_of_opponents(const Vec2& point, int line, const std::string& what) const {
+  void check_opponents(const Vec2& point, int line, const std::string& what) const {
     for (const OpponentSpec& opponent : scenario.opponents) {
-      const double least = opponent.radius_m + scenario.radius_m + scenario.margin_m;
+      const double min_distance = opponent.radius_m + scenario.radius_m + scenario.margin_m;
       const double distance = (point - opponent.path_m.front()).norm();
-      if (distance >= least - kRounding_m) continue;
-      throw ScenarioError(
+      if (distance >= min_distance - kRounding_m) continue;
+      throw ConfigError(
           file, line,
-          fmt::format("{} ({}, {}) is where an opponent begins: distance {:.4f} m, expected at least {:.4f} "
-                      "(both radii + margin)",
-                      what, point.x(), point.y(), distance, least));
+          fmt::format("{} ({}, {}) overlaps the first point of an opponent: distance {:.4f} m, expected at "
+                      "least {:.4f} (both radii + margin)",
+                      what, point.x(), point.y(), distance, min_distance));
     }
   }
 
-  /// `what` is asked only when it has to be said.
+  /// `what` is called for an error only.
   template <typename What>
-  void apart(const Vec2& a, const Vec2& b, int line, What what) const {
-    const double least = 2 * scenario.radius_m + scenario.margin_m;
+  void check_distance(const Vec2& a, const Vec2& b, int line, What what) const {
+    const double min_distance = 2 * scenario.radius_m + scenario.margin_m;
     const double distance = (a - b).norm();
-    if (distance >= least - kRounding_m) return;
-    throw ScenarioError(file, line,
-                        fmt::format("{}: distance {:.4f} m, expected at least {:.4f} (2 radii + margin)",
-                                    what(), distance, least));
+    if (distance >= min_distance - kRounding_m) return;
+    throw ConfigError(file, line,
+                      fmt::format("{}: distance {:.4f} m, expected at least {:.4f} (2 radii + margin)",
+                                  what(), distance, min_distance));
   }
 };
 
@@ -65,31 +66,31 @@ struct Checker {
 
 void check_placement(const Scenario& scenario, const std::vector<RobotLines>& lines,
                      const std::string& file) {
-  const Checker check{scenario, file};
+  const PlacementCheck check{scenario, file};
   const auto& robots = scenario.robots;
   for (std::size_t i = 1; i < robots.size(); ++i) {
     if (robots[i].id == robots[i - 1].id) {
-      throw ScenarioError(file, lines[i].start,
-                          fmt::format("robot id {} is used twice, expected once", robots[i].id));
+      throw ConfigError(file, lines[i].start,
+                        fmt::format("robot id {} is used twice, expected once", robots[i].id));
     }
   }
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    check.place(robots[i].start_m, lines[i].start, fmt::format("start of robot {}", robots[i].id));
+    check.check_workspace(robots[i].start_m, lines[i].start, fmt::format("start of robot {}", robots[i].id));
     if (!robots[i].is_absent) {
-      check.clear_of_opponents(robots[i].start_m, lines[i].start,
-                               fmt::format("start of robot {}", robots[i].id));
+      check.check_opponents(robots[i].start_m, lines[i].start,
+                            fmt::format("start of robot {}", robots[i].id));
     }
     for (std::size_t g = 0; g < robots[i].goals.size(); ++g) {
-      check.place(robots[i].goals[g].position_m, lines[i].goals[g],
-                  fmt::format("goal of robot {}", robots[i].id));
+      check.check_workspace(robots[i].goals[g].position_m, lines[i].goals[g],
+                            fmt::format("goal of robot {}", robots[i].id));
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (!robots[i].is_absent && !robots[j].is_absent) {
-        check.apart(robots[i].start_m, robots[j].start_m, lines[i].start, [&] {
+        check.check_distance(robots[i].start_m, robots[j].start_m, lines[i].start, [&] {
           return fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id);
         });
       }
-      check.apart(
+      check.check_distance(
           robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
           [&] { return fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id); });
     }

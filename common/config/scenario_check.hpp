@@ -8,15 +8,15 @@
 
 namespace sidestep {
 
-/// Lines of a scenario file on which its robots stand, in the order of Scenario::robots.
+/// The lines of a robot in the scenario file.
 struct RobotLines {
   int start = 1;
-  std::vector<int> goals;  ///< one for each goal
+  std::vector<int> goals;  ///< one per goal
 };
 
-/// Throws ScenarioError when robots share an id, or when a start or goal lies outside the field, in an
-/// obstacle, or (starts among starts, last goals among last goals) where another robot's is, or when a start
-/// lies where an opponent begins. Absent robots' starts are in nobody's way. `robots` are sorted by id.
+/// Throws ConfigError if two robots share an id, a start or goal lies outside the field or in an obstacle,
+/// two starts or two last goals overlap, or a start overlaps the first point of an opponent. The starts of
+/// absent robots may overlap others. Precondition: the robots are sorted by id; `lines` is in the same order.
 void check_placement(const Scenario& scenario, const std::vector<RobotLines>& lines, const std::string& file);
 
 }  // namespace sidestep

@@ -6,8 +6,7 @@
 
 namespace sidestep {
 
-/// Reads what is on the floor besides the robots: obstacles, opponents, the ball. Throws ScenarioError for
-/// what is wrong.
+/// Reads the obstacles, the opponents and the ball. Throws ConfigError.
 void read_floor(YamlMap& map, Scenario& scenario);
 
 }  // namespace sidestep

@@ -20,23 +20,23 @@ constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
 
 bool is_name(const std::string& name) {
-  const auto plain = [](unsigned char c) {
+  const auto is_allowed = [](unsigned char c) {
     return c < 128 && (std::isalnum(c) || c == '-' || c == '_' || c == '.');
   };
   return !name.empty() && name.size() <= kMaxNameLength && name[0] != '.' &&
-         std::all_of(name.begin(), name.end(), plain);
+         std::all_of(name.begin(), name.end(), is_allowed);
 }
 
 void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
   const YAML::Node node = map.find("name");
-  scenario.name =
-      node.IsDefined() ? text_from(node, map.place_of("name")) : std::filesystem::path(file).stem().string();
+  scenario.name = node.IsDefined() ? text_from(node, map.location_of("name"))
+                                   : std::filesystem::path(file).stem().string();
   if (is_name(scenario.name)) return;
-  if (node.IsDefined()) map.place_of("name").refuse("expected 1 to 64 letters, digits, '-', '_' or '.'");
+  if (node.IsDefined()) map.location_of("name").fail("expected 1 to 64 letters, digits, '-', '_' or '.'");
   scenario.name = "scenario";
 }
 
-void read_shape(YamlMap& map, Scenario& scenario) {
+void read_field_and_limits(YamlMap& map, Scenario& scenario) {
   read_section(map, "field", [&](YamlMap& field) {
     field.read("length_m", {0.5, 1000}, scenario.field.length_m);
     field.read("width_m", {0.5, 1000}, scenario.field.width_m);
@@ -60,23 +60,22 @@ void read_budget(YamlMap& map, Scenario& scenario) {
   map.read("clock_bound_s", {0, 1}, scenario.clock_bound_s);
   const SafetyBudget budget = budget_of(scenario);
   constexpr double kRounding_m = 1e-9;
-  if (scenario.margin_m >= budget.needed_margin_m() - kRounding_m) return;
-  map.place_of("margin_m")
-      .refuse(fmt::format("{:g} m is less than the safety budget needs: expected at least {:.6g} m (2 x "
-                          "tracking_bound_m {:g} "
-                          "+ 4 x clock_bound_s {:g} x limits.speed_mps {:g})",
-                          scenario.margin_m, budget.needed_margin_m(), budget.tracking_bound_m,
-                          budget.clock_bound_s, budget.speed_mps));
+  if (scenario.margin_m >= budget.required_margin_m() - kRounding_m) return;
+  map.location_of("margin_m")
+      .fail(fmt::format("{:g} m is less than the safety budget: expected at least {:.6g} m (2 x "
+                        "tracking_bound_m {:g} + 4 x clock_bound_s {:g} x limits.speed_mps {:g})",
+                        scenario.margin_m, budget.required_margin_m(), budget.tracking_bound_m,
+                        budget.clock_bound_s, budget.speed_mps));
 }
 
 void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
   read_section(map, "images", [&](YamlMap& inner) {
     ImageSpec& spec = images.emplace();
     if (const YAML::Node node = inner.find("format"); node.IsDefined()) {
-      const YamlPlace place = inner.place_of("format");
-      const std::string name = text_from(node, place);
+      const YamlLocation location = inner.location_of("format");
+      const std::string name = text_from(node, location);
       const auto format = pixel_format_named(name);
-      if (!format) place.refuse("expected yuv422 or rgb, got \"" + name.substr(0, 40) + "\"");
+      if (!format) location.fail("expected yuv422 or rgb, got \"" + name.substr(0, 40) + "\"");
       spec.format = *format;
     }
     inner.read("width_px", {16, 4096}, spec.width_px);
@@ -84,29 +83,28 @@ void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
     inner.read("camera_height_m", {1, 100}, spec.camera_height_m);
     inner.read("distortion", {0, 2}, spec.distortion);
     if (spec.format == PixelFormat::kYuv422 && spec.width_px % 2 != 0)
-      inner.place_of("width_px").refuse("expected an even number with yuv422");
+      inner.location_of("width_px").fail("expected an even number with yuv422");
     const ImageView view{spec.format, spec.width_px, spec.height_px};
     if (view.bytes() > msg::MAX_IMAGE_BYTES) {
-      inner.place_of("width_px")
-          .refuse(fmt::format("{} x {} pixels are {} bytes, {} allowed", spec.width_px, spec.height_px,
-                              view.bytes(), msg::MAX_IMAGE_BYTES));
+      inner.location_of("width_px")
+          .fail(fmt::format("{} x {} pixels are {} bytes, expected at most {}", spec.width_px, spec.height_px,
+                            view.bytes(), msg::MAX_IMAGE_BYTES));
     }
   });
 }
 
-/// Who wears what somebody else wears cannot be told in images.
+/// Two robots of a team with the same pattern cannot be distinguished in images.
 void check_patterns(YamlMap& map, const Scenario& scenario) {
   if (!scenario.vision.images) return;
   try {
-    require_own_numbers(scenario);
+    require_unique_numbers(scenario);
   } catch (const std::invalid_argument& error) {
-    map.place_of("vision").refuse(std::string("images: ") + error.what());
+    map.location_of("vision").fail(std::string("images: ") + error.what());
   }
 }
 
-void read_disturbances(YamlMap& map, Scenario& scenario) {
+void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
-    VisionSpec& vision = scenario.vision;
     inner.read("rate_hz", {1, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);
@@ -114,24 +112,28 @@ void read_disturbances(YamlMap& map, Scenario& scenario) {
     inner.read("position_noise_m", {0, 0.1}, vision.position_noise_m);
     inner.read("heading_noise_rad", {0, 1}, vision.heading_noise_rad);
     inner.read_ms("delay_ms", {0, 1000}, vision.delay);
-    inner.read("missed", kProbability, vision.missed);
-    inner.read("ghosts", kProbability, vision.ghosts);
+    inner.read("miss_probability", kProbability, vision.miss_probability);
+    inner.read("ghost_probability", kProbability, vision.ghost_probability);
     read_images(inner, vision.images);
   });
+}
+
+void read_odometry(YamlMap& map, OdometrySpec& odometry) {
   read_section(map, "odometry", [&](YamlMap& inner) {
-    inner.read("scale_error", {0, 0.2}, scenario.odometry.scale_error);
-    inner.read("velocity_noise_mps", {0, 1}, scenario.odometry.velocity_noise_mps);
+    inner.read("scale_error", {0, 0.2}, odometry.scale_error);
+    inner.read("velocity_noise_mps", {0, 1}, odometry.velocity_noise_mps);
   });
-  map.read("command_loss", kProbability, scenario.command_loss);
+}
+
+void read_network(YamlMap& map, NetworkSpec& network) {
   read_section(map, "network", [&](YamlMap& inner) {
-    NetworkSpec& network = scenario.network;
     inner.read("loss", kProbability, network.loss);
     inner.read("duplicate", kProbability, network.duplicate);
     inner.read_ms("delay_min_ms", {0, 10000}, network.delay_min);
     inner.read_ms("delay_max_ms", {0, 10000}, network.delay_max);
     if (network.delay_max < network.delay_min) {
-      inner.place_of("delay_max_ms")
-          .refuse(fmt::format("expected at least delay_min_ms, {} ms", to_seconds(network.delay_min) * 1e3));
+      inner.location_of("delay_max_ms")
+          .fail(fmt::format("expected at least delay_min_ms, {} ms", to_seconds(network.delay_min) * 1e3));
     }
   });
 }
@@ -139,10 +141,10 @@ void read_disturbances(YamlMap& map, Scenario& scenario) {
 void read_restart(YamlMap& map, RestartSpec& restart) {
   const YAML::Node node = map.find("restart");
   if (!node.IsDefined()) return;
-  const YamlPlace place = map.place_of("restart");
-  for (const YAML::Node& element : list_from(node, place, 16)) {
-    const YamlPlace here = place.of(element, "restart");
-    const std::string process = text_from(element, here);
+  const YamlLocation location = map.location_of("restart");
+  for (const YAML::Node& element : list_from(node, location, 16)) {
+    const YamlLocation element_location = location.of(element, "restart");
+    const std::string process = text_from(element, element_location);
     if (process == "agents")
       restart.agents = true;
     else if (process == "coordinator")
@@ -150,25 +152,26 @@ void read_restart(YamlMap& map, RestartSpec& restart) {
     else if (process == "vision")
       restart.vision = true;
     else
-      here.refuse("expected agents, coordinator or vision, got \"" + process.substr(0, 40) + "\"");
+      element_location.fail("expected agents, coordinator or vision, got \"" + process.substr(0, 40) + "\"");
   }
 }
 
 }  // namespace
 
 Scenario parse_scenario(const std::string& text, const std::string& file_name) {
-  const YAML::Node root = parse_yaml(text, file_name, kExpected);
-  const YamlPlace whole{file_name, 1, ""};
-  YamlMap map(root, whole.of(root, ""));
+  YamlMap map = document_map(text, file_name, kExpected);
   Scenario scenario;
   read_name(map, file_name, scenario);
-  read_shape(map, scenario);
+  read_field_and_limits(map, scenario);
   read_budget(map, scenario);
   read_floor(map, scenario);
-  read_disturbances(map, scenario);
+  read_vision(map, scenario.vision);
+  read_odometry(map, scenario.odometry);
+  map.read("command_loss", kProbability, scenario.command_loss);
+  read_network(map, scenario.network);
   read_restart(map, scenario.restart);
   map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
-  // Placement is judged last, when a misspelt key can no longer be what is wrong with it.
+  // Placements are checked after all keys, because a misspelt key may be what makes one invalid.
   map.find("robots");
   map.find("circle");
   map.find("streams");

@@ -11,13 +11,13 @@
 #include <sstream>
 #include <yaml-cpp/eventhandler.h>
 
-#include "common/config/scenario_loader.hpp"
+#include "common/config/config_error.hpp"
 
 namespace sidestep {
 namespace {
 
-/// Remembers where the last document began.
-class DocumentMarks : public YAML::EventHandler {
+/// Records the line on which the last document began.
+class DocumentLine : public YAML::EventHandler {
  public:
   int line = 1;
 
@@ -37,31 +37,31 @@ class DocumentMarks : public YAML::EventHandler {
 }  // namespace
 
 std::string read_yaml_file(const std::string& path, const std::string& expected) {
-  const auto refuse = [&](const std::string& why) {
-    throw ScenarioError(path, 1,
-                        fmt::format("cannot read the file ({}), expected {} in YAML", why, expected));
+  const auto fail = [&](const std::string& why) {
+    throw ConfigError(path, 1, fmt::format("cannot read the file ({}), expected {} in YAML", why, expected));
   };
-  if (std::filesystem::is_directory(path)) refuse("a directory");
+  if (std::filesystem::is_directory(path)) fail("a directory");
   std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::strerror(errno));
+  if (!file) fail(std::strerror(errno));
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// Load takes the first document and silently leaves the rest, and LoadAll never returns from some broken
-// files (yaml-cpp 0.7): so the documents are counted to two at most.
+// In yaml-cpp 0.7, Load silently ignores all documents after the first, and LoadAll does not return for some
+// malformed files. So the documents are counted first, up to the second.
 YAML::Node parse_yaml(const std::string& text, const std::string& file_name, const std::string& expected) {
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    DocumentMarks marks;
-    if (!parser.HandleNextDocument(marks))
-      throw ScenarioError(file_name, 1, "the file is empty, expected " + expected);
-    if (parser.HandleNextDocument(marks)) {
-      throw ScenarioError(file_name, marks.line, "a second YAML document begins here, expected one");
+    DocumentLine document;
+    if (!parser.HandleNextDocument(document))
+      throw ConfigError(file_name, 1, "the file is empty, expected " + expected);
+    if (parser.HandleNextDocument(document)) {
+      throw ConfigError(file_name, document.line,
+                        "a second YAML document begins here, expected a single document");
     }
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw ScenarioError(file_name, std::max(1, error.mark.line + 1), "not YAML: " + error.msg);
+    throw ConfigError(file_name, std::max(1, error.mark.line + 1), "not YAML: " + error.msg);
   }
 }
 

@@ -6,12 +6,13 @@
 
 namespace sidestep {
 
-/// What a file holds. `expected` ("a scenario") stands in messages; throws ScenarioError when it cannot be
-/// read.
-std::string read_yaml_file(const std::string& path, const std::string& expected);
+/// The content of a YAML file. `expected` ("a scenario") appears in error messages. Throws ConfigError if the
+/// file cannot be read.
+[[nodiscard]] std::string read_yaml_file(const std::string& path, const std::string& expected);
 
-/// The one document of a YAML text; throws ScenarioError for a broken text, an empty one and several
-/// documents.
-YAML::Node parse_yaml(const std::string& text, const std::string& file_name, const std::string& expected);
+/// The single document of a YAML text. Throws ConfigError if the text is empty, malformed, or contains
+/// several documents.
+[[nodiscard]] YAML::Node parse_yaml(const std::string& text, const std::string& file_name,
+                                    const std::string& expected);
 
 }  // namespace sidestep

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <set>
 
-#include "common/config/scenario_loader.hpp"
+#include "common/config/config_error.hpp"
 #include "common/config/yaml_document.hpp"
 
 namespace sidestep {
 namespace {
 
-std::string shown(const YAML::Node& node) {
+std::string described(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Scalar: {
       const std::string text = node.Scalar().substr(0, 40);
@@ -31,9 +31,9 @@ std::string shown(const YAML::Node& node) {
   return "nothing";
 }
 
-std::string shown(Range range) { return fmt::format("{} to {}", range.low, range.high); }
+std::string described(Range range) { return fmt::format("{} to {}", range.low, range.high); }
 
-/// Numbers are plain scalars: "3" in quotes or with a tag is text.
+/// A number is a plain scalar: "3" in quotes or with a tag is text.
 template <typename Number>
 bool parse_plain(const YAML::Node& node, Number& value) {
   if (!node.IsScalar() || node.Tag() != "?") return false;
@@ -45,71 +45,74 @@ bool parse_plain(const YAML::Node& node, Number& value) {
 
 }  // namespace
 
-void YamlPlace::refuse(const std::string& why) const {
-  throw ScenarioError(file, line, what.empty() ? why : what + ": " + why);
+void YamlLocation::fail(const std::string& why) const {
+  throw ConfigError(file, line, what.empty() ? why : what + ": " + why);
 }
 
-YamlPlace YamlPlace::of(const YAML::Node& node, const std::string& name) const {
-  const int own = node.IsDefined() ? node.Mark().line + 1 : 0;
-  return {file, own > 0 ? own : line, name};
+YamlLocation YamlLocation::of(const YAML::Node& node, const std::string& name) const {
+  const int node_line = node.IsDefined() ? node.Mark().line + 1 : 0;
+  return {file, node_line > 0 ? node_line : line, name};
 }
 
-double number_from(const YAML::Node& node, const YamlPlace& place, Range range) {
+double number_from(const YAML::Node& node, const YamlLocation& location, Range range) {
   double value = 0;
   if (!parse_plain(node, value)) {
-    place.refuse(fmt::format("expected a number from {}, got {}", shown(range), shown(node)));
+    location.fail(fmt::format("expected a number from {}, got {}", described(range), described(node)));
   }
   if (!std::isfinite(value) || value < range.low || value > range.high) {
-    place.refuse(fmt::format("expected {}, got {}", shown(range), value));
+    location.fail(fmt::format("expected {}, got {}", described(range), value));
   }
   return value;
 }
 
-long integer_from(const YAML::Node& node, const YamlPlace& place, Range range) {
+long integer_from(const YAML::Node& node, const YamlLocation& location, Range range) {
   long value = 0;
   if (!parse_plain(node, value)) {
-    place.refuse(fmt::format("expected a whole number from {}, got {}", shown(range), shown(node)));
+    location.fail(fmt::format("expected a whole number from {}, got {}", described(range), described(node)));
   }
   if (static_cast<double>(value) < range.low || static_cast<double>(value) > range.high) {
-    place.refuse(fmt::format("expected {}, got {}", shown(range), value));
+    location.fail(fmt::format("expected {}, got {}", described(range), value));
   }
   return value;
 }
 
-std::string text_from(const YAML::Node& node, const YamlPlace& place) {
-  if (!node.IsScalar()) place.refuse("expected text, got " + shown(node));
+std::string text_from(const YAML::Node& node, const YamlLocation& location) {
+  if (!node.IsScalar()) location.fail("expected text, got " + described(node));
   return node.Scalar();
 }
 
-std::vector<double> numbers_from(const YAML::Node& node, const YamlPlace& place, std::size_t least,
-                                 std::size_t most, Range range) {
-  const std::string length = least == most ? std::to_string(least) : fmt::format("{} to {}", least, most);
+std::vector<double> numbers_from(const YAML::Node& node, const YamlLocation& location, std::size_t min_count,
+                                 std::size_t max_count, Range range) {
+  const std::string length =
+      min_count == max_count ? std::to_string(min_count) : fmt::format("{} to {}", min_count, max_count);
   if (!node.IsSequence())
-    place.refuse(fmt::format("expected a list of {} numbers, got {}", length, shown(node)));
-  if (node.size() < least || node.size() > most) {
-    place.refuse(fmt::format("expected a list of {} numbers, got {}", length, node.size()));
+    location.fail(fmt::format("expected a list of {} numbers, got {}", length, described(node)));
+  if (node.size() < min_count || node.size() > max_count) {
+    location.fail(fmt::format("expected a list of {} numbers, got {}", length, node.size()));
   }
   std::vector<double> values;
   for (const auto& element : node)
-    values.push_back(number_from(element, place.of(element, place.what), range));
+    values.push_back(number_from(element, location.of(element, location.what), range));
   return values;
 }
 
-std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlPlace& place, std::size_t most) {
-  if (!node.IsSequence()) place.refuse("expected a list, got " + shown(node));
-  if (node.size() > most)
-    place.refuse(fmt::format("expected at most {} elements, got {}", most, node.size()));
+std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlLocation& location,
+                                  std::size_t max_count) {
+  if (!node.IsSequence()) location.fail("expected a list, got " + described(node));
+  if (node.size() > max_count)
+    location.fail(fmt::format("expected at most {} elements, got {}", max_count, node.size()));
   return {node.begin(), node.end()};
 }
 
-YamlMap::YamlMap(const YAML::Node& node, YamlPlace place) : node_(node), place_(std::move(place)) {
-  if (!node_.IsMap()) place_.refuse("expected a mapping of keys to values, got " + shown(node_));
+YamlMap::YamlMap(const YAML::Node& node, YamlLocation location)
+    : node_(node), location_(std::move(location)) {
+  if (!node_.IsMap()) location_.fail("expected a mapping of keys to values, got " + described(node_));
   std::set<std::string> seen;
   for (const auto& entry : node_) {
-    const YamlPlace here = place_.of(entry.first, place_.what);
-    if (!entry.first.IsScalar()) here.refuse("expected a key, got " + shown(entry.first));
+    const YamlLocation here = location_.of(entry.first, location_.what);
+    if (!entry.first.IsScalar()) here.fail("expected a key, got " + described(entry.first));
     if (!seen.insert(entry.first.Scalar()).second) {
-      here.refuse(fmt::format("key \"{}\" stands here twice, expected once", entry.first.Scalar()));
+      here.fail(fmt::format("duplicate key \"{}\"", entry.first.Scalar()));
     }
   }
 }
@@ -124,34 +127,34 @@ YAML::Node YamlMap::find(const std::string& key) {
 
 YAML::Node YamlMap::require(const std::string& key) {
   const YAML::Node node = find(key);
-  if (!node.IsDefined()) place_.refuse(fmt::format("key \"{}\" is missing", key));
+  if (!node.IsDefined()) location_.fail(fmt::format("key \"{}\" is missing", key));
   return node;
 }
 
-YamlPlace YamlMap::place_of(const std::string& key) {
-  const std::string name = place_.what.empty() ? key : place_.what + "." + key;
+YamlLocation YamlMap::location_of(const std::string& key) {
+  const std::string name = location_.what.empty() ? key : location_.what + "." + key;
   for (const auto& entry : node_) {
-    // The mark of an empty value is wherever the next token stands.
+    // The mark of an empty value is that of the next token.
     if (entry.first.Scalar() == key)
-      return place_.of(entry.second.IsNull() ? entry.first : entry.second, name);
+      return location_.of(entry.second.IsNull() ? entry.first : entry.second, name);
   }
-  return {place_.file, place_.line, name};
+  return {location_.file, location_.line, name};
 }
 
 void YamlMap::read(const std::string& key, Range range, double& value) {
   const YAML::Node node = find(key);
-  if (node.IsDefined()) value = number_from(node, place_of(key), range);
+  if (node.IsDefined()) value = number_from(node, location_of(key), range);
 }
 
 void YamlMap::read(const std::string& key, Range range, int& value) {
   const YAML::Node node = find(key);
-  if (node.IsDefined()) value = static_cast<int>(integer_from(node, place_of(key), range));
+  if (node.IsDefined()) value = static_cast<int>(integer_from(node, location_of(key), range));
 }
 
 void YamlMap::read(const std::string& key, Range range, Vec2& value) {
   const YAML::Node node = find(key);
   if (!node.IsDefined()) return;
-  const auto numbers = numbers_from(node, place_of(key), 2, 2, range);
+  const auto numbers = numbers_from(node, location_of(key), 2, 2, range);
   value = {numbers[0], numbers[1]};
 }
 
@@ -160,7 +163,7 @@ void YamlMap::read(const std::string& key, bool& value) {
   if (!node.IsDefined()) return;
   const bool is_plain = node.IsScalar() && node.Tag() == "?";
   if (!is_plain || (node.Scalar() != "true" && node.Scalar() != "false")) {
-    place_of(key).refuse("expected true or false, got " + shown(node));
+    location_of(key).fail("expected true or false, got " + described(node));
   }
   value = node.Scalar() == "true";
 }
@@ -176,15 +179,15 @@ void YamlMap::read_ms(const std::string& key, Range range_ms, Duration& value) {
 void YamlMap::finish() const {
   for (const auto& entry : node_) {
     if (std::find(known_.begin(), known_.end(), entry.first.Scalar()) != known_.end()) continue;
-    place_.of(entry.first, place_.what)
-        .refuse(fmt::format("unknown key \"{}\", expected one of: {}", entry.first.Scalar().substr(0, 40),
-                            fmt::join(known_, ", ")));
+    location_.of(entry.first, location_.what)
+        .fail(fmt::format("unknown key \"{}\", expected one of: {}", entry.first.Scalar().substr(0, 40),
+                          fmt::join(known_, ", ")));
   }
 }
 
 YamlMap document_map(const std::string& text, const std::string& file_name, const std::string& expected) {
   const YAML::Node root = parse_yaml(text, file_name, expected);
-  return {root, YamlPlace{file_name, 1, ""}.of(root, "")};
+  return {root, YamlLocation{file_name, 1, ""}.of(root, "")};
 }
 
 }  // namespace sidestep

@@ -10,16 +10,16 @@
 
 namespace sidestep {
 
-/// A place in a file: what errors say it about.
-struct YamlPlace {
+/// A location in a YAML file, for error messages.
+struct YamlLocation {
   std::string file;
   int line = 1;      ///< from 1
-  std::string what;  ///< e.g. "vision.delay_ms"
+  std::string what;  ///< the key, e.g. "vision.delay_ms"
 
-  /// Throws a ScenarioError for this place.
-  [[noreturn]] void refuse(const std::string& why) const;
-  /// The place of a node within this one; nodes without a mark of their own keep this line.
-  YamlPlace of(const YAML::Node& node, const std::string& name) const;
+  /// Throws a ConfigError for this location.
+  [[noreturn]] void fail(const std::string& why) const;
+  /// The location of a node within this one. A node without a position in the text keeps this line.
+  YamlLocation of(const YAML::Node& node, const std::string& name) const;
 };
 
 struct Range {
@@ -27,69 +27,74 @@ struct Range {
   double high;
 };
 
-/// A finite number within a range, or a refusal.
-double number_from(const YAML::Node& node, const YamlPlace& place, Range range);
-/// A whole number within a range, or a refusal.
-long integer_from(const YAML::Node& node, const YamlPlace& place, Range range);
-/// Plain or quoted text, or a refusal.
-std::string text_from(const YAML::Node& node, const YamlPlace& place);
-/// A list of numbers whose length lies between least and most, or a refusal.
-std::vector<double> numbers_from(const YAML::Node& node, const YamlPlace& place, std::size_t least,
-                                 std::size_t most, Range range);
-/// The elements of a list of at most `most`, or a refusal.
-std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlPlace& place, std::size_t most);
+// Readers of a node. They throw a ConfigError for `location` if the node has the wrong type or is out of
+// range.
 
-/// Reads one YAML mapping strictly. Each reader leaves the value alone when the key is missing; finish()
-/// refuses every key that no reader asked for. Duplicate keys are refused at construction.
+/// A finite number.
+[[nodiscard]] double number_from(const YAML::Node& node, const YamlLocation& location, Range range);
+[[nodiscard]] long integer_from(const YAML::Node& node, const YamlLocation& location, Range range);
+/// Plain or quoted text.
+[[nodiscard]] std::string text_from(const YAML::Node& node, const YamlLocation& location);
+/// A list of min_count to max_count numbers.
+std::vector<double> numbers_from(const YAML::Node& node, const YamlLocation& location, std::size_t min_count,
+                                 std::size_t max_count, Range range);
+/// The elements of a list.
+[[nodiscard]] std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlLocation& location,
+                                                std::size_t max_count);
+
+/// Reads a YAML mapping strictly. A reader leaves the value unchanged if the key is missing. finish() rejects
+/// all keys that were not read; the constructor rejects duplicate keys. All functions throw ConfigError.
 class YamlMap {
  public:
-  YamlMap(const YAML::Node& node, YamlPlace place);
+  YamlMap(const YAML::Node& node, YamlLocation location);
 
   void read(const std::string& key, Range range, double& value);
   void read(const std::string& key, Range range, int& value);
   void read(const std::string& key, Range range, Vec2& value);
   /// true or false.
   void read(const std::string& key, bool& value);
-  /// The key's name ends in _ms.
+  /// For keys that end in _ms.
   void read_ms(const std::string& key, Range range_ms, Duration& value);
-  /// The value's node, undefined when the key is missing.
+  /// The value of a key; undefined if the key is missing.
   YAML::Node find(const std::string& key);
-  /// As find, but a missing key is refused.
+  /// The value of a required key.
   YAML::Node require(const std::string& key);
-  /// Where the key's value stands, or the whole mapping when the key is missing.
-  YamlPlace place_of(const std::string& key);
-  const YamlPlace& place() const { return place_; }
+  /// The location of the key's value, or of the whole mapping if the key is missing.
+  YamlLocation location_of(const std::string& key);
+  const YamlLocation& location() const { return location_; }
   void finish() const;
 
  private:
   YAML::Node node_;
-  YamlPlace place_;
+  YamlLocation location_;
   std::vector<std::string> known_;
 };
 
-/// The mapping that a YAML text is. `expected` ("a layout of markings") and `file_name` stand in messages.
-YamlMap document_map(const std::string& text, const std::string& file_name, const std::string& expected);
+/// The mapping at the root of a YAML text. `expected` ("a marker layout") and `file_name` appear in error
+/// messages.
+[[nodiscard]] YamlMap document_map(const std::string& text, const std::string& file_name,
+                                   const std::string& expected);
 
-/// Calls `read` on each mapping of the list under a key, of which there are at least one and at most `most`,
-/// and refuses the keys that it does not ask for.
+/// Calls `read` for each mapping in the list under a required key, which has 1 to max_count elements, and
+/// rejects unknown keys in it.
 template <typename Read>
-void read_list(YamlMap& map, const std::string& key, std::size_t most, Read read) {
-  const YamlPlace place = map.place_of(key);
-  const std::vector<YAML::Node> elements = list_from(map.require(key), place, most);
-  if (elements.empty()) place.refuse("expected at least one element");
+void read_list(YamlMap& map, const std::string& key, std::size_t max_count, Read read) {
+  const YamlLocation location = map.location_of(key);
+  const std::vector<YAML::Node> elements = list_from(map.require(key), location, max_count);
+  if (elements.empty()) location.fail("expected at least one element");
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    YamlMap inner(elements[i], place.of(elements[i], key + "[" + std::to_string(i) + "]"));
+    YamlMap inner(elements[i], location.of(elements[i], key + "[" + std::to_string(i) + "]"));
     read(inner);
     inner.finish();
   }
 }
 
-/// Calls `read` on the mapping under a key when it is there, and refuses the keys that it does not ask for.
+/// Calls `read` for the mapping under an optional key, and rejects unknown keys in it.
 template <typename Read>
 void read_section(YamlMap& map, const std::string& key, Read read) {
   const YAML::Node node = map.find(key);
   if (!node.IsDefined()) return;
-  YamlMap inner(node, map.place_of(key));
+  YamlMap inner(node, map.location_of(key));
   read(inner);
   inner.finish();
 }

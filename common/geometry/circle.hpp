@@ -10,7 +10,7 @@ struct Circle {
   double radius_m = 0;
 };
 
-/// Whether two discs have a point in common.
+/// Whether two discs touch, i.e. have a point in common.
 inline bool touch(const Circle& a, const Circle& b) {
   const double far = a.radius_m + b.radius_m;
   return (a.centre_m - b.centre_m).squaredNorm() <= far * far;

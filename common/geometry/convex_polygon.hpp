@@ -9,12 +9,12 @@
 
 namespace sidestep {
 
-/// A convex polygon with its inside; at least three corners, counter-clockwise.
+/// A solid convex polygon with at least three corners, counter-clockwise.
 struct ConvexPolygon {
   std::vector<Vec2> corners_m;
 };
 
-/// The distance from a point to the border of the convex polygon with these corners, negative inside.
+/// The distance from a point to the boundary of the convex polygon with these corners, negative inside.
 inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
   double nearest2 = std::numeric_limits<double>::infinity();
   bool inside = true;
@@ -26,8 +26,8 @@ inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
   return inside ? -std::sqrt(nearest2) : std::sqrt(nearest2);
 }
 
-/// The square of the distance from a segment to the convex polygon with these corners, 0 inside. The polygon
-/// may be as thin as a line.
+/// The squared distance from a segment to the convex polygon with these corners, 0 inside. The polygon may be
+/// degenerate (without area).
 inline double squared_distance(const Segment& s, std::span<const Vec2> corners) {
   double nearest2 = std::numeric_limits<double>::infinity();
   bool inside = true;

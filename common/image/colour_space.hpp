@@ -12,7 +12,7 @@ struct Rgb {
   bool operator==(const Rgb&) const = default;
 };
 
-/// ITU-R BT.601 with the full range of a byte; grey has u = v = 128.
+/// Full-range ITU-R BT.601; grey has u = v = 128.
 struct Yuv {
   std::uint8_t y = 0, u = 128, v = 128;
   bool operator==(const Yuv&) const = default;
@@ -21,7 +21,7 @@ struct Yuv {
 namespace bt601 {
 /// The weights of red, green and blue in y.
 inline constexpr double kRed = 0.299, kGreen = 0.587, kBlue = 0.114;
-/// u is this much of b - y, and v of r - y.
+/// The scale of u relative to b - y, and of v relative to r - y.
 inline constexpr double kU = 0.5 / (1 - kBlue), kV = 0.5 / (1 - kRed);
 }  // namespace bt601
 
@@ -34,7 +34,7 @@ inline Yuv yuv_of(const Rgb& c) {
   return {to_byte(y), to_byte(128 + bt601::kU * (c.b - y)), to_byte(128 + bt601::kV * (c.r - y))};
 }
 
-/// What lies outside RGB is cut off.
+/// Colours outside the RGB range are clamped.
 inline Rgb rgb_of(const Yuv& c) {
   const double r = c.y + (c.v - 128) / bt601::kV, b = c.y + (c.u - 128) / bt601::kU;
   return {to_byte(r), to_byte((c.y - bt601::kRed * r - bt601::kBlue * b) / bt601::kGreen), to_byte(b)};

@@ -9,19 +9,18 @@
 
 namespace sidestep {
 
-/// How a camera writes pixels down, row by row from the top, each row from the left.
+/// The layout of pixels in memory, row by row from the top, each row from the left.
 enum class PixelFormat : std::uint8_t {
-  kYuv422,  ///< U Y V Y for two pixels: U and V are of both (UYVY, ITU-R BT.601 with the full range of a
-            ///< byte)
-  kRgb      ///< R G B for each pixel
+  kYuv422,  ///< UYVY: two pixels share U and V; full-range ITU-R BT.601
+  kRgb      ///< R G B per pixel
 };
 
-/// As files and command lines spell it.
+/// The name in files and on the command line.
 constexpr std::string_view name_of(PixelFormat format) {
   return format == PixelFormat::kRgb ? "rgb" : "yuv422";
 }
-/// Nothing for a name that is none of theirs.
-constexpr std::optional<PixelFormat> pixel_format_named(std::string_view name) {
+/// nullopt for an unknown name.
+[[nodiscard]] constexpr std::optional<PixelFormat> pixel_format_named(std::string_view name) {
   for (const PixelFormat format : {PixelFormat::kYuv422, PixelFormat::kRgb}) {
     if (name == name_of(format)) return format;
   }
@@ -30,23 +29,23 @@ constexpr std::optional<PixelFormat> pixel_format_named(std::string_view name) {
 
 constexpr int bytes_per_pixel(PixelFormat format) { return format == PixelFormat::kRgb ? 3 : 2; }
 
-/// Pixels that belong to somebody else. With kYuv422 the width is even.
+/// A non-owning view of an image. With kYuv422 the width is even.
 struct ImageView {
   PixelFormat format = PixelFormat::kYuv422;
   int width_px = 0;
   int height_px = 0;
-  const std::uint8_t* pixels = nullptr;  ///< rows without gaps between them
+  const std::uint8_t* pixels = nullptr;  ///< contiguous rows
 
   std::size_t row_bytes() const { return static_cast<std::size_t>(width_px * bytes_per_pixel(format)); }
   std::size_t bytes() const { return row_bytes() * static_cast<std::size_t>(height_px); }
   const std::uint8_t* row(int y) const { return pixels + row_bytes() * static_cast<std::size_t>(y); }
 };
 
-/// An image of one's own.
+/// An owning image.
 class Image {
  public:
   Image() = default;
-  /// All bytes are 0. Precondition: sizes are not negative, and the width is even with kYuv422.
+  /// All bytes are 0. Precondition: the sizes are not negative, and the width is even with kYuv422.
   Image(PixelFormat format, int width_px, int height_px)
       : format_(format),
         width_px_(width_px),

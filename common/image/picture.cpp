@@ -36,9 +36,9 @@ Image read_picture(const std::string& path) {
   try {
     bgr = cv::imread(path, cv::IMREAD_COLOR);
   } catch (const cv::Exception&) {
-    // Said below: OpenCV names its own source file.
+    // Reported below, because OpenCV's message names its own source file.
   }
-  if (bgr.empty()) throw std::invalid_argument(path + ": expected a picture, such as a PNG file");
+  if (bgr.empty()) throw std::invalid_argument(path + ": expected an image, such as a PNG file");
   Image image(PixelFormat::kRgb, bgr.cols, bgr.rows);
   for (int y = 0; y < bgr.rows; ++y) {
     std::uint8_t* out = image.row(y);
@@ -57,7 +57,7 @@ void write_png(const cv::Mat3b& bgr, const std::string& path) {
   try {
     is_written = cv::imwrite(path, bgr);
   } catch (const cv::Exception&) {
-    // Said below: OpenCV names its own source file.
+    // Reported below, because OpenCV's message names its own source file.
   }
   if (!is_written) throw std::runtime_error("cannot write " + path);
 }

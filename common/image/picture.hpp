@@ -8,14 +8,14 @@
 
 namespace sidestep {
 
-/// An image as OpenCV draws on it, and writes it.
+/// A copy of an image for OpenCV.
 cv::Mat3b bgr_of(const ImageView& image);
 
-/// A PNG file, or what else OpenCV reads, as kRgb. Throws std::invalid_argument naming the file when it is
-/// none.
+/// Reads a PNG file, or any other format that OpenCV supports, as kRgb. Throws std::invalid_argument
+/// ("PATH: ...") if there is no such file or it holds no image.
 Image read_picture(const std::string& path);
 
-/// Throws std::runtime_error when the file cannot be written.
+/// Throws std::runtime_error if the file cannot be written.
 void write_png(const cv::Mat3b& bgr, const std::string& path);
 
 }  // namespace sidestep

@@ -3,49 +3,50 @@
 
 #include <cmath>
 
-#include "common/league/refusal.hpp"
+#include "common/league/decode_error.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep::league {
 
 inline constexpr double kMaxPosition_m = 100;
-inline constexpr double kMaxHeading_rad = 7;        // one turn either way, whatever range the sender prefers
-inline constexpr double kMaxTime_s = 8589934592.0;  // 2^33; as nanoseconds it fits into 64 bits
-inline constexpr std::size_t kLongestText = 256;
+inline constexpr double kMaxHeading_rad =
+    7;  // more than one turn in either direction, because senders use different ranges
+inline constexpr double kMaxTime_s = 8589934592.0;  // 2^33; fits into 64 bits as nanoseconds
+inline constexpr std::size_t kMaxTextLength = 256;
 
-/// Collects what is wrong with a packet while its numbers are taken over; the first reason counts. What is
-/// taken over after that is of no use to anybody.
+/// Checks the values of a packet while they are decoded, and keeps the first error. Values that are decoded
+/// after an error are meaningless.
 class Checks {
  public:
-  void require(bool is_sound, Refusal otherwise) {
-    if (!is_sound && refusal_ == Refusal::kNone) refusal_ = otherwise;
+  void require(bool is_valid, DecodeError error) {
+    if (!is_valid && error_ == DecodeError::kNone) error_ = error;
   }
-  // Comparisons with NaN are false, so these refuse it.
+  // Comparisons with NaN are false, so NaN is rejected.
   double within(double value, double low, double high) {
-    require(value >= low && value <= high, Refusal::kNumber);
+    require(value >= low && value <= high, DecodeError::kNumber);
     return value;
   }
   double within(double value, double bound) { return within(value, -bound, bound); }
   double probability(double value) { return within(value, 0, 1); }
   Duration time(double seconds) {
-    const bool is_sound = seconds >= 0 && seconds <= kMaxTime_s;
-    require(is_sound, Refusal::kTime);
-    return is_sound ? from_seconds(seconds) : Duration{0};
+    const bool is_valid = seconds >= 0 && seconds <= kMaxTime_s;
+    require(is_valid, DecodeError::kTime);
+    return is_valid ? from_seconds(seconds) : Duration{0};
   }
   template <typename List>
-  void at_most(const List& list, int most) {
-    require(list.size() <= most, Refusal::kTooMany);
+  void at_most(const List& list, int max_count) {
+    require(list.size() <= max_count, DecodeError::kTooMany);
   }
   template <typename Text>
   const Text& text(const Text& text) {
-    require(text.size() <= kLongestText, Refusal::kText);
+    require(text.size() <= kMaxTextLength, DecodeError::kText);
     return text;
   }
-  bool is_sound() const { return refusal_ == Refusal::kNone; }
-  Refusal refusal() const { return refusal_; }
+  bool is_valid() const { return error_ == DecodeError::kNone; }
+  DecodeError error() const { return error_; }
 
  private:
-  Refusal refusal_ = Refusal::kNone;
+  DecodeError error_ = DecodeError::kNone;
 };
 
 }  // namespace sidestep::league

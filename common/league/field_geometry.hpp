@@ -17,16 +17,15 @@ struct LineMarking {
   Vec2 from_m{0, 0};
   Vec2 to_m{0, 0};
   double thickness_m = 0;
-  std::optional<std::uint32_t>
-      type{};  ///< as the league numbers them: 1 centre circle, 2 top touch line, ...
+  std::optional<std::uint32_t> type{};  ///< as numbered by the league: 1 centre circle, 2 top touch line, ...
 };
 
 struct ArcMarking {
   std::string name;
   Vec2 centre_m{0, 0};
   double radius_m = 0;
-  double from_rad = 0;  ///< counter-clockwise from here ...
-  double to_rad = 0;    ///< ... to here
+  double from_rad = 0;  ///< start angle
+  double to_rad = 0;    ///< end angle, counter-clockwise
   double thickness_m = 0;
   std::optional<std::uint32_t> type{};
 };
@@ -50,9 +49,9 @@ struct FieldSize {
   std::optional<double> max_robot_radius_m;
 };
 
-/// SSL_GeometryCameraCalibration: a point p of the floor lies at R p + t before the camera, z ahead, and is
-/// seen where x / z and y / z times the focal length, distorted along the radius, lie from the principal
-/// point.
+/// SSL_GeometryCameraCalibration: a world point p has the camera coordinates R p + t with z along the optical
+/// axis, and is projected to x / z and y / z, radially distorted and scaled by the focal length, relative to
+/// the principal point.
 struct CameraCalibration {
   std::uint32_t camera = 0;
   double focal_length_px = 0;
@@ -65,7 +64,7 @@ struct CameraCalibration {
   std::optional<std::uint32_t> image_height_px;
 };
 
-/// SSL_GeometryData, without the models of balls that it may also carry.
+/// SSL_GeometryData without the optional ball models.
 struct Geometry {
   FieldSize field;
   std::vector<CameraCalibration> cameras;

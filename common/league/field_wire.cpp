@@ -5,7 +5,7 @@ namespace sidestep::league {
 namespace {
 
 constexpr double kMaxLength_m = 200;
-constexpr int kMostMarkings = 256;
+constexpr int kMaxMarkings = 256;
 constexpr std::uint32_t kMaxImageSide_px = 1 << 16;
 
 std::int32_t in_mm(double length_m) { return static_cast<std::int32_t>(std::lround(length_m * 1e3)); }
@@ -80,10 +80,10 @@ void write(const FieldSize& field, wire::vision::Field& to) {
 
 FieldSize read(const wire::vision::Field& from, Checks& checks) {
   FieldSize field;
-  checks.at_most(from.field_lines(), kMostMarkings);
-  checks.at_most(from.field_arcs(), kMostMarkings);
-  if (!checks.is_sound()) return field;
-  checks.require(from.field_length() > 0 && from.field_width() > 0, Refusal::kNumber);
+  checks.at_most(from.field_lines(), kMaxMarkings);
+  checks.at_most(from.field_arcs(), kMaxMarkings);
+  if (!checks.is_valid()) return field;
+  checks.require(from.field_length() > 0 && from.field_width() > 0, DecodeError::kNumber);
   field.length_m = length(from.field_length(), checks);
   field.width_m = length(from.field_width(), checks);
   field.goal_width_m = length(from.goal_width(), checks);
@@ -91,8 +91,8 @@ FieldSize read(const wire::vision::Field& from, Checks& checks) {
   field.boundary_width_m = length(from.boundary_width(), checks);
   for (const auto& line : from.field_lines()) field.lines.push_back(read(line, checks));
   for (const auto& arc : from.field_arcs()) field.arcs.push_back(read(arc, checks));
-  const auto optional = [&](bool is_there, double value_mm, std::optional<double>& into) {
-    if (is_there) into = length(value_mm, checks);
+  const auto optional = [&](bool is_present, double value_mm, std::optional<double>& into) {
+    if (is_present) into = length(value_mm, checks);
   };
   optional(from.has_penalty_area_depth(), from.penalty_area_depth(), field.penalty_area_depth_m);
   optional(from.has_penalty_area_width(), from.penalty_area_width(), field.penalty_area_width_m);
@@ -130,12 +130,12 @@ void write(const CameraCalibration& camera, wire::vision::Calibration& to) {
 
 CameraCalibration read(const wire::vision::Calibration& from, Checks& checks) {
   constexpr double kMaxFocalLength_px = 1e6, kMaxPrincipalPoint_px = 1e5, kMaxDistortion = 100;
-  const auto place = [&](double x_mm, double y_mm, double z_mm) {
+  const auto position = [&](double x_mm, double y_mm, double z_mm) {
     return Vec3(checks.within(x_mm * 1e-3, kMaxLength_m), checks.within(y_mm * 1e-3, kMaxLength_m),
                 checks.within(z_mm * 1e-3, kMaxLength_m));
   };
   CameraCalibration camera;
-  checks.require(from.camera_id() < kMaxCameras, Refusal::kCamera);
+  checks.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
   camera.camera = from.camera_id();
   camera.focal_length_px = checks.within(from.focal_length(), 0, kMaxFocalLength_px);
   camera.principal_point_px = {checks.within(from.principal_point_x(), kMaxPrincipalPoint_px),
@@ -143,15 +143,15 @@ CameraCalibration read(const wire::vision::Calibration& from, Checks& checks) {
   camera.distortion = checks.within(from.distortion(), kMaxDistortion);
   camera.rotation = {checks.within(from.q0(), 2), checks.within(from.q1(), 2), checks.within(from.q2(), 2),
                      checks.within(from.q3(), 2)};
-  camera.translation_m = place(from.tx(), from.ty(), from.tz());
+  camera.translation_m = position(from.tx(), from.ty(), from.tz());
   if (from.has_derived_camera_world_tx() && from.has_derived_camera_world_ty() &&
       from.has_derived_camera_world_tz()) {
-    camera.position_m =
-        place(from.derived_camera_world_tx(), from.derived_camera_world_ty(), from.derived_camera_world_tz());
+    camera.position_m = position(from.derived_camera_world_tx(), from.derived_camera_world_ty(),
+                                 from.derived_camera_world_tz());
   }
-  const auto side = [&](bool is_there, std::uint32_t value_px, std::optional<std::uint32_t>& into) {
-    checks.require(!is_there || value_px <= kMaxImageSide_px, Refusal::kNumber);
-    if (is_there) into = value_px;
+  const auto side = [&](bool is_present, std::uint32_t value_px, std::optional<std::uint32_t>& into) {
+    checks.require(!is_present || value_px <= kMaxImageSide_px, DecodeError::kNumber);
+    if (is_present) into = value_px;
   };
   side(from.has_pixel_image_width(), from.pixel_image_width(), camera.image_width_px);
   side(from.has_pixel_image_height(), from.pixel_image_height(), camera.image_height_px);
@@ -168,7 +168,7 @@ void write(const Geometry& geometry, wire::vision::Geometry& to) {
 Geometry read(const wire::vision::Geometry& from, Checks& checks) {
   Geometry geometry;
   checks.at_most(from.calib(), static_cast<int>(kMaxCameras));
-  if (!checks.is_sound()) return geometry;
+  if (!checks.is_valid()) return geometry;
   geometry.field = read(from.field(), checks);
   for (const auto& camera : from.calib()) geometry.cameras.push_back(read(camera, checks));
   return geometry;

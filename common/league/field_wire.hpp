@@ -8,6 +8,7 @@
 
 namespace sidestep::league {
 
+/// Conversions between the wire format (whole or floating-point millimetres) and metres.
 void write(const Geometry& geometry, wire::vision::Geometry& to);
 Geometry read(const wire::vision::Geometry& from, Checks& checks);
 

@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::string_view kMagic = "SSL_LOG_FILE";
 constexpr std::int32_t kVersion = 1;
-constexpr std::size_t kHeadSize = 16;
-constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;  // the year 2043; sums of two stay within 64 bits
+constexpr std::size_t kHeaderSize = 16;
 
 template <typename Number>
 Number big_endian(const std::byte* bytes) {
@@ -42,9 +41,9 @@ bool is_known(std::int32_t type) {
 
 std::unique_ptr<std::istream> opened(const std::string& path) {
   auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
-  // A folder can be opened, but not read.
+  // A directory can be opened, but not read.
   if (!*file || (file->peek(), file->bad())) {
-    throw std::runtime_error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("{}: cannot read the file: {}", path, std::strerror(errno)));
   }
   file->clear();
   return file;
@@ -63,15 +62,15 @@ void LogReader::read_magic() {
   std::array<std::byte, kMagic.size() + sizeof kVersion> bytes{};
   const bool is_long_enough = read(bytes.data(), bytes.size());
   if (bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b}) {
-    fail(name_, 0, "this is compressed, expected a log as it was written: unpack it with gunzip");
+    fail(name_, 0, "the file is compressed, expected an uncompressed log (use gunzip)");
   }
   if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
-    fail(name_, 0, fmt::format("this is no log, expected it to begin with {}", kMagic));
+    fail(name_, 0, fmt::format("not a log, expected {} at the beginning", kMagic));
   }
-  if (!is_long_enough) fail(name_, kMagic.size(), "the file ends, expected its version");
+  if (!is_long_enough) fail(name_, kMagic.size(), "the file ends, expected the version");
   const auto version = big_endian<std::int32_t>(bytes.data() + kMagic.size());
   if (version != kVersion) {
-    fail(name_, kMagic.size(), fmt::format("version {} of the format, expected {}", version, kVersion));
+    fail(name_, kMagic.size(), fmt::format("format version {}, expected {}", version, kVersion));
   }
 }
 
@@ -79,9 +78,9 @@ void LogReader::rewind() {
   stream_->clear();
   stream_->seekg(0);
   offset_ = 0;
-  held_.reset();
-  end_ = LogEnd::kNotYet;
-  damage_.clear();
+  pending_.reset();
+  status_ = LogStatus::kReading;
+  error_.clear();
   read_magic();
 }
 
@@ -97,55 +96,55 @@ bool LogReader::skip(std::int32_t size) {
   return stream_->gcount() == size;
 }
 
-void LogReader::finish(LogEnd end, const std::string& why) {
-  end_ = end;
-  if (end != LogEnd::kWhole) damage_ = fmt::format("{}: byte {}: {}", name_, record_at_, why);
+void LogReader::finish(LogStatus status, const std::string& why) {
+  status_ = status;
+  if (status != LogStatus::kComplete) error_ = fmt::format("{}: byte {}: {}", name_, record_offset_, why);
 }
 
-std::optional<LogReader::Head> LogReader::read_head() {
-  std::array<std::byte, kHeadSize> bytes{};
-  record_at_ = offset_;
+std::optional<LogReader::RecordHeader> LogReader::read_header() {
+  std::array<std::byte, kHeaderSize> bytes{};
+  record_offset_ = offset_;
   if (!read(bytes.data(), bytes.size())) {
-    finish(offset_ == record_at_ ? LogEnd::kWhole : LogEnd::kCutOff, "the file ends within a record's head");
+    finish(offset_ == record_offset_ ? LogStatus::kComplete : LogStatus::kTruncated,
+           "the file ends within a record header");
     return std::nullopt;
   }
-  const Head head{big_endian<std::int64_t>(bytes.data()), big_endian<std::int32_t>(bytes.data() + 8),
-                  big_endian<std::int32_t>(bytes.data() + 12)};
-  if (head.received_ns < 0 || head.received_ns > kLatest_ns) {
-    finish(LogEnd::kDamaged, fmt::format("a record was received at {} ns after 1970, expected 0 to {}",
-                                         head.received_ns, kLatest_ns));
+  const RecordHeader header{big_endian<std::int64_t>(bytes.data()),
+                            big_endian<std::int32_t>(bytes.data() + 8),
+                            big_endian<std::int32_t>(bytes.data() + 12)};
+  if (header.received_ns < 0 || header.received_ns > to_ns(kMaxTime)) {
+    finish(LogStatus::kCorrupt, fmt::format("a record with the receive time {} ns, expected 0 to {}",
+                                            header.received_ns, to_ns(kMaxTime)));
     return std::nullopt;
   }
-  if (head.size < 0 || (is_known(head.type) && head.size > static_cast<std::int32_t>(kLongestDatagram))) {
-    finish(LogEnd::kDamaged, fmt::format("a record of type {} has a size of {}, expected 0 to {}", head.type,
-                                         head.size, kLongestDatagram));
+  if (header.size < 0 ||
+      (is_known(header.type) && header.size > static_cast<std::int32_t>(kMaxDatagramSize))) {
+    finish(LogStatus::kCorrupt, fmt::format("a record of type {} with the size {}, expected 0 to {}",
+                                            header.type, header.size, kMaxDatagramSize));
     return std::nullopt;
   }
-  return head;
+  return header;
 }
 
 bool LogReader::next(LogRecord& record) {
-  if (held_) {
-    record = std::move(*held_);
-    held_.reset();
+  if (pending_) {
+    record = std::move(*pending_);
+    pending_.reset();
     return true;
   }
-  while (end_ == LogEnd::kNotYet) {
-    const auto head = read_head();
-    if (!head) return false;
-    const bool is_packet = is_known(head->type);
-    record.bytes.resize(is_packet ? static_cast<std::size_t>(head->size) : 0);
-    const bool is_complete = is_packet ? read(record.bytes.data(), record.bytes.size()) : skip(head->size);
+  while (status_ == LogStatus::kReading) {
+    const auto header = read_header();
+    if (!header) return false;
+    const bool is_packet = is_known(header->type);
+    record.bytes.resize(is_packet ? static_cast<std::size_t>(header->size) : 0);
+    const bool is_complete = is_packet ? read(record.bytes.data(), record.bytes.size()) : skip(header->size);
     if (!is_complete) {
-      finish(LogEnd::kCutOff, "the file ends within a record");
+      finish(LogStatus::kTruncated, "the file ends within a record");
       return false;
     }
-    if (!is_packet) {
-      ++skipped_;
-      continue;
-    }
-    record.received = time_from_ns(head->received_ns);
-    record.type = static_cast<LogType>(head->type);
+    if (!is_packet) continue;
+    record.received = time_from_ns(header->received_ns);
+    record.type = static_cast<LogType>(header->type);
     return true;
   }
   return false;
@@ -153,39 +152,38 @@ bool LogReader::next(LogRecord& record) {
 
 bool LogReader::seek(Duration after_first) {
   rewind();
-  const std::uint64_t skipped_before = skipped_;
   LogRecord record;
   std::optional<Time> first;
   while (next(record)) {
     if (!first) first = record.received;
     if (record.received - *first < after_first) continue;
-    held_ = std::move(record);
+    pending_ = std::move(record);
     break;
   }
-  skipped_ = skipped_before;
-  return held_.has_value();
+  return pending_.has_value();
 }
 
 LogWriter::LogWriter(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  if (!file_)
+    throw std::runtime_error(fmt::format("{}: cannot write the file: {}", path, std::strerror(errno)));
   std::vector<char> bytes(kMagic.begin(), kMagic.end());
   put_big_endian(bytes, kVersion);
   file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 void LogWriter::add(Time received, LogType type, std::span<const std::byte> bytes) {
-  std::vector<char> head;
-  put_big_endian(head, to_ns(received));
-  put_big_endian(head, static_cast<std::int32_t>(type));
-  put_big_endian(head, static_cast<std::int32_t>(bytes.size()));
-  file_.write(head.data(), static_cast<std::streamsize>(head.size()));
+  std::vector<char> header;
+  put_big_endian(header, to_ns(received));
+  put_big_endian(header, static_cast<std::int32_t>(type));
+  put_big_endian(header, static_cast<std::int32_t>(bytes.size()));
+  file_.write(header.data(), static_cast<std::streamsize>(header.size()));
   file_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   ++records_;
 }
 
 void LogWriter::close() {
   file_.close();
-  if (!file_) throw std::runtime_error(fmt::format("{}: not all could be written", path_));
+  if (!file_) throw std::runtime_error(fmt::format("{}: some records could not be written", path_));
 }
 
 }  // namespace sidestep::league

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "common/league/refusal.hpp"
+#include "common/league/decode_error.hpp"
 
 namespace sidestep::league {
 
-/// An IPv4 address and a port, both as numbers: 127.0.0.1 is 0x7f000001.
+/// An IPv4 address and a port in host byte order: 127.0.0.1 is 0x7f000001.
 struct Endpoint {
   std::uint32_t address = 0;
   std::uint16_t port = 0;
@@ -23,66 +23,66 @@ struct Endpoint {
 /// "224.5.23.2:10006".
 std::string to_text(const Endpoint& endpoint);
 
-/// What a user gives as ADDRESS:PORT. Throws std::invalid_argument, saying what was expected, when that is no
-/// multicast address (224.0.0.0 to 239.255.255.255) or no port (1 to 65535).
-Endpoint multicast_endpoint(const std::string& text);
+/// Parses ADDRESS:PORT with a multicast address (224.0.0.0 to 239.255.255.255) and a port (1 to 65535).
+/// Throws std::invalid_argument that says what was expected.
+[[nodiscard]] Endpoint parse_multicast_endpoint(const std::string& text);
 
-/// Where the league's packets go unless told otherwise.
+/// The league's default endpoints.
 inline constexpr const char* kVisionEndpoint = "224.5.23.2:10006";
 inline constexpr const char* kTrackedEndpoint = "224.5.23.2:10010";
 inline constexpr const char* kRefereeEndpoint = "224.5.23.1:10003";
-/// The loopback interface, so that nothing leaves a machine unasked.
+/// The loopback interface, so that by default no packet leaves the machine.
 inline constexpr const char* kLeagueInterface = "127.0.0.1";
 
-/// A socket of one's own.
-class Descriptor {
+/// An owned file descriptor.
+class FileDescriptor {
  public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor();
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  explicit FileDescriptor(int number) : number_(number) {}
+  ~FileDescriptor();
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
   int number() const { return number_; }
 
  private:
   int number_;
 };
 
-/// Sends datagrams to a group over one interface, given by its address; never waits. They stay in the local
-/// network (a TTL of 1). Throws std::invalid_argument for an interface that this machine does not have and
-/// std::runtime_error when the system refuses a socket.
+/// Sends datagrams to a multicast group over one interface, given by its address, without blocking. The TTL
+/// is 1, so they stay in the local network. The constructor throws std::invalid_argument if the machine has
+/// no such interface, and std::runtime_error if the socket cannot be opened.
 class MulticastSender {
  public:
   MulticastSender(const Endpoint& group, const std::string& interface);
 
-  /// False when the system did not take it, whose reason errno then says.
+  /// False, with errno set, if the system did not accept the datagram.
   bool send(std::span<const std::byte> datagram);
   std::uint64_t sent() const { return sent_; }
   std::uint64_t failed() const { return failed_; }
 
  private:
   Endpoint group_;
-  Descriptor socket_;
+  FileDescriptor socket_;
   std::uint64_t sent_ = 0;
   std::uint64_t failed_ = 0;
 };
 
-/// Receives what is sent to a group over one interface, beside other receivers on this machine, and nothing
-/// else. Throws as MulticastSender does.
+/// Receives the datagrams of a multicast group over one interface, and no others. Several receivers on a
+/// machine may share a group. The constructor throws as that of MulticastSender.
 class MulticastReceiver {
  public:
-  /// Gets a datagram and where it came from.
-  using Take = std::function<void(std::span<const std::byte>, const Endpoint&)>;
+  /// Called with a datagram and its source.
+  using DatagramHandler = std::function<void(std::span<const std::byte>, const Endpoint&)>;
 
   MulticastReceiver(const Endpoint& group, const std::string& interface);
 
-  /// Becomes readable when something has come.
+  /// Becomes readable when a datagram has arrived.
   int descriptor() const { return socket_.number(); }
-  /// Hands over what has come, up to a bound so that others get their turn.
-  void receive(const Take& take);
+  /// Calls `handler` for each datagram that has arrived, up to a bound, so that other work is not starved.
+  void receive(const DatagramHandler& handler);
 
  private:
   Endpoint group_;
-  Descriptor socket_;
+  FileDescriptor socket_;
   std::vector<std::byte> buffer_;
 };
 

@@ -10,9 +10,9 @@ namespace sidestep::league {
 namespace {
 
 constexpr double kMaxSpeed_mps = 100;
-constexpr double kMaxTurn_radps = 1000;
-constexpr int kMostBalls = 128;
-constexpr int kMostRobots = 256;
+constexpr double kMaxAngularSpeed_radps = 1000;
+constexpr int kMaxBalls = 128;
+constexpr int kMaxRobotsPerTeam = 256;
 enum TeamColour : std::uint32_t { kUnknown = 0, kYellow = 1, kBlue = 2 };
 
 void write(const Vec2& vector, wire::tracked::Vector2& to) {
@@ -54,7 +54,7 @@ std::uint32_t colour_of(const std::optional<Team>& team) {
 }
 
 std::optional<Team> team_of(std::uint32_t colour, Checks& checks) {
-  checks.require(colour <= kBlue, Refusal::kRobot);
+  checks.require(colour <= kBlue, DecodeError::kRobot);
   if (colour == kYellow) return Team::kYellow;
   if (colour == kBlue) return Team::kBlue;
   return std::nullopt;
@@ -72,13 +72,13 @@ void write(const TrackedRobot& robot, wire::tracked::Robot& to) {
 
 TrackedRobot read(const wire::tracked::Robot& from, Checks& checks) {
   TrackedRobot robot;
-  checks.require(from.robot_id().id() < kMaxNumbers, Refusal::kRobot);
+  checks.require(from.robot_id().id() < kRobotNumbers, DecodeError::kRobot);
   robot.number = from.robot_id().id();
   robot.team = team_of(from.robot_id().team_color(), checks);
   robot.position_m = read(from.pos(), kMaxPosition_m, checks);
   robot.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
   if (from.has_vel()) robot.velocity_mps = read(from.vel(), kMaxSpeed_mps, checks);
-  if (from.has_vel_angular()) robot.angular_radps = checks.within(from.vel_angular(), kMaxTurn_radps);
+  if (from.has_vel_angular()) robot.angular_radps = checks.within(from.vel_angular(), kMaxAngularSpeed_radps);
   if (from.has_visibility()) robot.visibility = checks.probability(from.visibility());
   return robot;
 }
@@ -92,9 +92,9 @@ void write(const TrackedFrame& frame, wire::tracked::Frame& to) {
 
 TrackedFrame read(const wire::tracked::Frame& from, Checks& checks) {
   TrackedFrame frame;
-  checks.at_most(from.balls(), kMostBalls);
-  checks.at_most(from.robots(), kMostRobots);
-  if (!checks.is_sound()) return frame;
+  checks.at_most(from.balls(), kMaxBalls);
+  checks.at_most(from.robots(), kMaxRobotsPerTeam);
+  if (!checks.is_valid()) return frame;
   frame.frame_number = from.frame_number();
   frame.at = checks.time(from.timestamp());
   for (const auto& ball : from.balls()) frame.balls.push_back(read(ball, checks));
@@ -114,14 +114,14 @@ std::vector<std::byte> encode(const TrackedPacket& packet) {
 
 Decoded<TrackedPacket> decode_tracked(std::span<const std::byte> bytes) {
   wire::tracked::Packet message;
-  if (const Refusal refusal = parse(bytes, message); refusal != Refusal::kNone) return {{}, refusal};
+  if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
   Checks checks;
   TrackedPacket packet;
   packet.uuid = checks.text(message.uuid());
   if (message.has_source_name()) packet.source_name = checks.text(message.source_name());
   if (message.has_tracked_frame()) packet.frame = read(message.tracked_frame(), checks);
-  if (!checks.is_sound()) return {{}, checks.refusal()};
-  return {std::move(packet), Refusal::kNone};
+  if (!checks.is_valid()) return {{}, checks.error()};
+  return {std::move(packet), DecodeError::kNone};
 }
 
 }  // namespace sidestep::league

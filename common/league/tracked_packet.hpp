@@ -11,7 +11,7 @@
 #include "common/config/scenario.hpp"
 #include "common/geometry/vec2.hpp"
 #include "common/geometry/vec3.hpp"
-#include "common/league/refusal.hpp"
+#include "common/league/decode_error.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep::league {
@@ -23,7 +23,7 @@ struct TrackedBall {
 };
 
 struct TrackedRobot {
-  std::optional<Team> team;  ///< none: not known
+  std::optional<Team> team;  ///< nullopt: unknown
   std::uint32_t number = 0;
   Vec2 position_m{0, 0};
   double heading_rad = 0;  ///< in [-pi, pi] when decoded
@@ -34,23 +34,24 @@ struct TrackedRobot {
 
 struct TrackedFrame {
   std::uint32_t frame_number = 0;
-  Duration at{0};  ///< by the sender's clock, as Detection::captured
+  Duration at{0};  ///< by the sender's clock, as DetectionFrame::captured
   std::vector<TrackedBall> balls;
   std::vector<TrackedRobot> robots;
 };
 
-/// TrackerWrapperPacket, without the kicked ball and the capabilities that it may also carry.
+/// TrackerWrapperPacket without the optional kicked ball and capabilities.
 struct TrackedPacket {
-  std::string uuid;  ///< of the sending process: another for each life
+  std::string uuid;  ///< of the sending process; a new one after each restart
   std::optional<std::string> source_name;
   std::optional<TrackedFrame> frame;
 };
 
-/// The bytes of a datagram. Precondition: numbers are finite and in the ranges that decode_tracked() accepts.
+/// The payload of a datagram. Precondition: the numbers are finite and in the ranges that decode_tracked()
+/// accepts.
 std::vector<std::byte> encode(const TrackedPacket& packet);
 
-/// Refuses a packet as a whole when anything in it makes no sense: places beyond 100 m, headings beyond 7
-/// rad, speeds beyond 100 m/s or 1000 rad/s, visibilities outside 0..1, times outside 0 .. 2^33 s.
+/// Rejects a packet as a whole if any value in it is invalid: positions beyond 100 m, headings beyond 7 rad,
+/// speeds beyond 100 m/s or 1000 rad/s, visibilities outside 0 .. 1, times outside 0 .. 2^33 s.
 Decoded<TrackedPacket> decode_tracked(std::span<const std::byte> bytes);
 
 }  // namespace sidestep::league

@@ -10,14 +10,14 @@
 namespace sidestep::league {
 namespace {
 
-constexpr int kMostBalls = 128;
-constexpr int kMostRobots = 64;  // of a team: a camera may take one robot for several
+constexpr int kMaxBalls = 128;
+constexpr int kMaxRobotsPerTeam = 64;  // of a team; a camera may report one robot several times
 constexpr double kMaxPixel = 1e6;
 constexpr double kMaxRobotHeight_m = 2;
 
 float in_mm(double length_m) { return static_cast<float>(length_m * 1e3); }
 
-void write(const SeenBall& ball, wire::vision::Ball& to) {
+void write(const DetectedBall& ball, wire::vision::Ball& to) {
   to.set_confidence(static_cast<float>(ball.confidence));
   if (ball.area) to.set_area(*ball.area);
   to.set_x(in_mm(ball.position_m.x()));
@@ -27,8 +27,8 @@ void write(const SeenBall& ball, wire::vision::Ball& to) {
   to.set_pixel_y(static_cast<float>(ball.pixel.y()));
 }
 
-SeenBall read(const wire::vision::Ball& from, Checks& checks) {
-  SeenBall ball;
+DetectedBall read(const wire::vision::Ball& from, Checks& checks) {
+  DetectedBall ball;
   ball.confidence = checks.probability(from.confidence());
   if (from.has_area()) ball.area = from.area();
   ball.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
@@ -38,7 +38,7 @@ SeenBall read(const wire::vision::Ball& from, Checks& checks) {
   return ball;
 }
 
-void write(const SeenRobot& robot, wire::vision::Robot& to) {
+void write(const DetectedRobot& robot, wire::vision::Robot& to) {
   to.set_confidence(static_cast<float>(robot.confidence));
   if (robot.number) to.set_robot_id(*robot.number);
   to.set_x(in_mm(robot.position_m.x()));
@@ -49,10 +49,10 @@ void write(const SeenRobot& robot, wire::vision::Robot& to) {
   if (robot.height_m) to.set_height(in_mm(*robot.height_m));
 }
 
-SeenRobot read(const wire::vision::Robot& from, Checks& checks) {
-  SeenRobot robot;
+DetectedRobot read(const wire::vision::Robot& from, Checks& checks) {
+  DetectedRobot robot;
   robot.confidence = checks.probability(from.confidence());
-  checks.require(!from.has_robot_id() || from.robot_id() < kMaxNumbers, Refusal::kRobot);
+  checks.require(!from.has_robot_id() || from.robot_id() < kRobotNumbers, DecodeError::kRobot);
   if (from.has_robot_id()) robot.number = from.robot_id();
   robot.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
                       checks.within(from.y() * 1e-3, kMaxPosition_m)};
@@ -64,24 +64,24 @@ SeenRobot read(const wire::vision::Robot& from, Checks& checks) {
   return robot;
 }
 
-void write(const Detection& detection, wire::vision::Detection& to) {
+void write(const DetectionFrame& detection, wire::vision::DetectionFrame& to) {
   to.set_frame_number(detection.frame_number);
   to.set_t_capture(to_seconds(detection.captured));
   to.set_t_sent(to_seconds(detection.sent));
   to.set_camera_id(detection.camera);
-  for (const SeenBall& ball : detection.balls) write(ball, *to.add_balls());
-  for (const SeenRobot& robot : detection.yellow) write(robot, *to.add_robots_yellow());
-  for (const SeenRobot& robot : detection.blue) write(robot, *to.add_robots_blue());
+  for (const DetectedBall& ball : detection.balls) write(ball, *to.add_balls());
+  for (const DetectedRobot& robot : detection.yellow) write(robot, *to.add_robots_yellow());
+  for (const DetectedRobot& robot : detection.blue) write(robot, *to.add_robots_blue());
   if (detection.captured_by_camera) to.set_t_capture_camera(to_seconds(*detection.captured_by_camera));
 }
 
-Detection read(const wire::vision::Detection& from, Checks& checks) {
-  Detection detection;
-  checks.at_most(from.balls(), kMostBalls);
-  checks.at_most(from.robots_yellow(), kMostRobots);
-  checks.at_most(from.robots_blue(), kMostRobots);
-  checks.require(from.camera_id() < kMaxCameras, Refusal::kCamera);
-  if (!checks.is_sound()) return detection;
+DetectionFrame read(const wire::vision::DetectionFrame& from, Checks& checks) {
+  DetectionFrame detection;
+  checks.at_most(from.balls(), kMaxBalls);
+  checks.at_most(from.robots_yellow(), kMaxRobotsPerTeam);
+  checks.at_most(from.robots_blue(), kMaxRobotsPerTeam);
+  checks.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
+  if (!checks.is_valid()) return detection;
   detection.frame_number = from.frame_number();
   detection.camera = from.camera_id();
   detection.captured = checks.time(from.t_capture());
@@ -105,15 +105,15 @@ std::vector<std::byte> encode(const VisionPacket& packet) {
 
 Decoded<VisionPacket> decode_vision(std::span<const std::byte> bytes) {
   wire::vision::Packet message;
-  if (const Refusal refusal = parse(bytes, message); refusal != Refusal::kNone) return {{}, refusal};
-  if (!message.has_detection() && !message.has_geometry()) return {{}, Refusal::kEmpty};
+  if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
+  if (!message.has_detection() && !message.has_geometry()) return {{}, DecodeError::kEmpty};
   Checks checks;
   VisionPacket packet;
   if (message.has_detection()) packet.detection = read(message.detection(), checks);
   if (message.has_geometry()) packet.geometry = read(message.geometry(), checks);
   if (message.has_source()) packet.source = message.source();
-  if (!checks.is_sound()) return {{}, checks.refusal()};
-  return {std::move(packet), Refusal::kNone};
+  if (!checks.is_valid()) return {{}, checks.error()};
+  return {std::move(packet), DecodeError::kNone};
 }
 
 }  // namespace sidestep::league

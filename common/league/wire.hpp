@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "common/league/refusal.hpp"
+#include "common/league/decode_error.hpp"
 
 namespace sidestep::league {
 
-/// A Protobuf message as bytes.
+/// Serialises a Protobuf message.
 template <typename Message>
 std::vector<std::byte> bytes_of(const Message& message) {
   std::vector<std::byte> bytes(message.ByteSizeLong());
@@ -18,14 +18,14 @@ std::vector<std::byte> bytes_of(const Message& message) {
   return bytes;
 }
 
-/// Reads a Protobuf message of a datagram.
+/// Parses a Protobuf message from a datagram.
 template <typename Message>
-Refusal parse(std::span<const std::byte> bytes, Message& message) {
-  if (bytes.size() > kLongestDatagram) return Refusal::kTooLong;
-  if (bytes.empty()) return Refusal::kEmpty;
-  // ParseFromArray() would print a line about every message that lacks a field.
-  const bool is_read = message.ParsePartialFromArray(bytes.data(), static_cast<int>(bytes.size()));
-  return is_read && message.IsInitialized() ? Refusal::kNone : Refusal::kMalformed;
+[[nodiscard]] DecodeError parse(std::span<const std::byte> bytes, Message& message) {
+  if (bytes.size() > kMaxDatagramSize) return DecodeError::kTooLong;
+  if (bytes.empty()) return DecodeError::kEmpty;
+  // ParseFromArray() would print a line for every message with a missing field.
+  const bool is_parsed = message.ParsePartialFromArray(bytes.data(), static_cast<int>(bytes.size()));
+  return is_parsed && message.IsInitialized() ? DecodeError::kNone : DecodeError::kMalformed;
 }
 
 }  // namespace sidestep::league

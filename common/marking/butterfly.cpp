@@ -7,20 +7,20 @@
 namespace sidestep {
 namespace {
 
-/// Front left, front right, rear left, rear right, of the ids 0 to 15: P is pink, G green.
+/// The colours of the ids 0 to 15, P pink and G green: front left, front right, rear left, rear right.
 constexpr std::array<std::string_view, 16> kIds{"PPGP", "GPGP", "GGGP", "PGGP", "PPPG", "GPPG",
                                                 "GGPG", "PGPG", "GGGG", "PPPP", "PPGG", "GGPP",
                                                 "GPGG", "GPPP", "PGGG", "PGPP"};
 
-MarkingLayout made() {
-  MarkingLayout layout;
+MarkerLayout make_butterfly() {
+  MarkerLayout layout;
   layout.name = "butterfly";
   layout.centre.radius_m = 0.025;
   for (const Vec2& position_m :
        {Vec2(0.035, 0.054772), Vec2(0.035, -0.054772), Vec2(-0.054772, 0.035), Vec2(-0.054772, -0.035)})
     layout.dots.push_back({position_m, 0.02});
   for (const std::string_view letters : kIds) {
-    MarkingPattern pattern{static_cast<std::uint32_t>(layout.patterns.size()), {}};
+    MarkerPattern pattern{static_cast<std::uint32_t>(layout.patterns.size()), {}};
     for (const char letter : letters)
       pattern.colours.push_back(letter == 'P' ? Colour::kPink : Colour::kGreen);
     layout.patterns.push_back(pattern);
@@ -30,8 +30,8 @@ MarkingLayout made() {
 
 }  // namespace
 
-const MarkingLayout& butterfly() {
-  static const MarkingLayout layout = made();
+const MarkerLayout& butterfly() {
+  static const MarkerLayout layout = make_butterfly();
   return layout;
 }
 

@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// The Small Size League's standard pattern: four dots that are pink or green, 16 ids.
-const MarkingLayout& butterfly();
+/// The standard pattern of the Small Size League: four dots, pink or green, for 16 ids.
+const MarkerLayout& butterfly();
 
 }  // namespace sidestep

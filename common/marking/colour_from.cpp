@@ -5,12 +5,12 @@
 
 namespace sidestep {
 
-Colour colour_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string name = text_from(node, place);
+Colour colour_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string name = text_from(node, location);
   if (const auto colour = colour_named(name)) return *colour;
   std::string names;
   for (const NamedColour& colour : kColours) names += (names.empty() ? "" : ", ") + std::string(colour.name);
-  place.refuse(fmt::format("expected one of {}, got \"{}\"", names, name.substr(0, 40)));
+  location.fail(fmt::format("expected one of {}, got \"{}\"", names, name.substr(0, 40)));
 }
 
 }  // namespace sidestep

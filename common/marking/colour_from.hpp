@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// The colour that a file names, or a refusal.
-Colour colour_from(const YAML::Node& node, const YamlPlace& place);
+/// Reads a colour name. Throws ConfigError for `location` if there is no such colour.
+[[nodiscard]] Colour colour_from(const YAML::Node& node, const YamlLocation& location);
 
 }  // namespace sidestep

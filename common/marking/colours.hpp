@@ -9,9 +9,9 @@
 
 namespace sidestep {
 
-/// The colours that have a name on the floor.
+/// The named colours.
 enum class Colour : std::uint8_t {
-  kField,  ///< the carpet
+  kField,  ///< the field surface
   kWhite,
   kBlack,
   kOrange,
@@ -27,10 +27,10 @@ enum class Colour : std::uint8_t {
 struct NamedColour {
   Colour colour;
   std::string_view name;
-  Rgb rgb;  ///< as a camera sees it in full light, its white balance right
+  Rgb rgb;  ///< as seen by a white-balanced camera in full light
 };
 
-/// All of them, each at its number.
+/// All named colours, indexed by Colour.
 inline constexpr std::array<NamedColour, 11> kColours{{
     {Colour::kField, "field", {38, 98, 46}},
     {Colour::kWhite, "white", {228, 230, 226}},
@@ -47,7 +47,7 @@ inline constexpr std::array<NamedColour, 11> kColours{{
 
 constexpr const NamedColour& named(Colour colour) { return kColours[static_cast<std::size_t>(colour)]; }
 
-/// Nothing for a name that is none of theirs.
-std::optional<Colour> colour_named(std::string_view name);
+/// nullopt for an unknown name.
+[[nodiscard]] std::optional<Colour> colour_named(std::string_view name);
 
 }  // namespace sidestep

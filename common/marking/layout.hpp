@@ -12,37 +12,38 @@
 
 namespace sidestep {
 
-struct MarkingDot {
+/// A coloured dot on top of a robot; Bruce, CMU-CS-06-181, appendix A.2.1, calls it a patch.
+struct Marker {
   Vec2 position_m{0, 0};  ///< in the robot's frame: x ahead, y to the left
   double radius_m = 0.02;
 };
 
-/// What one robot of a team wears.
-struct MarkingPattern {
+/// The marker colours of one robot of a team.
+struct MarkerPattern {
   std::uint32_t id = 0;
-  std::vector<Colour> colours;  ///< of the layout's dots, in their order
+  std::vector<Colour> colours;  ///< of the layout's dots, in order
 };
 
-/// The dots on a robot's top. The centre dot's colour says the team, those of the others the id; where they
-/// stand says the heading.
-struct MarkingLayout {
+/// The arrangement of markers on top of a robot. The colour of the centre marker identifies the team and
+/// those of the other dots the robot; the positions give the heading.
+struct MarkerLayout {
   std::string name;
-  MarkingDot centre;
+  Marker centre;
   Colour blue_team = Colour::kBlue;
   Colour yellow_team = Colour::kYellow;
-  std::vector<MarkingDot> dots;          ///< all but the centre
-  std::vector<MarkingPattern> patterns;  ///< their ids differ
+  std::vector<Marker> dots;             ///< without the centre
+  std::vector<MarkerPattern> patterns;  ///< with distinct ids
 
   Colour team_colour(Team team) const { return team == Team::kBlue ? blue_team : yellow_team; }
   /// The pattern with an id, or nullptr.
-  const MarkingPattern* find(std::uint32_t id) const;
+  const MarkerPattern* find(std::uint32_t id) const;
 };
 
-/// What a robot wears: the pattern of its number. Throws std::invalid_argument when the layout has none.
-const MarkingPattern& pattern_of(const MarkingLayout& layout, RobotId robot);
+/// The pattern of a robot, by its number. Throws std::invalid_argument if the layout has none.
+const MarkerPattern& pattern_of(const MarkerLayout& layout, RobotId robot);
 
-/// The part of a layout that is wrong, and why.
-struct LayoutFault {
+/// The invalid part of a layout, and the reason.
+struct LayoutError {
   enum class Part { kCentre, kDots, kPatterns } part = Part::kCentre;
   std::size_t index = 0;  ///< of the dot or pattern
   std::string why;
@@ -51,8 +52,8 @@ struct LayoutFault {
 inline constexpr std::size_t kMaxDots = 12;
 inline constexpr std::size_t kMaxPatterns = 1024;
 
-/// The first thing that is wrong: dots that overlap, colours that mean two things, patterns that look the
-/// same when the robot turns, or that do not tell the heading.
-std::optional<LayoutFault> fault_of(const MarkingLayout& layout);
+/// The first error in a layout: overlapping dots, ambiguous colours, patterns that look the same after a
+/// rotation, or patterns with an ambiguous heading.
+[[nodiscard]] std::optional<LayoutError> validation_error(const MarkerLayout& layout);
 
 }  // namespace sidestep

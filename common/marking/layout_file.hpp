@@ -7,11 +7,10 @@
 
 namespace sidestep {
 
-/// Reads and checks a layout's file (deploy/scenarios/markings/butterfly.yaml is one); throws ScenarioError
-/// ("FILE:LINE:
-/// ...") for anything that is wrong.
-MarkingLayout load_layout(const std::string& path);
-/// The same from text; `file_name` stands in messages.
-MarkingLayout parse_layout(const std::string& text, const std::string& file_name);
+/// Reads and checks a marker layout file such as deploy/scenarios/markings/butterfly.yaml. Throws
+/// ConfigError.
+[[nodiscard]] MarkerLayout load_layout(const std::string& path);
+/// The same from text; `file_name` appears in error messages.
+[[nodiscard]] MarkerLayout parse_layout(const std::string& text, const std::string& file_name);
 
 }  // namespace sidestep

@@ -5,19 +5,20 @@
 
 namespace sidestep {
 
-/// Standard deviations of a robot's pose by least squares over all dots.
+/// Standard deviations of a robot's pose from a least-squares fit to all markers.
 struct PoseError {
-  double centroid_m = 0;  ///< of the dots' centroid, per axis
-  double ahead_m = 0;     ///< of the robot's origin, along its x
-  double aside_m = 0;     ///< and y
+  double centroid_m = 0;      ///< of the markers' centroid, per axis
+  double longitudinal_m = 0;  ///< of the robot's origin along its x axis
+  double lateral_m = 0;       ///< of the robot's origin along its y axis
   double heading_rad = 0;
 };
 
-/// What errors of dots do to the pose, to first order, when the n dots' positions (the centre's too) have
-/// independent errors of standard deviation s per axis. The fit puts the centroid at the mean of what is
-/// seen, s/sqrt(n), and turns about it by the mean of the errors across, weighted with the dots' distances
-/// r_i from the centroid (not from the robot's origin): s/sqrt(sum r_i²). The two are independent; the
-/// origin, which lies c away from the centroid, takes |c| times the heading's error across c in addition.
-PoseError predicted_pose_error(const MarkingLayout& layout, double dot_sd_m);
+/// The first-order error of a pose fit (Bruce, CMU-CS-06-181, appendix A.2.2) when the measured positions of
+/// all n markers, the centre included, have independent errors with standard deviation s = marker_sd_m per
+/// axis. The error of the fitted centroid is s/sqrt(n). The error of the heading is s/sqrt(sum r_i²), where
+/// r_i is the distance of marker i from the centroid, not from the robot's origin. Both are independent. The
+/// robot's origin, at an offset c from the centroid, has the additional error |c| times the heading error
+/// across c.
+PoseError predicted_pose_error(const MarkerLayout& layout, double marker_sd_m);
 
 }  // namespace sidestep

@@ -3,52 +3,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace sidestep {
 namespace {
 
-/// Where each dot goes, or nothing when one of them goes nowhere.
-std::vector<std::size_t> turned_dots(const MarkingLayout& layout, double angle_rad) {
-  std::vector<std::size_t> goes_to;
-  for (const MarkingDot& dot : layout.dots) {
-    const Vec2 there =
+/// The permutation of the dots by a rotation; empty if a dot is not mapped to a dot.
+std::vector<std::size_t> permutation_of(const MarkerLayout& layout, double angle_rad) {
+  std::vector<std::size_t> permutation;
+  for (const Marker& dot : layout.dots) {
+    const Vec2 image_m =
         layout.centre.position_m + rotated(dot.position_m - layout.centre.position_m, angle_rad);
     for (std::size_t j = 0; j < layout.dots.size(); ++j) {
-      const MarkingDot& other = layout.dots[j];
-      if ((other.position_m - there).norm() > kSameSpot_m) continue;
-      if (std::abs(other.radius_m - dot.radius_m) > kSameSpot_m) continue;
-      goes_to.push_back(j);
+      const Marker& other = layout.dots[j];
+      if ((other.position_m - image_m).norm() > kSamePosition_m) continue;
+      if (std::abs(other.radius_m - dot.radius_m) > kSamePosition_m) continue;
+      permutation.push_back(j);
       break;
     }
   }
-  return goes_to.size() == layout.dots.size() ? goes_to : std::vector<std::size_t>{};
+  return permutation.size() == layout.dots.size() ? permutation : std::vector<std::size_t>{};
 }
 
 }  // namespace
 
-std::vector<DotTurn> turns_of(const MarkingLayout& layout) {
-  std::vector<DotTurn> turns;
-  if (layout.dots.empty()) return turns;
-  const auto angle = [&](const MarkingDot& dot) {
+std::vector<RotationalSymmetry> rotational_symmetries(const MarkerLayout& layout) {
+  std::vector<RotationalSymmetry> symmetries;
+  if (layout.dots.empty()) return symmetries;
+  const auto angle = [&](const Marker& dot) {
     const Vec2 p = dot.position_m - layout.centre.position_m;
     return std::atan2(p.y(), p.x());
   };
-  constexpr double kFull_rad = 6.283185307179586;
-  for (const MarkingDot& dot : layout.dots) {
+  for (const Marker& dot : layout.dots) {
     const double angle_rad = &dot == &layout.dots[0] ? 0 : angle(dot) - angle(layout.dots[0]);
-    auto goes_to = turned_dots(layout, angle_rad);
-    if (!goes_to.empty())
-      turns.push_back({angle_rad < 0 ? angle_rad + kFull_rad : angle_rad, std::move(goes_to)});
+    auto permutation = permutation_of(layout, angle_rad);
+    if (!permutation.empty())
+      symmetries.push_back(
+          {angle_rad < 0 ? angle_rad + 2 * std::numbers::pi : angle_rad, std::move(permutation)});
   }
-  std::sort(turns.begin(), turns.end(),
-            [](const DotTurn& a, const DotTurn& b) { return a.angle_rad < b.angle_rad; });
-  return turns;
+  std::sort(
+      symmetries.begin(), symmetries.end(),
+      [](const RotationalSymmetry& a, const RotationalSymmetry& b) { return a.angle_rad < b.angle_rad; });
+  return symmetries;
 }
 
-std::size_t differences(const std::vector<Colour>& pattern, const std::vector<Colour>& turned,
-                        const DotTurn& turn) {
+std::size_t hamming_distance(const std::vector<Colour>& pattern, const std::vector<Colour>& rotated,
+                             const RotationalSymmetry& symmetry) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < turn.goes_to.size(); ++i) count += pattern[turn.goes_to[i]] != turned[i];
+  for (std::size_t i = 0; i < symmetry.permutation.size(); ++i)
+    count += pattern[symmetry.permutation[i]] != rotated[i];
   return count;
 }
 

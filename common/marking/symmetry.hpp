@@ -7,22 +7,22 @@
 
 namespace sidestep {
 
-/// A turn about the centre dot that puts every dot where one of the same size was.
-struct DotTurn {
+/// A rotation about the centre marker that maps every dot to a dot of the same radius.
+struct RotationalSymmetry {
   double angle_rad = 0;
-  std::vector<std::size_t> goes_to;  ///< for each dot
+  std::vector<std::size_t> permutation;  ///< the index of each dot's image
 };
 
-/// Dots closer than this stand on one spot.
-inline constexpr double kSameSpot_m = 0.001;
+/// Dots closer than this coincide.
+inline constexpr double kSamePosition_m = 0.001;
 
-/// All turns of a layout's dots, regardless of their colours, by ascending angle; the first is none at all.
-/// They are multiples of one angle: a full turn over their number. Precondition: no dot overlaps another or
-/// the centre.
-std::vector<DotTurn> turns_of(const MarkingLayout& layout);
+/// The rotational symmetries of a layout's dots, regardless of colour, by ascending angle; the first is the
+/// identity. They are the multiples of 2 pi / n, where n is their number. Precondition: no dot overlaps
+/// another dot or the centre.
+std::vector<RotationalSymmetry> rotational_symmetries(const MarkerLayout& layout);
 
-/// In how many dots a pattern differs from another one that is turned.
-std::size_t differences(const std::vector<Colour>& pattern, const std::vector<Colour>& turned,
-                        const DotTurn& turn);
+/// The number of dots in which a pattern differs from another one that is rotated by a symmetry.
+std::size_t hamming_distance(const std::vector<Colour>& pattern, const std::vector<Colour>& rotated,
+                             const RotationalSymmetry& symmetry);
 
 }  // namespace sidestep

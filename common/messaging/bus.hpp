@@ -4,59 +4,61 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "common/messaging/attachment.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
 
-/// Stands for a writer that a bus has made; publishing on it costs no look-up.
+/// A bus's writer of one channel, without the message's type.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
   virtual void write(const void* message) = 0;
 };
 
+/// Publishes messages of one type on one channel.
 template <typename Message>
 class Writer {
  public:
   Writer() = default;
   explicit Writer(std::unique_ptr<RawWriter> raw) : raw_(std::move(raw)) {}
 
-  /// Stamps the message and sends it: head.sender and head.incarnation are the caller's, number and stamp are
-  /// set.
+  /// Sets the header's message_number and stamp_ns, and sends the message. The caller sets sender and
+  /// incarnation.
   void publish(Message& message, Time now) {
-    message.head().message_number(++count_);
-    message.head().stamp_ns(to_ns(now));
+    message.header().message_number(++count_);
+    message.header().stamp_ns(to_ns(now));
     raw_->write(&message);
   }
-  std::uint64_t count() const { return count_; }
 
  private:
   std::unique_ptr<RawWriter> raw_;
   std::uint64_t count_ = 0;
 };
 
-/// What one process sees of the world outside: time, timers and messages. Everything a bus calls back, it
-/// calls from one thread, one after the other; so the code above it needs no locks. Calls are made from
-/// callbacks or before the bus runs.
+/// A process's only interface to the outside: time, timers and messages. A bus makes all its callbacks from
+/// one thread, one after another, so nodes need no locks. Nodes may call a bus from its callbacks, or before
+/// it runs.
 class Bus {
  public:
   virtual ~Bus() = default;
 
   virtual Time now() const = 0;
-  /// Calls back once, as soon as may be at or after the time.
+  /// Calls back once, as soon as possible at or after `when`.
   virtual void at(Time when, std::function<void()> callback) = 0;
 
-  /// While a message is being delivered: where its readers in this process share what they make of it, which
-  /// is kept as long as the message, empty at first; nullptr when nobody shares. A topic's readers agree
-  /// about what it is.
-  virtual std::shared_ptr<void>* beside(const void* message) {
+  /// The slot of the message that is being delivered, valid until the next call of the bus; null if the bus
+  /// does not support attachments.
+  virtual MessageAttachment* attachment(const void* message) {
     (void)message;
     return nullptr;
   }
 
-  /// `robot` is for topics that every robot has one of (Topic::per_robot); it is ignored for the others.
+  /// `robot` selects the channel of a topic with one channel per robot (TopicInfo::per_robot); other topics
+  /// ignore it.
   template <typename Message>
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {
     return Writer<Message>(make_writer(topic, channel_name(topic, robot)));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/cdr.hpp"
 
-#include <cstring>
 #include <exception>
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
-#include <stdexcept>
+
+#include "common/messaging/topics.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,41 +15,44 @@ using eprosima::fastcdr::FastBuffer;
 
 Cdr cdr_over(FastBuffer& buffer) { return Cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::CORBA_CDR); }
 
+/// Whether the generated code can read the bytes without harm. A type's sequence is its last member, so an
+/// empty message ends with the sequence's count. A count beyond the bound would make the generated code
+/// allocate that much memory.
 template <typename Message>
-void append(const void* message, std::vector<std::uint8_t>& bytes) {
+[[nodiscard]] bool is_acceptable(std::span<const std::uint8_t> bytes, std::size_t max_elements) {
+  static const std::size_t min_size = [] {
+    std::vector<std::uint8_t> empty;
+    const Message message;
+    append_cdr<Message>(&message, empty);
+    return empty.size();
+  }();
+  if (bytes.size() < min_size) return false;
+  if (max_elements == 0) return bytes.size() == min_size;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) count |= std::uint32_t{bytes[min_size - 4 + i]} << (8 * i);
+  return count <= max_elements;
+}
+
+}  // namespace
+
+template <typename Message>
+void append_cdr(const void* message, std::vector<std::uint8_t>& bytes) {
   const Message& typed = *static_cast<const Message*>(message);
-  const std::size_t begin = bytes.size(), most = Message::getCdrSerializedSize(typed);
-  bytes.resize(begin + most);
-  FastBuffer buffer(reinterpret_cast<char*>(bytes.data() + begin), most);
+  const std::size_t begin = bytes.size(), max_size = Message::getCdrSerializedSize(typed);
+  bytes.resize(begin + max_size);
+  FastBuffer buffer(reinterpret_cast<char*>(bytes.data() + begin), max_size);
   Cdr cdr = cdr_over(buffer);
   typed.serialize(cdr);
   bytes.resize(begin + cdr.getSerializedDataLength());
 }
 
-/// The sequence, if the type has one, is its last member: so its count ends an empty message. A count beyond
-/// the bound would make the generated code ask for that much memory.
 template <typename Message>
-bool is_acceptable(std::span<const std::uint8_t> bytes, std::size_t max_elements) {
-  static const std::size_t smallest = [] {
-    std::vector<std::uint8_t> empty;
-    const Message message;
-    append<Message>(&message, empty);
-    return empty.size();
-  }();
-  if (bytes.size() < smallest) return false;
-  if (max_elements == 0) return bytes.size() == smallest;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < 4; ++i) count |= std::uint32_t{bytes[smallest - 4 + i]} << (8 * i);
-  return count <= max_elements;
-}
-
-template <typename Message>
-bool read(std::span<const std::uint8_t> bytes, std::size_t max_elements,
-          const std::function<void(const void*)>& use) {
+bool read_cdr(std::span<const std::uint8_t> bytes, std::size_t max_elements,
+              const std::function<void(const void*)>& use) {
   if (!is_acceptable<Message>(bytes, max_elements)) return false;
   Message message;
   try {
-    // The buffer is only read, but its constructor does not say so.
+    // FastBuffer takes a mutable pointer, but deserialisation only reads.
     FastBuffer buffer(reinterpret_cast<char*>(const_cast<std::uint8_t*>(bytes.data())), bytes.size());
     Cdr cdr = cdr_over(buffer);
     message.deserialize(cdr);
@@ -60,41 +63,47 @@ bool read(std::span<const std::uint8_t> bytes, std::size_t max_elements,
   return true;
 }
 
-struct Codec {
-  const char* type;
-  void (*append)(const void*, std::vector<std::uint8_t>&);
-  bool (*read)(std::span<const std::uint8_t>, std::size_t, const std::function<void(const void*)>&);
-};
-
-template <typename Message>
-constexpr Codec codec(const Topic<Message>& topic) {
-  return {topic.type.name, append<Message>, read<Message>};
-}
-
-constexpr Codec kCodecs[] = {
-    codec(topics::kImages),       codec(topics::kDetections), codec(topics::kWorld),
-    codec(topics::kCommand),      codec(topics::kFeedback),   codec(topics::kRegistration),
-    codec(topics::kProposal),     codec(topics::kVerdict),    codec(topics::kLedger),
-    codec(topics::kCoordinator),  codec(topics::kStatus),     codec(topics::kDisturbance),
-    codec(topics::kNetworkFault), codec(topics::kTruth),
-};
-
-const Codec& codec_of(const TopicInfo& topic) {
-  for (const Codec& codec : kCodecs) {
-    if (std::strcmp(codec.type, topic.type.name) == 0) return codec;
-  }
-  throw std::logic_error(std::string("no codec for ") + topic.type.name);
-}
-
-}  // namespace
-
-void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {
-  codec_of(topic).append(message, bytes);
-}
-
-bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
-              const std::function<void(const void*)>& use) {
-  return codec_of(topic).read(bytes, topic.type.max_elements, use);
-}
+template void append_cdr<msg::CameraImage>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::CameraImage>(std::span<const std::uint8_t>, std::size_t,
+                                         const std::function<void(const void*)>&);
+template void append_cdr<msg::DetectionFrame>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::DetectionFrame>(std::span<const std::uint8_t>, std::size_t,
+                                            const std::function<void(const void*)>&);
+template void append_cdr<msg::WorldState>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::WorldState>(std::span<const std::uint8_t>, std::size_t,
+                                        const std::function<void(const void*)>&);
+template void append_cdr<msg::Command>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Command>(std::span<const std::uint8_t>, std::size_t,
+                                     const std::function<void(const void*)>&);
+template void append_cdr<msg::Feedback>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Feedback>(std::span<const std::uint8_t>, std::size_t,
+                                      const std::function<void(const void*)>&);
+template void append_cdr<msg::Registration>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Registration>(std::span<const std::uint8_t>, std::size_t,
+                                          const std::function<void(const void*)>&);
+template void append_cdr<msg::Proposal>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Proposal>(std::span<const std::uint8_t>, std::size_t,
+                                      const std::function<void(const void*)>&);
+template void append_cdr<msg::Verdict>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Verdict>(std::span<const std::uint8_t>, std::size_t,
+                                     const std::function<void(const void*)>&);
+template void append_cdr<msg::LedgerPage>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::LedgerPage>(std::span<const std::uint8_t>, std::size_t,
+                                        const std::function<void(const void*)>&);
+template void append_cdr<msg::CoordinatorState>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::CoordinatorState>(std::span<const std::uint8_t>, std::size_t,
+                                              const std::function<void(const void*)>&);
+template void append_cdr<msg::AgentStatus>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::AgentStatus>(std::span<const std::uint8_t>, std::size_t,
+                                         const std::function<void(const void*)>&);
+template void append_cdr<msg::Disturbance>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::Disturbance>(std::span<const std::uint8_t>, std::size_t,
+                                         const std::function<void(const void*)>&);
+template void append_cdr<msg::NetworkFault>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::NetworkFault>(std::span<const std::uint8_t>, std::size_t,
+                                          const std::function<void(const void*)>&);
+template void append_cdr<msg::GroundTruth>(const void*, std::vector<std::uint8_t>&);
+template bool read_cdr<msg::GroundTruth>(std::span<const std::uint8_t>, std::size_t,
+                                         const std::function<void(const void*)>&);
 
 }  // namespace sidestep

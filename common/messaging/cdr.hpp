@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "common/messaging/topics.hpp"
-
 namespace sidestep {
 
-/// Appends the message's CDR bytes, little-endian and without encapsulation header. `message` is of the
-/// topic's type.
-void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes);
+/// Appends the message's CDR bytes, little-endian, without an encapsulation header. `message` points to a
+/// Message. Instantiated in cdr.cpp for the messages of all topics.
+template <typename Message>
+void append_cdr(const void* message, std::vector<std::uint8_t>& bytes);
 
-/// Reads a message of the topic's type from bytes that may come from anybody, and hands it over; false when
-/// they are not such a message.
-bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
-              const std::function<void(const void* message)>& use);
+/// Decodes untrusted bytes and passes the message, a Message, to `use`. Returns false if the bytes are not a
+/// valid Message, or if its sequence has more than `max_elements` elements (0: the type has no sequence).
+template <typename Message>
+[[nodiscard]] bool read_cdr(std::span<const std::uint8_t> bytes, std::size_t max_elements,
+                            const std::function<void(const void* message)>& use);
 
 }  // namespace sidestep

@@ -7,37 +7,36 @@
 namespace sidestep {
 namespace {
 
-constexpr double kLargestPosition_m = 1e4;
-constexpr double kLargestSpeed_mps = 100;
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMaxSpeed_mps = 100;
 constexpr double kMaxInflation_m = 10;
-constexpr double kLargestAcceleration_mps2 = 1000;
-constexpr Duration kLongestPhase = std::chrono::minutes(1);
-constexpr std::int64_t kLatestStart_ns = std::int64_t{1} << 62;
+constexpr double kMaxAcceleration_mps2 = 1000;
+constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);
+constexpr std::int64_t kMaxStart_ns = std::int64_t{1} << 62;
 
-// Written so that a NaN fails it.
+// False for a NaN.
 bool within(double value, double bound) { return std::abs(value) <= bound; }
 
-/// A hold that is longer than a phase may be is nobody's.
 std::optional<Intent> decode(const msg::Intent& message) {
   const Intent intent{{message.vx_mps(), message.vy_mps()},
-                      message.hold_s(),
+                      message.velocity_duration_s(),
                       {message.via_x_m(), message.via_y_m()},
                       {message.goal_x_m(), message.goal_y_m()}};
-  const auto is_place = [](const Vec2& p) {
-    return within(p.x(), kLargestPosition_m) && within(p.y(), kLargestPosition_m);
+  const auto is_position = [](const Vec2& p) {
+    return within(p.x(), kMaxPosition_m) && within(p.y(), kMaxPosition_m);
   };
-  const bool sound = within(intent.velocity_mps.x(), kLargestSpeed_mps) &&
-                     within(intent.velocity_mps.y(), kLargestSpeed_mps) && intent.hold_s >= 0 &&
-                     intent.hold_s <= to_seconds(kLongestPhase) && is_place(intent.waypoint_m) &&
-                     is_place(intent.goal_m);
-  return sound ? std::optional(intent) : std::nullopt;
+  const bool is_valid = within(intent.velocity_mps.x(), kMaxSpeed_mps) &&
+                        within(intent.velocity_mps.y(), kMaxSpeed_mps) && intent.velocity_duration_s >= 0 &&
+                        intent.velocity_duration_s <= to_seconds(kMaxPhaseDuration) &&
+                        is_position(intent.waypoint_m) && is_position(intent.goal_m);
+  return is_valid ? std::optional(intent) : std::nullopt;
 }
 
 msg::Intent encode(const Intent& intent) {
   msg::Intent message;
   message.vx_mps(static_cast<float>(intent.velocity_mps.x()));
   message.vy_mps(static_cast<float>(intent.velocity_mps.y()));
-  message.hold_s(static_cast<float>(intent.hold_s));
+  message.velocity_duration_s(static_cast<float>(intent.velocity_duration_s));
   message.via_x_m(static_cast<float>(intent.waypoint_m.x()));
   message.via_y_m(static_cast<float>(intent.waypoint_m.y()));
   message.goal_x_m(static_cast<float>(intent.goal_m.x()));
@@ -47,32 +46,31 @@ msg::Intent encode(const Intent& intent) {
 
 }  // namespace
 
-// Each field is read once: their accessors are calls, and every agent reads many versions in every cycle.
 std::optional<Version> decode(const msg::Version& message) {
   const double x = message.x_m(), y = message.y_m(), vx = message.vx_mps(), vy = message.vy_mps();
-  const double grown = message.inflation_m();
+  const double inflation = message.inflation_m();
   const std::int64_t start = message.start_ns();
   const int phases = message.phase_count();
   const RobotId robot = message.robot();
-  const bool sound = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
-                     start <= kLatestStart_ns && within(x, kLargestPosition_m) &&
-                     within(y, kLargestPosition_m) && within(vx, kLargestSpeed_mps) &&
-                     within(vy, kLargestSpeed_mps) && grown >= 0 && grown <= kMaxInflation_m;
-  if (!sound) return std::nullopt;
+  const bool is_valid = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
+                        start <= kMaxStart_ns && within(x, kMaxPosition_m) && within(y, kMaxPosition_m) &&
+                        within(vx, kMaxSpeed_mps) && within(vy, kMaxSpeed_mps) && inflation >= 0 &&
+                        inflation <= kMaxInflation_m;
+  if (!is_valid) return std::nullopt;
   std::optional<Version> version(Version{robot, message.incarnation(), message.version_number(),
                                          message.base(), Trajectory(time_from_ns(start), {{x, y}, {vx, vy}}),
-                                         grown, std::nullopt});
+                                         inflation, std::nullopt});
   if (message.has_intent()) {
-    version->intent = decode(message.intended());
+    version->intent = decode(message.intent());
     if (!version->intent) return std::nullopt;
   }
   const auto* phase = message.phases().data();
   for (int i = 0; i < phases; ++i, ++phase) {
     const std::int64_t duration = phase->duration_ns();
     const double ax = phase->ax_mps2(), ay = phase->ay_mps2();
-    const bool is_sound = duration >= 0 && duration <= kLongestPhase.count() &&
-                          within(ax, kLargestAcceleration_mps2) && within(ay, kLargestAcceleration_mps2);
-    if (!is_sound) return std::nullopt;
+    const bool is_valid_phase = duration >= 0 && duration <= kMaxPhaseDuration.count() &&
+                                within(ax, kMaxAcceleration_mps2) && within(ay, kMaxAcceleration_mps2);
+    if (!is_valid_phase) return std::nullopt;
     version->trajectory.append(Duration{duration}, {ax, ay});
   }
   return version;
@@ -92,7 +90,7 @@ msg::Version encode(const Version& version) {
   message.vy_mps(trajectory.at_start().velocity_mps.y());
   message.inflation_m(version.inflation_m);
   message.has_intent(version.intent.has_value());
-  if (version.intent) message.intended(encode(*version.intent));
+  if (version.intent) message.intent(encode(*version.intent));
   message.phase_count(static_cast<std::uint8_t>(trajectory.phases().size()));
   auto slot = message.phases().begin();
   for (const MotionPhase& phase : trajectory.phases()) {

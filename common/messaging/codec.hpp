@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// A version as it came over the network, checked: finite and within what any robot can do, times and
-/// durations within bounds, phase count in range, robot id in range. nullopt when it is not.
-std::optional<Version> decode(const msg::Version& message);
+/// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
+/// times and durations within bounds, and phase count and robot id in range.
+[[nodiscard]] std::optional<Version> decode(const msg::Version& message);
 
 msg::Version encode(const Version& version);
 

@@ -14,16 +14,17 @@ Duration sample_delay(const LinkQuality& quality, Rng& rng) {
 
 bool ImpairedLink::is_lost(const LinkQuality& quality, Rng& rng) {
   if (quality.is_cut || quality.loss >= 1) return true;
-  // Two states; in the losing one every message is lost. It is left after mean_burst messages on average,
-  // and entered so often that `loss` of all messages fall into it.
+  // Gilbert model: two states; every message sent in the losing state is lost. The losing state lasts
+  // mean_burst messages on average, and is entered so often that the fraction `loss` of all messages falls
+  // into it.
   const double leave = 1 / std::max(1.0, quality.mean_burst);
   const double enter = std::min(1.0, leave * quality.loss / (1 - quality.loss));
   is_losing_ = is_losing_ ? !rng.chance(leave) : rng.chance(enter);
   return is_losing_;
 }
 
-Copies ImpairedLink::send(const LinkQuality& quality, Rng& rng) {
-  Copies copies;
+MessageCopies ImpairedLink::send(const LinkQuality& quality, Rng& rng) {
+  MessageCopies copies;
   if (is_lost(quality, rng)) return copies;
   copies.delays[copies.count++] = sample_delay(quality, rng);
   if (rng.chance(quality.duplicate)) copies.delays[copies.count++] = sample_delay(quality, rng);

@@ -9,38 +9,37 @@
 
 namespace sidestep {
 
-/// What a link does to the messages that one process sends to another.
+/// Quality of the link from one process to another.
 struct LinkQuality {
-  double loss = 0;              ///< share of the messages
-  double mean_burst = 1;        ///< losses come in bursts of so many messages on average (Gilbert 1960)
+  double loss = 0;              ///< fraction of the messages
+  double mean_burst = 1;        ///< mean number of messages lost in a row (Gilbert 1960)
   double duplicate = 0;         ///< probability
-  Duration delay_min{200'000};  ///< delays are exponential above the least, and cut off at the most
+  Duration delay_min{200'000};  ///< delays are exponential above the minimum, truncated at the maximum
   Duration delay_mean{400'000};
   Duration delay_max{600'000};
-  bool is_cut = false;  ///< nothing arrives
+  bool is_cut = false;  ///< no message arrives
 
   bool operator==(const LinkQuality&) const = default;
 };
 
-/// When the copies of one message arrive, after it was sent.
-struct Copies {
+/// Delays after which the copies of one message arrive: none if it is lost, two if it is duplicated.
+struct MessageCopies {
   std::array<Duration, 2> delays{};
   std::size_t count = 0;
 };
 
-/// One sender's messages to one receiver, with a memory of the burst of losses that they are in.
+/// Impairs the messages from one sender to one receiver. Remembers whether it is in a burst of losses.
 class ImpairedLink {
  public:
-  /// What becomes of a message.
-  Copies send(const LinkQuality& quality, Rng& rng);
+  MessageCopies send(const LinkQuality& quality, Rng& rng);
 
  private:
   bool is_lost(const LinkQuality& quality, Rng& rng);
 
-  bool is_losing_ = false;  // within a burst
+  bool is_losing_ = false;  // in a burst
 };
 
-/// The delay of one message.
+/// Delay of one message.
 Duration sample_delay(const LinkQuality& quality, Rng& rng);
 
 }  // namespace sidestep

@@ -4,29 +4,28 @@
 namespace sidestep {
 namespace {
 
-constexpr std::int64_t kLongestDelay_ns = 10'000'000'000;
-constexpr double kLongestBurst = 1e6;
-constexpr std::size_t kMostSenders = 4096;
+constexpr std::int64_t kMaxDelay_ns = 10'000'000'000;
+constexpr double kMaxMeanBurst = 1e6;
+constexpr std::size_t kMaxSenders = 4096;
 
-/// False for NaN too.
+// False for a NaN.
 bool is_within(double value, double low, double high) { return value >= low && value <= high; }
 
 }  // namespace
 
-std::optional<LinkQuality> link_quality_from(const msg::NetworkFault& order) {
-  const bool is_sound = is_within(order.loss(), 0, 1) && is_within(order.mean_burst(), 1, kLongestBurst) &&
-                        is_within(order.duplicate(), 0, 1) && order.delay_min_ns() >= 0 &&
-                        order.delay_mean_ns() >= order.delay_min_ns() &&
-                        order.delay_max_ns() >= order.delay_mean_ns() &&
-                        order.delay_max_ns() <= kLongestDelay_ns;
-  if (!is_sound) return std::nullopt;
-  return LinkQuality{order.loss(),
-                     order.mean_burst(),
-                     order.duplicate(),
-                     Duration{order.delay_min_ns()},
-                     Duration{order.delay_mean_ns()},
-                     Duration{order.delay_max_ns()},
-                     order.is_cut()};
+std::optional<LinkQuality> link_quality_from(const msg::NetworkFault& fault) {
+  const bool is_valid = is_within(fault.loss(), 0, 1) && is_within(fault.mean_burst(), 1, kMaxMeanBurst) &&
+                        is_within(fault.duplicate(), 0, 1) && fault.delay_min_ns() >= 0 &&
+                        fault.delay_mean_ns() >= fault.delay_min_ns() &&
+                        fault.delay_max_ns() >= fault.delay_mean_ns() && fault.delay_max_ns() <= kMaxDelay_ns;
+  if (!is_valid) return std::nullopt;
+  return LinkQuality{fault.loss(),
+                     fault.mean_burst(),
+                     fault.duplicate(),
+                     Duration{fault.delay_min_ns()},
+                     Duration{fault.delay_mean_ns()},
+                     Duration{fault.delay_max_ns()},
+                     fault.is_cut()};
 }
 
 void Impairment::set(const LinkQuality& quality, std::uint64_t seed) {
@@ -36,10 +35,10 @@ void Impairment::set(const LinkQuality& quality, std::uint64_t seed) {
   links_.clear();
 }
 
-Copies Impairment::receive(const SenderId& sender) {
+MessageCopies Impairment::receive(const SenderId& sender) {
   const std::lock_guard lock(mutex_);
-  if (quality_ == kUntouchedLink) return {{}, 1};
-  if (links_.size() >= kMostSenders) links_.clear();
+  if (quality_ == kUnimpairedLink) return {{}, 1};
+  if (links_.size() >= kMaxSenders) links_.clear();
   return links_[sender].send(quality_, rng_);
 }
 

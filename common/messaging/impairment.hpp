@@ -12,23 +12,24 @@
 
 namespace sidestep {
 
-/// Messages arrive as they come.
-inline constexpr LinkQuality kUntouchedLink{0, 1, 0, Duration{0}, Duration{0}, Duration{0}, false};
+/// No loss, no delay, no duplicates.
+inline constexpr LinkQuality kUnimpairedLink{0, 1, 0, Duration{0}, Duration{0}, Duration{0}, false};
 
-/// What an order of `sidestep fault network` asks for; nothing when it makes no sense.
-std::optional<LinkQuality> link_quality_from(const msg::NetworkFault& order);
+/// Decodes a network fault; nullopt if a value is out of range.
+[[nodiscard]] std::optional<LinkQuality> link_quality_from(const msg::NetworkFault& fault);
 
-/// What happens to the messages that come to one process, by sender. From any thread.
+/// Impairs the messages that arrive at one process, with one link per sender. Thread-safe.
 class Impairment {
  public:
+  /// RTPS GUID prefix.
   using SenderId = std::array<std::uint8_t, 12>;
 
   void set(const LinkQuality& quality, std::uint64_t seed);
-  Copies receive(const SenderId& sender);
+  MessageCopies receive(const SenderId& sender);
 
  private:
   std::mutex mutex_;
-  LinkQuality quality_ = kUntouchedLink;
+  LinkQuality quality_ = kUnimpairedLink;
   Rng rng_{0};
   std::map<SenderId, ImpairedLink> links_;
 };

@@ -5,7 +5,8 @@
 
 namespace sidestep {
 
-/// Who a message's head.sender is. Robots and their agents go by the robot's number; everybody else by these.
+/// Values of Header.sender. A robot and its agents use the robot's number. The others use these bases, plus
+/// their own number where there are several.
 enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
@@ -13,7 +14,7 @@ enum class Sender : std::uint32_t {
   kOperator = 40000,
 };
 
-/// NetworkFault.target of an order to every process.
+/// NetworkFault.target that addresses every process.
 inline constexpr std::uint32_t kEveryProcess = 4294967295;
 
 }  // namespace sidestep

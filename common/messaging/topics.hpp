@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/messaging/cdr.hpp"
 #include "idl/disturbance.h"
 #include "idl/monitor.h"
 #include "idl/negotiation.h"
@@ -14,25 +17,28 @@
 
 namespace sidestep {
 
-/// All topics are best effort and keep the last sample of each key: every message of the control cycle is
-/// superseded by the next one, and the protocol is built for loss, so a late repetition would only cost time.
-/// Events are few and must arrive: reliable, in order. Images are states of a megabyte, which may go by
-/// shared memory.
+/// Quality of service. States are best effort and keep the last sample of each key: each message of the
+/// control cycle supersedes the previous one, and the protocol tolerates loss, so a retransmission would only
+/// cost time. Events are few and must arrive: reliable, in order. Images are states of about a megabyte, and
+/// may go by shared memory.
 enum class Qos : std::uint8_t { kState, kEvent, kImage };
 
-/// What a bus has to know of a message type.
+/// A message type without its C++ type, for buses and recordings.
 struct MessageType {
-  const char* name;                                  ///< as in the IDL, e.g. sidestep::msg::Proposal
-  std::size_t max_elements;                          ///< bound of the sequence at the type's end, 0: none
-  std::shared_ptr<const void> (*copy)(const void*);  ///< a copy to keep
+  const char* name;          ///< as in the IDL, e.g. sidestep::msg::Proposal
+  std::size_t max_elements;  ///< bound of the sequence that is the type's last member, 0: none
+  std::shared_ptr<const void> (*copy)(const void* message);
+  void (*append_cdr)(const void* message, std::vector<std::uint8_t>& bytes);
+  bool (*read_cdr)(std::span<const std::uint8_t> bytes, std::size_t max_elements,
+                   const std::function<void(const void* message)>& use);
 };
 
 /// A row of the topic table.
 struct TopicInfo {
   const char* name;
-  const char* writer;  ///< who writes it
+  const char* writer;  ///< program that writes the topic
   Qos qos;
-  bool per_robot;  ///< one channel for each robot, "<name>/<robot>", so that nobody has to listen to all
+  bool per_robot;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
   MessageType type;
 };
 
@@ -41,17 +47,28 @@ struct Topic : TopicInfo {};
 
 template <typename Message>
 constexpr MessageType message_type(const char* name, std::size_t max_elements = 0) {
-  return {name, max_elements, [](const void* m) -> std::shared_ptr<const void> {
-            return std::make_shared<const Message>(*static_cast<const Message*>(m));
-          }};
+  const auto copy = [](const void* m) -> std::shared_ptr<const void> {
+    return std::make_shared<const Message>(*static_cast<const Message*>(m));
+  };
+  return {name, max_elements, copy, append_cdr<Message>, read_cdr<Message>};
 }
 
-/// The name on the wire: the topic's, with the robot's number for topics that every robot has one of.
+/// The DDS topic name: the topic's name, followed by the robot's number for topics with one channel per
+/// robot.
 inline std::string channel_name(const TopicInfo& topic, std::uint32_t robot) {
   return topic.per_robot ? std::string(topic.name) + "/" + std::to_string(robot) : topic.name;
 }
 
-/// The one table of topics.
+/// As the templates of these names, for the topic's message type.
+inline void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {
+  topic.type.append_cdr(message, bytes);
+}
+[[nodiscard]] inline bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
+                                   const std::function<void(const void* message)>& use) {
+  return topic.type.read_cdr(bytes, topic.type.max_elements, use);
+}
+
+/// The topic table.
 namespace topics {
 
 inline constexpr Topic<msg::CameraImage> kImages{
@@ -88,14 +105,14 @@ inline constexpr Topic<msg::Disturbance> kDisturbance{
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
     {"network_fault", "fault", Qos::kEvent, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
-/// For judges only.
+/// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", "simulator", Qos::kState, false,
      message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024)}};
 
 }  // namespace topics
 
-/// Every row of the table, for tools that list, listen and check.
+/// All rows of the table.
 std::vector<TopicInfo> all_topics();
 
 }  // namespace sidestep

@@ -5,23 +5,24 @@
 
 namespace sidestep {
 
-/// How far below the true clearance the computed one may lie; it never lies above.
+/// The computed clearance is at most this far below the true one, and never above it.
 inline constexpr double kClearanceTolerance_m = 1e-9;
 
-/// THE clearance of two robots: the smallest distance between their two trajectories, both taken at the same
-/// time, over all time from the later of the two starts on, less `min_separation_m` (both radii and the margin).
-/// Negative: they come too near. Before the later start at least one of the two robots does something else
-/// than its trajectory says, and that has to be checked with the version that says it.
+/// The clearance of two robots, the only such function of the system: the minimum distance between their
+/// trajectories at equal times from the later start on, less `min_separation_m` (both radii and the margin).
+/// Negative if the robots come too close. Before the later start, at least one robot executes another
+/// version, which has to be checked itself.
 ///
-/// The relative motion is piecewise quadratic, so the squared distance is a quartic on each piece; its minima
-/// are bracketed between the extrema of its derivative, which finds all of them.
+/// The relative motion is piecewise quadratic, so the squared distance is a quartic on each piece. Its minima
+/// are bracketed by the extrema of its derivative, which finds all of them.
 double clearance_m(const Trajectory& a, const Trajectory& b, double min_separation_m);
 
-/// clearance_m(a, b, min_separation_m) >= 0, faster: it looks closely only where the two can come near.
-bool is_clear(const Trajectory& a, const Trajectory& b, double min_separation_m);
+/// Whether clearance_m(a, b, min_separation_m) >= 0; faster, because it examines only the pieces on which the
+/// robots can come close.
+[[nodiscard]] bool is_clear(const Trajectory& a, const Trajectory& b, double min_separation_m);
 
-/// The clearance of a trajectory from a disc that never moves.
+/// The clearance of a trajectory from a static disc.
 double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
-bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
+[[nodiscard]] bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
 
 }  // namespace sidestep

@@ -8,59 +8,63 @@
 namespace sidestep {
 namespace {
 
-/// The largest |x| and |y| that a trajectory gets to.
-Vec2 farthest_m(const Trajectory& trajectory) {
+/// The maximum |x| and |y| that a trajectory reaches.
+Vec2 max_extent_m(const Trajectory& trajectory) {
   State state = trajectory.at_start();
-  Vec2 farthest = state.position_m.cwiseAbs();
+  Vec2 extent = state.position_m.cwiseAbs();
   for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
     for (const int axis : {0, 1}) {
       const double turn = -state.velocity_mps[axis] / phase.acceleration_mps2[axis];
-      if (!(turn > 0 && turn < seconds)) continue;  // nor where the acceleration is zero
-      const double there = state.position_m[axis] + 0.5 * turn * state.velocity_mps[axis];
-      farthest[axis] = std::max(farthest[axis], std::abs(there));
+      if (!(turn > 0 && turn < seconds)) continue;  // also false where the acceleration is zero
+      const double turning_point = state.position_m[axis] + 0.5 * turn * state.velocity_mps[axis];
+      extent[axis] = std::max(extent[axis], std::abs(turning_point));
     }
     state = state_after(state, phase.acceleration_mps2, seconds);
-    farthest = farthest.cwiseMax(state.position_m.cwiseAbs());
+    extent = extent.cwiseMax(state.position_m.cwiseAbs());
   }
-  return farthest;
+  return extent;
 }
 
 }  // namespace
 
-Trajectory rest_of(const Trajectory& trajectory, Time from) {
+Trajectory remaining_trajectory(const Trajectory& trajectory, Time from) {
   if (from <= trajectory.start()) return trajectory;
-  Trajectory rest(from, trajectory.state_at(from));
+  Trajectory remaining(from, trajectory.state_at(from));
   Time begin = trajectory.start();
   for (const MotionPhase& phase : trajectory.phases()) {
     const Time end = begin + phase.duration;
-    if (end > from) rest.append(end - std::max(begin, from), phase.acceleration_mps2);
+    if (end > from) remaining.append(end - std::max(begin, from), phase.acceleration_mps2);
     begin = end;
   }
-  return rest;
+  return remaining;
 }
 
-double kept_distance_m(const Trajectory& base, Time from, const Trajectory& other, double min_separation_m) {
-  return std::min(min_separation_m, clearance_m(rest_of(base, from), other, 0) - kClearanceTolerance_m);
+double relaxed_separation_m(const Trajectory& base, Time from, const Trajectory& other,
+                            double min_separation_m) {
+  return std::min(min_separation_m,
+                  clearance_m(remaining_trajectory(base, from), other, 0) - kClearanceTolerance_m);
 }
 
-msg::Reason check_place_after(const Version& version, const Trajectory& base, const FloorRules& rules) {
-  FloorRules eased = rules;
-  eased.margin_m += version.inflation_m;
-  const msg::Reason reason = check_place(version.trajectory, version.inflation_m == 0 ? rules : eased);
-  if (reason == msg::REASON_GRANTED) return reason;
-  const Trajectory rest = rest_of(base, version.trajectory.start());
-  const double extra_clearance_m = rules.radius_m + kClearanceTolerance_m;
-  const Vec2 farthest = farthest_m(rest);
-  eased.field.length_m = std::max(eased.field.length_m, 2 * (farthest.x() + extra_clearance_m));
-  eased.field.width_m = std::max(eased.field.width_m, 2 * (farthest.y() + extra_clearance_m));
-  const double min_separation_m = eased.radius_m + eased.margin_m;
-  for (Circle& obstacle : eased.obstacles) {
-    const double kept_m = kept_distance_m(
-        rest, rest.start(), Trajectory::resting(rest.start(), obstacle.centre_m), min_separation_m + obstacle.radius_m);
-    obstacle.radius_m = kept_m - min_separation_m;
+Validity check_workspace_with_escape(const Version& version, const Trajectory& base,
+                                     const FloorRules& rules) {
+  FloorRules relaxed = rules;
+  relaxed.margin_m += version.inflation_m;
+  const Validity validity = check_workspace(version.trajectory, version.inflation_m == 0 ? rules : relaxed);
+  if (validity == Validity::kValid) return validity;
+  const Trajectory remaining = remaining_trajectory(base, version.trajectory.start());
+  const double edge_distance_m = rules.radius_m + kClearanceTolerance_m;
+  const Vec2 extent = max_extent_m(remaining);
+  relaxed.field.length_m = std::max(relaxed.field.length_m, 2 * (extent.x() + edge_distance_m));
+  relaxed.field.width_m = std::max(relaxed.field.width_m, 2 * (extent.y() + edge_distance_m));
+  const double min_separation_m = relaxed.radius_m + relaxed.margin_m;
+  for (Circle& obstacle : relaxed.obstacles) {
+    const double relaxed_m = relaxed_separation_m(remaining, remaining.start(),
+                                                  Trajectory::resting(remaining.start(), obstacle.centre_m),
+                                                  min_separation_m + obstacle.radius_m);
+    obstacle.radius_m = relaxed_m - min_separation_m;
   }
-  return check_place(version.trajectory, eased);
+  return check_workspace(version.trajectory, relaxed);
 }
 
 }  // namespace sidestep

@@ -2,19 +2,24 @@
 #pragma once
 
 #include "common/motion/validity.hpp"
+#include "common/motion/version.hpp"
 
 namespace sidestep {
 
-/// What is left of a trajectory from a time on; all of it when it starts later.
-Trajectory rest_of(const Trajectory& trajectory, Time from);
+/// The part of a trajectory from a time on; all of it when it starts later.
+Trajectory remaining_trajectory(const Trajectory& trajectory, Time from);
 
-/// How near a version that continues `base` from a time on may come to another trajectory: min_separation_m, or as near
-/// as the base comes from then on, where that is nearer already. So robots that something brought too near to
-/// each other may part, and none may come nearer than it would by doing nothing.
-double kept_distance_m(const Trajectory& base, Time from, const Trajectory& other, double min_separation_m);
+/// The distance that a version which continues `base` at `from` has to keep from another trajectory:
+/// min_separation_m, or the smallest distance of the base itself from then on where that is less. So two
+/// robots that an outside event brought too close may part, and neither comes closer than by braking alone
+/// (coordinator/PROTOCOL.md, rule 4).
+double relaxed_separation_m(const Trajectory& base, Time from, const Trajectory& other,
+                            double min_separation_m);
 
-/// check_place for a version that continues `base`, with its growth: where the base is too near to an
-/// obstacle or off the field from the version's start on, the version may be as near, or as far off.
-msg::Reason check_place_after(const Version& version, const Trajectory& base, const FloorRules& rules);
+/// check_workspace() for a version that continues `base`, with its inflation and the escape rule: where the
+/// base is too close to an obstacle or off the field from the version's start on, the version may be as
+/// close, or as far off.
+[[nodiscard]] Validity check_workspace_with_escape(const Version& version, const Trajectory& base,
+                                                   const FloorRules& rules);
 
 }  // namespace sidestep

@@ -5,11 +5,11 @@
 
 namespace sidestep {
 
-/// What a robot means to do after what it promises: hold a velocity for so long from its version's start on,
-/// then make for its goal past a way point. Nobody relies on it; it is for others to plan around.
+/// What a robot intends beyond its version: hold a velocity from the version's start on, then drive to its
+/// goal via a waypoint. Other robots use it for planning only; safety does not rely on it.
 struct Intent {
   Vec2 velocity_mps{0, 0};
-  double hold_s = 0;
+  double velocity_duration_s = 0;
   Vec2 waypoint_m{0, 0};
   Vec2 goal_m{0, 0};
 };

@@ -3,16 +3,11 @@
 
 namespace sidestep {
 
-/// What a robot may ask of itself (safety-protocol: numbers to start from).
+/// The limits that a robot's reference motion obeys.
 struct MotionLimits {
-  double acceleration_mps2 = 3;  ///< F, ahead and sideways
-  double deceleration_mps2 = 5;  ///< D, guaranteed against the velocity
+  double acceleration_mps2 = 3;  ///< F: ahead and sideways
+  double deceleration_mps2 = 5;  ///< D: guaranteed against the velocity
   double speed_mps = 2;
-};
-
-/// A robot as the safety layer sees it: a disc.
-struct RobotShape {
-  double radius_m = 0.09;
 };
 
 }  // namespace sidestep

@@ -1,42 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include "common/geometry/vec2.hpp"
-#include "agents/batch/kernels.hpp"
 #include "common/motion/limits.hpp"
 #include "common/random/rng.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
 
-/// The set A(v) of accelerations that a robot may ask for at a velocity (Bruce, ch. 5): ahead of the velocity
-/// a half disc of radius F, behind it a half ellipse that reaches F sideways and D backwards. At rest a disc
-/// of radius F.
-bool is_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits);
+/// Whether an acceleration lies in A(v), the set of accelerations that a robot may use at a velocity (Bruce,
+/// CMU-CS-06-181, ch. 5): a half disc of radius F ahead of the velocity, and behind it a half ellipse that
+/// reaches F sideways and D backwards. At rest A(v) is a disc of radius F.
+[[nodiscard]] bool is_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
+                                 const MotionLimits& limits);
 
-/// The acceleration in A(v) that points the same way and is nearest to what was asked for.
-Vec2 scaled_into_model(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits);
+/// An acceleration that may be held for `duration`: the requested one, reduced to the speed limit and scaled
+/// into A(v). Precondition: the initial speed is within the limit.
+Vec2 limit_acceleration(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits,
+                        Duration duration);
 
-/// As scaled_into_model, for an acceleration that is held for `duration`: after it the speed is within its
-/// limit too, provided that the speed is within it now.
-Vec2 limited(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits,
-             Duration duration);
+/// A sample from the uniform distribution over A(v).
+Vec2 sample_acceleration(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);
 
-/// Uniform over A(v).
-Vec2 sample(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);
+/// `count` samples as by sample_acceleration(), in the frame whose x axis is the velocity.
+void sample_in_velocity_frame(bool is_at_rest, const MotionLimits& limits, Rng& rng, std::size_t count,
+                              double* x_mps2, double* y_mps2);
 
-/// As sample(), with x along the velocity.
-Vec2 sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng);
+/// Whether a velocity is too small to have a direction.
+[[nodiscard]] bool is_at_rest(const Vec2& velocity_mps);
 
-/// As many of them.
-void sample_ahead(bool is_at_rest, const MotionLimits& limits, Rng& rng, std::size_t count, double* x_mps2,
-                  double* y_mps2);
-
-/// The direction of a velocity; along x at rest.
+/// The direction of a velocity; the x axis at rest.
 Vec2 forward_of(const Vec2& velocity_mps);
-
-/// What batch::Kernels::limit takes to do as limited() does to many, drawn by sample_ahead().
-batch::LimitSettings limit_settings(const Vec2& velocity_mps, const Vec2& desired_mps2,
-                                    const MotionLimits& limits, Duration duration);
 
 }  // namespace sidestep

@@ -16,25 +16,25 @@ void RollingBall::roll(double duration_s) {
 }
 
 void RollingBall::bounce_off_walls(const Field& field) {
-  const Vec2 most(field.length_m / 2 - settings_.radius_m, field.width_m / 2 - settings_.radius_m);
+  const Vec2 limit_m(field.length_m / 2 - settings_.radius_m, field.width_m / 2 - settings_.radius_m);
   for (int axis = 0; axis < 2; ++axis) {
     const double side = state_.position_m[axis] < 0 ? -1 : 1;
-    if (side * state_.position_m[axis] <= most[axis]) continue;
-    state_.position_m[axis] = side * most[axis];
+    if (side * state_.position_m[axis] <= limit_m[axis]) continue;
+    state_.position_m[axis] = side * limit_m[axis];
     if (side * state_.velocity_mps[axis] > 0) state_.velocity_mps[axis] *= -settings_.wall_restitution;
   }
 }
 
 void RollingBall::bounce_off(const Circle& disc, const Vec2& velocity_mps, double restitution) {
-  const Vec2 apart = state_.position_m - disc.centre_m;
-  const double touching = disc.radius_m + settings_.radius_m;
-  const double square = apart.squaredNorm();
-  if (square >= touching * touching) return;
+  const Vec2 offset = state_.position_m - disc.centre_m;
+  const double contact_distance_m = disc.radius_m + settings_.radius_m;
+  const double square = offset.squaredNorm();
+  if (square >= contact_distance_m * contact_distance_m) return;
   const double distance = std::sqrt(square);
-  const Vec2 away = distance > 0 ? Vec2(apart / distance) : Vec2(1, 0);
-  state_.position_m = disc.centre_m + away * touching;
-  const double approach = (velocity_mps - state_.velocity_mps).dot(away);
-  if (approach > 0) state_.velocity_mps += away * (approach * (1 + restitution));
+  const Vec2 normal = distance > 0 ? Vec2(offset / distance) : Vec2(1, 0);
+  state_.position_m = disc.centre_m + normal * contact_distance_m;
+  const double approach = (velocity_mps - state_.velocity_mps).dot(normal);
+  if (approach > 0) state_.velocity_mps += normal * (approach * (1 + restitution));
 }
 
 }  // namespace sidestep

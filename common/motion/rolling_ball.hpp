@@ -14,18 +14,18 @@ struct BallSettings {
   double robot_restitution = 0.2;
 };
 
-/// The physics of a ball that rolls on the floor and bounces off what stands there.
+/// The physics of a ball that rolls on the floor and bounces off walls, obstacles and robots.
 class RollingBall {
  public:
   RollingBall(const State& state, const BallSettings& settings) : state_(state), settings_(settings) {}
 
-  /// Moves on, braked by friction.
+  /// Advances the motion, with friction.
   void roll(double duration_s);
-  /// Keeps within the field's walls.
+  /// Resolves contact with the walls around the field.
   void bounce_off_walls(const Field& field);
-  /// Keeps out of a disc that stands still.
+  /// Resolves contact with a static disc.
   void bounce_off(const Circle& obstacle) { bounce_off(obstacle, {0, 0}, settings_.wall_restitution); }
-  /// Keeps out of a robot, which does not notice it.
+  /// Resolves contact with a robot, whose motion is not affected.
   void bounce_off_robot(const Circle& robot, const Vec2& velocity_mps) {
     bounce_off(robot, velocity_mps, settings_.robot_restitution);
   }

@@ -19,6 +19,7 @@ Motion Trajectory::motion_at(Time t) const {
 }
 
 namespace {
+
 State state_after_phases(const Trajectory& trajectory) {
   State state = trajectory.at_start();
   for (const MotionPhase& phase : trajectory.phases()) {
@@ -26,6 +27,7 @@ State state_after_phases(const Trajectory& trajectory) {
   }
   return state;
 }
+
 }  // namespace
 
 Vec2 Trajectory::rest_position_m() const { return state_after_phases(*this).position_m; }
@@ -36,7 +38,8 @@ void append_stop(Trajectory& trajectory, double deceleration_mps2) {
   const Vec2 velocity = state_after_phases(trajectory).velocity_mps;
   const double speed = velocity.norm();
   if (speed < 1e-12) return;
-  // Rounded up to whole nanoseconds and then braked a little less hard, so that it ends at rest exactly.
+  // The duration is rounded up to whole nanoseconds and the deceleration reduced to match, so that the
+  // trajectory ends exactly at rest.
   const Duration duration{static_cast<std::int64_t>(std::ceil(speed / deceleration_mps2 * 1e9))};
   trajectory.append(duration, -velocity / to_seconds(duration));
 }
@@ -46,7 +49,7 @@ double reach_m(const Trajectory& trajectory) {
   State state = trajectory.at_start();
   for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
-    // The speed is convex over a phase, so its larger end bounds it.
+    // The speed is convex over a phase, so its maximum is at one of the ends.
     const State next = state_after(state, phase.acceleration_mps2, seconds);
     reach += seconds * std::max(state.velocity_mps.norm(), next.velocity_mps.norm());
     state = next;

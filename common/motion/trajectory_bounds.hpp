@@ -6,22 +6,22 @@
 
 namespace sidestep {
 
-/// A trajectory as many are compared with at a time: in at most two phases, and what bounds it.
+/// Bounds of a trajectory, and its phases in the form that batch comparisons use.
 struct TrajectoryBounds {
   Time start{};
-  bool is_plain = false;  ///< has at most two phases and moderate numbers; others are compared one by one
+  bool is_batchable =
+      false;  ///< has at most two phases and moderate numbers; others are compared one at a time
   State at_start;
-  double first_s = 0, second_s = 0;  ///< how long the phases last; the first is empty only if both are
-  Vec2 first_half_mps2{0, 0}, second_half_mps2{0, 0};  ///< half their accelerations
-  Vec2 second_velocity_mps{0, 0};                      ///< as the second phase begins
-  double seconds = 0;                                  ///< until it rests
-  double acceleration_mps2 = 0;                        ///< the largest
-  Circle disc;                                         ///< never left, from the start on for ever
+  double first_s = 0, second_s = 0;  ///< durations of the phases; the first is 0 only if the second is
+  Vec2 first_half_mps2{0, 0}, second_half_mps2{0, 0};  ///< half the accelerations of the phases
+  Vec2 second_velocity_mps{0, 0};                      ///< at the start of the second phase
+  double acceleration_mps2 = 0;                        ///< maximum magnitude
+  Circle disc;                                         ///< contains the trajectory from its start on
 };
 
 TrajectoryBounds trajectory_bounds(const Trajectory& trajectory);
 
-/// The outline's disc.
+/// A disc that contains the trajectory from its start on.
 inline Circle disc_of(const Trajectory& trajectory) { return trajectory_bounds(trajectory).disc; }
 
 }  // namespace sidestep

@@ -11,32 +11,33 @@ namespace sidestep {
 
 using RobotId = std::uint32_t;
 using VersionNumber = std::uint64_t;
-/// One life of a process: nanoseconds of its clock when it began, so a later life has a higher one.
+/// One life of a process: the process's clock at its start in nanoseconds, so a later life has a higher
+/// number.
 using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
-/// What claims to be higher is nobody's epoch.
-inline constexpr Epoch kHighestEpoch = Epoch{1} << 62;
-/// Epochs are readings of coordinators' clocks, raised a little where one has to be above another. So what is
-/// an hour ahead of one's own clock or more is nobody's epoch: one wrong message cannot use up all epochs
-/// that there are.
-constexpr bool is_believable(Epoch epoch, Time now) {
-  constexpr Duration kEpochsAhead{3'600'000'000'000};
-  return epoch <= kHighestEpoch && static_cast<std::int64_t>(epoch) - to_ns(now) < kEpochsAhead.count();
+/// Higher epochs are invalid.
+inline constexpr Epoch kMaxEpoch = Epoch{1} << 62;
+/// Whether a coordinator may have begun this epoch. Epochs are clock readings of coordinators, raised
+/// slightly where one has to exceed another, so an epoch an hour or more ahead of the local clock is
+/// rejected: a single wrong message cannot exhaust the epochs.
+constexpr bool is_plausible(Epoch epoch, Time now) {
+  constexpr Duration kMaxEpochAhead{3'600'000'000'000};
+  return epoch <= kMaxEpoch && static_cast<std::int64_t>(epoch) - to_ns(now) < kMaxEpochAhead.count();
 }
 
 /// Robots are numbered 0 .. kMaxRobots - 1.
 inline constexpr RobotId kMaxRobots = 1024;
 
-/// One trajectory of one robot. An agent counts its versions upwards from its incarnation, so that they grow
-/// over the robot's life although agents come and go. Version 0 is the stand that a robot begins with; no
-/// agent makes it.
+/// One trajectory of one robot. An agent numbers its versions upwards from its incarnation, so that the
+/// numbers increase over the robot's life across restarts of its agent. Version 0 is the rest version with
+/// which a robot starts; no agent makes it.
 struct Version {
   RobotId robot = 0;
   Incarnation incarnation = 0;
   VersionNumber number = 0;
   VersionNumber base = 0;
   Trajectory trajectory;
-  /// How much larger than its radius the robot has to be taken: where it was measured off its reference.
+  /// Added to the robot's radius because its position is uncertain; coordinator/PROTOCOL.md.
   double inflation_m = 0;
   std::optional<Intent> intent{};
 };

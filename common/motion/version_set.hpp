@@ -8,22 +8,22 @@
 
 namespace sidestep {
 
-/// The versions that one robot may be executing, now or later: R(i) in the coordinator's ledger, and what an
-/// agent registers. A version leaves it by a fact and by nothing else (safety-protocol, rule 2).
+/// The versions that a robot may be executing, now or later: R(i) in the coordinator's ledger, and the
+/// content of an agent's registration. Only facts remove versions (coordinator/PROTOCOL.md, rule 2).
 class VersionSet {
  public:
   static constexpr std::size_t kCapacity = 8;
 
   bool is_full() const { return count_ == kCapacity; }
-  /// Precondition: not full. A version that is there already is not added again.
+  /// No effect if the set contains the version's number. Precondition: not full.
   void add(const Version& version);
   /// The version with this number, or nullptr.
   const Version* find(VersionNumber number) const;
-  /// "executing f at time t": drops every version older than f, and every newer one whose start is not after
-  /// t, because the firmware can never take it any more. A fact about a version that is not in the set is
-  /// left alone (late, or false): returns false.
+  /// The fact "executing f at time t": removes all versions older than f, and all newer ones that start at or
+  /// before t, because the firmware can no longer switch to them. False, without effect, if f is not in the
+  /// set: the fact is late or false.
   bool forget(VersionNumber executing, Time at);
-  /// "Executing nothing at time t": drops every version whose start is not after t.
+  /// The fact "executing nothing at time t": removes all versions that start at or before t.
   void forget_started(Time at);
   void clear() { count_ = 0; }
 

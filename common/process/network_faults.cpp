@@ -11,25 +11,26 @@ namespace {
 
 double milliseconds(Duration d) { return to_seconds(d) * 1e3; }
 
-std::string in_words(const LinkQuality& quality) {
-  if (quality.is_cut) return "nothing arrives";
-  if (quality == kUntouchedLink) return "everything arrives as it comes";
+std::string describe(const LinkQuality& quality) {
+  if (quality.is_cut) return "all messages are dropped";
+  if (quality == kUnimpairedLink) return "none";
   return fmt::format(
-      "{:.4g} % lost in bursts of {:.4g}, {:.4g} % doubled, {:.4g} to {:.4g} ms late, {:.4g} on average",
+      "{:.4g} % lost in bursts of {:.4g}, {:.4g} % duplicated, delayed by {:.4g} to {:.4g} ms, {:.4g} ms on "
+      "average",
       100 * quality.loss, quality.mean_burst, 100 * quality.duplicate, milliseconds(quality.delay_min),
       milliseconds(quality.delay_max), milliseconds(quality.delay_mean));
 }
 
 }  // namespace
 
-void take_network_faults(DdsBus& bus, std::uint32_t target, const std::string& name) {
-  bus.subscribe(topics::kNetworkFault, std::function([&bus, target, name](const msg::NetworkFault& order) {
-                  if (order.target() != target && order.target() != kEveryProcess) return;
-                  const auto quality = link_quality_from(order);
+void apply_network_faults(DdsBus& bus, std::uint32_t target, const std::string& name) {
+  bus.subscribe(topics::kNetworkFault, std::function([&bus, target, name](const msg::NetworkFault& fault) {
+                  if (fault.target() != target && fault.target() != kEveryProcess) return;
+                  const auto quality = link_quality_from(fault);
                   fmt::print(stderr, "{}: network fault: {}\n", name,
-                             quality ? in_words(*quality) : "an order that makes no sense, ignored");
-                  // Every process has a seed of its own, or all would lose the same.
-                  if (quality) bus.impair(*quality, order.seed() ^ (target * 0x9e3779b97f4a7c15ULL));
+                             quality ? describe(*quality) : "invalid, ignored");
+                  // A seed per process, so that the losses are independent.
+                  if (quality) bus.impair(*quality, fault.seed() ^ (target * 0x9e3779b97f4a7c15ULL));
                 }));
 }
 

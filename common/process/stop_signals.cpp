@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// A signal handler gets no argument of ours, so this is the one place that needs a global.
+// A signal handler takes no user data, so it needs a global.
 std::function<void()> stop_now;
 
 void handle(int) {

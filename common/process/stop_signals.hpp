@@ -6,8 +6,9 @@
 
 namespace sidestep {
 
-/// While it lives, SIGINT and SIGTERM call `stop` instead of ending the process. `stop` runs in the signal
-/// handler, so it may do no more than DdsBus::stop() does. One at a time in a process.
+/// Calls `stop` on SIGINT and SIGTERM instead of ending the process, for the lifetime of the object. `stop`
+/// runs in the signal handler, so it has to be async-signal-safe, as DdsBus::stop() is. At most one object
+/// per process at a time.
 class StopSignals {
  public:
   explicit StopSignals(std::function<void()> stop);

@@ -6,16 +6,16 @@
 
 namespace sidestep {
 
-/// What inner loops are compiled for; each includes the ones before.
+/// The instruction sets that kernels are compiled for; each includes the preceding ones.
 enum class InstructionSet {
-  kBaseline,    ///< what every processor of the architecture has
+  kBaseline,    ///< common to all processors of the architecture
   kAvx2,        ///< and FMA, BMI 1 and 2, POPCNT
   kAvx512,      ///< F, DQ and VL
   kAvx512Bytes  ///< BW and VBMI
 };
 
-/// The best that this processor and its operating system offer. Code that is compiled for an instruction set
-/// may use all that is listed for it here, and no more.
+/// The best instruction set that this processor and its operating system support. Code compiled for an
+/// instruction set may use exactly the extensions listed above for it.
 inline InstructionSet best_instruction_set() {
 #ifdef __x86_64__
   const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
@@ -30,19 +30,19 @@ inline InstructionSet best_instruction_set() {
   return InstructionSet::kBaseline;
 }
 
-/// Inner loops that were compiled for an instruction set.
+/// Kernels that were compiled for an instruction set.
 template <typename Kernels>
 struct CompiledFor {
-  InstructionSet needed;
+  InstructionSet required;
   Kernels kernels;
 };
 
-/// Those that this machine can run, in the order given.
+/// The kernels that this machine can run, in the given order.
 template <typename Kernels>
 std::vector<Kernels> runnable(std::initializer_list<CompiledFor<Kernels>> all) {
   std::vector<Kernels> found;
   for (const CompiledFor<Kernels>& one : all) {
-    if (one.needed <= best_instruction_set()) found.push_back(one.kernels);
+    if (one.required <= best_instruction_set()) found.push_back(one.kernels);
   }
   return found;
 }

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 
 namespace sidestep {
 
-/// xoshiro256++ (Blackman, Vigna 2018), with distributions of its own: the standard library's differ from one
-/// implementation to the next, and a seed has to mean the same run everywhere.
+/// xoshiro256++ (Blackman, Vigna 2018) with its own distributions: those of the standard library differ
+/// between implementations, and a seed has to give the same run everywhere.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) {
@@ -40,14 +41,14 @@ class Rng {
   /// Standard normal (Box, Muller 1958).
   double normal() {
     const double u = 1.0 - uniform();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(6.283185307179586 * uniform());
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(2 * std::numbers::pi * uniform());
   }
-  /// Puts what has size() and [] into an order, all orders being equally likely (Fisher, Yates).
+  /// Shuffles a container with size() and []; all permutations are equally likely (Fisher, Yates).
   template <typename Values>
   void shuffle(Values& values) {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
   }
-  /// A generator for a part of the work, independent of this one.
+  /// A new generator, independent of this one.
   Rng fork() { return Rng(bits()); }
 
  private:

@@ -8,59 +8,60 @@
 
 namespace sidestep {
 
-/// How far another clock is ahead of one's own: between `low` and `high`, for sure.
+/// Guaranteed bounds of how far a peer's clock is ahead of the local one.
 struct OffsetInterval {
   Duration low{0};
   Duration high{0};
 
   Duration middle() const { return low + (high - low) / 2; }
-  /// Give or take, about the middle.
+  /// Half the width.
   Duration uncertainty() const { return (high - low + Duration{1}) / 2; }
-  /// No offset within the bound explains what was measured.
+  /// Whether no offset within the bound is consistent with the interval.
   bool is_beyond(Duration bound) const { return low > bound || high < -bound; }
-  /// The least offset that explains what was measured.
+  /// The offset in the interval with the smallest magnitude.
   Duration nearest_to_zero() const {
     return low > Duration{0} ? low : high < Duration{0} ? high : Duration{0};
   }
 };
 
-/// How far clock a is ahead of clock b, both measured against a third.
+/// How far clock a is ahead of clock b, from the offsets of both against a third clock.
 OffsetInterval difference(const OffsetInterval& a, const OffsetInterval& b);
 
-/// A message to somebody and something from there that tells when it came.
+/// A message to a peer, and a later one back that says when the first arrived: the four timestamps of NTP.
+/// The peer may reply at any time after it has received the message.
 struct ClockExchange {
-  Time sent;      ///< by one's own clock
-  Time heard;     ///< by the other's,
-  Time answered;  ///< and so is this: when it said so, as soon or as late as it liked
-  Time received;  ///< by one's own
+  Time sent;           ///< local clock
+  Time peer_received;  ///< peer's clock
+  Time peer_sent;      ///< peer's clock
+  Time received;       ///< local clock
 };
 
-/// Bounds another clock's offset by exchanges of messages, without assuming that both ways take equally
-/// long: nothing is heard before it was sent. Every exchange gives an interval, which widens as clocks drift
-/// apart; the offset lies in all of them. When nothing lies in all of them, a clock has jumped, and only the
-/// newest exchange still counts. Stamps from messages may be anything.
+/// Bounds the offset of a peer's clock from message exchanges. It relies on causality alone (no message
+/// arrives before it was sent) and not on symmetric delays. Each exchange gives an interval, which widens
+/// with time because clocks drift; the offset lies in the intersection. If the intersection is empty, a clock
+/// has jumped, and only the newest exchange counts. Accepts arbitrary timestamps.
 class ClockOffset {
  public:
-  /// Two clocks drift apart by at most this: 50 ppm for each oscillator, and as much again for a time daemon
+  /// Maximum relative drift of two clocks: 50 ppm for each oscillator, and as much again for a time daemon
   /// that slews them.
   static constexpr std::int64_t kDrift_ppm = 200;
-  /// Exchanges that took longer say nothing worth knowing.
-  static constexpr Duration kLongestExchange{10'000'000'000};
+  /// Longer exchanges are rejected because their intervals are too wide to be useful.
+  static constexpr Duration kMaxExchangeDuration{10'000'000'000};
 
-  /// False when the exchange makes no sense: times out of range or in an impossible order.
+  /// False for an invalid exchange: timestamps out of range or in an impossible order.
   bool add(const ClockExchange& exchange);
-  /// Forgets all: another clock is meant from now on.
+  /// Forgets all exchanges, for a different peer clock.
   void reset() { *this = {}; }
 
-  /// What is known at a time, widened for the time that has passed since the last exchange; nullopt before
-  /// the first, and when the last was received longer than `freshness` ago.
+  /// The interval at a time, widened by the drift since the last exchange. nullopt before the first exchange,
+  /// and if the last one was received longer than `freshness` ago.
   std::optional<OffsetInterval> at(Time now, Duration freshness = Duration::max()) const;
-  /// Times that a clock was caught jumping.
+  /// The number of clock jumps detected.
   std::uint64_t jumps() const { return jumps_; }
 
  private:
   std::optional<OffsetInterval> interval_;
-  Time at_{};  // what interval_ is true at
+  Time at_{};  // the time for which interval_ is valid
   Time newest_sent_{};
   std::uint64_t jumps_ = 0;
 };

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace sidestep {
 namespace {
@@ -20,6 +20,11 @@ const Edges kEdges = [] {
 
 }  // namespace
 
+DurationHistogram::DurationHistogram(const Buckets& buckets, Duration max)
+    : buckets_(buckets),
+      count_(std::accumulate(buckets.begin(), buckets.end(), std::uint64_t{0})),
+      max_(max) {}
+
 Duration DurationHistogram::upper_edge(std::size_t bucket) { return kEdges[bucket]; }
 
 void DurationHistogram::add(Duration duration) {
@@ -27,45 +32,25 @@ void DurationHistogram::add(Duration duration) {
   const auto edge = std::lower_bound(kEdges.begin(), kEdges.end() - 1, duration);
   ++buckets_[static_cast<std::size_t>(edge - kEdges.begin())];
   ++count_;
-  largest_ = std::max(largest_, duration);
+  max_ = std::max(max_, duration);
 }
 
 void DurationHistogram::merge(const DurationHistogram& other) {
   for (std::size_t i = 0; i < kBuckets; ++i) buckets_[i] += other.buckets_[i];
   count_ += other.count_;
-  largest_ = std::max(largest_, other.largest_);
+  max_ = std::max(max_, other.max_);
 }
 
 Duration DurationHistogram::quantile(double q) const {
   if (count_ == 0) return Duration{0};
-  const double share = std::clamp(q, 0.0, 1.0) * static_cast<double>(count_);
-  const auto rank = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::ceil(share)), 1, count_);
-  std::uint64_t below = 0;
+  const double target = std::clamp(q, 0.0, 1.0) * static_cast<double>(count_);
+  const auto rank = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::ceil(target)), 1, count_);
+  std::uint64_t cumulative = 0;
   for (std::size_t i = 0; i + 1 < kBuckets; ++i) {
-    below += buckets_[i];
-    if (below >= rank) return std::min(kEdges[i], largest_);
+    cumulative += buckets_[i];
+    if (cumulative >= rank) return std::min(kEdges[i], max_);
   }
-  return largest_;
-}
-
-void DurationHistogram::to_message(msg::DurationCounts& message) const {
-  message.largest_ns(static_cast<std::uint64_t>(largest_.count()));
-  for (std::size_t i = 0; i < kBuckets; ++i) {
-    message.buckets()[i] = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(buckets_[i], std::numeric_limits<std::uint32_t>::max()));
-  }
-}
-
-DurationHistogram DurationHistogram::from_message(const msg::DurationCounts& message) {
-  DurationHistogram histogram;
-  constexpr std::uint64_t kMost = std::numeric_limits<Duration::rep>::max();
-  histogram.largest_ =
-      Duration{static_cast<Duration::rep>(std::min<std::uint64_t>(message.largest_ns(), kMost))};
-  for (std::size_t i = 0; i < kBuckets; ++i) {
-    histogram.buckets_[i] = message.buckets()[i];
-    histogram.count_ += message.buckets()[i];
-  }
-  return histogram;
+  return max_;
 }
 
 }  // namespace sidestep

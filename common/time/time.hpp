@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-/// The one clock of the system: nanoseconds since 1970, on the process's clock over DDS (EventLoop::now()),
-/// virtual on SimBus.
+/// The clock of the system: nanoseconds since 1970, the process's clock over DDS (EventLoop::now()) or
+/// virtual time on SimBus.
 struct Clock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -22,7 +22,11 @@ using Time = Clock::time_point;
 constexpr Time time_from_ns(std::int64_t ns) { return Time{Duration{ns}}; }
 constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 
-/// Exact to a nanosecond's rounding; callers keep seconds within what a nanosecond count of 64 bits holds.
+/// The latest time that is accepted from messages and files, in the year 2043. Differences of two such times,
+/// and of two such differences, fit into 64 bits.
+inline constexpr Time kMaxTime = time_from_ns(std::int64_t{1} << 61);
+
+/// Rounded to the nearest nanosecond. Precondition: the number of nanoseconds fits into 64 bits.
 constexpr Duration from_seconds(double s) {
   return Duration{static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
 }

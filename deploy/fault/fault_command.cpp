@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/fault/fault_command.hpp"
 
-#include <CLI/CLI.hpp>
-
+#include "common/process/command_line.hpp"
 #include "deploy/fault/link_command.hpp"
 #include "deploy/fault/network_command.hpp"
 #include "deploy/fault/robot_command.hpp"
 
 namespace sidestep {
 
-void add_fault_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* fault = root.add_subcommand("fault", "Disturbs a run that goes on: its network, its robots");
-  fault->require_subcommand(1);
-  add_network_command(*fault, action);
-  add_robot_commands(*fault, action);
-  add_link_commands(*fault, action);
+void add_fault_command(const Command& root, std::function<int()>& action) {
+  const Command fault = root.add_subcommand("fault", "Disturbs a running system: its network, its robots");
+  fault.require_subcommand();
+  add_network_command(fault, action);
+  add_robot_commands(fault, action);
+  add_link_commands(fault, action);
 }
 
 }  // namespace sidestep

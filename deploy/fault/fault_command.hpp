@@ -3,14 +3,12 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `fault ...` to a program. When one of its commands is parsed, `action` becomes what is to be run; it
-/// returns the exit code, and may throw std::runtime_error saying what cannot be done.
-void add_fault_command(CLI::App& root, std::function<int()>& action);
+/// Adds `sidestep fault`. Parsing one of its commands sets `action`, which returns the exit code and throws
+/// std::runtime_error with the reason if the fault cannot be applied.
+void add_fault_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/fault/link_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "common/messaging/dds/event_loop.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/fault/link_filter.hpp"
 
@@ -23,7 +23,7 @@ struct LinkOptions {
 };
 
 LinkFault fault_from(const LinkOptions& options, bool is_partition) {
-  // Loss is on what arrives only: with all hosts set, a packet from one to another is at risk once.
+  // Loss applies to incoming packets only, so a packet between two impaired hosts is at risk once.
   if (!is_partition) return {options.loss, 0};
   return {options.one_way == "out" ? 0.0 : 1.0, options.one_way == "in" ? 0.0 : 1.0};
 }
@@ -33,12 +33,12 @@ void heal(const std::vector<std::string>& namespaces) {
   fmt::print("{}: healed\n", fmt::join(namespaces, ", "));
 }
 
-int disturb(const LinkOptions& options, const LinkFault& fault) {
+int apply(const LinkOptions& options, const LinkFault& fault) {
   const auto namespaces = namespaces_of_host(options.host);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   for (const std::string& name : namespaces) set_link_fault(name, fault);
-  fmt::print("{}: drops {:.4g} % of what arrives and {:.4g} % of what leaves\n", fmt::join(namespaces, ", "),
+  fmt::print("{}: drops {:.4g} % of incoming and {:.4g} % of outgoing packets\n", fmt::join(namespaces, ", "),
              100 * fault.loss_in, 100 * fault.loss_out);
   if (!options.seconds) return 0;
   std::fflush(stdout);
@@ -49,31 +49,31 @@ int disturb(const LinkOptions& options, const LinkFault& fault) {
 
 }  // namespace
 
-void add_link_commands(CLI::App& fault, std::function<int()>& action) {
+void add_link_commands(const Command& fault, std::function<int()>& action) {
   const auto options = std::make_shared<LinkOptions>();
   const auto add = [&](const char* name, const char* description) {
-    CLI::App* const command = fault.add_subcommand(name, description);
-    command->add_option("HOST", options->host, "as the hosts file calls its namespace; all: every one")
-        ->required();
+    const Command command = fault.add_subcommand(name, description);
+    command.add_option("HOST", options->host, "the namespace as named in the hosts file; all: every host")
+        .required();
     return command;
   };
-  CLI::App* partition = add("partition", "Cuts a host off from all others (network namespaces, root)");
-  partition->add_option("--one-way", options->one_way, "cut only what comes in, or what goes out")
-      ->check(CLI::IsMember({"in", "out"}));
-  partition->callback(
-      [options, &action] { action = [options] { return disturb(*options, fault_from(*options, true)); }; });
+  const Command partition =
+      add("partition", "Cuts a host off from all others (needs namespace hosts and root)");
+  partition.add_option("--one-way", options->one_way, "drop only incoming or only outgoing packets")
+      .check(one_of({"in", "out"}));
+  partition.on_parsed(
+      [options, &action] { action = [options] { return apply(*options, fault_from(*options, true)); }; });
 
-  CLI::App* link = add("link", "Loses packets that arrive at a host (network namespaces, root)");
-  link->add_option("--loss", options->loss, "probability")->required()->check(CLI::Range(0.0, 1.0));
-  link->callback(
-      [options, &action] { action = [options] { return disturb(*options, fault_from(*options, false)); }; });
-  for (CLI::App* command : {partition, link}) {
-    command->add_option("--seconds", options->seconds, "heal after that; without it `fault heal` does")
-        ->check(CLI::PositiveNumber);
+  const Command link = add("link", "Drops incoming packets of a host (needs namespace hosts and root)");
+  link.add_option("--loss", options->loss, "loss probability").required().check(in_range(0.0, 1.0));
+  link.on_parsed(
+      [options, &action] { action = [options] { return apply(*options, fault_from(*options, false)); }; });
+  for (const Command& command : {partition, link}) {
+    command.add_option("--seconds", options->seconds, "duration [until `fault heal`]").check(positive());
   }
 
-  CLI::App* whole = add("heal", "Ends partitions and loss of a host's packets");
-  whole->callback([options, &action] {
+  const Command heal_command = add("heal", "Ends `partition` and `link` of a host");
+  heal_command.on_parsed([options, &action] {
     action = [options] {
       heal(namespaces_of_host(options->host));
       return 0;

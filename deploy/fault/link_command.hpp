@@ -3,14 +3,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `partition`, `link` and `heal` to `sidestep fault`: what the kernel does to the packets of a host
-/// that this machine plays.
-void add_link_commands(CLI::App& fault, std::function<int()>& action);
+/// Adds `partition`, `link` and `heal` to `sidestep fault`: packet filters in the kernel for namespace hosts.
+void add_link_commands(const Command& fault, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -15,7 +15,7 @@
 namespace sidestep {
 namespace {
 
-constexpr int kParts = 10000;  ///< resolution of a probability
+constexpr int kResolution = 10000;  ///< of a probability
 
 void nft(const std::string& namespace_name, const std::string& rules) {
   run_command({"ip", "netns", "exec", namespace_name, "nft", "-f", "-"}, rules);
@@ -23,44 +23,43 @@ void nft(const std::string& namespace_name, const std::string& rules) {
 
 std::string drop_rule(double loss) {
   if (loss >= 1) return "drop";
-  return fmt::format("numgen random mod {} < {} drop", kParts, std::lround(loss * kParts));
+  return fmt::format("numgen random mod {} < {} drop", kResolution, std::lround(loss * kResolution));
 }
 
-/// nft refuses to delete a table that is not there, but not to add one that is.
-const std::string kNoTable = "add table inet sidestep_fault\ndelete table inet sidestep_fault\n";
+/// nft can add an existing table, but cannot delete a missing one.
+const std::string kDeleteTable = "add table inet sidestep_fault\ndelete table inet sidestep_fault\n";
 
 }  // namespace
 
 std::vector<std::string> namespaces_of_host(const std::string& host) {
-  if (geteuid() != 0) throw std::runtime_error("filtering a host's packets needs root");
+  if (geteuid() != 0) throw std::runtime_error("filtering packets of a host needs root");
   if (host.find('/') == std::string::npos && std::filesystem::exists("/run/netns/" + host)) return {host};
   std::vector<std::string> found;
   std::set<std::string> known;
   std::set<pid_t> launchers;
   remove_abandoned_namespaces();
   for (const RunNamespace& one : run_namespaces()) {
-    if (one.called == kHubName) continue;
-    known.insert(one.called);
-    if (one.called != host && host != "all") continue;
+    if (one.label == kBridgeLabel) continue;
+    known.insert(one.label);
+    if (one.label != host && host != "all") continue;
     found.push_back(one.name);
     launchers.insert(one.launcher);
   }
   if (known.empty()) {
     throw std::runtime_error(
-        "no run on this machine plays hosts by network namespaces; real hosts have to be cut off where they "
-        "are");
+        "no run on this machine has namespace hosts; disconnect real hosts on those machines");
   }
   if (found.empty())
-    throw std::runtime_error(fmt::format("there is no host {}, only {}", host, fmt::join(known, ", ")));
+    throw std::runtime_error(fmt::format("no host {}, expected one of: {}", host, fmt::join(known, ", ")));
   if (launchers.size() > 1) {
     throw std::runtime_error(
-        fmt::format("several runs have a host {}, name one of {}", host, fmt::join(found, ", ")));
+        fmt::format("several runs have a host {}, expected one of: {}", host, fmt::join(found, ", ")));
   }
   return found;
 }
 
 void set_link_fault(const std::string& namespace_name, const LinkFault& fault) {
-  std::string rules = kNoTable + "table inet sidestep_fault {\n";
+  std::string rules = kDeleteTable + "table inet sidestep_fault {\n";
   const auto chain = [&](const char* hook, const char* interface, double loss) {
     if (loss <= 0) return;
     rules += fmt::format("chain {} {{ type filter hook {} priority 0; {} != \"lo\" {}; }}\n", hook, hook,
@@ -71,6 +70,6 @@ void set_link_fault(const std::string& namespace_name, const LinkFault& fault) {
   nft(namespace_name, rules + "}\n");
 }
 
-void clear_link_fault(const std::string& namespace_name) { nft(namespace_name, kNoTable); }
+void clear_link_fault(const std::string& namespace_name) { nft(namespace_name, kDeleteTable); }
 
 }  // namespace sidestep

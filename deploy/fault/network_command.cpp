@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/fault/network_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -10,9 +9,11 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/impairment.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
-#include "deploy/fault/orders.hpp"
+#include "deploy/fault/fault_target.hpp"
+#include "deploy/fault/operator_messages.hpp"
 
 namespace sidestep {
 namespace {
@@ -30,96 +31,94 @@ struct NetworkOptions {
   DdsSettings dds;
 };
 
-msg::NetworkFault clear_order(std::uint32_t target) {
-  msg::NetworkFault order;
-  order.target(target);
-  order.mean_burst(1);
-  return order;
+msg::NetworkFault cleared_fault(std::uint32_t target) {
+  msg::NetworkFault fault;
+  fault.target(target);
+  fault.mean_burst(1);
+  return fault;
 }
 
-msg::NetworkFault order_from(const NetworkOptions& options, std::uint32_t target) {
-  msg::NetworkFault order = clear_order(target);
+msg::NetworkFault fault_from(const NetworkOptions& options, std::uint32_t target) {
+  msg::NetworkFault fault = cleared_fault(target);
   const auto ns = [&](std::size_t i) { return std::llround(options.delay_ms[i] * 1e6); };
-  order.seed(options.seed);
-  order.loss(options.loss);
-  order.mean_burst(options.burst);
-  order.duplicate(options.duplicate);
-  order.delay_min_ns(ns(0));
-  order.delay_mean_ns(ns(1));
-  order.delay_max_ns(ns(2));
-  order.is_cut(options.is_cut);
-  return order;
+  fault.seed(options.seed);
+  fault.loss(options.loss);
+  fault.mean_burst(options.burst);
+  fault.duplicate(options.duplicate);
+  fault.delay_min_ns(ns(0));
+  fault.delay_mean_ns(ns(1));
+  fault.delay_max_ns(ns(2));
+  fault.is_cut(options.is_cut);
+  return fault;
 }
 
-void send(OperatorChannel& orders, msg::NetworkFault order) {
-  order.head(order_head());
-  orders.writer().write(&order);
-  wait_until_taken(orders);
+void send(OperatorChannel& channel, msg::NetworkFault fault) {
+  fault.header(operator_header());
+  channel.writer().write(&fault);
+  wait_until_acknowledged(channel);
 }
 
-int disturb(const NetworkOptions& options) {
-  const auto target = order_target(options.target);
-  const msg::NetworkFault order = order_from(options, target->number);
-  OperatorChannel orders(options.dds, topics::kNetworkFault);
+int apply(const NetworkOptions& options) {
+  const auto target = parse_fault_target(options.target);
+  const msg::NetworkFault fault = fault_from(options, target->number);
+  OperatorChannel channel(options.dds, topics::kNetworkFault);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
-  wait_for_taker(orders, target->participant);
-  send(orders, order);
-  fmt::print("taken by {}\n", target->participant.empty()
-                                  ? fmt::format("{}", fmt::join(orders.takers(), ", "))
-                                  : target->participant);
+  wait_for_subscriber(channel, target->participant);
+  send(channel, fault);
+  fmt::print("applied to {}\n", target->participant.empty()
+                                    ? fmt::format("{}", fmt::join(channel.subscribers(), ", "))
+                                    : target->participant);
   if (!options.seconds) return 0;
   std::fflush(stdout);
   loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
-  send(orders, clear_order(target->number));
+  send(channel, cleared_fault(target->number));
   fmt::print("cleared\n");
   return 0;
 }
 
-/// What is wrong with the options together; empty: nothing.
-std::string complaint(const NetworkOptions& options) {
-  if (!order_target(options.target))
+/// Why the combination of options is invalid; empty: it is valid.
+std::string usage_error(const NetworkOptions& options) {
+  if (!parse_fault_target(options.target))
     return "--target: expected all, 'agent N', coordinator, 'coordinator N', vision or simulator, got '" +
            options.target + "'";
-  const bool is_nothing = link_quality_from(order_from(options, 0)) == kUntouchedLink;
-  if (options.is_clear != is_nothing)
-    return options.is_clear ? "--clear goes with nothing else"
+  const bool is_empty = link_quality_from(fault_from(options, 0)) == kUnimpairedLink;
+  if (options.is_clear != is_empty)
+    return options.is_clear ? "--clear cannot be combined with a fault"
                             : "expected --clear, --cut, --loss, --delay-ms or --duplicate";
-  if (!link_quality_from(order_from(options, 0)))
-    return "--delay-ms: expected least, mean and most, in this order, at most 10000";
-  if (options.burst > 1 && options.loss <= 0) return "--burst needs --loss";
-  if (options.is_clear && options.seconds) return "--seconds: there is nothing to end";
+  if (!link_quality_from(fault_from(options, 0)))
+    return "--delay-ms: expected MIN,MEAN,MAX in increasing order, at most 10000";
+  if (options.burst > 1 && options.loss <= 0) return "--burst requires --loss";
+  if (options.is_clear && options.seconds) return "--seconds cannot be combined with --clear";
   return "";
 }
 
 }  // namespace
 
-void add_network_command(CLI::App& fault, std::function<int()>& action) {
+void add_network_command(const Command& fault, std::function<int()>& action) {
   const auto options = std::make_shared<NetworkOptions>();
   options->dds.participant = "sidestep-fault";
-  CLI::App* command =
-      fault.add_subcommand("network", "Disturbs the messages that reach processes started with --faults");
+  const Command command = fault.add_subcommand(
+      "network", "Loses, delays and duplicates messages at processes started with --faults");
   command
-      ->add_option("--target", options->target,
-                   "all, 'agent 3', coordinator, 'coordinator 1', vision, simulator")
-      ->required();
-  command->add_option("--loss", options->loss, "probability")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--burst", options->burst, "losses come in bursts of so many on average")
-      ->check(CLI::Range(1.0, 1e6));
-  command->add_option("--duplicate", options->duplicate, "probability")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--delay-ms", options->delay_ms, "least, mean and most, e.g. 5,20,150")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(CLI::Range(0.0, 10000.0));
-  command->add_flag("--cut", options->is_cut, "nothing arrives");
-  command->add_flag("--clear", options->is_clear, "everything arrives again");
-  command->add_option("--seed", options->seed, "of what is drawn")->capture_default_str();
-  command->add_option("--seconds", options->seconds, "clear after that; without it until --clear")
-      ->check(CLI::PositiveNumber);
-  add_dds_options(*command, options->dds);
-  command->callback([options, &action] {
-    if (const std::string wrong = complaint(*options); !wrong.empty()) throw CLI::ValidationError(wrong);
-    action = [options] { return disturb(*options); };
+      .add_option("--target", options->target,
+                  "receiving process: all, 'agent 3', coordinator, 'coordinator 1', vision, simulator")
+      .required();
+  command.add_option("--loss", options->loss, "loss probability").check(in_range(0.0, 1.0));
+  command.add_option("--burst", options->burst, "mean number of consecutive losses")
+      .check(in_range(1.0, 1e6));
+  command.add_option("--duplicate", options->duplicate, "duplication probability").check(in_range(0.0, 1.0));
+  command.add_option("--delay-ms", options->delay_ms, "MIN,MEAN,MAX delay, e.g. 5,20,150")
+      .comma_separated(3)
+      .check(in_range(0.0, 10000.0));
+  command.add_flag("--cut", options->is_cut, "lose all messages");
+  command.add_flag("--clear", options->is_clear, "end the fault");
+  command.add_option("--seed", options->seed, "random seed of the fault").show_default();
+  command.add_option("--seconds", options->seconds, "duration [until --clear]").check(positive());
+  add_dds_options(command, options->dds);
+  command.on_parsed([options, &action] {
+    if (const std::string error = usage_error(*options); !error.empty()) throw UsageError(error);
+    action = [options] { return apply(*options); };
   });
 }
 

@@ -3,14 +3,12 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `network` to `sidestep fault`: what becomes of messages inside processes that were started with
+/// Adds `network` to `sidestep fault`: impairs the messages received by processes that were started with
 /// --faults.
-void add_network_command(CLI::App& fault, std::function<int()>& action);
+void add_network_command(const Command& fault, std::function<int()>& action);
 
 }  // namespace sidestep

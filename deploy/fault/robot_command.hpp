@@ -3,14 +3,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds to `sidestep fault` what somebody's hand does to a robot: push, slip, block, lift, place, reboot,
-/// clock.
-void add_robot_commands(CLI::App& fault, std::function<int()>& action);
+/// Adds the commands for a single robot to `sidestep fault`: push, slip, block, lift, place, reboot, clock.
+void add_robot_commands(const Command& fault, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -24,9 +24,9 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::size_t kKeptLines = 20;
-constexpr std::size_t kLongestLine = 4096;
-constexpr ProcessGroup::Milliseconds kFirstBackoff{100}, kLongestBackoff{2000};
+constexpr std::size_t kMaxKeptLines = 20;
+constexpr std::size_t kMaxLineLength = 4096;
+constexpr ProcessGroup::Milliseconds kMinBackoff{100}, kMaxBackoff{2000};
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
@@ -38,11 +38,11 @@ std::string reason_of(int status) {
   return fmt::format("signal {} (SIG{})", WTERMSIG(status), name ? name : "?");
 }
 
-/// Between fork and exec in a process that may have threads: system calls only.
-[[noreturn]] void become(char* const argv[], int input, int output, pid_t parent) {
+/// Executes the program in a forked child. Uses system calls only, because the parent may have threads.
+[[noreturn]] void execute(char* const argv[], int input, int output, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(126);  // the parent died before the line above
-  setpgid(0, 0);                        // Ctrl-C is for the parent, which then stops its children in order
+  setpgid(0, 0);                        // Ctrl-C reaches only the parent, which stops its children in order
   for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -50,11 +50,11 @@ std::string reason_of(int status) {
   dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
-  close_range(3, ~0U, 0);  // sockets of the parent's above all
+  close_range(3, ~0U, 0);  // above all the parent's sockets
   execv(argv[0], argv);
-  const char* const why = strerrordesc_np(errno);
+  const char* const reason = strerrordesc_np(errno);
   for (const char* part :
-       {"cannot execute ", static_cast<const char*>(argv[0]), ": ", why ? why : "?", "\n"}) {
+       {"cannot execute ", static_cast<const char*>(argv[0]), ": ", reason ? reason : "?", "\n"}) {
     if (write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
   }
   _exit(127);
@@ -76,7 +76,7 @@ Pipe new_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// A pipe that holds the text already, whose reader then waits for its end.
+/// A pipe that contains the text; it stays open for its reader.
 Pipe filled_pipe(const std::string& text) {
   if (text.empty()) return {};
   Pipe pipe = new_pipe();
@@ -86,7 +86,7 @@ Pipe filled_pipe(const std::string& text) {
   if (written == static_cast<ssize_t>(text.size())) return pipe;
   close_fd(pipe.read_end);
   close_fd(pipe.write_end);
-  throw std::runtime_error(fmt::format("{} bytes are too many for a child's stdin", text.size()));
+  throw std::runtime_error(fmt::format("{} bytes are too many for the stdin of a child", text.size()));
 }
 
 }  // namespace
@@ -100,12 +100,12 @@ struct ProcessGroup::Child {
   bool is_running = false;
   SteadyTime started{};
   SteadyTime restart_at = SteadyTime::max();
-  Milliseconds backoff = kFirstBackoff;
+  Milliseconds backoff = kMinBackoff;
   std::string partial;
   std::deque<std::string> lines;
 };
 
-std::string program_beside_own(const std::string& name) {
+std::string sibling_program_path(const std::string& name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
@@ -129,7 +129,7 @@ void ProcessGroup::log(const std::string& line) {
 
 pid_t ProcessGroup::start(const ChildSpec& spec) {
   if (spec.argv.empty() || access(spec.argv[0].c_str(), X_OK) != 0) {
-    fail(fmt::format("cannot start {}, {}", spec.name, spec.argv.empty() ? "nothing" : spec.argv[0]));
+    fail(fmt::format("cannot start {} ({})", spec.name, spec.argv.empty() ? "no program" : spec.argv[0]));
   }
   auto child = std::make_unique<Child>();
   child->spec = spec;
@@ -145,12 +145,12 @@ void ProcessGroup::spawn(Child& child) {
   for (auto& argument : child.spec.argv) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const pid_t parent = getpid();
-  // Until the child has let go of this program's signal handlers, a signal to it waits.
+  // Blocks signals to the child until it has reset this program's signal handlers.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
-  if (pid == 0) become(argv.data(), input.read_end, output.write_end, parent);
+  if (pid == 0) execute(argv.data(), input.read_end, output.write_end, parent);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close_fd(output.write_end);
   close_fd(input.read_end);
@@ -169,7 +169,7 @@ void ProcessGroup::spawn(Child& child) {
   if (child.pidfd < 0) fail("cannot watch " + child.spec.name);
 }
 
-void ProcessGroup::wait_for_something(Milliseconds timeout) {
+void ProcessGroup::wait_for_activity(Milliseconds timeout) {
   std::vector<pollfd> watched;
   SteadyTime until = steady_clock::now() + timeout;
   for (const auto& child : children_) {
@@ -183,10 +183,10 @@ void ProcessGroup::wait_for_something(Milliseconds timeout) {
 
 void ProcessGroup::drain(Child& child) {
   char buffer[4096];
-  const auto keep = [&] {
+  const auto finish_line = [&] {
     log(child.spec.name + ": " + child.partial);
     child.lines.push_back(std::move(child.partial));
-    if (child.lines.size() > kKeptLines) child.lines.pop_front();
+    if (child.lines.size() > kMaxKeptLines) child.lines.pop_front();
     child.partial.clear();
   };
   while (child.output >= 0) {
@@ -194,13 +194,13 @@ void ProcessGroup::drain(Child& child) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && errno == EAGAIN) return;
     if (count <= 0) {
-      if (!child.partial.empty()) keep();
+      if (!child.partial.empty()) finish_line();
       close_fd(child.output);
       return;
     }
     for (ssize_t i = 0; i < count; ++i) {
       if (buffer[i] != '\n') child.partial += buffer[i];
-      if (buffer[i] == '\n' || child.partial.size() >= kLongestLine) keep();
+      if (buffer[i] == '\n' || child.partial.size() >= kMaxLineLength) finish_line();
     }
   }
 }
@@ -216,8 +216,8 @@ bool ProcessGroup::reap(Child& child, ChildEvent& event) {
   event = {ChildEvent::Kind::kDied, child.spec.name, child.pid, reason_of(status), false};
   if (child.spec.restart && !is_terminating_) {
     const auto now = steady_clock::now();
-    const bool lived_long = now - child.started > kLongestBackoff;
-    child.backoff = lived_long ? kFirstBackoff : std::min(2 * child.backoff, kLongestBackoff);
+    const bool lived_long = now - child.started > kMaxBackoff;
+    child.backoff = lived_long ? kMinBackoff : std::min(2 * child.backoff, kMaxBackoff);
     child.restart_at = now + child.backoff;
     event.will_restart = true;
   }
@@ -237,7 +237,7 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
   std::vector<ChildEvent> events;
   while (true) {
     const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
-    wait_for_something(std::max(left, Milliseconds{0}));
+    wait_for_activity(std::max(left, Milliseconds{0}));
     for (const auto& child : children_) {
       ChildEvent event;
       drain(*child);
@@ -248,7 +248,7 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
   }
 }
 
-std::vector<std::string> ProcessGroup::terminate(Milliseconds patience) {
+std::vector<std::string> ProcessGroup::terminate(Milliseconds timeout) {
   is_terminating_ = true;
   for (const auto& child : children_) {
     child->restart_at = SteadyTime::max();
@@ -258,7 +258,7 @@ std::vector<std::string> ProcessGroup::terminate(Milliseconds patience) {
     else
       kill(child->pid, SIGTERM);
   }
-  const SteadyTime until = steady_clock::now() + patience;
+  const SteadyTime until = steady_clock::now() + timeout;
   while (running() > 0 && steady_clock::now() < until) {
     poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
   }

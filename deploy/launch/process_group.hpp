@@ -11,58 +11,57 @@
 
 namespace sidestep {
 
-/// What to start.
+/// A child process to start.
 struct ChildSpec {
   std::string name;               ///< e.g. "agent 3"
   std::vector<std::string> argv;  ///< the program's path first
-  bool restart = false;           ///< again when it ends
-  std::string input =
-      {};  ///< its stdin, which then stays open: its end asks the child to end. Empty: no stdin
+  bool restart = false;           ///< restart it when it ends
+  /// Content of its stdin, which then stays open; closing it asks the child to end. Empty: no stdin.
+  std::string input = {};
 };
 
-/// What has happened to a child.
+/// A child started again or died.
 struct ChildEvent {
   enum class Kind { kStarted, kDied } kind;
   std::string name;
   pid_t pid = 0;
-  std::string reason;  ///< of a death: "exit code 3" or "signal 9 (SIGKILL)"
+  std::string reason;  ///< of the death, e.g. "exit code 3" or "signal 9 (SIGKILL)"
   bool will_restart = false;
 };
 
-/// Child processes that are watched, logged and never outlive this process: the kernel kills them with it,
-/// however it ends. Use it from one thread that lives as long as the program (the kernel's watch is on the
-/// thread).
+/// Supervises and logs child processes. The kernel kills the children when this process ends, however it ends. Use
+/// it only from one thread that lives as long as the program, because the kernel monitors the thread that forked.
 class ProcessGroup {
  public:
   using SteadyTime = std::chrono::steady_clock::time_point;
   using Milliseconds = std::chrono::milliseconds;
 
-  /// What children print goes to the log file line by line behind their names; throws std::runtime_error when
-  /// it cannot be written.
+  /// The output of children goes to the log file, each line prefixed with the child's name. Throws
+  /// std::runtime_error when the log cannot be written.
   explicit ProcessGroup(const std::string& log_path);
-  /// Kills what still runs.
+  /// Kills all running children.
   ~ProcessGroup();
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  /// Throws std::runtime_error when the program does not exist or no process can be made.
+  /// Throws std::runtime_error when the program does not exist or the process cannot be created.
   pid_t start(const ChildSpec& spec);
-  /// Waits until something has happened to a child, at most so long, and says what; starts again what is due.
+  /// Waits for events of children, at most for the timeout, and returns them. Restarts children that are due.
   std::vector<ChildEvent> poll(Milliseconds timeout);
-  /// Asks all children to end, kills those that have not after a while, and waits for them. Returns the names
-  /// of those that had to be killed.
-  std::vector<std::string> terminate(Milliseconds patience);
+  /// Asks all children to end, kills those that have not ended after the timeout, and waits for all. Returns the
+  /// names of the killed children.
+  std::vector<std::string> terminate(Milliseconds timeout);
 
   std::size_t running() const;
-  /// What a child printed last, also after its end.
+  /// The last lines that a child printed, also after its end.
   std::vector<std::string> last_lines(const std::string& name) const;
-  /// Writes a line of the caller's into the log.
+  /// Writes a line to the log.
   void log(const std::string& line);
 
  private:
   struct Child;
   void spawn(Child& child);
-  void wait_for_something(Milliseconds timeout);
+  void wait_for_activity(Milliseconds timeout);
   void drain(Child& child);
   bool reap(Child& child, ChildEvent& event);
   void start_due(std::vector<ChildEvent>& events);
@@ -72,7 +71,7 @@ class ProcessGroup {
   bool is_terminating_ = false;
 };
 
-/// The path of a program that lies beside the one that is running.
-std::string program_beside_own(const std::string& name);
+/// The path of a program in the folder of the running program.
+std::string sibling_program_path(const std::string& name);
 
 }  // namespace sidestep

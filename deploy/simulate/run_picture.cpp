@@ -9,7 +9,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kPixelsPerMetre = 200;
-constexpr double kGhostEvery_s = 0.25;
+constexpr double kOutlinePeriod_s = 0.25;
 
 const char* colour_of(Team team) { return team == Team::kBlue ? "#1f6feb" : "#e0a100"; }
 
@@ -19,8 +19,8 @@ std::string circle(const Vec2& centre_m, double radius_m, const std::string& sty
                      -kPixelsPerMetre * centre_m.y(), kPixelsPerMetre * radius_m, style);
 }
 
-/// An opponent goes its way whatever happens, so the way is what there is to draw.
-std::string way_of(const OpponentSpec& opponent) {
+/// Opponents follow their paths regardless of the robots, so their paths are drawn as specified.
+std::string path_of(const OpponentSpec& opponent) {
   std::string points;
   for (const Vec2& point : opponent.path_m) {
     points += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * point.x(), -kPixelsPerMetre * point.y());
@@ -34,43 +34,43 @@ std::string way_of(const OpponentSpec& opponent) {
 
 }  // namespace
 
-void Picture::add(const msg::GroundTruth& truth) {
-  for (const msg::TruthRobot& robot : truth.robots()) {
-    tracks_[robot.robot()].push_back({static_cast<double>(truth.at_ns()) * 1e-9, {robot.x_m(), robot.y_m()}});
+void RunPicture::add(const msg::GroundTruth& truth) {
+  for (const msg::TrueRobotState& robot : truth.robots()) {
+    tracks_[robot.robot()].push_back({static_cast<double>(truth.valid_at_ns()) * 1e-9, {robot.x_m(), robot.y_m()}});
   }
 }
 
-std::string Picture::track(const RobotSpec& robot, const std::vector<Sight>& sights) const {
+std::string RunPicture::track(const RobotSpec& robot, const std::vector<TrackPoint>& points) const {
   const char* colour = colour_of(robot.team);
-  std::string line, ghosts;
-  const double begin_s = sights.front().at_s, end_s = sights.back().at_s;
-  double next_ghost_s = begin_s;
-  Vec2 last = sights.front().position_m;
-  for (const Sight& sight : sights) {
-    if (line.empty() || (sight.position_m - last).norm() > 0.005) {
-      line += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * sight.position_m.x(),
-                          -kPixelsPerMetre * sight.position_m.y());
+  std::string line, outlines;
+  const double begin_s = points.front().at_s, end_s = points.back().at_s;
+  double next_outline_s = begin_s;
+  Vec2 last = points.front().position_m;
+  for (const TrackPoint& point : points) {
+    if (line.empty() || (point.position_m - last).norm() > 0.005) {
+      line += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * point.position_m.x(),
+                          -kPixelsPerMetre * point.position_m.y());
     }
-    if (sight.at_s >= next_ghost_s && (sight.position_m - last).norm() > 0.005) {
-      const double age = (sight.at_s - begin_s) / std::max(0.1, end_s - begin_s);
-      ghosts +=
-          circle(sight.position_m, scenario_.radius_m,
+    if (point.at_s >= next_outline_s && (point.position_m - last).norm() > 0.005) {
+      const double age = (point.at_s - begin_s) / std::max(0.1, end_s - begin_s);
+      outlines +=
+          circle(point.position_m, scenario_.radius_m,
                  fmt::format("fill='none' stroke='{}' stroke-opacity='{:.2f}'", colour, 0.15 + 0.35 * age));
-      next_ghost_s = sight.at_s + kGhostEvery_s;
+      next_outline_s = point.at_s + kOutlinePeriod_s;
     }
-    last = sight.position_m;
+    last = point.position_m;
   }
-  return ghosts +
+  return outlines +
          fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
 }
 
-std::string Picture::end(const RobotSpec& robot, const Vec2& place) const {
-  return circle(place, scenario_.radius_m, fmt::format("fill='{}'", colour_of(robot.team))) +
+std::string RunPicture::end(const RobotSpec& robot, const Vec2& position_m) const {
+  return circle(position_m, scenario_.radius_m, fmt::format("fill='{}'", colour_of(robot.team))) +
          fmt::format("<text x='{:.1f}' y='{:.1f}' dy='0.35em' text-anchor='middle' fill='white'>{}</text>\n",
-                     kPixelsPerMetre * place.x(), -kPixelsPerMetre * place.y(), robot.id);
+                     kPixelsPerMetre * position_m.x(), -kPixelsPerMetre * position_m.y(), robot.id);
 }
 
-std::string Picture::svg() const {
+std::string RunPicture::svg() const {
   const double width = kPixelsPerMetre * scenario_.field.length_m,
                height = kPixelsPerMetre * scenario_.field.width_m;
   std::string svg = fmt::format(
@@ -83,7 +83,7 @@ std::string Picture::svg() const {
   for (const Circle& obstacle : scenario_.obstacles) {
     svg += circle(obstacle.centre_m, obstacle.radius_m, "fill='#57606a'");
   }
-  for (const OpponentSpec& opponent : scenario_.opponents) svg += way_of(opponent);
+  for (const OpponentSpec& opponent : scenario_.opponents) svg += path_of(opponent);
   std::string ends;
   for (const RobotSpec& robot : scenario_.robots) {
     const auto found = tracks_.find(robot.id);

@@ -10,25 +10,25 @@
 
 namespace sidestep {
 
-/// Draws where the robots of a run really went, as SVG.
-class Picture {
+/// Draws the true paths of the robots of a run as SVG.
+class RunPicture {
  public:
-  /// The scenario outlives the picture.
-  explicit Picture(const Scenario& scenario) : scenario_(scenario) {}
+  /// The scenario must outlive the picture.
+  explicit RunPicture(const Scenario& scenario) : scenario_(scenario) {}
 
   void add(const msg::GroundTruth& truth);
   std::string svg() const;
 
  private:
-  struct Sight {
+  struct TrackPoint {
     double at_s;
     Vec2 position_m;
   };
-  std::string track(const RobotSpec& robot, const std::vector<Sight>& sights) const;
-  std::string end(const RobotSpec& robot, const Vec2& place_m) const;
+  std::string track(const RobotSpec& robot, const std::vector<TrackPoint>& points) const;
+  std::string end(const RobotSpec& robot, const Vec2& position_m) const;
 
   const Scenario& scenario_;
-  std::map<RobotId, std::vector<Sight>> tracks_;
+  std::map<RobotId, std::vector<TrackPoint>> tracks_;
 };
 
 }  // namespace sidestep

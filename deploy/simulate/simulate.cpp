@@ -7,11 +7,12 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/write_file.hpp"
 #include "common/process/process.hpp"
 #include "deploy/simulate/run_picture.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
-#include "deploy/simulate/campaign/commit.hpp"
+#include "deploy/simulate/campaign/build_commit.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
@@ -22,19 +23,19 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr Duration kStartDeadline = std::chrono::seconds(20);
-constexpr Duration kLook = std::chrono::milliseconds(100);
-constexpr auto kRedraw = std::chrono::milliseconds(250);
+constexpr Duration kStartupTimeout = std::chrono::seconds(20);
+constexpr Duration kStep = std::chrono::milliseconds(100);
+constexpr auto kDisplayPeriod = std::chrono::milliseconds(250);
 
-/// On stderr and in terminals only: what goes to stdout is the summary.
-class Ticker {
+/// Shows the progress line on stderr if that is a terminal; stdout is for the summary.
+class ProgressLine {
  public:
   void update(const SimSystem& system) {
     if (!is_terminal_ || steady_clock::now() < next_) return;
-    next_ = steady_clock::now() + kRedraw;
-    fmt::print(stderr, "\r\x1b[K{}", progress_line(system.judge(), system.now()));
+    next_ = steady_clock::now() + kDisplayPeriod;
+    fmt::print(stderr, "\r\x1b[K{}", progress_line(system.metrics(), system.now()));
   }
-  ~Ticker() {
+  ~ProgressLine() {
     if (is_terminal_) fmt::print(stderr, "\r\x1b[K");
   }
 
@@ -43,39 +44,39 @@ class Ticker {
   steady_clock::time_point next_{};
 };
 
-/// Why the run ended early; empty: it did not.
-std::string drive(SimSystem& system, double limit_s) {
-  Ticker ticker;
-  while (!system.judge().granting_since()) {
-    if (system.now() >= system.begin() + kStartDeadline) {
-      return fmt::format("the coordinator does not grant after {} s", to_seconds(kStartDeadline));
+/// Runs the system until all robots have arrived. Returns why the run was aborted; empty: it was not.
+std::string run_until_arrived(SimSystem& system, double limit_s) {
+  ProgressLine progress;
+  while (!system.metrics().granting_since()) {
+    if (system.now() >= system.begin() + kStartupTimeout) {
+      return fmt::format("the coordinator did not grant within {} s", to_seconds(kStartupTimeout));
     }
-    system.run_for(kLook);
-    ticker.update(system);
+    system.run_for(kStep);
+    progress.update(system);
   }
-  const Time limit = *system.judge().granting_since() + from_seconds(limit_s);
+  const Time limit = *system.metrics().granting_since() + from_seconds(limit_s);
   while (system.now() < limit) {
-    if (system.run_until_arrived(std::min(limit, system.now() + kLook))) return "";
-    ticker.update(system);
+    if (system.run_until_arrived(std::min(limit, system.now() + kStep))) return "";
+    progress.update(system);
   }
-  return system.judge().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
+  return system.metrics().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
 }
 
-/// Writes all messages of a system into a file, if one is asked for. Completeness is about what makes and
-/// follows versions: nothing of that is said while a system is made.
+/// Records all messages of a system if a file is given. The recording counts as complete although it misses the
+/// construction of the system: no message about versions is sent during that.
 class SimRecorder {
  public:
   SimRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options) : bus_(network) {
     if (options.recording_file.empty()) return;
-    RecordingHead head;
-    head.scenario = scenario.name;
-    if (!options.scenario_file.empty()) head = recording_head(scenario.name, options.scenario_file);
-    head.is_complete = true;
-    writer_.emplace(options.recording_file, head);
-    bus_.listen_aside();
+    RecordingHeader header;
+    header.scenario_name = scenario.name;
+    if (!options.scenario_file.empty()) header = recording_header(scenario.name, options.scenario_file);
+    header.is_complete = true;
+    writer_.emplace(options.recording_file, header);
+    bus_.become_observer();
     record(bus_, scenario, *writer_);
   }
-  /// Throws std::runtime_error when not everything could be written.
+  /// Throws std::runtime_error when a write has failed.
   void close() {
     if (writer_) writer_->close();
   }
@@ -85,8 +86,8 @@ class SimRecorder {
   SimBus bus_;
 };
 
-/// Completes and writes the report, prints it, and returns the exit code.
-int conclude(const SimulateOptions& options, Report& report, const Picture& picture,
+/// Completes, writes and prints the report, and returns the exit code.
+int finish(const SimulateOptions& options, Report& report, const RunPicture& picture,
              steady_clock::time_point begin) {
   report.program = "simulate";
   report.seed = options.seed;
@@ -97,7 +98,7 @@ int conclude(const SimulateOptions& options, Report& report, const Picture& pict
   if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
   fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
              summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
-  return report.verdict().empty() ? 0 : kExitFailure;
+  return report.failure_reason().empty() ? 0 : kExitFailure;
 }
 
 }  // namespace
@@ -106,21 +107,21 @@ int simulate_trial(const SimulateOptions& options) {
   const auto begin = steady_clock::now();
   std::optional<Scenario> scenario;
   if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
-  const Duration duration = options.seconds ? from_seconds(*options.seconds) : SearchOptions{}.duration;
+  const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
   const Trial trial = sample_trial(options.seed, duration, scenario);
-  fmt::print("commit {}\n{}\n", kCommit, floor_in_words(trial.scenario));
-  for (const std::string& line : in_words(trial.plan)) fmt::print("  {}\n", line);
-  Picture picture(trial.scenario);
+  fmt::print("commit {}\n{}\n", kBuildCommit, scene_summary(trial.scenario));
+  for (const std::string& line : to_lines(trial.plan)) fmt::print("  {}\n", line);
+  RunPicture picture(trial.scenario);
   Report report;
   std::optional<SimRecorder> recorder;
-  run_trial(
-      trial, &report,
-      [&](const msg::GroundTruth& truth) {
-        if (!options.picture_file.empty()) picture.add(truth);
-      },
-      [&](SimSystem& system) { recorder.emplace(system.network(), trial.scenario, options); },
-      [&] { recorder->close(), recorder.reset(); });
-  return conclude(options, report, picture, begin);
+  TrialHooks hooks;
+  hooks.on_start = [&](SimSystem& system) { recorder.emplace(system.network(), trial.scenario, options); };
+  hooks.on_truth = [&](const msg::GroundTruth& truth) {
+    if (!options.picture_file.empty()) picture.add(truth);
+  };
+  hooks.on_end = [&] { recorder->close(), recorder.reset(); };
+  run_trial(trial, &report, hooks);
+  return finish(options, report, picture, begin);
 }
 
 int simulate(const SimulateOptions& options) {
@@ -128,15 +129,16 @@ int simulate(const SimulateOptions& options) {
   fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
-  Picture picture(scenario);
+  RunPicture picture(scenario);
   if (!options.picture_file.empty())
     system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
   SimRecorder recorder(system.network(), scenario, options);
-  const std::string failure = drive(system, options.seconds.value_or(scenario.time_limit_s));
+  const std::string abort_reason =
+      run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
   recorder.close();
-  Report report = system.judge().report();
-  report.failure = failure;
-  return conclude(options, report, picture, begin);
+  Report report = system.metrics().report();
+  report.abort_reason = abort_reason;
+  return finish(options, report, picture, begin);
 }
 
 }  // namespace sidestep

@@ -6,11 +6,11 @@ namespace {
 
 constexpr Rgb kOpponent{118, 44, 150};
 
-SceneRobot worn_by(const RobotSpec& robot) {
+SceneRobot scene_robot(const RobotSpec& robot) {
   return {robot.team, number_of(robot.id), robot.start_m, robot.start_heading_rad};
 }
 
-SceneBlob opponent(const Circle& disc) { return {disc, SceneBlob().height_m, kOpponent}; }
+SceneCylinder opponent(const Circle& disc) { return {disc, SceneCylinder().height_m, kOpponent}; }
 
 SceneBall ball(const Vec2& position_m, const Vec2& velocity_mps) {
   return {{position_m.x(), position_m.y(), SceneBall().position_m.z()}, velocity_mps};
@@ -21,11 +21,11 @@ SceneBall ball(const Vec2& position_m, const Vec2& velocity_mps) {
 FloorScene floor_scene(const Scenario& scenario) {
   FloorScene floor;
   for (const RobotSpec& robot : scenario.robots) {
-    if (!robot.is_absent) floor.robots.push_back(worn_by(robot));
+    if (!robot.is_absent) floor.robots.push_back(scene_robot(robot));
   }
-  for (const Circle& circle : scenario.obstacles) floor.blobs.push_back({circle});
+  for (const Circle& circle : scenario.obstacles) floor.cylinders.push_back({circle});
   for (const OpponentSpec& spec : scenario.opponents)
-    floor.blobs.push_back(opponent({spec.path_m.front(), spec.radius_m}));
+    floor.cylinders.push_back(opponent({spec.path_m.front(), spec.radius_m}));
   if (scenario.ball) floor.ball = ball(scenario.ball->position_m, scenario.ball->velocity_mps);
   return floor;
 }
@@ -35,15 +35,15 @@ FloorScene floor_scene(const Scenario& scenario, const World& world) {
   for (std::size_t i = 0; i < world.robot_count(); ++i) {
     const Body& body = world.bodies()[i];
     if (!body.is_on_floor()) continue;
-    SceneRobot robot = worn_by(scenario.robots[i]);
+    SceneRobot robot = scene_robot(scenario.robots[i]);
     robot.position_m = body.position_m();
     robot.heading_rad = body.heading_rad();
     robot.velocity_mps = body.velocity_mps();
     robot.angular_radps = body.angular_radps();
     floor.robots.push_back(robot);
   }
-  for (const Circle& circle : scenario.obstacles) floor.blobs.push_back({circle});
-  for (const Circle& disc : world.opponents().discs()) floor.blobs.push_back(opponent(disc));
+  for (const Circle& circle : scenario.obstacles) floor.cylinders.push_back({circle});
+  for (const Circle& disc : world.opponents().discs()) floor.cylinders.push_back(opponent(disc));
   if (world.ball()) floor.ball = ball(world.ball()->state().position_m, world.ball()->state().velocity_mps);
   return floor;
 }

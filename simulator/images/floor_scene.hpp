@@ -6,22 +6,22 @@
 
 #include "common/config/scenario.hpp"
 #include "simulator/rendering/scene.hpp"
-#include "simulator/world.hpp"
+#include "simulator/world/world.hpp"
 
 namespace sidestep {
 
-/// What stands on a floor at one moment.
+/// The objects on a floor at one time.
 struct FloorScene {
   std::vector<SceneRobot> robots;
-  std::vector<SceneBlob> blobs;
+  std::vector<SceneCylinder> cylinders;
   std::optional<SceneBall> ball;
 
-  Scene scene() const { return {robots, blobs, ball}; }
+  Scene scene() const { return {robots, cylinders, ball}; }
 };
 
-/// What a scenario puts on the floor. Robots wear the pattern of their number.
+/// A scenario's initial floor. Each robot wears the pattern of its number.
 FloorScene floor_scene(const Scenario& scenario);
-/// What there is of it in the world by now.
+/// The floor in the world's current state.
 FloorScene floor_scene(const Scenario& scenario, const World& world);
 
 }  // namespace sidestep

@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kStale{200'000'000};
+constexpr Duration kMaxLateness{200'000'000};
 
 }  // namespace
 
@@ -21,10 +21,10 @@ ImageOutput::ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simu
   RenderSpec spec;
   spec.format = images.format;
   Rng rng(seed);
-  for (const CameraModel& camera : hang_grid(scenario))
+  for (const CameraModel& camera : camera_grid(scenario))
     renderers_.emplace_back(camera, scenario.field, butterfly(), spec, Rng(rng.bits()));
-  image_.head().sender(static_cast<std::uint32_t>(Sender::kSimulator));
-  image_.head().incarnation(incarnation);
+  image_.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
+  image_.header().incarnation(incarnation);
   image_.image_format(images.format == PixelFormat::kRgb ? msg::IMAGE_RGB : msg::IMAGE_YUV422);
   image_.width_px(static_cast<std::uint32_t>(images.width_px));
   image_.height_px(static_cast<std::uint32_t>(images.height_px));
@@ -37,7 +37,7 @@ ImageOutput::ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simu
 }
 
 void ImageOutput::publish(std::size_t camera, Time captured_at, const FloorScene& floor) {
-  if (captured_at + scenario_.vision.delay + kStale < bus_.now()) return;
+  if (captured_at + scenario_.vision.delay + kMaxLateness < bus_.now()) return;
   renderers_[camera].render(floor.scene(), image_.pixels().data());
   image_.camera(static_cast<std::uint32_t>(camera));
   image_.captured_at_ns(to_ns(captured_at));

@@ -7,15 +7,15 @@
 #include "common/messaging/bus.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
-#include "simulator/simulator_node.hpp"
+#include "simulator/world/simulator_node.hpp"
 
 namespace sidestep {
 
-/// Publishes what a simulator's cameras see as images, rendered when they are due. The bus must not call back
-/// any more when this has gone.
+/// Publishes the images of a simulator's cameras, rendered when they are due. The bus must make no callback
+/// after this object's destruction.
 class ImageOutput {
  public:
-  /// The scenario has images. Throws std::invalid_argument when such cameras cannot hang over its field.
+  /// Precondition: the scenario has images. Throws as camera_grid() does.
   ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, Incarnation incarnation,
               std::uint64_t seed);
   ImageOutput(const ImageOutput&) = delete;

@@ -4,33 +4,33 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "common/motion/rolling_ball.hpp"
 #include "simulator/league/league_geometry.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr double kRobotHeight_m = 0.15;
-constexpr double kBallRadius_m = 0.0215;
 constexpr std::uint32_t kSourceOther = 1;
 
-/// Noise may move a detection out of the image, but never behind the camera.
+/// Noise can move a detection out of the image but never behind the camera.
 Vec2 pixel_of(const Vec2& position_m, double height_m, const CameraModel& camera) {
   return camera.pixel_of({position_m.x(), position_m.y(), height_m}).value_or(Vec2(0, 0));
 }
 
-league::SeenRobot seen_at(const Vec2& position_m, const CameraModel& camera) {
-  league::SeenRobot seen;
-  seen.position_m = position_m;
-  seen.height_m = kRobotHeight_m;
-  seen.pixel = pixel_of(position_m, kRobotHeight_m, camera);
-  return seen;
+league::DetectedRobot detected_robot(const Vec2& position_m, const CameraModel& camera) {
+  league::DetectedRobot detected;
+  detected.position_m = position_m;
+  detected.height_m = kRobotHeight_m;
+  detected.pixel = pixel_of(position_m, kRobotHeight_m, camera);
+  return detected;
 }
 
 }  // namespace
 
 LeagueFrames::LeagueFrames(const Scenario& scenario, std::span<const CameraView> views)
     : scenario_(scenario), frame_numbers_(views.size()) {
-  require_own_numbers(scenario);
+  require_unique_numbers(scenario);
   if (views.size() > league::kMaxCameras) {
     throw std::invalid_argument(
         fmt::format("{} cameras, expected at most {} in the league", views.size(), league::kMaxCameras));
@@ -40,7 +40,7 @@ LeagueFrames::LeagueFrames(const Scenario& scenario, std::span<const CameraView>
 
 league::VisionPacket LeagueFrames::detection(const msg::DetectionFrame& frame, Time now) {
   const CameraModel& camera = cameras_.at(frame.camera());
-  league::Detection detection;
+  league::DetectionFrame detection;
   detection.frame_number = ++frame_numbers_[frame.camera()];
   detection.camera = frame.camera();
   detection.captured = Duration{frame.captured_at_ns()};
@@ -48,30 +48,30 @@ league::VisionPacket LeagueFrames::detection(const msg::DetectionFrame& frame, T
   for (const msg::RobotDetection& robot : frame.robots()) add(robot, camera, detection);
   for (std::size_t i = 0; i < frame.obstacle_count(); ++i) {
     const msg::ObstacleDetection& opponent = frame.obstacles()[i];
-    detection.yellow.push_back(seen_at({opponent.x_m(), opponent.y_m()}, camera));
+    detection.yellow.push_back(detected_robot({opponent.x_m(), opponent.y_m()}, camera));
     detection.yellow.back().confidence = 1;
   }
   for (std::size_t i = 0; i < frame.ball_count(); ++i) {
     const msg::BallDetection& ball = frame.balls()[i];
-    league::SeenBall seen;
-    seen.position_m = {ball.x_m(), ball.y_m()};
-    seen.confidence = ball.confidence();
-    seen.pixel = pixel_of(seen.position_m, kBallRadius_m, camera);
-    detection.balls.push_back(seen);
+    league::DetectedBall detected;
+    detected.position_m = {ball.x_m(), ball.y_m()};
+    detected.confidence = ball.confidence();
+    detected.pixel = pixel_of(detected.position_m, BallSettings{}.radius_m, camera);
+    detection.balls.push_back(detected);
   }
   return {std::move(detection), std::nullopt, kSourceOther};
 }
 
 void LeagueFrames::add(const msg::RobotDetection& robot, const CameraModel& camera,
-                       league::Detection& detection) const {
-  league::SeenRobot seen = seen_at({robot.x_m(), robot.y_m()}, camera);
-  seen.number = number_of(robot.robot());
-  seen.heading_rad = robot.heading_rad();
-  seen.confidence = robot.confidence();
-  // A ghost may be of a robot that does not exist; it is taken for blue.
+                       league::DetectionFrame& detection) const {
+  league::DetectedRobot detected = detected_robot({robot.x_m(), robot.y_m()}, camera);
+  detected.number = number_of(robot.robot());
+  detected.heading_rad = robot.heading_rad();
+  detected.confidence = robot.confidence();
+  // A ghost's id may be of no robot in the scenario; such a ghost counts as blue.
   const RobotSpec* const spec = find_robot(scenario_, robot.robot());
   const bool is_yellow = spec && spec->team == Team::kYellow;
-  (is_yellow ? detection.yellow : detection.blue).push_back(seen);
+  (is_yellow ? detection.yellow : detection.blue).push_back(detected);
 }
 
 league::VisionPacket LeagueFrames::geometry() const {

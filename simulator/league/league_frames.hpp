@@ -8,25 +8,25 @@
 #include "common/config/scenario.hpp"
 #include "common/league/vision_packet.hpp"
 #include "idl/vision.h"
-#include "simulator/cameras.hpp"
+#include "simulator/world/cameras.hpp"
 
 namespace sidestep {
 
-/// Makes of the cameras' frames what SSL-Vision would send. Robots go by team and number; opponents have
-/// neither and are sent as yellow robots without a number and a heading.
+/// Converts the cameras' detections to the packets that SSL-Vision would send. Robots are identified by team
+/// and number; opponents have neither and are sent as yellow robots without number and heading.
 class LeagueFrames {
  public:
-  /// Throws std::invalid_argument when two robots of the scenario have one team and number, or when there are
-  /// more cameras than the league numbers.
+  /// Throws std::invalid_argument if two robots of the scenario share team and number, or if there are more
+  /// than league::kMaxCameras cameras.
   LeagueFrames(const Scenario& scenario, std::span<const CameraView> views);
 
-  /// The detections of one camera, sent now. Precondition: the frame is one of those cameras'.
+  /// The detections of one camera, sent now. Precondition: frame.camera() is an index into `views`.
   league::VisionPacket detection(const msg::DetectionFrame& frame, Time now);
   /// The field and all cameras.
   league::VisionPacket geometry() const;
 
  private:
-  void add(const msg::RobotDetection& robot, const CameraModel& camera, league::Detection& detection) const;
+  void add(const msg::RobotDetection& robot, const CameraModel& camera, league::DetectionFrame& detection) const;
 
   Scenario scenario_;
   std::vector<CameraModel> cameras_;

@@ -4,45 +4,19 @@
 #include <numbers>
 
 #include "common/camera/overhead_camera.hpp"
-#include "simulator/field_marking.hpp"
+#include "common/motion/rolling_ball.hpp"
+#include "simulator/world/field_marking.hpp"
 
 namespace sidestep {
 namespace {
 
-enum ShapeType : std::uint32_t {
-  kCentreCircle = 1,
-  kTopTouchLine,
-  kBottomTouchLine,
-  kLeftGoalLine,
-  kRightGoalLine,
-  kHalfwayLine,
-  kCentreLine,
-  kLeftPenaltyStretch,
-  kRightPenaltyStretch,
-  kLeftFieldLeftPenaltyStretch,
-  kLeftFieldRightPenaltyStretch,
-  kRightFieldLeftPenaltyStretch,
-  kRightFieldRightPenaltyStretch
-};
+// The league's shape types: the straight lines follow in FieldMarking's order.
+constexpr std::uint32_t kCentreCircle = 1, kFirstLine = 2;
 
-void mark(league::FieldSize& field, const FieldMarking& marking) {
-  const double x = field.length_m / 2, y = field.width_m / 2;
-  const double area_x = x - marking.area_depth_m, area_y = marking.area_width_m / 2;
-  const auto line = [&](const char* name, const Vec2& from_m, const Vec2& to_m, ShapeType type) {
-    field.lines.push_back({name, from_m, to_m, marking.line_m, type});
-  };
-  line("TopTouchLine", {-x, y}, {x, y}, kTopTouchLine);
-  line("BottomTouchLine", {-x, -y}, {x, -y}, kBottomTouchLine);
-  line("LeftGoalLine", {-x, -y}, {-x, y}, kLeftGoalLine);
-  line("RightGoalLine", {x, -y}, {x, y}, kRightGoalLine);
-  line("HalfwayLine", {0, -y}, {0, y}, kHalfwayLine);
-  line("CenterLine", {-x, 0}, {x, 0}, kCentreLine);
-  line("LeftPenaltyStretch", {-area_x, -area_y}, {-area_x, area_y}, kLeftPenaltyStretch);
-  line("RightPenaltyStretch", {area_x, -area_y}, {area_x, area_y}, kRightPenaltyStretch);
-  line("LeftFieldLeftPenaltyStretch", {-x, -area_y}, {-area_x, -area_y}, kLeftFieldLeftPenaltyStretch);
-  line("LeftFieldRightPenaltyStretch", {-x, area_y}, {-area_x, area_y}, kLeftFieldRightPenaltyStretch);
-  line("RightFieldLeftPenaltyStretch", {x, area_y}, {area_x, area_y}, kRightFieldLeftPenaltyStretch);
-  line("RightFieldRightPenaltyStretch", {x, -area_y}, {area_x, -area_y}, kRightFieldRightPenaltyStretch);
+void add_markings(league::FieldSize& field, const FieldMarking& marking) {
+  std::uint32_t type = kFirstLine;
+  for (const MarkedLine& line : marking.lines)
+    field.lines.push_back({line.name, line.segment_m.from_m, line.segment_m.to_m, marking.line_m, type++});
   field.arcs.push_back({"CenterCircle",
                         {0, 0},
                         marking.centre_circle_radius_m,
@@ -68,9 +42,9 @@ league::FieldSize league_field(const Field& field) {
   size.centre_circle_radius_m = marking.centre_circle_radius_m;
   size.line_thickness_m = marking.line_m;
   size.goal_centre_to_penalty_mark_m = marking.penalty_mark_m;
-  size.ball_radius_m = 0.0215;
+  size.ball_radius_m = BallSettings{}.radius_m;
   size.max_robot_radius_m = 0.09;
-  mark(size, marking);
+  add_markings(size, marking);
   return size;
 }
 
@@ -78,7 +52,7 @@ CameraModel league_camera(const CameraView& view) {
   OverheadCamera camera;
   camera.view_m = {view.low_m, view.high_m};
   camera.distortion = 0;
-  return hang(camera);
+  return overhead_camera_model(camera);
 }
 
 league::CameraCalibration calibration_of(const CameraModel& camera, std::uint32_t number) {

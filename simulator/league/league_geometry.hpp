@@ -6,18 +6,18 @@
 #include "common/camera/camera_model.hpp"
 #include "common/geometry/field.hpp"
 #include "common/league/field_geometry.hpp"
-#include "simulator/cameras.hpp"
+#include "simulator/world/cameras.hpp"
 
 namespace sidestep {
 
-/// The field with its FieldMarking. The floor ends at its lines.
+/// The field with its FieldMarking. The floor ends at the outer lines.
 league::FieldSize league_field(const Field& field);
 
-/// The camera that would see this part of the floor, up to the robots' tops: 780 x 580 pixels, without
-/// distortion, hanging 4 m over its middle.
+/// A camera with this view of the floor, up to the robots' tops: 780 x 580 pixels, without distortion, 4 m
+/// above the centre of the view.
 CameraModel league_camera(const CameraView& view);
 
-/// What the league is told of it.
+/// A camera's calibration as sent to the league.
 league::CameraCalibration calibration_of(const CameraModel& camera, std::uint32_t number);
 
 }  // namespace sidestep

@@ -16,8 +16,8 @@ LeagueOutput::LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& si
                            const std::string& endpoint, const std::string& interface)
     : bus_(bus),
       frames_(scenario, simulator.cameras().views()),
-      sender_(league::multicast_endpoint(endpoint), interface) {
-  simulator.set_listener(
+      sender_(league::parse_multicast_endpoint(endpoint), interface) {
+  simulator.set_detection_listener(
       [this](const msg::DetectionFrame& frame) { send(frames_.detection(frame, bus_.now())); });
   bus_.at(bus_.now(), [this] { send_geometry(); });
 }
@@ -25,7 +25,7 @@ LeagueOutput::LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& si
 void LeagueOutput::send(const league::VisionPacket& packet) {
   if (sender_.send(encode(packet)) || sender_.failed() < next_report_) return;
   next_report_ *= 10;
-  fmt::print(stderr, "sidestep-simulator: {} packet(s) could not be sent so far: {}\n", sender_.failed(),
+  fmt::print(stderr, "sidestep-simulator: {} league packet(s) not sent so far; last error: {}\n", sender_.failed(),
              std::strerror(errno));
 }
 

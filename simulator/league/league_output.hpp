@@ -6,13 +6,13 @@
 #include "common/league/multicast.hpp"
 #include "common/messaging/bus.hpp"
 #include "simulator/league/league_frames.hpp"
-#include "simulator/simulator_node.hpp"
+#include "simulator/world/simulator_node.hpp"
 
 namespace sidestep {
 
-/// Sends what a simulator's cameras see to the league's multicast, and the geometry every 3 s. The bus must
-/// not call back any more when this has gone. Throws as MulticastSender, multicast_endpoint() and
-/// LeagueFrames do.
+/// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry every 3
+/// s. The bus must make no callback after this object's destruction. Throws as MulticastSender,
+/// parse_multicast_endpoint() and LeagueFrames do.
 class LeagueOutput {
  public:
   LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, const std::string& endpoint,

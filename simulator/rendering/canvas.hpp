@@ -8,13 +8,13 @@
 
 namespace sidestep {
 
-/// What the lens is shown: RGB, 8 bits a channel, before blur and noise.
+/// The ideal image before blur and noise: RGB, 8 bits per channel.
 using Canvas = cv::Mat3b;
 
-/// A lit colour, 0 to 255 and beyond.
+/// An illuminated colour; 0 to 255, but may exceed 255.
 using Light = Eigen::Vector3f;
 
-/// A colour under light of this gain in each channel.
+/// A colour under light with a gain per channel.
 inline Light lit(const Rgb& colour, const Eigen::Vector3d& gain) {
   return Eigen::Vector3d(colour.r * gain.x(), colour.g * gain.y(), colour.b * gain.z()).cast<float>();
 }

@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "common/camera/camera_model.hpp"
+#include "common/geometry/box.hpp"
 #include "common/geometry/field.hpp"
-#include "simulator/field_marking.hpp"
 #include "common/random/rng.hpp"
+#include "simulator/world/field_marking.hpp"
 #include "simulator/rendering/canvas.hpp"
 #include "simulator/rendering/render_spec.hpp"
 
 namespace sidestep {
 
-/// The white lines of the league's field, scaled to this one.
+/// The white lines of a field, the centre circle included, as FieldMarking defines them.
 class FieldLines {
  public:
-  explicit FieldLines(const Field& field) : field_(field), marking_(field) {}
-  /// From a point to the next line's edge, negative on a line.
+  explicit FieldLines(const Field& field);
+  /// Distance from a point to the edge of the nearest line, negative on a line.
   double distance_m(const Vec2& p) const;
 
  private:
-  Field field_;
   FieldMarking marking_;
+  std::array<Box, std::tuple_size_v<decltype(FieldMarking::lines)>> lines_;  ///< without width
 };
 
-/// The share of the full light at a place of the floor; never less than the far end's.
+/// The share of full light at a point of the floor; beyond the field's far end as at the far end.
 double light_at(const RenderSpec& spec, const Field& field, const Vec2& p);
 
-/// What the camera sees of an empty floor under light without a colour: carpet with lines and texture, a
-/// margin of carpet round the field, and a dark floor beyond.
-Canvas sample_floor(const CameraModel& camera, const Field& field, const RenderSpec& spec, Rng& rng);
+/// A camera's view of the empty floor under neutral light: the field surface with its lines, its texture and
+/// a margin around the field, and a dark floor beyond.
+Canvas render_floor(const CameraModel& camera, const Field& field, const RenderSpec& spec, Rng& rng);
 
 }  // namespace sidestep

@@ -20,11 +20,11 @@ cv::Rect footprint(const CameraModel& camera, const Vec2& place_m, double radius
     }
   }
   const CameraParameters& p = camera.parameters();
-  // What is far outside is so before numbers are cut to integers.
+  // Excludes coordinates beyond the range of int before the conversion.
   if (high.x() < -2 || high.y() < -2 || low.x() > p.width_px + 1.0 || low.y() > p.height_px + 1.0) return {};
-  const Vec2 least(-2, -2), most(p.width_px + 2.0, p.height_px + 2.0);
-  low = low.cwiseMax(least).array().floor() - 1;
-  high = high.cwiseMin(most).array().ceil() + 1;
+  const Vec2 min(-2, -2), max(p.width_px + 2.0, p.height_px + 2.0);
+  low = low.cwiseMax(min).array().floor() - 1;
+  high = high.cwiseMin(max).array().ceil() + 1;
   const cv::Rect rect(cv::Point(int(low.x()), int(low.y())), cv::Point(int(high.x()) + 1, int(high.y()) + 1));
   return rect & cv::Rect(0, 0, p.width_px, p.height_px);
 }

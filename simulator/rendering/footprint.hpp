@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// The pixels of the image that may show something which stands within a radius of a place, between two
-/// heights. Empty when it is outside the image or not all of it is before the camera.
+/// The pixels that may show an object within a radius of a place and between two heights. Empty if the object
+/// is outside the image or not entirely in front of the camera.
 cv::Rect footprint(const CameraModel& camera, const Vec2& place_m, double radius_m, double low_m,
                    double high_m);
 
-/// A little more than half a pixel's diagonal, in metres.
+/// Slightly more than half a pixel's diagonal, in metres.
 double pixel_reach_m(const Eigen::Matrix2d& metres_per_pixel);
 
 }  // namespace sidestep

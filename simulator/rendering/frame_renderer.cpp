@@ -6,37 +6,39 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
 
-#include "common/image/pixel_writing.hpp"
+#include "common/image/pixel_conversion.hpp"
 #include "simulator/rendering/field_surface.hpp"
 #include "simulator/rendering/round_ball.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr Rgb kSide{34, 34, 37};      // of robots
-constexpr double kSideOfBlob = 0.55;  // of the light on a blob's top
-constexpr double kLeastBlur_px = 0.2;
+constexpr Rgb kRobotSide{34, 34, 37};
+constexpr double kCylinderSideBrightness = 0.55;  // relative to the top
+constexpr double kMinBlur_px = 0.2;
 
 const CameraModel& checked(const CameraModel& camera, const RenderSpec& spec) {
   if (spec.format == PixelFormat::kYuv422 && camera.parameters().width_px % 2 != 0)
-    throw std::invalid_argument("frames in YUV 4:2:2 need an even width");
+    throw std::invalid_argument("image width: expected an even number for YUV 4:2:2, got " +
+                                std::to_string(camera.parameters().width_px));
   return camera;
 }
 
-/// Two pixels of YUV 4:2:2 are one piece.
-cv::Rect on_pairs(const cv::Rect& rect) {
+/// Expands to whole pairs of pixels, which share a chroma sample in YUV 4:2:2.
+cv::Rect aligned_to_pairs(const cv::Rect& rect) {
   const int left = rect.x & ~1, right = (rect.br().x + 1) & ~1;
   return {left, rect.y, right - left, rect.height};
 }
 
-cv::Rect grown(const cv::Rect& rect, int by) {
+cv::Rect expanded(const cv::Rect& rect, int by) {
   return {rect.x - by, rect.y - by, rect.width + 2 * by, rect.height + 2 * by};
 }
 
 }  // namespace
 
-FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, const MarkingLayout& layout,
+FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, const MarkerLayout& layout,
                              const RenderSpec& spec, Rng rng)
     : camera_(checked(camera, spec)),
       field_(field),
@@ -45,15 +47,15 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
       rng_(rng),
       noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
   // Three standard deviations to the outer edge of the last pixel.
-  if (spec_.blur_px > kLeastBlur_px)
+  if (spec_.blur_px > kMinBlur_px)
     blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
-  grey_floor_ = sample_floor(camera_, field_, spec_, rng_);
-  set_colour_gain(spec_.colour_gain);
+  render_empty_floor();
 }
 
-void FrameRenderer::set_colour_gain(const Eigen::Vector3d& gain) {
-  spec_.colour_gain = gain;
-  cv::multiply(grey_floor_, cv::Scalar(gain.x(), gain.y(), gain.z()), floor_);
+void FrameRenderer::render_empty_floor() {
+  const Eigen::Vector3d& gain = spec_.colour_gain;
+  const Canvas neutral_floor = render_floor(camera_, field_, spec_, rng_);
+  cv::multiply(neutral_floor, cv::Scalar(gain.x(), gain.y(), gain.z()), floor_);
   floor_.copyTo(canvas_);
   clean_.resize(row_bytes() * static_cast<std::size_t>(canvas_.rows));
   blur({0, 0, canvas_.cols, canvas_.rows});
@@ -64,28 +66,28 @@ Eigen::Vector3d FrameRenderer::gain_at(const Vec2& p) const {
   return light_at(spec_, field_, p) * spec_.colour_gain;
 }
 
-void FrameRenderer::find_sights(const Scene& scene) {
-  sights_.clear();
-  const auto add = [&](const Vec2& place_m, Sight::Kind kind, std::size_t index) {
-    sights_.push_back({(place_m - camera_.position_m().head<2>()).norm(), kind, index});
+void FrameRenderer::sort_objects(const Scene& scene) {
+  objects_.clear();
+  const auto add = [&](const Vec2& place_m, VisibleObject::Kind kind, std::size_t index) {
+    objects_.push_back({(place_m - camera_.position_m().head<2>()).norm(), kind, index});
   };
   for (std::size_t i = 0; i < scene.robots.size(); ++i)
-    add(scene.robots[i].position_m, Sight::Kind::kRobot, i);
-  for (std::size_t i = 0; i < scene.blobs.size(); ++i)
-    add(scene.blobs[i].circle.centre_m, Sight::Kind::kBlob, i);
-  if (scene.ball) add(scene.ball->position_m.head<2>(), Sight::Kind::kBall, 0);
-  std::sort(sights_.begin(), sights_.end(),
-            [](const Sight& a, const Sight& b) { return a.distance_m > b.distance_m; });
+    add(scene.robots[i].position_m, VisibleObject::Kind::kRobot, i);
+  for (std::size_t i = 0; i < scene.cylinders.size(); ++i)
+    add(scene.cylinders[i].circle.centre_m, VisibleObject::Kind::kCylinder, i);
+  if (scene.ball) add(scene.ball->position_m.head<2>(), VisibleObject::Kind::kBall, 0);
+  std::sort(objects_.begin(), objects_.end(),
+            [](const VisibleObject& a, const VisibleObject& b) { return a.distance_m > b.distance_m; });
 }
 
 cv::Rect FrameRenderer::draw_robot(const SceneRobot& robot) {
   const Eigen::Vector3d gain = gain_at(robot.position_m);
   dots_.clear();
-  const auto add = [&](std::size_t number, const MarkingDot& dot, Colour colour) {
+  const auto add = [&](std::size_t number, const Marker& dot, Colour colour) {
     if ((robot.hidden_dots >> number & 1) == 0)
       dots_.push_back({dot.position_m, dot.radius_m, lit(named(colour).rgb, gain)});
   };
-  if (const MarkingPattern* const pattern = layout_.find(robot.pattern)) {
+  if (const MarkerPattern* const pattern = layout_.find(robot.pattern)) {
     add(0, layout_.centre, layout_.team_colour(robot.team));
     for (std::size_t i = 0; i < layout_.dots.size(); ++i) add(i + 1, layout_.dots[i], pattern->colours[i]);
   }
@@ -96,32 +98,32 @@ cv::Rect FrameRenderer::draw_robot(const SceneRobot& robot) {
   body.front_m = spec_.robot.front_m;
   body.height_m = spec_.robot.height_m;
   body.top = lit(named(Colour::kBlack).rgb, gain);
-  body.side = lit(kSide, gain);
+  body.side = lit(kRobotSide, gain);
   body.dots = dots_;
   body.velocity_mps = robot.velocity_mps;
   body.angular_radps = robot.angular_radps;
   return draw(body, camera_, spec_.exposure_s, canvas_);
 }
 
-cv::Rect FrameRenderer::draw_blob(const SceneBlob& blob) {
+cv::Rect FrameRenderer::draw_cylinder(const SceneCylinder& cylinder) {
   VerticalBody body;
-  body.position_m = blob.circle.centre_m;
-  body.radius_m = blob.circle.radius_m;
-  body.front_m = 2 * blob.circle.radius_m;
-  body.height_m = blob.height_m;
-  body.top = lit(blob.colour, gain_at(body.position_m));
-  body.side = static_cast<float>(kSideOfBlob) * body.top;
-  body.velocity_mps = blob.velocity_mps;
+  body.position_m = cylinder.circle.centre_m;
+  body.radius_m = cylinder.circle.radius_m;
+  body.front_m = 2 * cylinder.circle.radius_m;
+  body.height_m = cylinder.height_m;
+  body.top = lit(cylinder.colour, gain_at(body.position_m));
+  body.side = static_cast<float>(kCylinderSideBrightness) * body.top;
+  body.velocity_mps = cylinder.velocity_mps;
   return draw(body, camera_, spec_.exposure_s, canvas_);
 }
 
-cv::Rect FrameRenderer::draw_sight(const Scene& scene, const Sight& sight) {
-  switch (sight.kind) {
-    case Sight::Kind::kRobot:
-      return draw_robot(scene.robots[sight.index]);
-    case Sight::Kind::kBlob:
-      return draw_blob(scene.blobs[sight.index]);
-    case Sight::Kind::kBall:
+cv::Rect FrameRenderer::draw_object(const Scene& scene, const VisibleObject& object) {
+  switch (object.kind) {
+    case VisibleObject::Kind::kRobot:
+      return draw_robot(scene.robots[object.index]);
+    case VisibleObject::Kind::kCylinder:
+      return draw_cylinder(scene.cylinders[object.index]);
+    case VisibleObject::Kind::kBall:
       break;
   }
   const Light light = lit(named(Colour::kOrange).rgb, gain_at(scene.ball->position_m.head<2>()));
@@ -129,15 +131,16 @@ cv::Rect FrameRenderer::draw_sight(const Scene& scene, const Sight& sight) {
 }
 
 void FrameRenderer::blur(const cv::Rect& rect) {
-  // OpenCV rounds in the same way on every machine only in matrices of their own.
-  const cv::Rect around = grown(rect, blur_size_ / 2) & cv::Rect(0, 0, canvas_.cols, canvas_.rows);
-  Canvas seen = canvas_(around).clone();
+  // OpenCV rounds identically on every machine only for a matrix with its own memory, not for part of a
+  // larger one.
+  const cv::Rect around = expanded(rect, blur_size_ / 2) & cv::Rect(0, 0, canvas_.cols, canvas_.rows);
+  Canvas blurred = canvas_(around).clone();
   if (blur_size_ > 1)
-    cv::GaussianBlur(seen, seen, {blur_size_, blur_size_}, spec_.blur_px, spec_.blur_px,
+    cv::GaussianBlur(blurred, blurred, {blur_size_, blur_size_}, spec_.blur_px, spec_.blur_px,
                      cv::BORDER_REPLICATE);
   for (int y = rect.y; y < rect.br().y; ++y) {
     std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
-    write_pixels(spec_.format, seen[y - around.y][rect.x - around.x].val, rect.width,
+    convert_pixels(spec_.format, blurred[y - around.y][rect.x - around.x].val, rect.width,
                  row + rect.x * bytes_per_pixel(spec_.format));
   }
 }
@@ -153,12 +156,12 @@ void FrameRenderer::restore(const cv::Rect& rect) {
 }
 
 void FrameRenderer::render(const Scene& scene, std::uint8_t* pixels) {
-  find_sights(scene);
+  sort_objects(scene);
   changed_.clear();
   const cv::Rect image(0, 0, canvas_.cols, canvas_.rows);
-  for (const Sight& sight : sights_) {
-    const cv::Rect drawn = draw_sight(scene, sight);
-    if (!drawn.empty()) changed_.push_back(on_pairs(grown(drawn, blur_size_ / 2)) & image);
+  for (const VisibleObject& object : objects_) {
+    const cv::Rect drawn = draw_object(scene, object);
+    if (!drawn.empty()) changed_.push_back(aligned_to_pairs(expanded(drawn, blur_size_ / 2)) & image);
   }
   for (const cv::Rect& rect : changed_) blur(rect);
   noise_.add(clean_.data(), canvas_.rows, rng_, pixels);

@@ -16,58 +16,53 @@
 
 namespace sidestep {
 
-/// The frames of one camera. The empty floor is drawn, blurred and written down once; a frame costs what
-/// moves on it, and one pass over its bytes for the noise.
+/// Renders the frames of one camera. The empty floor is drawn, blurred and converted once; the cost of a
+/// frame is that of its objects, and one pass over its bytes that adds the noise.
 class FrameRenderer {
  public:
-  /// The same generator gives the same frames. Throws std::invalid_argument for a width that is odd with
-  /// kYuv422.
-  FrameRenderer(const CameraModel& camera, const Field& field, const MarkingLayout& layout,
+  /// The state of `rng` determines the frames. Throws std::invalid_argument if the width is odd with kYuv422.
+  FrameRenderer(const CameraModel& camera, const Field& field, const MarkerLayout& layout,
                 const RenderSpec& spec, Rng rng);
 
-  /// Renders a frame of the camera's size into spec().format's bytes; `pixels` has room for
-  /// ImageView::bytes().
+  /// Renders a frame in the spec's format and the camera's size. Precondition: `pixels` has space for
+  /// ImageView::bytes() bytes.
   void render(const Scene& scene, std::uint8_t* pixels);
-  /// The same into an image of its own.
+  /// The same into a new image.
   Image render(const Scene& scene);
 
-  /// Changes the light's colour from the next frame on; costs about as much as several frames.
-  void set_colour_gain(const Eigen::Vector3d& gain);
-
   const CameraModel& camera() const { return camera_; }
-  const RenderSpec& spec() const { return spec_; }
 
  private:
-  /// Something of the scene, the farthest from the camera first.
-  struct Sight {
+  /// An object of the scene; the farthest from the camera is drawn first.
+  struct VisibleObject {
     double distance_m;
-    enum class Kind { kRobot, kBlob, kBall } kind;
+    enum class Kind { kRobot, kCylinder, kBall } kind;
     std::size_t index;
   };
 
-  void find_sights(const Scene& scene);
-  cv::Rect draw_sight(const Scene& scene, const Sight& sight);
+  void render_empty_floor();
+  void sort_objects(const Scene& scene);
+  cv::Rect draw_object(const Scene& scene, const VisibleObject& object);
   cv::Rect draw_robot(const SceneRobot& robot);
-  cv::Rect draw_blob(const SceneBlob& blob);
+  cv::Rect draw_cylinder(const SceneCylinder& cylinder);
   Eigen::Vector3d gain_at(const Vec2& p) const;
-  /// What the lens makes of the canvas goes into the clean frame.
+  /// Applies the lens blur to the canvas and converts the result into the clean frame.
   void blur(const cv::Rect& rect);
   void restore(const cv::Rect& rect);
   std::size_t row_bytes() const { return ImageView{spec_.format, canvas_.cols, 1}.row_bytes(); }
 
   CameraModel camera_;
   Field field_;
-  MarkingLayout layout_;
+  MarkerLayout layout_;
   RenderSpec spec_;
   Rng rng_;
   SensorNoise noise_;
-  Canvas grey_floor_;                      ///< the empty floor under light without a colour
-  Canvas floor_;                           ///< and under the light as it is
-  Canvas canvas_;                          ///< the floor, with what is being drawn on it
+  Canvas floor_;                           ///< under the actual light
+  Canvas canvas_;                          ///< the floor with the objects drawn so far
   int blur_size_ = 1;                      ///< of the kernel, odd
   std::vector<std::uint8_t> clean_floor_;  ///< the frame of the empty floor without noise
-  std::vector<std::uint8_t> clean_;        ///< the same with what stands on it
-  std::vector<Sight> sights_;
+  std::vector<std::uint8_t> clean_;        ///< the same with the objects
+  std::vector<VisibleObject> objects_;
   std::vector<cv::Rect> changed_;
   std::vector<TopDot> dots_;
 };

@@ -3,16 +3,16 @@
 
 #include <cmath>
 
-#include "simulator/rendering/counting/samples.hpp"
+#include "simulator/rendering/coverage/sample_pattern.hpp"
 #include "simulator/rendering/footprint.hpp"
 
 namespace sidestep {
 namespace {
 
-/// A ball as one camera sees it: rays that pass its centre within its radius.
-class SeenBall {
+/// A camera's view of a ball: the viewing rays that pass its centre within its radius.
+class BallView {
  public:
-  SeenBall(const SceneBall& ball, const CameraModel& camera, const Eigen::Matrix2d& metres_per_pixel,
+  BallView(const SceneBall& ball, const CameraModel& camera, const Eigen::Matrix2d& metres_per_pixel,
            double exposure_s)
       : centre_m_(ball.position_m), camera_m_(camera.position_m()) {
     const Vec2 motion_m = ball.velocity_mps * exposure_s;
@@ -25,20 +25,20 @@ class SeenBall {
     }
   }
 
-  /// The share of a pixel that shows the ball, where the ray of the pixel's centre meets the plane of the
-  /// ball's centre here.
+  /// The share of a pixel that shows the ball. The viewing ray of the pixel's centre meets the horizontal
+  /// plane through the ball's centre at place_m.
   float share(const Vec2& place_m) const {
-    const Vec2 away_m = place_m - centre_m_.head<2>();
-    const Vec2 along = (Vec3(place_m.x(), place_m.y(), centre_m_.z()) - camera_m_).normalized().head<2>();
-    const double distance_m = std::sqrt(std::max(0.0, away_m.squaredNorm() - std::pow(away_m.dot(along), 2)));
+    const Vec2 offset_m = place_m - centre_m_.head<2>();
+    const Vec2 ray = (Vec3(place_m.x(), place_m.y(), centre_m_.z()) - camera_m_).normalized().head<2>();
+    const double distance_m = std::sqrt(std::max(0.0, offset_m.squaredNorm() - std::pow(offset_m.dot(ray), 2)));
     if (distance_m - kBallRadius_m > reach_m_) return 0;
     if (kBallRadius_m - distance_m > reach_m_) return 1;
-    const float x = static_cast<float>(away_m.x()), y = static_cast<float>(away_m.y());
-    const float along_x = static_cast<float>(along.x()), along_y = static_cast<float>(along.y());
+    const float x = static_cast<float>(offset_m.x()), y = static_cast<float>(offset_m.y());
+    const float ray_x = static_cast<float>(ray.x()), ray_y = static_cast<float>(ray.y());
     const float square = static_cast<float>(kBallRadius_m * kBallRadius_m);
     int count = 0;
     for (std::size_t i = 0; i < kSamples; ++i) {
-      const float dx = x + offsets_x_[i], dy = y + offsets_y_[i], a = dx * along_x + dy * along_y;
+      const float dx = x + offsets_x_[i], dy = y + offsets_y_[i], a = dx * ray_x + dy * ray_y;
       count += dx * dx + dy * dy - a * a <= square ? 1 : 0;
     }
     return static_cast<float>(count) / static_cast<float>(kSamples);
@@ -59,14 +59,14 @@ cv::Rect draw(const SceneBall& ball, const Light& light, const CameraModel& came
   const auto rect = footprint(camera, centre_m.head<2>(), kBallRadius_m + motion_m,
                               centre_m.z() - kBallRadius_m, centre_m.z() + kBallRadius_m);
   if (rect.empty()) return {};
-  const auto slope = camera.pixels_per_metre(centre_m);
+  const auto slope = camera.projection_jacobian(centre_m);
   if (!slope) return {};
-  const SeenBall seen(ball, camera, slope->leftCols<2>().inverse(), exposure_s);
+  const BallView view(ball, camera, slope->leftCols<2>().inverse(), exposure_s);
   for (int y = rect.y; y < rect.br().y; ++y) {
     cv::Vec3b* const row = canvas[y];
     for (int x = rect.x; x < rect.br().x; ++x) {
       const auto place_m = camera.point_at(Vec2(x, y), centre_m.z());
-      const float share = place_m ? seen.share(*place_m) : 0;
+      const float share = place_m ? view.share(*place_m) : 0;
       if (share > 0) row[x] = bytes_of(share * light + (1 - share) * light_of(row[x]));
     }
   }

@@ -7,10 +7,9 @@
 
 namespace sidestep {
 
-/// Of the league's ball.
-inline constexpr double kBallRadius_m = 0.0215;
+inline constexpr double kBallRadius_m = BallSettings{}.radius_m;
 
-/// Draws what the camera sees of a ball over what is there, as draw() of upright bodies does.
+/// Draws a camera's view of a ball over the canvas, as draw(VerticalBody) does.
 cv::Rect draw(const SceneBall& ball, const Light& light, const CameraModel& camera, double exposure_s,
               Canvas& canvas);
 

@@ -9,21 +9,22 @@
 #include "common/geometry/circle.hpp"
 #include "common/geometry/vec3.hpp"
 #include "common/image/colour_space.hpp"
+#include "common/motion/rolling_ball.hpp"
 
 namespace sidestep {
 
 struct SceneRobot {
   Team team = Team::kBlue;
-  std::uint32_t pattern = 0;  ///< id in the layout; with an id that it does not have, the robot shows no dots
+  std::uint32_t pattern = 0;  ///< id in the layout; for an unknown id the robot shows no dots
   Vec2 position_m{0, 0};
   double heading_rad = 0;
   Vec2 velocity_mps{0, 0};
   double angular_radps = 0;
-  std::uint32_t hidden_dots = 0;  ///< bit 0: the centre dot is covered; bit 1 + i: the layout's dot i is
+  std::uint32_t hidden_dots = 0;  ///< bit 0: the centre dot is covered; bit 1 + i: the layout's dot i is covered
 };
 
-/// Something round that is no robot of ours: an obstacle, an opponent, a person.
-struct SceneBlob {
+/// A round object other than a marked robot: an obstacle, an opponent or a person.
+struct SceneCylinder {
   Circle circle;
   double height_m = 0.15;
   Rgb colour{150, 96, 56};
@@ -31,14 +32,14 @@ struct SceneBlob {
 };
 
 struct SceneBall {
-  Vec3 position_m{0, 0, 0.0215};  ///< of its centre
+  Vec3 position_m{0, 0, BallSettings{}.radius_m};  ///< of its centre
   Vec2 velocity_mps{0, 0};
 };
 
-/// What stands on the floor when a frame is captured.
+/// The objects on the floor when a frame is captured.
 struct Scene {
   std::span<const SceneRobot> robots;
-  std::span<const SceneBlob> blobs{};
+  std::span<const SceneCylinder> cylinders{};
   std::optional<SceneBall> ball{};
 };
 

@@ -10,8 +10,8 @@
 namespace sidestep {
 namespace {
 
-/// Long enough that rows seldom overlap, short enough to stay in a cache.
-constexpr std::size_t kTapeGroups = 1 << 16;
+/// Large enough that the sections of two rows seldom overlap, and small enough to stay in a cache.
+constexpr std::size_t kTableGroups = 1 << 16;
 
 struct Noise {
   double r, g, b;
@@ -26,8 +26,8 @@ void add_row(const std::uint8_t* __restrict clean, const std::int8_t* __restrict
              std::uint8_t* __restrict out) {
   for (std::size_t i = 0; i < bytes; ++i) {
     const auto sum = static_cast<std::int16_t>(clean[i] + noise[i]);
-    const auto least = std::max<std::int16_t>(sum, 0);
-    out[i] = static_cast<std::uint8_t>(std::min<std::int16_t>(least, 255));
+    const auto positive = std::max<std::int16_t>(sum, 0);
+    out[i] = static_cast<std::uint8_t>(std::min<std::int16_t>(positive, 255));
   }
 }
 
@@ -36,32 +36,32 @@ void add_row(const std::uint8_t* __restrict clean, const std::int8_t* __restrict
 SensorNoise::SensorNoise(PixelFormat format, double sd, int width_px, Rng& rng)
     : row_bytes_(ImageView{format, width_px, 1}.row_bytes()),
       group_bytes_(format == PixelFormat::kRgb ? 3 : 4),
-      is_quiet_(sd <= 0) {
-  if (is_quiet_) return;
-  const auto draw = [&] {
+      is_noiseless_(sd <= 0) {
+  if (is_noiseless_) return;
+  const auto sample = [&] {
     const double r = rng.normal(), g = rng.normal(), b = rng.normal();
     return Noise{sd * r, sd * g, sd * b};
   };
-  while (tape_.size() < kTapeGroups * group_bytes_ + row_bytes_) {
-    const Noise a = draw();
+  while (noise_table_.size() < kTableGroups * group_bytes_ + row_bytes_) {
+    const Noise a = sample();
     if (format == PixelFormat::kRgb) {
-      tape_.insert(tape_.end(), {rounded(a.r), rounded(a.g), rounded(a.b)});
+      noise_table_.insert(noise_table_.end(), {rounded(a.r), rounded(a.g), rounded(a.b)});
       continue;
     }
-    const Noise b = draw();
+    const Noise b = sample();
     const double u = bt601::kU * (a.b + b.b - a.y() - b.y()) / 2,
                  v = bt601::kV * (a.r + b.r - a.y() - b.y()) / 2;
-    tape_.insert(tape_.end(), {rounded(u), rounded(a.y()), rounded(v), rounded(b.y())});
+    noise_table_.insert(noise_table_.end(), {rounded(u), rounded(a.y()), rounded(v), rounded(b.y())});
   }
 }
 
 void SensorNoise::add(const std::uint8_t* clean, int rows, Rng& rng, std::uint8_t* out) const {
-  if (is_quiet_) {
+  if (is_noiseless_) {
     std::memcpy(out, clean, row_bytes_ * static_cast<std::size_t>(rows));
     return;
   }
   for (int y = 0; y < rows; ++y, clean += row_bytes_, out += row_bytes_)
-    add_row(clean, tape_.data() + group_bytes_ * rng.below(kTapeGroups), row_bytes_, out);
+    add_row(clean, noise_table_.data() + group_bytes_ * rng.below(kTableGroups), row_bytes_, out);
 }
 
 }  // namespace sidestep

@@ -9,22 +9,22 @@
 
 namespace sidestep {
 
-/// The noise of a sensor: independent and Gaussian in red, green and blue of each pixel, and in the frame's
-/// format what comes of that. Drawn once, on a tape of which every row of a frame takes a piece from
-/// somewhere.
+/// A camera sensor's noise: independent and Gaussian in red, green and blue of each pixel, converted to the
+/// frame's format. It is precomputed in a table; each row of a frame uses a section of the table at a random
+/// position.
 class SensorNoise {
  public:
   /// `sd` is the standard deviation of each of red, green and blue, of 255.
   SensorNoise(PixelFormat format, double sd, int width_px, Rng& rng);
 
-  /// out = clean + noise, cut off at 0 and 255. Both have the rows of an image of the width and format given.
+  /// out = clean + noise, clamped to 0..255. Both images have the constructor's format and width.
   void add(const std::uint8_t* clean, int rows, Rng& rng, std::uint8_t* out) const;
 
  private:
-  std::vector<std::int8_t> tape_;
+  std::vector<std::int8_t> noise_table_;
   std::size_t row_bytes_;
-  std::size_t group_bytes_;  ///< pieces begin at multiples of it
-  bool is_quiet_;
+  std::size_t group_bytes_;  ///< sections begin at multiples of it
+  bool is_noiseless_;
 };
 
 }  // namespace sidestep

@@ -18,10 +18,10 @@ CameraModel quarter(int width_px, int height_px) {
   VisionSpec spec;
   spec.columns = spec.rows = 2;
   spec.overlap_m = 0.25;
-  OverheadCamera like;
-  like.width_px = width_px;
-  like.height_px = height_px;
-  return hang_grid(kField, spec, like)[0];
+  OverheadCamera camera;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  return camera_grid(kField, spec, camera)[0];
 }
 
 void pixel_of_point(benchmark::State& state) {
@@ -42,16 +42,16 @@ void point_of_pixel(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(camera.point_at(pixels[i++ % 1024], 0.15));
 }
 
-void slope_at_point(benchmark::State& state) {
+void jacobian_of_point(benchmark::State& state) {
   const CameraModel camera = quarter(780, 580);
   Rng rng(1);
   std::vector<Vec3> points;
   for (int i = 0; i < 1024; ++i) points.emplace_back(rng.uniform(-6, 0), rng.uniform(-4.5, 0), 0.15);
   std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(camera.pixels_per_metre(points[i++ % 1024]));
+  for (auto _ : state) benchmark::DoNotOptimize(camera.projection_jacobian(points[i++ % 1024]));
 }
 
-/// Arguments: width, height, whether in RGB, robots, all in the camera's view.
+/// Arguments: width, height, RGB or YUV, number of robots, all in the camera's view.
 void frame(benchmark::State& state) {
   RenderSpec spec;
   spec.format = state.range(2) != 0 ? PixelFormat::kRgb : PixelFormat::kYuv422;
@@ -75,7 +75,7 @@ void frame(benchmark::State& state) {
 
 BENCHMARK(pixel_of_point);
 BENCHMARK(point_of_pixel);
-BENCHMARK(slope_at_point);
+BENCHMARK(jacobian_of_point);
 BENCHMARK(frame)
     ->Unit(benchmark::kMillisecond)
     ->ArgNames({"width", "height", "rgb", "robots"})

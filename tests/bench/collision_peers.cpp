@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Peers that are compiled for the machine that they run on.
+// Peers, compiled for the instruction sets of the machine that builds them.
 #include "tests/bench/collision_peers.hpp"
 
 #include <boost/geometry/geometries/box.hpp>
@@ -9,11 +9,11 @@
 namespace sidestep::peers {
 namespace {
 
-constexpr std::size_t kTogether = 64;  // circles after which a hit ends it
+constexpr std::size_t kBatchSize = 64;  // number of circles compared before a hit may end the loop
 
-/// A disc on its way, prepared for many comparisons.
-struct Way {
-  Way(const Vec2& from, const Vec2& to, double own_radius)
+/// A moving disc, prepared for many comparisons.
+struct SweptDisc {
+  SweptDisc(const Vec2& from, const Vec2& to, double own_radius)
       : from_x(from.x()), from_y(from.y()), x(to.x() - from.x()), y(to.y() - from.y()), radius(own_radius) {
     per_length2 = 1 / std::max(x * x + y * y, 1e-300);
   }
@@ -46,12 +46,12 @@ PlainArray::PlainArray(const std::vector<Shape>& circles) {
 }
 
 bool PlainArray::touches(const Vec2& from, const Vec2& to, double radius) const {
-  const Way way(from, to, radius);
+  const SweptDisc disc(from, to, radius);
   const double *x = x_m_.data(), *y = y_m_.data(), *radii = radius_m_.data();
-  for (std::size_t begin = 0; begin < x_m_.size(); begin += kTogether) {
-    const std::size_t end = std::min(begin + kTogether, x_m_.size());
+  for (std::size_t begin = 0; begin < x_m_.size(); begin += kBatchSize) {
+    const std::size_t end = std::min(begin + kBatchSize, x_m_.size());
     std::int64_t touched = 0;
-    for (std::size_t i = begin; i < end; ++i) touched |= way.touches(x[i], y[i], radii[i]);
+    for (std::size_t i = begin; i < end; ++i) touched |= disc.touches(x[i], y[i], radii[i]);
     if (touched != 0) return true;
   }
   return false;
@@ -73,11 +73,11 @@ BoostRTree::~BoostRTree() = default;
 
 bool BoostRTree::touches(const Vec2& from, const Vec2& to, double radius) const {
   namespace index = boost::geometry::index;
-  const Way way(from, to, radius);
-  const Bounds query = bounds_in_boost(grown({from.cwiseMin(to), from.cwiseMax(to)}, radius));
+  const SweptDisc disc(from, to, radius);
+  const Bounds query = bounds_in_boost(inflated({from.cwiseMin(to), from.cwiseMax(to)}, radius));
   const auto touched = [&](const Entry& entry) {
     if (const auto* circle = std::get_if<Circle>(entry.second))
-      return way.touches(circle->centre_m.x(), circle->centre_m.y(), circle->radius_m);
+      return disc.touches(circle->centre_m.x(), circle->centre_m.y(), circle->radius_m);
     return squared_distance(Segment{from, to}, *entry.second) <= radius * radius;
   };
   return tree_->boxes.qbegin(index::intersects(query) && index::satisfies(touched)) != tree_->boxes.qend();

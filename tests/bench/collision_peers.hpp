@@ -8,7 +8,7 @@
 
 namespace sidestep::peers {
 
-/// Circles compared in a plain loop over arrays, of which the compiler makes vectors for this machine.
+/// Circles compared in a plain loop over arrays, vectorised by the compiler for the build machine.
 class PlainArray {
  public:
   explicit PlainArray(const std::vector<Shape>& circles);
@@ -18,7 +18,7 @@ class PlainArray {
   std::vector<double> x_m_, y_m_, radius_m_;
 };
 
-/// Boost's R-tree over the shapes' boxes, bulk loaded; the shapes in it are compared exactly.
+/// Boost's R-tree over the shapes' bounding boxes, bulk loaded, with exact comparisons of the candidates.
 class BoostRTree {
  public:
   explicit BoostRTree(const std::vector<Shape>& shapes);

@@ -22,7 +22,7 @@ void grant_of_one_version(benchmark::State& state) {
     roster.push_back(newest.back().robot);
   }
   Ledger ledger(floor_rules(snapshot.scenario), roster);
-  for (std::size_t i = 0; i < robots; ++i) ledger.enter(newest[i].robot, {&newest[i], 1});
+  for (std::size_t i = 0; i < robots; ++i) ledger.register_robot(newest[i].robot, {&newest[i], 1});
   const MotionLimits& limits = snapshot.scenario.limits;
   const Duration cycle = snapshot.scenario.cycle;
   Rng rng(3);
@@ -31,14 +31,14 @@ void grant_of_one_version(benchmark::State& state) {
     Version& last = newest[i];
     const Time start = last.trajectory.start() + cycle;
     const State there = last.trajectory.state_at(start);
-    const Vec2 drawn = limited(sample(there.velocity_mps, limits, rng), there.velocity_mps, limits, cycle);
+    const Vec2 drawn = limit_acceleration(sample_acceleration(there.velocity_mps, limits, rng), there.velocity_mps, limits, cycle);
     const Version next{last.robot,
                        last.incarnation,
                        last.number + 1,
                        last.number,
                        accelerate_then_stop(start, there, drawn, cycle, limits.deceleration_mps2),
                        0};
-    if (ledger.grant(next).granted()) {
+    if (ledger.grant(next).is_granted()) {
       ++granted;
       (void)ledger.on_executing(next, start, false);
       last = next;

@@ -12,9 +12,9 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-Point draw(Rng& rng) { return {rng.uniform(-5, 5), rng.uniform(-5, 5)}; }
+Point sample_point(Rng& rng) { return {rng.uniform(-5, 5), rng.uniform(-5, 5)}; }
 
-/// The peer: a K-D tree of static trees, that takes points one by one as ours does.
+/// The peer: nanoflann's dynamic index, a set of static K-D trees to which points are added one by one.
 class NanoflannTree {
  public:
   using Index =
@@ -30,12 +30,12 @@ class NanoflannTree {
     index_->addPoints(points_.size() - 1, points_.size() - 1);
   }
   std::uint32_t nearest(const Point& point) const {
-    std::size_t number = 0;
+    std::size_t index = 0;
     double distance2 = 0;
     nanoflann::KNNResultSet<double> found(1);
-    found.init(&number, &distance2);
+    found.init(&index, &distance2);
     index_->findNeighbors(found, point.data(), nanoflann::SearchParams());
-    return static_cast<std::uint32_t>(number);
+    return static_cast<std::uint32_t>(index);
   }
 
   std::size_t kdtree_get_point_count() const { return points_.size(); }
@@ -50,18 +50,18 @@ class NanoflannTree {
   std::unique_ptr<Index> index_;
 };
 
-/// As a tree planner does: asks for the nearest of what it has, and adds a point.
+/// Like a tree planner: finds the nearest stored point, then adds a point.
 template <typename Set>
-void grow(benchmark::State& state) {
+void grow_set(benchmark::State& state) {
   const auto points = static_cast<std::size_t>(state.range(0));
   Set set;
   Rng rng(1);
   for (auto _ : state) {
     set.clear();
-    set.add(draw(rng));
+    set.add(sample_point(rng));
     for (std::size_t i = 1; i < points; ++i) {
-      benchmark::DoNotOptimize(set.nearest(draw(rng)));
-      set.add(draw(rng));
+      benchmark::DoNotOptimize(set.nearest(sample_point(rng)));
+      set.add(sample_point(rng));
     }
   }
   state.counters["per_point_ns"] =
@@ -69,9 +69,9 @@ void grow(benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-BENCHMARK_TEMPLATE(grow, LinearNearest<2>)->RangeMultiplier(4)->Range(16, 16384);
-BENCHMARK_TEMPLATE(grow, KdTree<2>)->RangeMultiplier(4)->Range(16, 16384);
-BENCHMARK_TEMPLATE(grow, NanoflannTree)->RangeMultiplier(4)->Range(16, 16384);
+BENCHMARK_TEMPLATE(grow_set, LinearNearest<2>)->RangeMultiplier(4)->Range(16, 16384);
+BENCHMARK_TEMPLATE(grow_set, KdTree<2>)->RangeMultiplier(4)->Range(16, 16384);
+BENCHMARK_TEMPLATE(grow_set, NanoflannTree)->RangeMultiplier(4)->Range(16, 16384);
 
 }  // namespace
 }  // namespace sidestep

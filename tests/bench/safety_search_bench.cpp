@@ -9,7 +9,7 @@ using namespace sidestep;
 
 namespace {
 
-/// The robots nearest to the middle of the crossing streams; each is the searcher once, the rest are others.
+/// All versions of the robots nearest to the centre of the crossing streams.
 std::vector<Version> versions_of(std::size_t robots) {
   std::vector<Version> versions;
   for (std::size_t i = 0; i < robots; ++i) {
@@ -19,28 +19,28 @@ std::vector<Version> versions_of(std::size_t robots) {
   return versions;
 }
 
-/// A search per robot and cycle, of all robots in turn; everything is laid out anew for each cycle.
+/// One search per robot and cycle, for all robots in turn. The index is rebuilt in each cycle.
 void search_per_robot(benchmark::State& state, const batch::Kernels* kernels) {
   const auto& snapshot = bench::crossing_streams();
   const auto robots = static_cast<std::size_t>(state.range(0));
   const std::vector<Version> versions = versions_of(robots);
   SafetySearch search(floor_rules(snapshot.scenario), {}, *kernels);
-  TrajectoryIndex crowd(*kernels);
+  TrajectoryIndex index(*kernels);
   Rng rng(2);
-  std::size_t i = 0, clear_wishes = 0, candidates = 0, checks = 0;
+  std::size_t i = 0, desired_clear = 0, candidates = 0, checks = 0;
   std::vector<double> each_us;
   each_us.reserve(1 << 22);
   for (auto _ : state) {
     const auto begin = std::chrono::steady_clock::now();
-    if (i == 0) crowd.assign(versions);
+    if (i == 0) index.assign(versions);
     const auto& robot = snapshot.robots[i];
     SearchQuery query = robot.query;
     query.robot = robot.versions.front().robot;
-    const auto result = search.search(query, crowd, rng);
+    const auto result = search.search(query, index, rng);
     const auto end = std::chrono::steady_clock::now();
     if (each_us.size() < each_us.capacity())
       each_us.push_back(std::chrono::duration<double, std::micro>(end - begin).count());
-    clear_wishes += result.desired_is_clear ? 1 : 0;
+    desired_clear += result.desired_is_clear ? 1 : 0;
     candidates += result.count;
     checks += static_cast<std::size_t>(result.checks);
     i = (i + 1) % robots;
@@ -48,12 +48,12 @@ void search_per_robot(benchmark::State& state, const batch::Kernels* kernels) {
   const auto average = [&](std::size_t sum) {
     return static_cast<double>(sum) / static_cast<double>(state.iterations());
   };
-  state.counters["wish_clear"] = average(clear_wishes);
+  state.counters["desired_clear"] = average(desired_clear);
   state.counters["candidates"] = average(candidates);
   state.counters["checks"] = average(checks);
-  const auto middle = each_us.begin() + static_cast<std::ptrdiff_t>(each_us.size() / 2);
-  std::nth_element(each_us.begin(), middle, each_us.end());
-  state.counters["median_us"] = *middle;
+  const auto median = each_us.begin() + static_cast<std::ptrdiff_t>(each_us.size() / 2);
+  std::nth_element(each_us.begin(), median, each_us.end());
+  state.counters["median_us"] = *median;
 }
 
 const int kRegistered = [] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a frame to regions of five colours: our inner loops, OpenCV's ways, and copying the frame, side by
-// side in one run. OpenCV gets the frame as the numbers that thresholds are about, for nothing. Regions have
-// to agree.
+// From a frame to regions of five colours: all available kernels, two methods with OpenCV, and copying the
+// frame, compared in one run. OpenCV gets the frame already converted to the numbers that thresholds apply to;
+// the conversion is not timed. All regions must agree.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -12,7 +12,7 @@
 #include <string>
 
 #include "common/random/rng.hpp"
-#include "tests/unit/vision/detection/painted_floor.hpp"
+#include "tests/unit/vision/detection/rendered_field.hpp"
 #include "vision/segmentation/batch/dispatch.hpp"
 #include "vision/segmentation/segmenter.hpp"
 
@@ -55,7 +55,7 @@ Regions with_components(const cv::Mat& yuv, const std::vector<ColourBox>& colour
   return regions;
 }
 
-/// Contours tell the outline only: area and middle are left 0.
+/// Contours give only the bounding box: area and centroid remain 0.
 Regions with_contours(const cv::Mat& yuv, const std::vector<ColourBox>& colours) {
   Regions regions;
   cv::Mat mask;
@@ -81,12 +81,12 @@ Regions sorted(Regions regions) {
   return regions;
 }
 
-Regions outlines(Regions regions) {
+Regions bounding_boxes(Regions regions) {
   for (Region& region : regions) region.area_px = 0, region.x_px = region.y_px = 0;
   return regions;
 }
 
-struct Side {
+struct Contestant {
   std::string name;
   std::function<void()> run;
   std::vector<double> times_ms{};
@@ -96,28 +96,28 @@ struct Side {
   }
 };
 
-/// All sides round by round, in any order, because a side finds the caches as the one before has left them:
-/// each runs once before it is timed, but on large frames that does not make good what OpenCV has driven out.
-/// Ratios are to the first one.
-void compare(const std::string& what, std::size_t bytes, std::vector<Side> sides) {
-  std::vector<std::size_t> order(sides.size());
+/// Times all contestants in rounds of random order, because each finds the caches in the state that its
+/// predecessor left: each runs once before it is timed, which on large frames does not fully undo evictions by
+/// OpenCV. Ratios are relative to the first contestant.
+void compare(const std::string& frame_name, std::size_t bytes, std::vector<Contestant> contestants) {
+  std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), 0);
   Rng rng(kSeed);
   for (int round = 0; round < kRounds; ++round) {
     rng.shuffle(order);
     for (const std::size_t i : order) {
-      Side& side = sides[i];
-      side.run();
+      Contestant& contestant = contestants[i];
+      contestant.run();
       const auto begin = std::chrono::steady_clock::now();
-      side.run();
-      const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
-      side.times_ms.push_back(taken.count());
+      contestant.run();
+      const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - begin;
+      contestant.times_ms.push_back(duration.count());
     }
   }
-  const double base_ms = sides.front().median_ms();
-  for (Side& side : sides) {
-    const double ms = side.median_ms();
-    fmt::print("{:<18} {:<32}{:9.3f}{:9.2f}{:9.1f}\n", what, side.name, ms, ms / base_ms,
+  const double base_ms = contestants.front().median_ms();
+  for (Contestant& contestant : contestants) {
+    const double ms = contestant.median_ms();
+    fmt::print("{:<18} {:<32}{:9.3f}{:9.2f}{:9.1f}\n", frame_name, contestant.name, ms, ms / base_ms,
                static_cast<double>(bytes) / ms / 1e6);
   }
 }
@@ -128,16 +128,16 @@ bool bench(int width_px, int height_px, PixelFormat format) {
   OverheadCamera camera;
   camera.width_px = width_px;
   camera.height_px = height_px;
-  test::PaintedFloor floor(kSeed, spec, camera);
+  test::RenderedField floor(kSeed, spec, camera);
   const std::vector<ColourBox> all = floor.learned_boxes();
   std::vector<ColourBox> colours = all;
   std::erase_if(colours, [](const ColourBox& box) { return box.colour == kOtherColour; });
-  const std::vector<test::Marked> robots = floor.scattered_robots(11);
-  const Image image = floor.frame(robots, floor.free_place(robots));
+  const std::vector<test::PlacedRobot> robots = floor.scattered_robots(11);
+  const Image image = floor.frame(robots, floor.free_position(robots));
   const ImageView view = image.view();
   const cv::Mat yuv = planes(view);
   const Regions components = sorted(with_components(yuv, colours));
-  bool agree = sorted(with_contours(yuv, colours)) == outlines(components);
+  bool agree = sorted(with_contours(yuv, colours)) == bounding_boxes(components);
 
   const auto& levels = segmentation::available_kernels();
   std::vector<Segmenter> segmenters;
@@ -146,19 +146,20 @@ bool bench(int width_px, int height_px, PixelFormat format) {
     const auto regions = segmenters.back().segment(view);
     agree &= sorted({regions.begin(), regions.end()}) == components;
   }
-  std::vector<Side> sides;
+  std::vector<Contestant> contestants;
   for (std::size_t i = levels.size(); i-- > 0;) {
-    sides.push_back({fmt::format("ours, {}", levels[i].name), [&, i] { segmenters[i].segment(view); }});
+    contestants.push_back(
+        {fmt::format("sidestep, {}", levels[i].name), [&, i] { segmenters[i].segment(view); }});
   }
   Segmenter with_others{ColourClasses(all), kAll};
-  sides.push_back({"the best, with other colours", [&] { with_others.segment(view); }});
+  contestants.push_back({"fastest, with unnamed colours", [&] { with_others.segment(view); }});
   Image copy = image;
-  sides.push_back({"copying the frame", [&] { std::memcpy(copy.pixels(), view.pixels, view.bytes()); }});
-  sides.push_back({"OpenCV inRange, contours", [&] { with_contours(yuv, colours); }});
-  sides.push_back({"OpenCV inRange, components", [&] { with_components(yuv, colours); }});
+  contestants.push_back({"copying the frame", [&] { std::memcpy(copy.pixels(), view.pixels, view.bytes()); }});
+  contestants.push_back({"OpenCV inRange, contours", [&] { with_contours(yuv, colours); }});
+  contestants.push_back({"OpenCV inRange, components", [&] { with_components(yuv, colours); }});
   const char* name = format == PixelFormat::kRgb ? "RGB" : "4:2:2";
-  compare(fmt::format("{}x{} {}", width_px, height_px, name), view.bytes(), sides);
-  fmt::print("{} regions, {}\n\n", components.size(), agree ? "the same on all sides" : "NOT THE SAME");
+  compare(fmt::format("{}x{} {}", width_px, height_px, name), view.bytes(), contestants);
+  fmt::print("{} regions, {}\n\n", components.size(), agree ? "identical for all contestants" : "NOT IDENTICAL");
   return agree;
 }
 

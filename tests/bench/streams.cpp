@@ -13,9 +13,9 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr Duration kUnderWay{2'000'000'000};
+constexpr Duration kWarmUp{2'000'000'000};
 
-/// What the coordinator published last of every robot, by robot.
+/// The versions in the latest ledger pages, by robot.
 std::map<RobotId, std::vector<Version>> newest_ledger(SimSystem& system, Duration cycle) {
   std::map<std::uint32_t, msg::LedgerPage> pages;
   SimBus bus(system.network());
@@ -26,33 +26,33 @@ std::map<RobotId, std::vector<Version>> newest_ledger(SimSystem& system, Duratio
   for (const auto& [index, page] : pages) {
     for (const msg::Version& entry : page.versions()) {
       const auto version = decode(entry);
-      if (!version) throw std::runtime_error("the coordinator publishes what is no version");
+      if (!version) throw std::runtime_error("the coordinator has published an invalid version");
       ledger[version->robot].push_back(*version);
     }
   }
   return ledger;
 }
 
-/// What an agent wants next: straight to its goal, from the start of the cycle after its newest version's.
+/// The query of an agent that drives straight to its goal, for the cycle after its newest version's start.
 SearchQuery next_query(const Scenario& scenario, const Version& newest) {
   const Time start = newest.trajectory.start() + scenario.cycle;
-  const State there = newest.trajectory.state_at(start);
-  const Vec2 to_goal = find_robot(scenario, newest.robot)->goals.back().position_m - there.position_m;
+  const State at_start = newest.trajectory.state_at(start);
+  const Vec2 to_goal = find_robot(scenario, newest.robot)->goals.back().position_m - at_start.position_m;
   const AccelerationCommand desired =
-      desired_acceleration(to_goal, there.velocity_mps, scenario.limits, scenario.cycle, scenario.cycle);
+      desired_acceleration(to_goal, at_start.velocity_mps, scenario.limits, scenario.cycle, scenario.cycle);
   SearchQuery query;
   query.start = start;
-  query.at_start = there;
+  query.at_start = at_start;
   query.desired_mps2 = desired.acceleration_mps2;
-  query.phase = desired.hold;
+  query.hold_time = desired.hold;
   return query;
 }
 
-Snapshot taken() {
+Snapshot take_snapshot() {
   Snapshot snapshot{load_scenario(SIDESTEP_SCENARIOS "/streams-1000.yaml"), {}};
   SimSystem system(snapshot.scenario, 1);
-  while (!system.judge().granting_since()) system.run_for(snapshot.scenario.cycle);
-  system.run_for(kUnderWay);
+  while (!system.metrics().granting_since()) system.run_for(snapshot.scenario.cycle);
+  system.run_for(kWarmUp);
   for (auto& [id, versions] : newest_ledger(system, snapshot.scenario.cycle)) {
     const auto newest = std::ranges::max_element(versions, {}, &Version::number);
     snapshot.robots.push_back({next_query(snapshot.scenario, *newest), std::move(versions)});
@@ -66,7 +66,7 @@ Snapshot taken() {
 }  // namespace
 
 const Snapshot& crossing_streams() {
-  static const Snapshot snapshot = taken();
+  static const Snapshot snapshot = take_snapshot();
   return snapshot;
 }
 

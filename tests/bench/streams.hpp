@@ -8,18 +8,18 @@
 
 namespace sidestep::bench {
 
-/// An instant of a thousand robots in crossing streams: everything that the coordinator's ledger holds, and
-/// what each robot is about to search for.
+/// A snapshot of a thousand robots in crossing streams: the contents of the coordinator's ledger, and the
+/// next search query of each robot.
 struct Snapshot {
   Scenario scenario;
   struct Robot {
     SearchQuery query;
     std::vector<Version> versions;
   };
-  std::vector<Robot> robots;  ///< those nearest to the middle of the floor first
+  std::vector<Robot> robots;  ///< in order of their distance from the centre of the field
 };
 
-/// From a simulation of deploy/scenarios/streams-1000.yaml, two seconds after its robots began to move.
+/// From a simulation of deploy/scenarios/streams-1000.yaml, two seconds after the first grant.
 const Snapshot& crossing_streams();
 
 }  // namespace sidestep::bench

@@ -24,45 +24,45 @@ std::string text_of(const std::filesystem::path& path) {
 
 std::filesystem::path new_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "sidestep-run-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+  if (!mkdtemp(name.data())) throw std::runtime_error("cannot create a temporary folder");
   return name;
 }
 
 }  // namespace
 
-LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments)
-    : LaunchedRun(scenario, more_arguments, "127.0.0.1") {
-  watch();
+LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments)
+    : LaunchedRun(scenario, extra_arguments, "127.0.0.1") {
+  subscribe();
 }
 
 std::unique_ptr<LaunchedRun> LaunchedRun::on_three_hosts(const std::string& scenario,
-                                                         const std::vector<std::string>& more_arguments,
+                                                         const std::vector<std::string>& extra_arguments,
                                                          const std::string& hosts_file) {
   std::vector<std::string> arguments{"--hosts", hosts_file};
-  arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
+  arguments.insert(arguments.end(), extra_arguments.begin(), extra_arguments.end());
   std::unique_ptr<LaunchedRun> run(new LaunchedRun(scenario, arguments, load_hosts(hosts_file).interface));
   const Time deadline = EventLoop::now() + std::chrono::minutes(1);
   while (!run->printed("started simulator") && !run->exit_ && EventLoop::now() < deadline) {
     for (const ChildEvent& event : run->group_.poll(std::chrono::milliseconds(20))) run->exit_ = event.reason;
   }
   if (run->exit_) throw std::runtime_error(run->output());
-  run->visit_.emplace("sidestep-" + std::to_string(run->pid_) + "-" + kHubName);
-  run->watch();
+  run->visit_.emplace("sidestep-" + std::to_string(run->pid_) + "-" + kBridgeLabel);
+  run->subscribe();
   return run;
 }
 
-LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments,
+LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments,
                          const std::string& interface)
     : interface_(interface), folder_(new_folder()), group_((folder_ / "launcher.log").string()) {
   std::ofstream(scenario_file()) << scenario;
-  std::vector<std::string> argv{program_beside_own("sidestep"),
+  std::vector<std::string> argv{sibling_program_path("sidestep"),
                                 "run",
                                 scenario_file(),
                                 "--domain",
                                 std::to_string(domain_.number()),
                                 "--report",
                                 (folder_ / "report.json").string()};
-  argv.insert(argv.end(), more_arguments.begin(), more_arguments.end());
+  argv.insert(argv.end(), extra_arguments.begin(), extra_arguments.end());
   pid_ = group_.start({"run", argv, false});
 }
 
@@ -76,13 +76,13 @@ LaunchedRun::~LaunchedRun() {
   std::filesystem::remove_all(folder_, ignored);
 }
 
-void LaunchedRun::watch() {
-  bus_ = std::make_unique<DdsBus>(DdsSettings{domain_.number(), interface_, "judge"});
+void LaunchedRun::subscribe() {
+  bus_ = std::make_unique<DdsBus>(DdsSettings{domain_.number(), interface_, "test"});
   bus_->subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
 }
 
 void LaunchedRun::check_sanitizers() const {
-  // The exit code of what the launcher has started does not always come as far as here.
+  // A sanitizer error of a child process does not always change the launcher's exit code.
   for (const char* log : {"launcher.log", "report.log"}) {
     const std::string text = text_of(folder_ / log);
     for (const char* complaint : {"Sanitizer: ", ": runtime error: "}) {
@@ -91,34 +91,34 @@ void LaunchedRun::check_sanitizers() const {
   }
 }
 
-void LaunchedRun::listen() {
+void LaunchedRun::poll() {
   bus_->run_until(bus_->now() + Duration{2'000'000});
   for (const ChildEvent& event : group_.poll(std::chrono::milliseconds(0))) {
     if (event.name == "run")
       exit_ = event.reason;
     else
-      exits_[event.name] = event.reason;
+      exit_reasons_[event.name] = event.reason;
   }
 }
 
 pid_t LaunchedRun::start(const std::string& name, const std::string& program,
                          const std::vector<std::string>& arguments) {
-  std::vector<std::string> argv{program_beside_own(program)};
+  std::vector<std::string> argv{sibling_program_path(program)};
   argv.insert(argv.end(), arguments.begin(), arguments.end());
-  exits_.erase(name);
+  exit_reasons_.erase(name);
   return group_.start({name, argv, false});
 }
 
-std::optional<std::string> LaunchedRun::exit_of(const std::string& name) const {
-  const auto found = exits_.find(name);
-  return found == exits_.end() ? std::nullopt : std::optional(found->second);
+std::optional<std::string> LaunchedRun::exit_reason(const std::string& name) const {
+  const auto found = exit_reasons_.find(name);
+  return found == exit_reasons_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::string LaunchedRun::command(const std::vector<std::string>& arguments) {
   const std::string name = arguments.at(0);
   start(name, "sidestep", arguments);
-  (void)until([&] { return exit_of(name).has_value(); });
-  return exit_of(name).value_or("");
+  (void)wait_until([&] { return exit_reason(name).has_value(); });
+  return exit_reason(name).value_or("");
 }
 
 std::vector<std::string> LaunchedRun::dds_arguments() const {
@@ -126,18 +126,18 @@ std::vector<std::string> LaunchedRun::dds_arguments() const {
 }
 
 std::string LaunchedRun::wait_for_end() {
-  (void)until([this] { return exit_.has_value(); });
+  (void)wait_until([this] { return exit_.has_value(); });
   return exit_.value_or("");
 }
 
 std::string LaunchedRun::output() const { return text_of(folder_ / "launcher.log"); }
 
-bool LaunchedRun::printed(const std::string& words) const {
-  return output().find(words) != std::string::npos;
+bool LaunchedRun::printed(const std::string& text) const {
+  return output().find(text) != std::string::npos;
 }
 
-bool LaunchedRun::logged(const std::string& words) const {
-  return text_of(folder_ / "report.log").find(words) != std::string::npos;
+bool LaunchedRun::logged(const std::string& text) const {
+  return text_of(folder_ / "report.log").find(text) != std::string::npos;
 }
 
 std::map<std::string, pid_t> LaunchedRun::children() const {
@@ -166,9 +166,9 @@ std::vector<RobotId> LaunchedRun::robots_on(const std::string& host) const {
   std::istringstream lines(output());
   const std::string agent = "started agent ";
   for (std::string line; std::getline(lines, line);) {
-    const auto at = line.find(agent);
-    if (at != std::string::npos && line.ends_with(" on host " + host))
-      result.push_back(static_cast<RobotId>(std::stoul(line.substr(at + agent.size()))));
+    const auto position = line.find(agent);
+    if (position != std::string::npos && line.ends_with(" on host " + host))
+      result.push_back(static_cast<RobotId>(std::stoul(line.substr(position + agent.size()))));
   }
   return result;
 }
@@ -180,16 +180,16 @@ double LaunchedRun::speed_mps(RobotId robot) const {
   return 0;
 }
 
-double LaunchedRun::fastest_mps() const {
-  double fastest = 0;
-  for (const auto& r : truth_.robots()) fastest = std::max(fastest, std::hypot(r.vx_mps(), r.vy_mps()));
-  return fastest;
+double LaunchedRun::max_speed_mps() const {
+  double max_mps = 0;
+  for (const auto& r : truth_.robots()) max_mps = std::max(max_mps, std::hypot(r.vx_mps(), r.vy_mps()));
+  return max_mps;
 }
 
-double LaunchedRun::fastest_mps(const std::vector<RobotId>& robots) const {
-  double fastest = 0;
-  for (const RobotId robot : robots) fastest = std::max(fastest, speed_mps(robot));
-  return fastest;
+double LaunchedRun::max_speed_mps(const std::vector<RobotId>& robots) const {
+  double max_mps = 0;
+  for (const RobotId robot : robots) max_mps = std::max(max_mps, speed_mps(robot));
+  return max_mps;
 }
 
 nlohmann::json LaunchedRun::report() const {
@@ -197,7 +197,7 @@ nlohmann::json LaunchedRun::report() const {
 }
 
 std::string three_hosts_file() {
-  return std::string(SIDESTEP_SOURCE_DIR) + "/deploy/launch/hosts/three-namespaces.yaml";
+  return SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/three-namespaces.yaml";
 }
 
 std::string shipped(const std::string& file) {
@@ -216,9 +216,9 @@ std::string crossing_images() {
   return text;
 }
 
-std::string shuttles(int times, const std::string& more) {
+std::string shuttles(int times, const std::string& extra_keys) {
   std::string text =
-      "name: shuttles\nfield: {length_m: 9, width_m: 6}\ntime_limit_s: 100\n" + more + "robots:\n";
+      "name: shuttles\nfield: {length_m: 9, width_m: 6}\ntime_limit_s: 100\n" + extra_keys + "robots:\n";
   const auto add = [&](int id, const Vec2& start_m, const Vec2& goal_m) {
     text += fmt::format("  - {{id: {}, start_m: [{}, {}], goals_m: [", id, start_m.x(), start_m.y());
     for (int i = 0; i < times; ++i) {
@@ -236,15 +236,15 @@ std::string shuttles(int times, const std::string& more) {
   return text;
 }
 
-void require_untouched(const nlohmann::json& report) {
+void require_no_violations(const nlohmann::json& report) {
   REQUIRE(report.is_object());
   CHECK(report["contacts"] == 0);
   CHECK(report["firmware_violations"] == 0);
   INFO(report["audit"].dump(2));
   CHECK(report["audit"]["violations"] == 0);
-  CHECK(report["audit"]["heard"] > 0);
-  // A run that ends before anybody drives far has no pairs to compare.
-  if (report["arrived"] > 0) CHECK(report["audit"]["pairs"] > 0);
+  CHECK(report["audit"]["received"] > 0);
+  // A run that ends early has no pairs to compare.
+  if (report["arrived"] > 0) CHECK(report["audit"]["compared_pairs"] > 0);
 }
 
 bool is_running(pid_t pid) {

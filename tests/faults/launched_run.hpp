@@ -8,106 +8,106 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/dds/dds_bus.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/motion/version.hpp"
 #include "deploy/launch/hosts/namespaces.hpp"
 #include "deploy/launch/process_group.hpp"
-#include "tests/own_domain.hpp"
+#include "tests/test_domain.hpp"
 
 namespace sidestep {
 
 /// The path of the shipped hosts file.
 std::string three_hosts_file();
 
-/// `sidestep run` as a user starts it, in a domain of its own, watched from outside: through what it prints,
-/// the ground truth on the bus, and the report that it leaves. Whatever happens, nothing of it outlives this
-/// object, and a sanitizer's complaint about any process of it fails the test.
+/// `sidestep run` as a user starts it, in its own DDS domain, observed through its output, the ground truth on the bus
+/// and its report. No process of the run outlives this object. A sanitizer error in any of them fails the test.
 class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
-  explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments = {});
-  /// On the three hosts of a hosts file, the shipped one. This thread stays in their network as long as the
-  /// run lives. Needs root.
+  explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments = {});
+  /// A run on the three namespace hosts of the hosts file. This thread stays in their network during the lifetime of
+  /// the object. Needs root.
   static std::unique_ptr<LaunchedRun> on_three_hosts(const std::string& scenario,
-                                                     const std::vector<std::string>& more_arguments = {},
+                                                     const std::vector<std::string>& extra_arguments = {},
                                                      const std::string& hosts_file = three_hosts_file());
   ~LaunchedRun();
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;
 
-  /// Listens until the condition holds; false when it does not within a minute, or the run ends before.
+  /// Receives messages until the condition holds; false on a timeout of one minute or when the run ends first.
   template <typename Condition>
-  bool until(Condition condition) {
+  bool wait_until(Condition condition) {
     const Time deadline = bus_->now() + std::chrono::minutes(1);
     while (!condition()) {
-      listen();
+      poll();
       if (bus_->now() > deadline) return false;
       if (exit_ && !condition()) return false;
     }
     return true;
   }
-  /// Waits for the end of the run: "exit code 0", or what else it died of; empty when it does not end.
+  /// Waits for the end of the run and returns the reason, e.g. "exit code 0"; empty on timeout.
   std::string wait_for_end();
-  /// Starts another program of ours beside the run, logged with it, and goes on.
+  /// Starts another Sidestep program beside the run; its output goes to the same log.
   pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
-  /// Whether that has ended, and how: "exit code 0".
-  std::optional<std::string> exit_of(const std::string& name) const;
-  /// Runs `sidestep` with these arguments to its end, which it returns; empty when it does not end.
+  /// How that program ended, e.g. "exit code 0"; none: it is running.
+  std::optional<std::string> exit_reason(const std::string& name) const;
+  /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on timeout.
   std::string command(const std::vector<std::string>& arguments);
-  /// "--domain N --interface A": how to take part.
+  /// The options --domain and --interface for joining the run.
   std::vector<std::string> dds_arguments() const;
   std::string scenario_file() const { return (folder_ / "scenario.yaml").string(); }
   /// The launcher's own process.
   pid_t pid() const { return pid_; }
-  /// The latest process that was started under this name, e.g. "agent 3"; 0 when there was none.
+  /// The latest process that was started with this name, e.g. "agent 3"; 0 if there is none.
   pid_t pid_of(const std::string& process) const;
   std::map<std::string, pid_t> children() const;
   /// The robots whose agents were started on the host.
   std::vector<RobotId> robots_on(const std::string& host) const;
-  bool printed(const std::string& words) const;
-  /// Whether a process of the run has said so.
-  bool logged(const std::string& words) const;
+  /// Whether the launcher or a program beside it has printed this text.
+  bool printed(const std::string& text) const;
+  /// Whether a process of the run has printed this text.
+  bool logged(const std::string& text) const;
   std::string output() const;
 
   DdsBus& bus() { return *bus_; }
   const msg::GroundTruth& truth() const { return truth_; }
   double speed_mps(RobotId robot) const;
-  double fastest_mps() const;
-  double fastest_mps(const std::vector<RobotId>& robots) const;
-  /// What the run has left behind; a null value when there is no report.
+  double max_speed_mps() const;
+  double max_speed_mps(const std::vector<RobotId>& robots) const;
+  /// The report of the run; invalid JSON if there is none.
   nlohmann::json report() const;
 
  private:
-  LaunchedRun(const std::string& scenario, const std::vector<std::string>& more_arguments,
+  LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments,
               const std::string& interface);
-  void listen();
-  void watch();
+  void poll();
+  void subscribe();
   void check_sanitizers() const;
 
-  OwnDomain domain_;
+  TestDomain domain_;
   std::string interface_;
   std::filesystem::path folder_;
   ProcessGroup group_;
-  std::optional<NamespaceVisit> visit_;
+  std::optional<ScopedNamespace> visit_;
   std::unique_ptr<DdsBus> bus_;
   msg::GroundTruth truth_;
-  std::map<std::string, std::string> exits_;
-  std::optional<std::string> exit_;
+  std::map<std::string, std::string> exit_reasons_;  ///< of the programs beside the run
+  std::optional<std::string> exit_;                  ///< of the run
   pid_t pid_ = 0;
 };
 
-/// A shipped file's text, e.g. "scenarios/crossing.yaml".
+/// The text of a shipped file below deploy/, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
-/// A shipped scenario's text.
+/// The text of a shipped scenario.
 std::string shipped_scenario(const std::string& name);
-/// crossing-images; with a sanitizer, which makes rendering many times as slow, fewer and smaller frames.
+/// The scenario crossing-images. With a sanitizer, which slows rendering down many times, frames are fewer and smaller.
 std::string crossing_images();
-/// Six robots that shuttle along lanes of their own and two that cross all lanes, each so many times; `more`
-/// are further keys of the scenario.
-std::string shuttles(int times, const std::string& more);
-/// Fails the test unless the report is there and says that nobody touched and no firmware rule was broken.
-void require_untouched(const nlohmann::json& report);
-/// Whether a process of this id exists (a zombie does not count).
+/// A scenario with six robots that shuttle along their own lanes and two that cross all lanes, each `times` times.
+/// `extra_keys` are added to the scenario.
+std::string shuttles(int times, const std::string& extra_keys);
+/// Fails the test unless the report exists and shows no contact, no firmware violation and no audit violation.
+void require_no_violations(const nlohmann::json& report);
+/// Whether a process with this id exists and is not a zombie.
 bool is_running(pid_t pid);
 
 }  // namespace sidestep

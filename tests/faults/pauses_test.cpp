@@ -10,77 +10,77 @@ using namespace sidestep;
 
 namespace {
 
-/// SIGSTOP for so long of the floor's time.
+/// Stops a process with SIGSTOP for this duration.
 void pause(LaunchedRun& run, pid_t pid, Duration duration) {
   REQUIRE(pid != 0);
   const Time until = run.bus().now() + duration;
   REQUIRE(kill(pid, SIGSTOP) == 0);
-  CHECK(run.until([&] { return run.bus().now() >= until; }));
+  CHECK(run.wait_until([&] { return run.bus().now() >= until; }));
   REQUIRE(kill(pid, SIGCONT) == 0);
 }
 
 }  // namespace
 
-TEST_CASE("nobody touches and all arrive though each kind of process sleeps for two seconds") {
+TEST_CASE("all robots arrive without contact although each kind of process pauses for two seconds") {
   LaunchedRun run(shuttles(7, "coordinators: 2\n"));
   for (const char* process : {"agent 2", "vision", "coordinator", "coordinator 1", "simulator"}) {
     INFO(process << "\n" << run.output());
-    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), std::chrono::seconds(2));
   }
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
-  require_untouched(run.report());
+  require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
 
 TEST_CASE(
-    "whoever sleeps longer than its lease, the launcher while it starts robots too, is heard by all again") {
+    "processes that pause longer than their lease, also the launcher during startup, are discovered again") {
   LaunchedRun run(shuttles(5, ""));
   const Duration more_than_lease = participant_lease() + std::chrono::milliseconds(600);
-  REQUIRE(run.until([&] { return run.printed("started agent 1"); }));
+  REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));
   pause(run, run.pid(), more_than_lease);
   for (const char* process : {"agent 2", "vision", "coordinator", "simulator"}) {
     INFO(process << "\n" << run.output());
-    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), more_than_lease);
   }
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
-  require_untouched(run.report());
+  require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("kill -9 of both coordinators in turn and of an agent: all arrive") {
+TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arrive") {
   LaunchedRun run(shuttles(5, "coordinators: 2\nrestart: [agents, coordinator]\n"));
   for (const char* process : {"coordinator 1", "agent 6", "coordinator"}) {
     INFO(process << "\n" << run.output());
-    REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+    REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     const pid_t before = run.pid_of(process);
     REQUIRE(before > 0);
     REQUIRE(kill(before, SIGKILL) == 0);
-    REQUIRE(run.until([&] { return run.pid_of(process) != before; }));
+    REQUIRE(run.wait_until([&] { return run.pid_of(process) != before; }));
   }
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
-  require_untouched(run.report());
+  require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
   CHECK(run.report()["deaths"].size() == 3);
 }
 
-TEST_CASE("kill -9 of the simulator: the floor is gone, and the run ends saying so") {
+TEST_CASE("kill -9 of the simulator: the run ends and reports its death") {
   LaunchedRun run(shuttles(8, ""));
-  REQUIRE(run.until([&] { return run.fastest_mps() > 0.8; }));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   REQUIRE(kill(run.pid_of("simulator"), SIGKILL) == 0);
   CHECK(run.wait_for_end() == "exit code 1");
   INFO(run.output());
   CHECK(run.printed("failed: simulator died"));
-  require_untouched(run.report());
+  require_no_violations(run.report());
 }
 
-TEST_CASE("the later one of two agents alive for one robot drives it, and nobody touches") {
+TEST_CASE("of two living agents of one robot the later one drives it, without contact") {
   LaunchedRun run(shuttles(5, ""));
-  REQUIRE(run.until([&] { return run.speed_mps(3) > 0.8; }));
+  REQUIRE(run.wait_until([&] { return run.speed_mps(3) > 0.8; }));
   std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--robot", "3"};
   for (const std::string& word : run.dds_arguments()) arguments.push_back(word);
   const pid_t twin = run.start("twin", "sidestep-agent", arguments);
@@ -88,12 +88,12 @@ TEST_CASE("the later one of two agents alive for one robot drives it, and nobody
   run.bus().subscribe(topics::kFeedback, 3, std::function([&](const msg::Feedback& feedback) {
                         obeyed.insert(feedback.obeyed_incarnation());
                       }));
-  CHECK(run.until([&] { return obeyed.size() == 2; }));
+  CHECK(run.wait_until([&] { return obeyed.size() == 2; }));
   CHECK(is_running(run.pid_of("agent 3")));
   CHECK(is_running(twin));
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
-  CHECK_FALSE(run.exit_of("twin"));
-  require_untouched(run.report());
+  CHECK_FALSE(run.exit_reason("twin"));
+  require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }

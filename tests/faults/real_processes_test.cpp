@@ -6,85 +6,85 @@
 
 using namespace sidestep;
 
-TEST_CASE("robots as processes cross the floor over DDS and arrive without a contact") {
+TEST_CASE("robots as processes cross the field over DDS and arrive without contact") {
   LaunchedRun run(shipped_scenario("crossing"));
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
-  require_untouched(report);
+  require_no_violations(report);
   CHECK(report["arrived"] == 8);
   CHECK(run.children().size() == 11);
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
 }
 
-TEST_CASE("robots that are seen in camera images cross the floor and arrive without a contact") {
+TEST_CASE("robots detected in camera images cross the field and arrive without contact") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
-  require_untouched(report);
+  require_no_violations(report);
   CHECK(report["arrived"] == 8);
 }
 
-TEST_CASE("kill -9 of an agent while it moves: its robot stops, nobody touches it, the report names it") {
+TEST_CASE("kill -9 of an agent while its robot moves: the robot stops without contact, the report lists the death") {
   LaunchedRun run(shipped_scenario("crossing"));
-  REQUIRE(run.until([&] { return run.speed_mps(2) > 0.8; }));
+  REQUIRE(run.wait_until([&] { return run.speed_mps(2) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 2"), SIGKILL) == 0);
-  CHECK(run.until([&] { return run.speed_mps(2) < 0.02; }));
+  CHECK(run.wait_until([&] { return run.speed_mps(2) < 0.02; }));
   CHECK(run.wait_for_end() == "exit code 1");
   INFO(run.output());
   const auto report = run.report();
-  require_untouched(report);
+  require_no_violations(report);
   CHECK(report["arrived"] == 7);
   REQUIRE(report["deaths"].size() == 1);
   CHECK(report["deaths"][0].dump().find("agent 2") != std::string::npos);
   CHECK(report["deaths"][0].dump().find("SIGKILL") != std::string::npos);
 }
 
-TEST_CASE("kill -9 of the coordinator: all robots stop, and go on to their goals when it is back") {
+TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their goals after its restart") {
   LaunchedRun run(shipped_scenario("crossing") + "restart: [coordinator]\n");
-  REQUIRE(run.until([&] { return run.speed_mps(0) > 0.8; }));
-  const double fastest = run.fastest_mps();
-  const std::int64_t killed_at_ns = run.truth().at_ns();
+  REQUIRE(run.wait_until([&] { return run.speed_mps(0) > 0.8; }));
+  const double max_mps = run.max_speed_mps();
+  const std::int64_t killed_at_ns = run.truth().valid_at_ns();
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
-  REQUIRE(run.until([&] { return run.fastest_mps() < 0.03; }));
-  const double stopped_s = static_cast<double>(run.truth().at_ns() - killed_at_ns) * 1e-9;
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
+  const double stopped_s = static_cast<double>(run.truth().valid_at_ns() - killed_at_ns) * 1e-9;
   WARN("all robots at rest "
-       << stopped_s << " s after the kill; v/D + one cycle is " << fastest / 5 + 1.0 / 60
-       << " s, and versions under way and the lag of bodies and ground truth come on top");
+       << stopped_s << " s after the kill; v/D + one cycle is " << max_mps / 5 + 1.0 / 60
+       << " s, plus versions in flight and the lag of bodies and ground truth");
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
-  require_untouched(report);
+  require_no_violations(report);
   CHECK(report["arrived"] == 8);
   CHECK(report["deaths"][0].dump().find("coordinator") != std::string::npos);
 }
 
-TEST_CASE("agents and vision that die come back and everybody arrives") {
+TEST_CASE("all robots arrive after an agent and vision die and are restarted") {
   LaunchedRun run(shipped_scenario("crossing") + "restart: [agents, vision]\n");
-  REQUIRE(run.until([&] { return run.speed_mps(5) > 0.8; }));
+  REQUIRE(run.wait_until([&] { return run.speed_mps(5) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 5"), SIGKILL) == 0);
   REQUIRE(kill(run.pid_of("vision"), SIGKILL) == 0);
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
-  require_untouched(run.report());
+  require_no_violations(run.report());
   CHECK(run.report()["deaths"].size() == 2);
 }
 
-TEST_CASE("Ctrl-C stops everything cleanly and still leaves a report") {
+TEST_CASE("Ctrl-C stops all processes cleanly and still writes a report") {
   LaunchedRun run(shipped_scenario("crossing"));
-  REQUIRE(run.until([&] { return run.fastest_mps() > 0.5; }));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   REQUIRE(kill(run.pid(), SIGINT) == 0);
   CHECK(run.wait_for_end() == "exit code 1");
   CHECK(run.printed("interrupted"));
   CHECK_FALSE(run.printed("was killed"));
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
-  require_untouched(run.report());
+  require_no_violations(run.report());
 }
 
-TEST_CASE("no process is left behind when the launcher itself is killed") {
+TEST_CASE("no process outlives a killed launcher") {
   LaunchedRun run(shipped_scenario("crossing"));
-  REQUIRE(run.until([&] { return run.fastest_mps() > 0.5; }));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   const auto children = run.children();
   REQUIRE(children.size() == 11);
   REQUIRE(kill(run.pid(), SIGKILL) == 0);
@@ -102,15 +102,15 @@ TEST_CASE("no process is left behind when the launcher itself is killed") {
 }
 
 TEST_CASE(
-    "a start that fails says which process and why, and a wrong scenario is refused before anything starts") {
-  LaunchedRun nowhere(shipped_scenario("crossing"), {"--interface", "192.0.2.77"});
-  CHECK(nowhere.wait_for_end() == "exit code 1");
-  INFO(nowhere.output());
-  CHECK(nowhere.printed("192.0.2.77"));
+    "a failed start names the process and the reason, and an invalid scenario is refused before anything starts") {
+  LaunchedRun unreachable(shipped_scenario("crossing"), {"--interface", "192.0.2.77"});
+  CHECK(unreachable.wait_for_end() == "exit code 1");
+  INFO(unreachable.output());
+  CHECK(unreachable.printed("192.0.2.77"));
 
-  LaunchedRun wrong(shipped_scenario("crossing") + "speeed: 3\n");
-  CHECK(wrong.wait_for_end() == "exit code 2");
-  CHECK(wrong.printed("scenario.yaml:"));
-  CHECK(wrong.printed("speeed"));
-  CHECK(wrong.children().empty());
+  LaunchedRun invalid(shipped_scenario("crossing") + "speeed: 3\n");
+  CHECK(invalid.wait_for_end() == "exit code 2");
+  CHECK(invalid.printed("scenario.yaml:"));
+  CHECK(invalid.printed("speeed"));
+  CHECK(invalid.children().empty());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libFuzzer calls. With SIDESTEP_SEEDS the program writes inputs to begin with into the folder instead.
+// The entry points of libFuzzer. With SIDESTEP_SEEDS=FOLDER the program writes the initial inputs there and
+// exits.
 #include <cstdlib>
 #include <fstream>
 #include <string>

@@ -26,16 +26,16 @@ enum Reader : unsigned { kVision, kTracked, kLog, kClock, kReaders };
 bool is_within(const Vec2& v, double bound) { return std::abs(v.x()) <= bound && std::abs(v.y()) <= bound; }
 bool is_probability(double p) { return p >= 0 && p <= 1; }
 
-void check(const league::SeenRobot& robot) {
+void check(const league::DetectedRobot& robot) {
   SIDESTEP_REQUIRE(is_within(robot.position_m, 100.001));
   SIDESTEP_REQUIRE(is_probability(robot.confidence));
-  SIDESTEP_REQUIRE(!robot.number || *robot.number < league::kMaxNumbers);
+  SIDESTEP_REQUIRE(!robot.number || *robot.number < league::kRobotNumbers);
   SIDESTEP_REQUIRE(!robot.heading_rad || std::abs(*robot.heading_rad) <= 3.1416);
 }
 
 void try_vision(std::span<const std::byte> bytes) {
   const auto decoded = league::decode_vision(bytes);
-  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.refusal == league::Refusal::kNone));
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
   if (!decoded.packet) return;
   const league::VisionPacket& packet = *decoded.packet;
   SIDESTEP_REQUIRE(packet.detection || packet.geometry);
@@ -48,9 +48,9 @@ void try_vision(std::span<const std::byte> bytes) {
       SIDESTEP_REQUIRE(is_within(ball.position_m, 100.001) && is_probability(ball.confidence));
     }
   }
-  // What was accepted is accepted again, but for times at the very end of their range.
+  // An accepted packet is accepted again after encoding, except for times at the end of their range.
   const auto again = league::decode_vision(encode(packet));
-  SIDESTEP_REQUIRE(again.packet || again.refusal == league::Refusal::kTime);
+  SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
   if (!again.packet) return;
   SIDESTEP_REQUIRE(again.packet->detection.has_value() == packet.detection.has_value());
   SIDESTEP_REQUIRE(again.packet->geometry.has_value() == packet.geometry.has_value());
@@ -63,17 +63,17 @@ void try_vision(std::span<const std::byte> bytes) {
 
 void try_tracked(std::span<const std::byte> bytes) {
   const auto decoded = league::decode_tracked(bytes);
-  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.refusal == league::Refusal::kNone));
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
   if (!decoded.packet) return;
   if (decoded.packet->frame) {
     for (const auto& robot : decoded.packet->frame->robots) {
       SIDESTEP_REQUIRE(is_within(robot.position_m, 100));
-      SIDESTEP_REQUIRE(robot.number < league::kMaxNumbers);
+      SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
       SIDESTEP_REQUIRE(std::abs(robot.heading_rad) <= 3.1416);
     }
   }
   const auto again = league::decode_tracked(encode(*decoded.packet));
-  SIDESTEP_REQUIRE(again.packet || again.refusal == league::Refusal::kTime);
+  SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
 }
 
 std::size_t read_to_end(league::LogReader& reader) {
@@ -81,11 +81,11 @@ std::size_t read_to_end(league::LogReader& reader) {
   std::size_t bytes = 0;
   while (reader.next(record)) {
     SIDESTEP_REQUIRE(to_ns(record.received) >= 0);
-    SIDESTEP_REQUIRE(record.bytes.size() <= league::kLongestDatagram);
+    SIDESTEP_REQUIRE(record.bytes.size() <= league::kMaxDatagramSize);
     bytes += 16 + record.bytes.size();
   }
-  SIDESTEP_REQUIRE(reader.end() != league::LogEnd::kNotYet);
-  SIDESTEP_REQUIRE(reader.damage().empty() == (reader.end() == league::LogEnd::kWhole));
+  SIDESTEP_REQUIRE(reader.status() != league::LogStatus::kReading);
+  SIDESTEP_REQUIRE(reader.error().empty() == (reader.status() == league::LogStatus::kComplete));
   return bytes;
 }
 
@@ -96,18 +96,18 @@ void try_log(std::span<const std::byte> bytes) {
     league::LogReader reader(std::make_unique<std::istringstream>(text), "input");
     const std::size_t all = read_to_end(reader);
     SIDESTEP_REQUIRE(16 + all <= bytes.size());
-    const bool is_there = reader.seek(std::chrono::seconds(1));
+    const bool has_record = reader.seek(std::chrono::seconds(1));
     league::LogRecord record;
-    SIDESTEP_REQUIRE(reader.next(record) == is_there);
+    SIDESTEP_REQUIRE(reader.next(record) == has_record);
     SIDESTEP_REQUIRE(read_to_end(reader) <= all);
   } catch (const std::runtime_error&) {
-    // No log: it was said.
+    // Inputs that are no log are reported by exception.
   }
 }
 
-/// Times of capture and sending and how long until the next frame comes, drawn from the input.
+/// Takes capture times, sending times and the waits between frames from the input.
 void try_clock(std::span<const std::byte> bytes) {
-  constexpr std::uint64_t kMostCapture_ns = 8'589'934'592'000'000'000;
+  constexpr std::uint64_t kMaxCapture_ns = 8'589'934'592'000'000'000;
   SenderClock clock;
   Time now = time_from_ns(1'700'000'000'000'000'000);
   struct Step {
@@ -118,13 +118,13 @@ void try_clock(std::span<const std::byte> bytes) {
     Step step{};
     std::memcpy(&step, bytes.data(), sizeof step);
     bytes = bytes.subspan(sizeof step);
-    const Duration captured{static_cast<std::int64_t>(step.captured_ns % kMostCapture_ns)};
-    const Duration sent{static_cast<std::int64_t>(step.sent_after_ns % kMostCapture_ns)};
+    const Duration captured{static_cast<std::int64_t>(step.captured_ns % kMaxCapture_ns)};
+    const Duration sent{static_cast<std::int64_t>(step.sent_after_ns % kMaxCapture_ns)};
     now += std::chrono::microseconds(step.wait_us);
     const auto dated = clock.add(captured, sent, now);
     if (!dated) continue;
-    SIDESTEP_REQUIRE(*dated <= now + SenderClock::kMostAhead);
-    SIDESTEP_REQUIRE(*dated >= now - 3 * SenderClock::kMostDelay);
+    SIDESTEP_REQUIRE(*dated <= now + SenderClock::kMaxAhead);
+    SIDESTEP_REQUIRE(*dated >= now - 3 * SenderClock::kMaxDelay);
   }
 }
 

@@ -8,12 +8,12 @@
 
 namespace sidestep::fuzz {
 
-/// Gives an input to what reads bytes from the network or from files: its first byte says to whom, a vision
-/// packet's reader, a tracked packet's, a log's, or the clock that dates frames. Ends the program when one of
-/// them accepts what it must not.
+/// Passes an input to code that reads bytes from the network or from files. The first byte selects the
+/// decoder of vision packets, the decoder of tracked packets, the log reader, or the clock that dates frames.
+/// Aborts the program if one of them accepts an invalid input.
 void try_league_input(std::span<const std::byte> input);
 
-/// Sound inputs of every kind, to begin with.
+/// Valid inputs of every kind, as initial corpus.
 std::vector<std::vector<std::byte>> league_seeds(std::uint64_t seed);
 
 }  // namespace sidestep::fuzz

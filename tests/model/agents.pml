@@ -7,8 +7,8 @@
 #define HAS_ACKNOWLEDGED(i, k) (acknowledged[A(i, k)] == epoch[A(i, k)])
 #endif
 
-/* What the agent says whenever something of it changes: fences, commands, its registration. */
-inline speak(i, k) {
+/* Messages that the agent sends whenever its state changes: fences, commands, its registration. */
+inline send(i, k) {
   fences[i] = fences[i] | BIT(3 * ((k) - 1) + epoch[A(i, k)]);
   if
   :: epoch[A(i, k)] != 0 ->
@@ -41,27 +41,27 @@ inline speak(i, k) {
   fi
 }
 
-#define AGENT_HEARS_EPOCH(i, k, e)                                                                         \
-  STEP(LIVES(i, k) && (epoch[A(i, k)] < (e) || (epoch[A(i, k)] != (e) && MAY_GO_BACK)),                    \
-       printf("%d: agent %d of robot %d hears epoch %d\n", now, k, i, e); epoch[A(i, k)] = e; speak(i, k))
+#define AGENT_RECEIVES_EPOCH(i, k, e)                                                                         \
+  STEP(EXISTS(i, k) && (epoch[A(i, k)] < (e) || (epoch[A(i, k)] != (e) && MAY_LOWER_EPOCH)),                    \
+       printf("%d: agent %d of robot %d learns of epoch %d\n", now, k, i, e); epoch[A(i, k)] = e; send(i, k))
 #ifdef FOLLOW_LOWER_EPOCH
-#define MAY_GO_BACK true
+#define MAY_LOWER_EPOCH true
 #else
-#define MAY_GO_BACK false
+#define MAY_LOWER_EPOCH false
 #endif
 
-/* Off its reference the robot executes what nobody has granted. */
+/* Off its reference the robot executes a version that was not granted. */
 #ifdef REPLACE_BY_OLD_FACT
-#define MAY_REPLACE(set, i, f) IS_OWN(i, f)
+#define MAY_REPLACE(set, i, f) IS_OWN_STOP(i, f)
 #else
-#define MAY_REPLACE(set, i, f) (IS_OWN(i, f) && (set) < BIT(f))
+#define MAY_REPLACE(set, i, f) (IS_OWN_STOP(i, f) && (set) < BIT(f))
 #endif
-#define IS_NEWS(set, i, f) (HAS(set, f) || MAY_REPLACE(set, i, f))
+#define IS_INFORMATIVE(set, i, f) (HAS(set, f) || MAY_REPLACE(set, i, f))
 
-/* A set of versions after the fact "executing f_ at t_". */
+/* Updates a set of versions by the fact "executing f_ at t_". */
 inline forget(set, i) {
   if
-#ifdef OWN
+#ifdef OWN_STOP
   :: !HAS(set, f_) && MAY_REPLACE(set, i, f_) -> set = BIT(f_)
 #endif
   :: HAS(set, f_) ->
@@ -86,20 +86,20 @@ inline forget(set, i) {
 }
 
 #ifdef NO_FENCE_FIRST
-#define SPEAKS_TO(i, k, o) (o) == (k) || !fenced[A(i, k)]
+#define ADDRESSES(i, k, o) (o) == (k) || !fenced[A(i, k)]
 #else
-#define SPEAKS_TO(i, k, o) (o) == (k)
+#define ADDRESSES(i, k, o) (o) == (k)
 #endif
 /* A fact "executing f at t, obeying agent o and epoch e". */
-#define AGENT_HEARS_FACT(i, k, o, e)                                                                       \
-  CHOICE(LIVES(i, k) && facts[F(i, o, e)] != 0 && (SPEAKS_TO(i, k, o)), EACH_FACT(CHOOSE_FACT, i, k, o, e), \
-         printf("%d: agent %d of robot %d hears: executes %d at %d, obeys %d, epoch %d\n", now, k, i, f_, t_, o, e); hear(i, k, e))
+#define AGENT_RECEIVES_FACT(i, k, o, e)                                                                       \
+  CHOICE(EXISTS(i, k) && facts[F(i, o, e)] != 0 && (ADDRESSES(i, k, o)), EACH_FACT(CHOOSE_FACT, i, k, o, e), \
+         printf("%d: agent %d of robot %d receives: executes %d at %d, obeys %d, epoch %d\n", now, k, i, f_, t_, o, e); process_fact(i, k, e))
 #define CHOOSE_FACT(i, k, o, e, f, t)                                                                      \
   ::d_step {                                                                                               \
     HAS(facts[F(i, o, e)], FACT(f, t)) &&                                                                  \
-        (!fenced[A(i, k)] || acknowledged[A(i, k)] < (e) || IS_NEWS(held[A(i, k)], i, f)) -> v_ = 0; f_ = f; t_ = t \
+        (!fenced[A(i, k)] || acknowledged[A(i, k)] < (e) || IS_INFORMATIVE(held[A(i, k)], i, f)) -> v_ = 0; f_ = f; t_ = t \
   }
-inline hear(i, k, e) {
+inline process_fact(i, k, e) {
   if
   :: e > acknowledged[A(i, k)] -> acknowledged[A(i, k)] = e
   :: else
@@ -114,10 +114,10 @@ inline hear(i, k, e) {
   :: !fenced[A(i, k)] -> fenced[A(i, k)] = true; held[A(i, k)] = BIT(f_)
   :: else -> forget(held[A(i, k)], i)
   fi;
-  speak(i, k)
+  send(i, k)
 }
 
-/* Proposes its next version on any version that its robot may be executing. */
+/* The agent proposes its next version on any version that its robot may execute. */
 #define AGENT_PROPOSES(i, k)                                                                               \
   ::atomic {                                                                                               \
     now < T && LAST_OF(i, k) >= FIRST_OF(i, k) && starts[V(i, LAST_OF(i, k))] == 0 && IS_REGISTERING(i, k) ->                  \
@@ -125,17 +125,17 @@ inline hear(i, k, e) {
     if                                                                                                     \
     :: if EACH_B(CHOOSE_BASE, i, k) fi;                                                                    \
        if EACH_S(CHOOSE_START, i) fi;                                                                      \
-       if EACH_U(CHOOSE_USE) fi;                                                                           \
+       if EACH_U(CHOOSE_PLACES) fi;                                                                           \
        d_step { propose(i, k) }                                                                            \
     :: else -> number_ = 0                                                                                 \
     fi                                                                                                     \
   }
 #define CHOOSE_BASE(i, k, b) :: HAS(held[A(i, k)], b) && number_ > b && NUMBERED_AFTER(i, b) && starts[V(i, b)] < T -> base_ = b
 #define CHOOSE_START(i, s) :: s > now && s > starts[V(i, base_)] -> start_ = s
-#define CHOOSE_USE(u) :: u_ = u
+#define CHOOSE_PLACES(u) :: u_ = u
 inline next_number(i, k) {
   number_ = FIRST_OF(i, k);
-#ifdef OWN
+#ifdef OWN_STOP
   if
   :: i == 0 && held[A(i, k)] >= BIT(OWN_NUMBER) -> number_ = OWN_NUMBER + 1
   :: else
@@ -146,18 +146,18 @@ inline next_number(i, k) {
   :: else -> break
   od
 }
-/* A version that the agent has numbered without knowing of the robot's own has a lower number than that. */
-#ifdef OWN
+/* A version numbered before the agent knows of the robot's own stop has a lower number than that stop. */
+#ifdef OWN_STOP
 #define NUMBERED_AFTER(i, b) (number_ <= LAST(i) && ((i) == 1 || (number_ != OWN_NUMBER && (b >= OWN_NUMBER || number_ < OWN_NUMBER))))
 #else
 #define NUMBERED_AFTER(i, b) true
 #endif
 inline propose(i, k) {
-  printf("%d: agent %d of robot %d proposes %d on %d from %d on, using %d, epoch %d\n", now, k, i, number_, base_,
+  printf("%d: agent %d of robot %d proposes %d on %d from %d on, places %d, epoch %d\n", now, k, i, number_, base_,
          start_, u_, epoch[A(i, k)]);
   starts[V(i, number_)] = start_;
   base_of[V(i, number_)] = base_;
-  uses[V(i, number_)] = u_;
+  places[V(i, number_)] = u_;
   epoch_of[V(i, number_)] = epoch[A(i, k)];
   number_ = 0; base_ = 0; start_ = 0
 }
@@ -172,10 +172,10 @@ inline propose(i, k) {
 #else
 #define IS_GRANTED(i, v) HAS(granted[i], v)
 #endif
-#define AGENT_HEARS_VERDICT(i, k)                                                                          \
-  CHOICE(LIVES(i, k) && starts[V(i, FIRST_OF(i, k))] != 0, EACH_V(CHOOSE_VERDICT, i, k),                   \
+#define AGENT_RECEIVES_VERDICT(i, k)                                                                          \
+  CHOICE(EXISTS(i, k) && starts[V(i, FIRST_OF(i, k))] != 0, EACH_V(CHOOSE_VERDICT, i, k),                   \
          printf("%d: agent %d of robot %d forwards %d\n", now, k, i, v_);                                   \
-         held[A(i, k)] = held[A(i, k)] | BIT(v_); speak(i, k))
+         held[A(i, k)] = held[A(i, k)] | BIT(v_); send(i, k))
 #define CHOOSE_VERDICT(i, k, v)                                                                            \
   CHOOSE_V(MAKER(i, v) == (k) && IS_GRANTED(i, v) && IS_AWAITED(i, v) && starts[V(i, v)] > now &&          \
                !HAS(held[A(i, k)], v), v)

@@ -4,7 +4,7 @@
 #define N0 2 /* versions of robot 0 by its first agent ... */
 #endif
 #ifndef M0
-#define M0 0 /* ... and by its second, which may be alive at the same time */
+#define M0 0 /* ... and by its second, which may run at the same time */
 #endif
 #ifndef N1
 #define N1 1
@@ -19,24 +19,24 @@
 #define EPOCHS 2 /* coordinators */
 #endif
 #ifndef PLACES
-#define PLACES 1 /* that both robots want to use */
+#define PLACES 1 /* contested places: places that both robots may use */
 #endif
 
-#ifdef OWN
-/* Robot 0 may be pushed off its reference once, and then makes a version of its own. Its agent proposes up to OWN
-   versions after that. Wants M0 == 0. */
+#ifdef OWN_STOP
+/* Robot 0 may be pushed off its reference once, and then executes a stop of its own. Its agent proposes up to OWN_STOP
+   versions after that. Requires M0 == 0. */
 #define OWN_NUMBER (N0 + 1)
-#define LAST(i) ((i) == 0 -> N0 + 1 + OWN : N1 + M1)
-#define IS_OWN(i, v) ((i) == 0 && (v) == OWN_NUMBER)
-byte excused[5]; /* by version of robot 0, those of robot 1 that are too near by no fault of the protocol */
+#define LAST(i) ((i) == 0 -> N0 + 1 + OWN_STOP : N1 + M1)
+#define IS_OWN_STOP(i, v) ((i) == 0 && (v) == OWN_NUMBER)
+byte allowed_conflicts[5]; /* by version of robot 0: versions of robot 1 in conflict with it because of the push */
 bool is_reported;
 #else
 #define LAST(i) ((i) == 0 -> N0 + M0 : N1 + M1)
-#define IS_OWN(i, v) false
+#define IS_OWN_STOP(i, v) false
 #endif
 
 #define STEP(condition, body) :: d_step { (condition) -> body }
-/* A step with something to choose first: the choice sets scratch variables, of which v_ is NONE when there is none. */
+/* A step that begins with a choice. The choice sets scratch variables; v_ is NONE if there is no option. */
 #define CHOICE(condition, options, body)         \
   ::atomic {                                     \
     (condition) ->                               \
@@ -52,24 +52,25 @@ bool is_reported;
 #define BIT(v) (1 << (v))
 #define HAS(set, v) (((set) >> (v)) & 1)
 #define FIRST_OF(i, k) ((k) == 1 -> 1 : 1 + BY_FIRST_AGENT(i))
-#ifdef OWN
+#ifdef OWN_STOP
 #define BY_FIRST_AGENT(i) ((i) == 0 -> LAST(0) : N1)
 #else
 #define BY_FIRST_AGENT(i) ((i) == 0 -> N0 : N1)
 #endif
 #define LAST_OF(i, k) ((k) == 1 -> BY_FIRST_AGENT(i) : LAST(i))
 #define MAKER(i, v) ((v) <= BY_FIRST_AGENT(i) -> 1 : 2)
-#define BY_FIRST(i) ((1 << (1 + BY_FIRST_AGENT(i))) - 1) /* version 0 and the first agent's */
+#define BY_FIRST(i) ((1 << (1 + BY_FIRST_AGENT(i))) - 1) /* version 0 and the first agent's versions */
 #define OLDER(v) ((1 << (v)) - 1)
 #define F(i, k, e) ((i) * 4 + ((k) - 1) * 2 + (e) - 1)
 #define G(i, k, e) F(i, k, e)
-#define LIVES(i, k) (LAST_OF(i, k) >= FIRST_OF(i, k) || (k) == 1)
+#define EXISTS(i, k) (LAST_OF(i, k) >= FIRST_OF(i, k) || (k) == 1)
 #define FACT(v, t) ((v) * (T + 1) + (t))
 
 byte now;
 
-/* Versions: the places they may use from their start on, their stop included; start 0: not yet proposed. */
-byte uses[2 * NV], starts[2 * NV], base_of[2 * NV], epoch_of[2 * NV];
+/* Versions. places: contested places that the version may use from its start on, including its stop. starts: 0 if not
+   yet proposed. */
+byte places[2 * NV], starts[2 * NV], base_of[2 * NV], epoch_of[2 * NV];
 
 /* Robots. */
 byte executing[2], pending[2], obeyed[2], obeyed_epoch[2];
@@ -78,19 +79,19 @@ byte executing[2], pending[2], obeyed[2], obeyed_epoch[2];
 bool fenced[4];
 byte held[4], epoch[4], acknowledged[4];
 
-/* Coordinators: for each, a set of versions and the registered agent per robot; 0: none. */
+/* Coordinators: per robot, a set of versions and the registered agent, 0: none. */
 byte ledger[2 * 2], registered[2 * 2];
 
 /* The network. */
 byte granted[2];             /* verdicts */
-byte commands[2 * 2];        /* by the epoch that they name */
+byte commands[2 * 2];        /* by their epoch */
 byte fences[2];              /* bit 3 (agent - 1) + epoch */
-int facts[2 * 4];            /* by agent and epoch obeyed, a set of (executing, at) */
-int registrations[2 * 2 * 2]; /* by agent and epoch, a set of sets of versions */
+int facts[2 * 4];            /* by obeyed agent and epoch: a set of (executing, at) */
+int registrations[2 * 2 * 2]; /* by agent and epoch: a set of sets of versions */
 
-/* Scratch within one step: not part of the state, so valid only until the next choice ... */
+/* Scratch variables within one step. These are not part of the state, so they are valid only until the next choice ... */
 hidden byte i_, v_, w_, f_, t_, u_, set_, conflict_;
-/* ... and what has to last over several choices, 0 between steps. */
+/* ... and these last over several choices; they are 0 between steps. */
 byte number_, base_, start_;
 #define NONE 255
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Histories that need a directed partition or a deaf agent, message by message: real agents' negotiation,
-// real coordinators, real firmware. Each one brought two robots too near before robots fenced epochs.
+// Message-by-message histories with a one-way partition, or an agent that receives nothing: real agents'
+// negotiation, real coordinators, real firmware. Without the fencing of epochs by robots, each one brings two
+// robots too close together.
 #include <catch2/catch.hpp>
 
 #include "agents/agent/negotiation.hpp"
@@ -8,7 +9,7 @@
 #include "common/messaging/codec.hpp"
 #include "common/motion/clearance.hpp"
 #include "coordinator/coordinator.hpp"
-#include "simulator/firmware.hpp"
+#include "simulator/world/firmware.hpp"
 
 using namespace sidestep;
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr Duration kCycle{16'666'667};
 
-FloorRules floor_rules_here() {
+FloorRules test_floor_rules() {
   FloorRules rules;
   rules.field = {8, 8};
   return rules;
@@ -25,11 +26,12 @@ FloorRules floor_rules_here() {
 struct Robot {
   RobotId id;
   Firmware firmware;
-  Robot(RobotId robot, Vec2 place) : id(robot), firmware(robot, place, 0, time_from_ns(1'000'000'000), {}) {}
+  Robot(RobotId robot, Vec2 position)
+      : id(robot), firmware(robot, position, 0, time_from_ns(1'000'000'000), {}) {}
 
   msg::Feedback fact(Time now) {
     auto feedback = firmware.feedback(now);
-    feedback.head().sender(id);
+    feedback.header().sender(id);
     return feedback;
   }
   double rest_x() const { return firmware.executing().trajectory.rest_position_m().x(); }
@@ -42,28 +44,28 @@ struct Driver {
   Driver(RobotId robot, Incarnation incarnation) : id(robot), negotiation(robot, incarnation, kCycle) {}
 
   template <typename Message>
-  Message from_here(Message message) {
+  Message addressed(Message message) {
     message.robot(id);
-    message.head().sender(id);
-    message.head().incarnation(negotiation.incarnation());
+    message.header().sender(id);
+    message.header().incarnation(negotiation.incarnation());
     message.epoch(negotiation.epoch());
     return message;
   }
-  /// Tells the robot who speaks and of which epoch, and hears its answer.
-  void speak_to(Robot& robot, Time now) {
-    robot.firmware.on_command(from_here(msg::Command()), now);
+  /// Sends the robot a command with the agent's incarnation and epoch, and processes its feedback.
+  void fence(Robot& robot, Time now) {
+    robot.firmware.on_command(addressed(msg::Command()), now);
     negotiation.on_feedback(robot.fact(now));
   }
   void register_with(Coordinator& coordinator, Time now) {
-    if (negotiation.needs_registration()) coordinator.on_registration(from_here(negotiation.registration()));
+    if (negotiation.needs_registration()) coordinator.on_registration(addressed(negotiation.registration()));
     negotiation.on_coordinator_state(coordinator.state(), now);
   }
-  /// Drives the robot along x at a metre a second for some cycles, as far as it is allowed to.
+  /// Drives the robot along x at up to 1 m/s for some cycles, as far as versions are granted.
   void drive(Coordinator& coordinator, Robot& robot, double direction, int cycles, Time& now) {
     for (int i = 0; i < cycles; ++i) {
       now += kCycle;
       coordinator.on_feedback(robot.fact(now));
-      speak_to(robot, now);
+      fence(robot, now);
       negotiation.on_coordinator_state(coordinator.state(), now);
       if (!negotiation.may_propose(now)) continue;
       const Time start = now + kCycle;
@@ -72,12 +74,13 @@ struct Driver {
       const Trajectory candidate =
           accelerate_then_stop(start, base.trajectory.state_at(start), desired, kCycle, 5);
       const auto verdict =
-          coordinator.on_proposal(from_here(negotiation.propose({&candidate, 1}, base.number, now)));
-      const auto granted = verdict ? negotiation.on_verdict(*verdict, now + kCycle / 4) : std::nullopt;
+          coordinator.on_proposal(addressed(negotiation.propose({&candidate, 1}, base.number, now)));
+      if (!verdict) continue;
+      const std::optional<Version> granted = negotiation.on_verdict(*verdict, now + kCycle / 4).granted;
       if (!granted) continue;
-      auto command = from_here(msg::Command());
+      auto command = addressed(msg::Command());
       command.has_version(true);
-      command.granted(encode(*granted));
+      command.version(encode(*granted));
       robot.firmware.on_command(command, now + kCycle / 2);
     }
   }
@@ -85,16 +88,16 @@ struct Driver {
     for (int i = 0; i < 60; ++i) {
       now += kCycle;
       coordinator.on_feedback(robot.fact(now));
-      speak_to(robot, now);
+      fence(robot, now);
     }
   }
 };
 
-/// Two robots a metre apart, their agents, and a coordinator that grants.
+/// Two robots 1 m apart, their agents, a coordinator that grants and a second one.
 struct Floor {
   Time now = time_from_ns(2'000'000'000);
   Robot left{0, {0, 0}}, right{1, {1, 0}};
-  Coordinator first{floor_rules_here(), {0, 1}, 100}, second{floor_rules_here(), {0, 1}, 200};
+  Coordinator first{test_floor_rules(), {0, 1}, 100}, second{test_floor_rules(), {0, 1}, 200};
   Driver left_driver{0, 1000}, right_driver{1, 1000};
 
   Floor() {
@@ -104,21 +107,21 @@ struct Floor {
   void both_obey(Coordinator& coordinator) {
     for (auto [driver, robot] : {std::pair{&left_driver, &left}, std::pair{&right_driver, &right}}) {
       driver->negotiation.on_coordinator_state(coordinator.state(), now);
-      driver->speak_to(*robot, now);
+      driver->fence(*robot, now);
       driver->register_with(coordinator, now);
     }
     left_driver.register_with(coordinator, now);
   }
   void require_clear() {
-    const double keep = floor_rules_here().min_separation_m();
-    REQUIRE(clearance_m(left.firmware.executing().trajectory, right.firmware.executing().trajectory, keep) >=
-            0);
+    const double separation = test_floor_rules().min_separation_m();
+    REQUIRE(clearance_m(left.firmware.executing().trajectory, right.firmware.executing().trajectory,
+                        separation) >= 0);
   }
 };
 
 }  // namespace
 
-TEST_CASE("a restarted agent does not fall back to a coordinator that its robot has left") {
+TEST_CASE("a restarted agent does not return to a coordinator that its robot has left") {
   Floor floor;
   floor.both_obey(floor.second);
   REQUIRE(floor.second.is_granting());
@@ -126,47 +129,48 @@ TEST_CASE("a restarted agent does not fall back to a coordinator that its robot 
   floor.left_driver.rest(floor.second, floor.left, floor.now);
   REQUIRE(floor.left.rest_x() > 0.2);
 
-  // The new agent hears the old coordinator first; that one has not heard of the new one.
-  Driver heir(1, 2000);
-  heir.speak_to(floor.right, floor.now);
-  heir.negotiation.on_coordinator_state(floor.first.state(), floor.now);
-  heir.register_with(floor.first, floor.now);
-  heir.drive(floor.first, floor.right, -1, 60, floor.now);
+  // The new agent first receives the old coordinator's heartbeats, which does not know of the new
+  // coordinator.
+  Driver successor(1, 2000);
+  successor.fence(floor.right, floor.now);
+  successor.negotiation.on_coordinator_state(floor.first.state(), floor.now);
+  successor.register_with(floor.first, floor.now);
+  successor.drive(floor.first, floor.right, -1, 60, floor.now);
   floor.require_clear();
   CHECK(floor.right.rest_x() == 1);
 
-  // With the new coordinator it gets as near as it may.
-  heir.negotiation.on_coordinator_state(floor.second.state(), floor.now);
-  heir.register_with(floor.second, floor.now);
-  heir.drive(floor.second, floor.right, -1, 60, floor.now);
+  // With the new coordinator the robot approaches the other one as far as permitted.
+  successor.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  successor.register_with(floor.second, floor.now);
+  successor.drive(floor.second, floor.right, -1, 60, floor.now);
   floor.require_clear();
   CHECK(floor.right.rest_x() < 0.9);
 }
 
-TEST_CASE("an agent that its robot does not obey any more cannot register for it in a new epoch") {
+TEST_CASE("an agent whose robot obeys a later one cannot register in a new epoch") {
   Floor floor;
-  Driver zombie = floor.left_driver;  // hears nothing of its robot from here on
-  Driver heir(0, 2000);
-  heir.speak_to(floor.left, floor.now);
-  heir.negotiation.on_coordinator_state(floor.first.state(), floor.now);
-  heir.speak_to(floor.left, floor.now);
-  heir.register_with(floor.first, floor.now);
-  heir.drive(floor.first, floor.left, 1, 24, floor.now);
-  heir.rest(floor.first, floor.left, floor.now);
+  Driver fenced_agent = floor.left_driver;  // receives no feedback from here on
+  Driver successor(0, 2000);
+  successor.fence(floor.left, floor.now);
+  successor.negotiation.on_coordinator_state(floor.first.state(), floor.now);
+  successor.fence(floor.left, floor.now);
+  successor.register_with(floor.first, floor.now);
+  successor.drive(floor.first, floor.left, 1, 24, floor.now);
+  successor.rest(floor.first, floor.left, floor.now);
   REQUIRE(floor.left.rest_x() > 0.2);
 
-  zombie.negotiation.on_coordinator_state(floor.second.state(), floor.now);
-  floor.left.firmware.on_command(zombie.from_here(msg::Command()), floor.now);
-  zombie.register_with(floor.second, floor.now);
+  fenced_agent.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  floor.left.firmware.on_command(fenced_agent.addressed(msg::Command()), floor.now);
+  fenced_agent.register_with(floor.second, floor.now);
   CHECK_FALSE(floor.second.is_granting());
   floor.right_driver.negotiation.on_coordinator_state(floor.second.state(), floor.now);
-  floor.right_driver.speak_to(floor.right, floor.now);
+  floor.right_driver.fence(floor.right, floor.now);
   floor.right_driver.register_with(floor.second, floor.now);
   CHECK_FALSE(floor.second.is_granting());
 
-  heir.negotiation.on_coordinator_state(floor.second.state(), floor.now);
-  heir.speak_to(floor.left, floor.now);
-  heir.register_with(floor.second, floor.now);
+  successor.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  successor.fence(floor.left, floor.now);
+  successor.register_with(floor.second, floor.now);
   CHECK(floor.second.is_granting());
   floor.right_driver.drive(floor.second, floor.right, -1, 60, floor.now);
   floor.require_clear();

@@ -32,7 +32,7 @@ struct OffReference {
 
 }  // namespace
 
-TEST_CASE("in undisturbed runs no robot ever breaks off") {
+TEST_CASE("in undisturbed runs no robot is ever off its reference") {
   const auto [name, seeds] = GENERATE(
       table<const char*, std::uint64_t>({{"crossing-noisy", 20}, {"circle-100", 1}, {"two-teams-22", 3}}));
   const Scenario scenario = shipped(name);
@@ -46,8 +46,8 @@ TEST_CASE("in undisturbed runs no robot ever breaks off") {
   }
 }
 
-TEST_CASE("a robot that is pushed says so as soon as cameras, vision and radio let it") {
-  const auto [name, most_ms] =
+TEST_CASE("a pushed robot reports it within the latency of cameras, vision and radio") {
+  const auto [name, max_ms] =
       GENERATE(table<const char*, int>({{"two-teams-22", 120}, {"crossing-noisy", 180}}));
   const double push_mps = GENERATE(0.5, 1.0);
   const Scenario scenario = shipped(name);
@@ -55,7 +55,7 @@ TEST_CASE("a robot that is pushed says so as soon as cameras, vision and radio l
     CAPTURE(name, push_mps, seed);
     SimSystem system(scenario, seed);
     OffReference watch(system, scenario);
-    Writer<msg::Disturbance> hand = watch.bus.advertise(topics::kDisturbance);
+    Writer<msg::Disturbance> disturbances = watch.bus.advertise(topics::kDisturbance);
     system.run_for(std::chrono::milliseconds(2000));
     REQUIRE(watch.count == 0);
     const Time pushed = system.now();
@@ -63,52 +63,52 @@ TEST_CASE("a robot that is pushed says so as soon as cameras, vision and radio l
     push.robot(scenario.robots[0].id);
     push.disturbance_kind(msg::DISTURBANCE_PUSH);
     push.vy_mps(push_mps);
-    hand.publish(push, pushed);
+    disturbances.publish(push, pushed);
     system.run_for(std::chrono::milliseconds(300));
     REQUIRE(watch.first_at);
     INFO("after " << to_seconds(*watch.first_at - pushed) * 1e3 << " ms");
-    CHECK(*watch.first_at - pushed < std::chrono::milliseconds(most_ms));
-    CHECK(system.judge().report().firmware_violations == 0);
+    CHECK(*watch.first_at - pushed < std::chrono::milliseconds(max_ms));
+    CHECK(system.metrics().report().firmware_violations == 0);
   }
 }
 
-TEST_CASE("among opponents every robot arrives, and whoever is touched is at rest") {
+TEST_CASE("among opponents every robot arrives, and is at rest when touched") {
   Scenario scenario = shipped("opponents");
-  // One of them drives to and fro over the goals.
+  // One opponent drives back and forth over the goals.
   scenario.opponents.at(1).path_m = {{3.45, 2.6}, {3.45, -2.6}};
   std::uint64_t crashes = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     SimSystem system(scenario, seed);
     CHECK(system.run_until_arrived(system.begin() + from_seconds(scenario.time_limit_s)));
-    const Report report = system.judge().report();
+    const Report report = system.metrics().report();
     CHECK(report.contacts == 0);
     for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
     CHECK(report.audit->violations == 0);
-    CHECK(report.moving_crashes == 0);
-    CHECK(report.robot_crash_speed_mps < 0.05);
+    CHECK(report.crashes_while_moving == 0);
+    CHECK(report.max_robot_crash_speed_mps < 0.05);
     crashes += report.crashes;
   }
-  CHECK(crashes > 0);  // else nothing was tried
+  CHECK(crashes > 0);  // else the test would prove nothing
 }
 
 namespace {
 
-/// A system with a hand in it.
+/// A system and a writer for disturbances.
 struct Disturbed {
   Disturbed(const Scenario& s, std::uint64_t seed)
       : scenario(s),
         system(scenario, seed),
         bus(system.network()),
-        hand(bus.advertise(topics::kDisturbance)) {}
+        disturbances(bus.advertise(topics::kDisturbance)) {}
 
   msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) const {
-    msg::Disturbance what;
-    what.robot(robot);
-    what.disturbance_kind(kind);
-    return what;
+    msg::Disturbance message;
+    message.robot(robot);
+    message.disturbance_kind(kind);
+    return message;
   }
-  void send(msg::Disturbance what) { hand.publish(what, system.now()); }
+  void send(msg::Disturbance message) { disturbances.publish(message, system.now()); }
   bool arrive_within(double seconds) {
     return system.run_until_arrived(system.now() + from_seconds(seconds));
   }
@@ -116,12 +116,12 @@ struct Disturbed {
   Scenario scenario;
   SimSystem system;
   SimBus bus;
-  Writer<msg::Disturbance> hand;
+  Writer<msg::Disturbance> disturbances;
 };
 
 }  // namespace
 
-TEST_CASE("robots that are pushed, or start again, go on to their goals, and nobody touches") {
+TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -130,23 +130,23 @@ TEST_CASE("robots that are pushed, or start again, go on to their goals, and nob
     run.system.run_for(std::chrono::milliseconds(1500));
     for (int i = 0; i < 6; ++i) {
       const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_PUSH : msg::DISTURBANCE_REBOOT;
-      msg::Disturbance what = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
-      // It slides for less than the margin.
+      msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      // The slide is shorter than the margin.
       const Vec2 change = rotated(Vec2(0.3, 0), rng.uniform(-3.14, 3.14));
-      what.vx_mps(change.x());
-      what.vy_mps(change.y());
-      run.send(what);
+      message.vx_mps(change.x());
+      message.vy_mps(change.y());
+      run.send(message);
       run.system.run_for(from_seconds(rng.uniform(0.05, 0.5)));
     }
     CHECK(watch.count > 0);
     CHECK(run.arrive_within(30));
-    const Report report = run.system.judge().report();
+    const Report report = run.system.metrics().report();
     CHECK(report.contacts == 0);
     CHECK(report.firmware_violations == 0);
   }
 }
 
-TEST_CASE("robots that slip, or whose wheel is blocked, go on to their goals afterwards") {
+TEST_CASE("robots that slipped, or had a blocked wheel, continue to their goals") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -154,15 +154,15 @@ TEST_CASE("robots that slip, or whose wheel is blocked, go on to their goals aft
     run.system.run_for(std::chrono::milliseconds(1500));
     for (int i = 0; i < 4; ++i) {
       const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_SLIP : msg::DISTURBANCE_BLOCK;
-      msg::Disturbance what = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
-      what.grip(rng.uniform(0.2, 0.8));
-      what.heading_rad(rng.uniform(-3, 3));
-      what.duration_ns(static_cast<std::int64_t>(rng.below(300'000'000)));
-      run.send(what);
+      msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      message.grip(rng.uniform(0.2, 0.8));
+      message.heading_rad(rng.uniform(-3, 3));
+      message.duration_ns(static_cast<std::int64_t>(rng.below(300'000'000)));
+      run.send(message);
       run.system.run_for(from_seconds(rng.uniform(0.05, 0.5)));
     }
     CHECK(run.arrive_within(30));
-    CHECK(run.system.judge().report().firmware_violations == 0);
+    CHECK(run.system.metrics().report().firmware_violations == 0);
   }
 }
 
@@ -186,7 +186,7 @@ TEST_CASE("a robot is taken off the floor and put down elsewhere while the other
   run.send(place);
   CHECK(run.arrive_within(30));
   CHECK(seen == 8);
-  const Report report = run.system.judge().report();
+  const Report report = run.system.metrics().report();
   CHECK(report.arrived == 8);
   CHECK(report.contacts == 0);
   CHECK(report.firmware_violations == 0);

@@ -7,48 +7,47 @@
 #include "agents/agent/agent_node.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
+#include "tests/sim/faulty_bus.hpp"
 #include "tests/sim/ideal_robots.hpp"
-#include "tests/sim/troubled_bus.hpp"
 
 namespace sidestep {
 
-/// Agents and coordinators around ideal robots: what is promised here is promised exactly, to the last
-/// micrometre.
+/// Agents and coordinators with ideal robots, so the safety guarantee must hold to the micrometre.
 class IdealFloor {
  public:
-  /// Starts an agent for each robot and as many coordinators as the scenario has. The audit hears everything,
-  /// but for what is said on a bus that is mute.
-  IdealFloor(const Scenario& scenario, std::uint64_t seed, AuditTrace hearing = {true, {}});
+  /// Starts an agent for each robot and the scenario's number of coordinators. The audit receives all
+  /// messages except those that a FaultyBus blocks.
+  IdealFloor(const Scenario& scenario, std::uint64_t seed, AuditInput audit_input = {true, {}});
 
   void start_coordinator(CoordinatorNumber number);
   void kill_coordinator(CoordinatorNumber number) { coordinators_.erase(number); }
-  TroubledBus& coordinator_bus(CoordinatorNumber number) { return coordinators_.at(number).bus; }
+  FaultyBus& coordinator_bus(CoordinatorNumber number) { return coordinators_.at(number).bus; }
   const Coordinator& coordinator(CoordinatorNumber number) {
     return coordinators_.at(number).node->coordinator();
   }
-  /// The number of the coordinator that grants; -1 when none or more than one does.
-  int granting();
+  /// The number of the coordinator that grants; -1 if none or several do.
+  int granting_coordinator();
 
-  /// Starts one more agent for a robot; earlier ones live on.
-  TroubledBus& start_agent(RobotId robot);
+  /// Starts another agent of a robot; earlier ones keep running.
+  FaultyBus& start_agent(RobotId robot);
   void kill_agents(RobotId robot) { agents_.erase(robot); }
-  /// The buses of the robot's agents, in the order of their starts.
-  std::vector<TroubledBus*> agent_buses(RobotId robot);
+  /// The buses of the robot's agents, in order of their start.
+  std::vector<FaultyBus*> agent_buses(RobotId robot);
 
-  /// Runs for so many seconds; the smallest clearance of any two robots meanwhile.
+  /// Runs for some seconds. Returns the minimum clearance between any two robots in that time.
   double run(double seconds);
-  /// How often a robot executed what the coordinator in charge did not know of. Not counted: what a robot
-  /// made itself, off its reference, until the coordinator hears of it.
-  int unknown_versions() const { return unknown_; }
-  /// Rules that the audit found broken.
+  /// How often a robot executed a version that was not in the ledger of the coordinator in charge. A robot's
+  /// own stop off its reference counts only once the coordinator knows of it.
+  int unknown_versions() const { return unknown_versions_; }
+  /// Rule violations found by the audit.
   std::uint64_t violations() const;
   int arrived();
-  /// Runs until all have arrived, at most for so long; the smallest clearance meanwhile.
-  double run_until_arrived(double most_seconds);
-  /// Runs until the fastest robot is as fast as this; false when none is within ten seconds.
-  bool run_until_fast(double speed_mps);
+  /// Runs until all have arrived, or max_seconds are over. Returns the minimum clearance in that time.
+  double run_until_arrived(double max_seconds);
+  /// Runs until a robot reaches this speed; false if none does within ten seconds.
+  bool run_until_speed(double speed_mps);
   double speed_mps(RobotId robot);
-  double fastest_mps();
+  double max_speed_mps();
 
   const Scenario scenario;
   SimNetwork network;
@@ -59,16 +58,16 @@ class IdealFloor {
   template <typename Node>
   struct Process {
     explicit Process(SimNetwork& network) : bus(network) {}
-    TroubledBus bus;
+    FaultyBus bus;
     std::unique_ptr<Node> node;
   };
 
   void compare_with_ledger();
 
-  const std::shared_ptr<PlanningScratch> bench_ = std::make_shared<PlanningScratch>(scenario);
+  const std::shared_ptr<PlanningScratch> scratch_ = std::make_shared<PlanningScratch>(scenario);
   SimBus audit_bus_{network};
   Auditor auditor_;
-  int unknown_ = 0;
+  int unknown_versions_ = 0;
   Rng rng_;
   Incarnation last_incarnation_ = 0;
   std::map<CoordinatorNumber, Process<CoordinatorNode>> coordinators_;

@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-// Agents count their versions upwards from their incarnations: none gets that far in a year.
+// Agents number their versions upwards from their incarnations; none counts this far in a year.
 constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
 
 }  // namespace
@@ -30,7 +30,7 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
     report_periodically(robot);
   }
   world_writer_ = bus.advertise(topics::kWorld);
-  hand_ = bus.advertise(topics::kDisturbance);
+  disturbance_writer_ = bus.advertise(topics::kDisturbance);
   publish_world();
 }
 
@@ -60,13 +60,13 @@ void IdealRobots::lift(RobotId id) {
   report(robot);
 }
 
-void IdealRobots::place(RobotId id, const Vec2& place) {
-  msg::Disturbance hand;
-  hand.robot(id);
-  hand.disturbance_kind(msg::DISTURBANCE_PLACE);
-  hand.x_m(place.x());
-  hand.y_m(place.y());
-  hand_.publish(hand, bus_.now());
+void IdealRobots::place(RobotId id, const Vec2& position) {
+  msg::Disturbance disturbance;
+  disturbance.robot(id);
+  disturbance.disturbance_kind(msg::DISTURBANCE_PLACE);
+  disturbance.x_m(position.x());
+  disturbance.y_m(position.y());
+  disturbance_writer_.publish(disturbance, bus_.now());
 }
 
 void IdealRobots::publish_world() {
@@ -77,65 +77,66 @@ void IdealRobots::publish_world() {
   for (const auto& [id, robot] : robots_) {
     if (robot.is_lifted) continue;
     const Vec2 position = position_m(id, now);
-    msg::TrackedRobot& seen = world.robots().emplace_back();
-    seen.robot(id);
-    seen.seen_at_ns(to_ns(now));
-    seen.seen_x_m(position.x());
-    seen.seen_y_m(position.y());
+    msg::TrackedRobot& tracked = world.robots().emplace_back();
+    tracked.robot(id);
+    tracked.observed_at_ns(to_ns(now));
+    tracked.observed_x_m(position.x());
+    tracked.observed_y_m(position.y());
   }
   world_writer_.publish(world, now);
 }
 
 void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
-  const Time now = bus_.now() + robot.clock_ahead;
+  const Time now = bus_.now() + robot.clock_offset;
   advance(robot, now);
-  if (command.head().incarnation() < robot.obeyed) return;
-  robot.heard_stamp_ns = command.head().stamp_ns();
-  robot.heard_at = now;
-  robot.highest = std::max<VersionNumber>(robot.highest, command.head().incarnation());
-  const bool is_news = command.head().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
-  if (command.head().incarnation() > robot.obeyed) {
-    robot.obeyed = command.head().incarnation();
+  if (command.header().incarnation() < robot.obeyed) return;
+  robot.command_stamp_ns = command.header().stamp_ns();
+  robot.command_received = now;
+  robot.highest = std::max<VersionNumber>(robot.highest, command.header().incarnation());
+  const bool has_new_fence =
+      command.header().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
+  if (command.header().incarnation() > robot.obeyed) {
+    robot.obeyed = command.header().incarnation();
     std::erase_if(robot.pending, [&](const Version& v) { return v.incarnation < robot.obeyed; });
   }
   const bool is_old_epoch = command.epoch() < robot.obeyed_epoch;
   robot.obeyed_epoch = std::max(robot.obeyed_epoch, command.epoch());
-  if (is_news) report(robot);
+  if (has_new_fence) report(robot);
   if (!command.has_version() || is_old_epoch) return;
-  const auto version = decode(command.granted());
+  const auto version = decode(command.version());
   if (version) robot.highest = std::max(robot.highest, version->number);
-  const auto knows = [&](const Version& held) { return held.number == version->number; };
-  if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, knows)) return;
+  const auto is_same = [&](const Version& held) { return held.number == version->number; };
+  if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, is_same)) return;
   robot.pending.push_back(*version);
   std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
-  bus_.at(version->trajectory.start() - robot.clock_ahead, [this, &robot] { report(robot); });
+  bus_.at(version->trajectory.start() - robot.clock_offset, [this, &robot] { report(robot); });
 }
 
 void IdealRobots::advance(Robot& robot, Time now) {
   while (!robot.pending.empty() && robot.pending.front().trajectory.start() <= now) {
     const Version& due = robot.pending.front();
-    const bool is_stand = due.base == 0 && due.trajectory.phases().empty();
+    const bool is_rest_version = due.base == 0 && due.trajectory.phases().empty();
     if (due.base == robot.executing.number && due.number > robot.executing.number &&
-        (!robot.is_lifted || is_stand)) {
+        (!robot.is_lifted || is_rest_version)) {
       robot.executing = robot.pending.front();
-      robot.is_off_reference = robot.is_lifted = false;  // the hand has waited for it
+      robot.is_off_reference = robot.is_lifted = false;  // a lifted robot is put down now
     }
     robot.pending.erase(robot.pending.begin());
   }
 }
 
 void IdealRobots::report(Robot& robot) {
-  const Time now = bus_.now() + robot.clock_ahead;
+  const Time now = bus_.now() + robot.clock_offset;
   advance(robot, now);
   const State state = robot.executing.trajectory.state_at(now);
   msg::Feedback feedback;
   feedback.robot(robot.id);
-  feedback.head().sender(robot.id);
+  feedback.header().sender(robot.id);
   feedback.obeyed_incarnation(robot.obeyed);
   feedback.obeyed_epoch(robot.obeyed_epoch);
-  feedback.at_ns(to_ns(now));
-  feedback.heard_stamp_ns(robot.heard_stamp_ns);
-  feedback.heard_at_ns(to_ns(robot.heard_at));
+  feedback.valid_at_ns(to_ns(now));
+  feedback.command_stamp_ns(robot.command_stamp_ns);
+  feedback.command_received_at_ns(to_ns(robot.command_received));
   feedback.executing(encode(robot.executing));
   feedback.is_off_reference(robot.is_off_reference);
   feedback.is_lifted(robot.is_lifted);
@@ -153,8 +154,8 @@ void IdealRobots::report_periodically(Robot& robot) {
 
 State IdealRobots::state_at(RobotId id, Time t) {
   Robot& robot = robots_.at(id);
-  advance(robot, t + robot.clock_ahead);
-  return robot.executing.trajectory.state_at(t + robot.clock_ahead);
+  advance(robot, t + robot.clock_offset);
+  return robot.executing.trajectory.state_at(t + robot.clock_offset);
 }
 
 const Version& IdealRobots::executing(RobotId id, Time t) {
@@ -168,11 +169,12 @@ double IdealRobots::clearance_m(Time t) {
   for (const auto& [id, robot] : robots_) {
     if (!robot.is_lifted) positions.push_back(position_m(id, t));
   }
-  double smallest = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, (positions[i] - positions[j]).norm());
+    for (std::size_t j = 0; j < i; ++j)
+      min_distance = std::min(min_distance, (positions[i] - positions[j]).norm());
   }
-  return smallest - 2 * radius_m_;
+  return min_distance - 2 * radius_m_;
 }
 
 }  // namespace sidestep

@@ -10,42 +10,42 @@
 
 namespace sidestep {
 
-/// Robots that follow their reference exactly and keep the firmware's rules, and a vision that sees them
-/// exactly: what is left to test is the protocol.
+/// Robots that follow their references exactly and keep the firmware's rules, and an exact vision, so that a
+/// test covers the protocol alone.
 class IdealRobots {
  public:
   IdealRobots(Bus& bus, const Scenario& scenario);
 
   Vec2 position_m(RobotId robot, Time t) { return state_at(robot, t).position_m; }
   Vec2 velocity_mps(RobotId robot, Time t) { return state_at(robot, t).velocity_mps; }
-  /// The smallest distance between two robots' edges at a time.
+  /// Minimum distance between the edges of two robots at time t.
   double clearance_m(Time t);
-  /// From now on the robot's clock is ahead of the bus's by so much.
-  void set_clock_ahead(RobotId robot, Duration ahead) { robots_.at(robot).clock_ahead = ahead; }
+  /// From now on: robot's clock - bus's clock.
+  void set_clock_offset(RobotId robot, Duration offset) { robots_.at(robot).clock_offset = offset; }
   double radius_m() const { return radius_m_; }
-  /// What a robot executes at a time.
+  /// The version that a robot executes at time t.
   const Version& executing(RobotId robot, Time t);
   bool is_off_reference(RobotId robot) const { return robots_.at(robot).is_off_reference; }
   bool is_on_floor(RobotId robot) const { return !robots_.at(robot).is_lifted; }
 
-  /// Something moves a robot and gives it another velocity; it notices, and brakes.
+  /// Displaces a robot and sets its velocity. The robot notices and brakes off its reference.
   void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double inflation_m = 0);
-  /// Its firmware starts again: it keeps what it has obeyed, and nothing else.
+  /// Restarts its firmware, which keeps only the incarnation, epoch and version number that it has obeyed.
   void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
   void lift(RobotId robot);
-  /// Wants to put a lifted robot down: as soon as it has taken a stand it stands there.
-  void place(RobotId robot, const Vec2& place_m);
+  /// Requests to put a lifted robot down. It is on the floor once it executes a rest version.
+  void place(RobotId robot, const Vec2& position_m);
 
  private:
   struct Robot {
     RobotId id;
     Incarnation obeyed = 0;
     Epoch obeyed_epoch = 0;
-    Duration clock_ahead{0};
-    std::int64_t heard_stamp_ns = 0;  // of the obeyed agent's last command,
-    Time heard_at{};                  // which came then
+    Duration clock_offset{0};
+    std::int64_t command_stamp_ns = 0;  // of the obeyed agent's last command
+    Time command_received{};            // arrival of that command
     Version executing;
-    VersionNumber highest = 0;  // of all numbers and incarnations that came
+    VersionNumber highest = 0;  // of all version numbers and incarnations received
     bool is_off_reference = false, is_lifted = false;
     std::vector<Version> pending;  // by start
     Writer<msg::Feedback> writer;
@@ -62,7 +62,7 @@ class IdealRobots {
   Duration cycle_;
   std::map<RobotId, Robot> robots_;
   Writer<msg::WorldState> world_writer_;
-  Writer<msg::Disturbance> hand_;
+  Writer<msg::Disturbance> disturbance_writer_;
 };
 
 }  // namespace sidestep

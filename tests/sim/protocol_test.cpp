@@ -8,16 +8,16 @@ using namespace sidestep;
 
 namespace {
 
-Scenario crowd(int robots) {
+Scenario circle_scenario(int robots) {
   return parse_scenario(
       "field: {length_m: 8, width_m: 8}\ncircle: {count: " + std::to_string(robots) + ", spacing_m: 0.4}\n",
-      "crowd.yaml");
+      "circle.yaml");
 }
 
 }  // namespace
 
 TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and reordering") {
-  Scenario scenario = crowd(12);
+  Scenario scenario = circle_scenario(12);
   struct Network {
     double loss, duplicate, delay_max_s;
   };
@@ -37,7 +37,7 @@ TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and re
   }
 }
 
-TEST_CASE("an undisturbed robot never brakes for want of a verdict") {
+TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
   Scenario scenario = parse_scenario(
       "field: {length_m: 8, width_m: 4}\nrobots:\n  - {id: 7, team: blue, start_m: [-3, 0], goals_m: [[3, "
       "0]]}\n",
@@ -52,7 +52,7 @@ TEST_CASE("an undisturbed robot never brakes for want of a verdict") {
     (void)run.run(0.02);
     const Vec2 here = run.robots.position_m(7, run.network.now());
     const double now_mps = (here - last).norm() / 0.02;
-    // Braking on the way, before the one stop at the goal begins.
+    // Braking before the stop at the goal begins.
     slower += now_mps < speed - 0.02 && (here - Vec2(3, 0)).norm() > 0.55;
     peak = std::max(peak, now_mps);
     speed = now_mps;
@@ -63,8 +63,8 @@ TEST_CASE("an undisturbed robot never brakes for want of a verdict") {
   CHECK(peak == Approx(scenario.limits.speed_mps).margin(0.02));
 }
 
-TEST_CASE("with equal wishes the same robot does not always lose") {
-  // Two robots meet at right angles, at the same time but for a few centimetres, sooner or later.
+TEST_CASE("of two robots with equal claims neither always yields") {
+  // Two robots cross at right angles, almost simultaneously, at a random time of the control cycle.
   int won[2] = {0, 0};
   Rng rng(1);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

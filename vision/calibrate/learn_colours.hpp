@@ -7,32 +7,32 @@
 #include <vector>
 
 #include "common/image/image.hpp"
-#include "vision/calibrate/known_floor.hpp"
+#include "vision/calibrate/floor_labels.hpp"
 #include "vision/colours/colour_file.hpp"
 
 namespace sidestep {
 
-struct KnownImage {
+struct LabelledImage {
   ImageView image;
-  KnownFloor floor;
+  FloorLabels labels;
 };
 
 struct LearnedColour {
   Colour colour{};
-  std::uint64_t pixels = 0;  ///< that were learned from
-  double told = 0;           ///< share of them that the thresholds call by this name
+  std::uint64_t pixels = 0;  ///< labelled with this colour
+  double recall = 0;         ///< share of them that the thresholds classify as this colour
 };
 
 struct LearnedColours {
   ColourThresholds thresholds;
-  std::vector<LearnedColour> colours;  ///< those that were expected
-  double ground_named = 0;  ///< share of the background that the thresholds take for something named
-  std::vector<std::string> warnings;  ///< what calibrates badly, for people
+  std::vector<LearnedColour> colours;  ///< one for each expected colour
+  double ground_false_positives = 0;   ///< share of the background classified as a named colour
+  std::vector<std::string> warnings;   ///< for the user, about data that calibrates badly
 };
 
-/// Learns thresholds from images in which is known what stands where, and looks whether they tell what was
-/// learned. `expected` are the colours that were to be seen. Precondition: at least one image, all of one
-/// format.
-LearnedColours learn_colours(std::span<const KnownImage> images, std::span<const Colour> expected);
+/// Learns thresholds from labelled images, and evaluates them on the same images. `expected` are the colours
+/// that the images should show. Precondition: at least one image, all of one format.
+[[nodiscard]] LearnedColours learn_colours(std::span<const LabelledImage> images,
+                                           std::span<const Colour> expected);
 
 }  // namespace sidestep

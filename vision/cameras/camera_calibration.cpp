@@ -15,63 +15,67 @@
 namespace sidestep {
 namespace {
 
-// Focal length, distortion, principal point (2), rotation (3, a turn after the present one), translation (3).
-constexpr int kAll = 10;
-constexpr int kMaxSteps = 200;
+// Focal length, distortion, principal point (2), rotation vector applied after the current rotation (3),
+// translation (3).
+constexpr int kParameters = 10;
+constexpr int kMaxIterations = 200;
 constexpr double kRobotTop_m = 0.15;
-constexpr double kLeastNoise_px = 0.05;  // no measured pixel is better
-using Step = Eigen::Matrix<double, kAll, 1>;
-using Normal = Eigen::Matrix<double, kAll, kAll>;
-using ByParameters = Eigen::Matrix<double, 2, kAll>;
+constexpr double kMinNoise_px = 0.05;  // no measured pixel is more accurate
+using Step = Eigen::Matrix<double, kParameters, 1>;
+using NormalMatrix = Eigen::Matrix<double, kParameters, kParameters>;
+using Jacobian = Eigen::Matrix<double, 2, kParameters>;
+using FreeParameters = std::array<bool, kParameters>;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-std::array<bool, kAll> sought(const CalibrationSettings& s) {
-  std::array<bool, kAll> result;
+FreeParameters free_parameters(const CalibrationSettings& s) {
+  FreeParameters result;
   result.fill(true);
-  result[0] = s.finds_focal_length;
-  result[1] = s.finds_distortion;
-  result[2] = result[3] = s.finds_principal_point;
+  result[0] = s.estimates_focal_length;
+  result[1] = s.estimates_distortion;
+  result[2] = result[3] = s.estimates_principal_point;
   return result;
 }
 
-/// How the pixel of a point that the camera sees moves with its parameters.
-ByParameters derivative(const CameraModel& camera, const Vec3& point_m) {
+/// Derivative of the pixel of a visible point with respect to the camera's parameters.
+Jacobian jacobian_of(const CameraModel& camera, const Vec3& point_m) {
   const CameraParameters& c = camera.parameters();
-  const Vec3 turned = c.rotation * point_m;
-  const Vec3 p = turned + c.translation_m;
-  const Vec2 sight = p.head<2>() / p.z();
-  const double square = sight.squaredNorm();
-  const double s = lens::distorting_factor(c.distortion * square);
+  const Vec3 rotated_point = c.rotation * point_m;
+  const Vec3 p = rotated_point + c.translation_m;
+  const Vec2 ray = p.head<2>() / p.z();
+  const double square = ray.squaredNorm();
+  const double s = lens::distortion_factor(c.distortion * square);
   const double slope = 1 + 3 * c.distortion * square * s * s;
-  const Eigen::Matrix<double, 2, 3> by_place =
-      *camera.pixels_per_metre(point_m) * c.rotation.inverse().toRotationMatrix();
-  Eigen::Matrix3d by_turn;
-  by_turn << 0, turned.z(), -turned.y(), -turned.z(), 0, turned.x(), turned.y(), -turned.x(), 0;
-  ByParameters result;
-  result.col(0) = s * sight;
-  result.col(1) = -c.focal_length_px * square * s * s * s / slope * sight;
+  const Eigen::Matrix<double, 2, 3> by_translation =
+      *camera.projection_jacobian(point_m) * c.rotation.inverse().toRotationMatrix();
+  Eigen::Matrix3d by_rotation;
+  by_rotation << 0, rotated_point.z(), -rotated_point.y(), -rotated_point.z(), 0, rotated_point.x(),
+      rotated_point.y(), -rotated_point.x(), 0;
+  Jacobian result;
+  result.col(0) = s * ray;
+  result.col(1) = -c.focal_length_px * square * s * s * s / slope * ray;
   result.middleCols<2>(2).setIdentity();
-  result.middleCols<3>(4) = by_place * by_turn;
-  result.rightCols<3>() = by_place;
+  result.middleCols<3>(4) = by_translation * by_rotation;
+  result.rightCols<3>() = by_translation;
   return result;
 }
 
-CameraParameters moved(CameraParameters camera, const Step& step) {
+CameraParameters updated(CameraParameters camera, const Step& step) {
   camera.focal_length_px += step[0];
   camera.distortion += step[1];
   camera.principal_point_px += step.segment<2>(2);
-  const Vec3 turn = step.segment<3>(4);
-  const double angle_rad = turn.norm();
+  const Vec3 rotation = step.segment<3>(4);
+  const double angle_rad = rotation.norm();
   if (angle_rad > 0)
-    camera.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, turn / angle_rad)) * camera.rotation;
+    camera.rotation =
+        Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, rotation / angle_rad)) * camera.rotation;
   camera.rotation.normalize();
   camera.translation_m += step.tail<3>();
   return camera;
 }
 
-/// Sum of squared pixel errors; infinite when a point cannot be seen.
+/// Sum of squared pixel errors; infinite when a point is not visible.
 double cost_of(const CameraParameters& parameters, std::span<const CalibrationPoint> points) {
-  if (!fault_of(parameters).empty()) return kInfinite;
+  if (!validation_error(parameters).empty()) return kInfinite;
   const CameraModel camera(parameters);
   double sum = 0;
   for (const CalibrationPoint& point : points) {
@@ -82,18 +86,18 @@ double cost_of(const CameraParameters& parameters, std::span<const CalibrationPo
   return sum;
 }
 
-/// The normal equations; parameters that are not sought stay where they are.
-void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points,
-            const std::array<bool, kAll>& is_sought, Normal& normal, Step& right) {
+/// Sets up the normal equations, in which fixed parameters get a step of 0.
+void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points, const FreeParameters& is_free,
+            NormalMatrix& normal, Step& right) {
   normal.setZero();
   right.setZero();
   for (const CalibrationPoint& point : points) {
-    const ByParameters by = derivative(camera, point.point_m);
-    normal += by.transpose() * by;
-    right += by.transpose() * (point.pixel - *camera.pixel_of(point.point_m));
+    const Jacobian jacobian = jacobian_of(camera, point.point_m);
+    normal += jacobian.transpose() * jacobian;
+    right += jacobian.transpose() * (point.pixel - *camera.pixel_of(point.point_m));
   }
-  for (int i = 0; i < kAll; ++i) {
-    if (is_sought[static_cast<std::size_t>(i)]) continue;
+  for (int i = 0; i < kParameters; ++i) {
+    if (is_free[static_cast<std::size_t>(i)]) continue;
     normal.row(i).setZero();
     normal.col(i).setZero();
     normal(i, i) = 1;
@@ -101,18 +105,18 @@ void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points,
   }
 }
 
-/// Goes down from `camera`, whose cost is finite, and returns the cost that it has reached.
-double descend(CameraParameters& camera, std::span<const CalibrationPoint> points,
-               const std::array<bool, kAll>& is_sought) {
+/// Minimises the cost, starting at `camera`, whose cost must be finite. Returns the final cost.
+double minimise(CameraParameters& camera, std::span<const CalibrationPoint> points,
+                const FreeParameters& is_free) {
   double cost = cost_of(camera, points), damping = 1e-3;
-  Normal normal;
+  NormalMatrix normal;
   Step right;
-  for (int i = 0; i < kMaxSteps && damping < 1e12; ++i) {
-    set_up(CameraModel(camera), points, is_sought, normal, right);
-    Normal damped = normal;
+  for (int i = 0; i < kMaxIterations && damping < 1e12; ++i) {
+    set_up(CameraModel(camera), points, is_free, normal, right);
+    NormalMatrix damped = normal;
     damped.diagonal() *= 1 + damping;
     const Step step = damped.ldlt().solve(right);
-    const CameraParameters next = moved(camera, step);
+    const CameraParameters next = updated(camera, step);
     const double next_cost = step.allFinite() ? cost_of(next, points) : kInfinite;
     if (!(next_cost < cost)) {
       damping *= 8;
@@ -127,118 +131,129 @@ double descend(CameraParameters& camera, std::span<const CalibrationPoint> point
   return cost;
 }
 
-/// A pose for the camera's focal length; whether there is one from which all points are seen.
+/// Sets an initial pose for the camera's focal length. False when no pose shows all points.
 bool find_pose(std::span<const CalibrationPoint> points, CameraParameters& camera) {
-  std::vector<cv::Point3d> places;
-  std::vector<cv::Point2d> sights;
+  std::vector<cv::Point3d> positions;
+  std::vector<cv::Point2d> rays;
   for (const CalibrationPoint& point : points) {
     const Vec2 distorted = (point.pixel - camera.principal_point_px) / camera.focal_length_px;
-    const double factor = lens::undistorting_factor(camera.distortion * distorted.squaredNorm());
+    const double factor = lens::undistortion_factor(camera.distortion * distorted.squaredNorm());
     if (std::isnan(factor)) return false;
-    places.emplace_back(point.point_m.x(), point.point_m.y(), point.point_m.z());
-    sights.emplace_back(factor * distorted.x(), factor * distorted.y());
+    positions.emplace_back(point.point_m.x(), point.point_m.y(), point.point_m.z());
+    rays.emplace_back(factor * distorted.x(), factor * distorted.y());
   }
-  cv::Mat turn, place;
+  cv::Mat rotation_vector, translation;
   try {
-    if (!cv::solvePnP(places, sights, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), turn, place, false,
-                      cv::SOLVEPNP_SQPNP))
+    if (!cv::solvePnP(positions, rays, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), rotation_vector,
+                      translation, false, cv::SOLVEPNP_SQPNP))
       return false;
   } catch (const cv::Exception&) {
     return false;
   }
   cv::Mat matrix;
-  cv::Rodrigues(turn, matrix);
+  cv::Rodrigues(rotation_vector, matrix);
   Eigen::Matrix3d rotation;
   for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = matrix.at<double>(i / 3, i % 3);
   camera.rotation = Eigen::Quaterniond(rotation).normalized();
-  for (int i = 0; i < 3; ++i) camera.translation_m[i] = place.at<double>(i);
+  for (int i = 0; i < 3; ++i) camera.translation_m[i] = translation.at<double>(i);
   return std::isfinite(cost_of(camera, points));
 }
 
-double top_sd_px(const CameraModel& camera, std::span<const CalibrationPoint> points,
-                 const std::array<bool, kAll>& is_sought, double noise_px) {
-  Normal normal;
+double robot_top_sd_px(const CameraModel& camera, std::span<const CalibrationPoint> points,
+                       const FreeParameters& is_free, double noise_px) {
+  NormalMatrix normal;
   Step right;
-  set_up(camera, points, is_sought, normal, right);
-  // Scaled to a diagonal of ones, so that units do not matter.
+  set_up(camera, points, is_free, normal, right);
+  // Scaled to a unit diagonal, so that the parameters' units do not matter.
   const Step scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Normal> solver(scale.asDiagonal() * normal * scale.asDiagonal());
-  const Step values = solver.eigenvalues().cwiseMax(1e-15);
-  double largest = 0;
+  const Eigen::SelfAdjointEigenSolver<NormalMatrix> solver(scale.asDiagonal() * normal * scale.asDiagonal());
+  const Step eigenvalues = solver.eigenvalues().cwiseMax(1e-15);
+  double max_variance = 0;
   for (const CalibrationPoint& point : points) {
     const Vec3 top_m = point.point_m + Vec3(0, 0, kRobotTop_m);
     if (!camera.pixel_of(top_m)) continue;
-    ByParameters by = derivative(camera, top_m);
-    for (int i = 0; i < kAll; ++i)
-      if (!is_sought[static_cast<std::size_t>(i)]) by.col(i).setZero();
-    const ByParameters along = by * scale.asDiagonal() * solver.eigenvectors();
-    const Eigen::Matrix2d covariance = along * values.cwiseInverse().asDiagonal() * along.transpose();
-    largest = std::max(largest, covariance.trace());
+    Jacobian jacobian = jacobian_of(camera, top_m);
+    for (int i = 0; i < kParameters; ++i)
+      if (!is_free[static_cast<std::size_t>(i)]) jacobian.col(i).setZero();
+    const Jacobian projected = jacobian * scale.asDiagonal() * solver.eigenvectors();
+    const Eigen::Matrix2d covariance =
+        projected * eigenvalues.cwiseInverse().asDiagonal() * projected.transpose();
+    max_variance = std::max(max_variance, covariance.trace());
   }
-  return noise_px * std::sqrt(largest);
+  return noise_px * std::sqrt(max_variance);
 }
 
 double rms_m(const CameraModel& camera, std::span<const CalibrationPoint> points) {
   double sum = 0;
   for (const CalibrationPoint& point : points) {
-    const std::optional<Vec2> place = camera.point_at(point.pixel, point.point_m.z());
-    sum += place ? (*place - point.point_m.head<2>()).squaredNorm() : kInfinite;
+    const std::optional<Vec2> position = camera.point_at(point.pixel, point.point_m.z());
+    sum += position ? (*position - point.point_m.head<2>()).squaredNorm() : kInfinite;
   }
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
+/// Precondition: all points are visible.
+void find_worst_point(const CameraModel& camera, std::span<const CalibrationPoint> points,
+                      CalibrationResult& result) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double error_px = (*camera.pixel_of(points[i].point_m) - points[i].pixel).norm();
+    if (error_px <= result.max_px) continue;
+    result.max_px = error_px;
+    result.worst_index = i;
+  }
+}
+
 }  // namespace
 
-CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, const CameraParameters& start,
+CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, const CameraParameters& initial,
                                    const CalibrationSettings& settings) {
   CalibrationResult result;
-  result.camera = start;
-  if (result.fault = fault_of(start); !result.fault.empty()) return result;
-  const std::array<bool, kAll> is_sought = sought(settings);
-  const auto unknowns = static_cast<std::size_t>(std::count(is_sought.begin(), is_sought.end(), true));
+  result.camera = initial;
+  if (result.error = validation_error(initial); !result.error.empty()) return result;
+  const FreeParameters is_free = free_parameters(settings);
+  const auto unknowns = static_cast<std::size_t>(std::count(is_free.begin(), is_free.end(), true));
   if (2 * points.size() <= unknowns) {
-    result.fault =
-        fmt::format("{} points are too few, expected at least {}", points.size(), unknowns / 2 + 1);
+    result.error = fmt::format("expected at least {} points, got {}", unknowns / 2 + 1, points.size());
     return result;
   }
   for (const CalibrationPoint& point : points) {
     if (point.point_m.allFinite() && point.pixel.allFinite()) continue;
-    result.fault = "a point is not finite";
+    result.error = "a point is not finite";
     return result;
   }
 
-  std::vector<double> focal_lengths_px{start.focal_length_px};
-  if (settings.finds_focal_length) {
+  std::vector<double> focal_lengths_px{initial.focal_length_px};
+  if (settings.estimates_focal_length) {
     for (const double share : {0.3, 0.45, 0.7, 1.0, 1.5, 2.2, 3.3})
-      focal_lengths_px.push_back(share * std::max(start.width_px, start.height_px));
+      focal_lengths_px.push_back(share * std::max(initial.width_px, initial.height_px));
   }
   double cost = kInfinite;
   for (const double focal_length_px : focal_lengths_px) {
-    CameraParameters camera = start;
+    CameraParameters camera = initial;
     camera.focal_length_px = focal_length_px;
     if (!find_pose(points, camera)) continue;
-    const double reached = descend(camera, points, is_sought);
-    if (reached < cost) {
-      cost = reached;
+    const double final_cost = minimise(camera, points, is_free);
+    if (final_cost < cost) {
+      cost = final_cost;
       result.camera = camera;
     }
   }
   if (!std::isfinite(cost)) {
-    result.fault = "no camera sees all points: they lie on a line, or pixels belong to other points";
+    result.error = "no camera pose shows all points: they are collinear, or pixels are assigned to wrong points";
     return result;
   }
   const CameraModel camera(result.camera);
   const double count = static_cast<double>(points.size());
   result.rms_px = std::sqrt(cost / count);
   result.rms_m = rms_m(camera, points);
+  find_worst_point(camera, points, result);
   const double noise_px = std::sqrt(cost / (2 * count - static_cast<double>(unknowns)));
-  result.top_sd_px = top_sd_px(camera, points, is_sought, std::max(noise_px, kLeastNoise_px));
-  if (!(result.top_sd_px <= settings.largest_top_sd_px)) {
-    result.fault = fmt::format(
-        "the points leave the camera open: tops of robots would be off by {:.2g} px; more points, farther "
-        "apart "
-        "and at several heights, or a known focal length would settle it",
-        result.top_sd_px);
+  result.robot_top_sd_px = robot_top_sd_px(camera, points, is_free, std::max(noise_px, kMinNoise_px));
+  if (!(result.robot_top_sd_px <= settings.max_robot_top_sd_px)) {
+    result.error = fmt::format(
+        "the points do not determine the camera: predicted error of {:.2g} px at the height of robots, expected "
+        "at most {:g}; add points farther apart and at several heights, or give the focal length",
+        result.robot_top_sd_px, settings.max_robot_top_sd_px);
   }
   return result;
 }

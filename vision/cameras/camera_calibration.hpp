@@ -8,36 +8,39 @@
 
 namespace sidestep {
 
-/// A point of the world, and the pixel where the camera sees it.
+/// A point in the world, and the pixel at which the camera observes it.
 struct CalibrationPoint {
   Vec3 point_m;
   Vec2 pixel;
 };
 
-/// What is looked for, besides the pose; what is not is taken from the camera to start from.
+/// Parameters to estimate in addition to the camera's pose. The others keep their initial values.
 struct CalibrationSettings {
-  bool finds_focal_length = true;
-  bool finds_distortion = true;
-  bool finds_principal_point = false;
-  double largest_top_sd_px = 0.5;  ///< of CalibrationResult::top_sd_px
+  bool estimates_focal_length = true;
+  bool estimates_distortion = true;
+  bool estimates_principal_point = false;
+  double max_robot_top_sd_px = 0.5;  ///< limit of CalibrationResult::robot_top_sd_px
 };
 
 struct CalibrationResult {
-  /// Empty when the calibration is good, else why there is none; the rest is then what was found until there.
-  std::string fault;
+  /// Why the calibration failed; empty on success. After a failure the other members are incomplete.
+  std::string error;
   CameraParameters camera;
-  double rms_px = 0;  ///< distance between the pixels given and those of the points
-  double rms_m = 0;   ///< distance between the points given and those of the pixels, at the points' heights
-  /// Predicted standard deviation of the pixel where the camera sees what stands 0.15 m above one of the
-  /// points, as a robot's top does; of the worst point. Points that leave the camera's height open, as a
-  /// floor seen straight from above does, make it large.
-  double top_sd_px = 0;
+  double rms_px = 0;           ///< RMS distance between given pixels and projected points
+  double max_px = 0;           ///< largest such distance
+  std::size_t worst_index = 0; ///< of the point with that distance
+  double rms_m = 0;            ///< RMS distance between given points and pixels projected to their heights
+  /// Predicted standard deviation of the pixel at which the camera observes the top of a robot, 0.15 m above
+  /// one of the points; the maximum over all points. Large when the points do not determine the camera's
+  /// height, such as points on the floor seen vertically from above.
+  double robot_top_sd_px = 0;
 };
 
-/// The camera that sees the points where they were seen: least squares over pixels by Levenberg and
-/// Marquardt's method (Marquardt 1963) from several focal lengths. The image's size comes from `start`, and
-/// what is not looked for.
-CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, const CameraParameters& start,
-                                   const CalibrationSettings& settings = {});
+/// The camera that best explains the observed pixels: least squares over pixel errors by the
+/// Levenberg-Marquardt method (Marquardt 1963), from several initial focal lengths. `initial` provides the
+/// image size and all parameters that are not estimated.
+[[nodiscard]] CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points,
+                                                 const CameraParameters& initial,
+                                                 const CalibrationSettings& settings = {});
 
 }  // namespace sidestep

@@ -2,48 +2,38 @@
 #include "vision/cameras/camera_file.hpp"
 
 #include <fmt/format.h>
-#include <fstream>
 #include <set>
-#include <stdexcept>
 
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "vision/cameras/camera_keys.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr const char* kExpected = "a file of cameras";
-constexpr std::size_t kMaxCameras = 64;
-constexpr Range kSize_px{1, 16384};
-constexpr Range kPixel{-1e5, 1e5};
-constexpr Range kPlace_m{-1000, 1000};
 
 std::vector<double> required_numbers(YamlMap& map, const std::string& key, std::size_t count, Range range) {
-  return numbers_from(map.require(key), map.place_of(key), count, count, range);
+  return numbers_from(map.require(key), map.location_of(key), count, count, range);
 }
 
 NumberedCamera read_camera(YamlMap& map) {
   NumberedCamera result;
   CameraParameters& camera = result.parameters;
-  result.id = static_cast<std::uint32_t>(integer_from(map.require("id"), map.place_of("id"), {0, 1023}));
-  const YAML::Node size = map.require("image_px");
-  const YamlPlace size_place = map.place_of("image_px");
-  numbers_from(size, size_place, 2, 2, kSize_px);
-  camera.width_px =
-      static_cast<int>(integer_from(size[0], size_place.of(size[0], size_place.what), kSize_px));
-  camera.height_px =
-      static_cast<int>(integer_from(size[1], size_place.of(size[1], size_place.what), kSize_px));
+  result.id = camera_keys::read_id(map);
+  camera_keys::read_image_size(map, camera);
   map.require("focal_length_px");
-  map.read("focal_length_px", {1e-3, 1e6}, camera.focal_length_px);
+  map.read("focal_length_px", camera_keys::kFocalLength_px, camera.focal_length_px);
   map.require("principal_point_px");
-  map.read("principal_point_px", kPixel, camera.principal_point_px);
+  map.read("principal_point_px", camera_keys::kPixel, camera.principal_point_px);
   map.require("distortion");
-  map.read("distortion", {-100, 100}, camera.distortion);
+  map.read("distortion", camera_keys::kDistortion, camera.distortion);
   const auto q = required_numbers(map, "rotation_xyzw", 4, {-1, 1});
   camera.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
-  const auto t = required_numbers(map, "translation_m", 3, kPlace_m);
+  const auto t = required_numbers(map, "translation_m", 3, camera_keys::kCoordinate_m);
   camera.translation_m = Vec3(t[0], t[1], t[2]);
-  if (const std::string fault = fault_of(camera); !fault.empty()) map.place_of("rotation_xyzw").refuse(fault);
+  if (const std::string error = validation_error(camera); !error.empty())
+    map.location_of("rotation_xyzw").fail(error);
   return result;
 }
 
@@ -53,10 +43,10 @@ std::vector<NumberedCamera> parse_cameras(const std::string& text, const std::st
   YamlMap map = document_map(text, file_name, kExpected);
   std::vector<NumberedCamera> cameras;
   std::set<std::uint32_t> ids;
-  read_list(map, "cameras", kMaxCameras, [&](YamlMap& inner) {
+  read_list(map, "cameras", camera_keys::kMaxCameras, [&](YamlMap& inner) {
     cameras.push_back(read_camera(inner));
     if (!ids.insert(cameras.back().id).second)
-      inner.place_of("id").refuse(fmt::format("another camera has the id {}", cameras.back().id));
+      inner.location_of("id").fail(fmt::format("another camera has the id {}", cameras.back().id));
   });
   map.finish();
   return cameras;
@@ -79,13 +69,6 @@ std::string cameras_text(const std::vector<NumberedCamera>& cameras) {
         p.translation_m.y(), p.translation_m.z());
   }
   return text;
-}
-
-void save_cameras(const std::vector<NumberedCamera>& cameras, const std::string& path) {
-  std::ofstream file(path);
-  file << cameras_text(cameras);
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace sidestep

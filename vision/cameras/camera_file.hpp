@@ -15,7 +15,7 @@ struct NumberedCamera {
   CameraParameters parameters;
 };
 
-/// Reads and checks a file of cameras; throws ScenarioError ("FILE:LINE: ...") for anything that is wrong.
+/// Reads and validates a file of cameras; throws ConfigError ("FILE:LINE: ...") for any error.
 /// ```
 /// cameras:
 ///   - id: 0
@@ -26,12 +26,11 @@ struct NumberedCamera {
 ///     rotation_xyzw: [1, 0, 0, 0]
 ///     translation_m: [0, 0, 4]
 /// ```
-std::vector<NumberedCamera> load_cameras(const std::string& path);
-/// The same from text; `file_name` stands in messages.
-std::vector<NumberedCamera> parse_cameras(const std::string& text, const std::string& file_name);
-/// What parse_cameras() reads back to the last bit.
-std::string cameras_text(const std::vector<NumberedCamera>& cameras);
-/// Throws std::runtime_error when the file cannot be written.
-void save_cameras(const std::vector<NumberedCamera>& cameras, const std::string& path);
+[[nodiscard]] std::vector<NumberedCamera> load_cameras(const std::string& path);
+/// The same from text; `file_name` appears in error messages.
+[[nodiscard]] std::vector<NumberedCamera> parse_cameras(const std::string& text,
+                                                        const std::string& file_name);
+/// The text of a file from which parse_cameras() restores every number exactly.
+[[nodiscard]] std::string cameras_text(const std::vector<NumberedCamera>& cameras);
 
 }  // namespace sidestep

@@ -14,32 +14,32 @@ namespace {
 constexpr const char* kExpected = "a file of colour thresholds";
 constexpr Range kByte{0, 255};
 
-PixelFormat format_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string name = text_from(node, place);
+PixelFormat format_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string name = text_from(node, location);
   if (const auto format = pixel_format_named(name)) return *format;
-  place.refuse(fmt::format("expected yuv422 or rgb, got \"{}\"", name.substr(0, 40)));
+  location.fail(fmt::format("expected yuv422 or rgb, got \"{}\"", name.substr(0, 40)));
 }
 
-Yuv yuv_from(const YAML::Node& node, const YamlPlace& place) {
-  numbers_from(node, place, 3, 3, kByte);
+Yuv yuv_from(const YAML::Node& node, const YamlLocation& location) {
+  numbers_from(node, location, 3, 3, kByte);
   const auto byte = [&](std::size_t i) {
-    return static_cast<std::uint8_t>(integer_from(node[i], place.of(node[i], place.what), kByte));
+    return static_cast<std::uint8_t>(integer_from(node[i], location.of(node[i], location.what), kByte));
   };
   return {byte(0), byte(1), byte(2)};
 }
 
-std::uint32_t number_from_name(const YAML::Node& node, const YamlPlace& place) {
+std::uint32_t colour_number_from(const YAML::Node& node, const YamlLocation& location) {
   if (node.IsScalar() && node.Scalar() == name_of_colour(kOtherColour)) return kOtherColour;
-  return static_cast<std::uint32_t>(colour_from(node, place));
+  return static_cast<std::uint32_t>(colour_from(node, location));
 }
 
 ColourBox read_box(YamlMap& map) {
   ColourBox box;
-  box.colour = number_from_name(map.require("colour"), map.place_of("colour"));
-  box.low = yuv_from(map.require("low"), map.place_of("low"));
-  box.high = yuv_from(map.require("high"), map.place_of("high"));
+  box.colour = colour_number_from(map.require("colour"), map.location_of("colour"));
+  box.low = yuv_from(map.require("low"), map.location_of("low"));
+  box.high = yuv_from(map.require("high"), map.location_of("high"));
   if (box.low.y > box.high.y || box.low.u > box.high.u || box.low.v > box.high.v)
-    map.place_of("low").refuse("expected nothing above high");
+    map.location_of("low").fail("expected no component above that of high");
   return box;
 }
 
@@ -48,7 +48,7 @@ ColourBox read_box(YamlMap& map) {
 ColourThresholds parse_colours(const std::string& text, const std::string& file_name) {
   YamlMap map = document_map(text, file_name, kExpected);
   ColourThresholds thresholds;
-  thresholds.format = format_from(map.require("format"), map.place_of("format"));
+  thresholds.format = format_from(map.require("format"), map.location_of("format"));
   read_list(map, "boxes", kMaxColours, [&](YamlMap& box) { thresholds.boxes.push_back(read_box(box)); });
   map.finish();
   return thresholds;

@@ -9,24 +9,24 @@
 
 namespace sidestep {
 
-/// By what numbers colours are told in frames of one format.
+/// Thresholds that classify the colours in frames of one format.
 struct ColourThresholds {
   PixelFormat format = PixelFormat::kYuv422;
-  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers, and of kOtherColour
+  std::vector<ColourBox> boxes;  ///< numbered as Colour, or kOtherColour
 };
 
-/// Reads and checks a file of thresholds; throws ScenarioError ("FILE:LINE: ...") for anything that is wrong.
-/// The numbers are pixel_at()'s; where boxes overlap the first one counts, and a colour may have several.
+/// Reads and validates a file of thresholds; throws ConfigError ("FILE:LINE: ...") for any error. The
+/// numbers are those of pixel_at(). Where boxes overlap the first one wins; a colour may have several.
 /// ```
 /// format: yuv422                                          # or rgb
 /// boxes:
 ///   - {colour: orange, low: [98, 0, 166], high: [255, 94, 255]}
-///   - {colour: other, low: [0, 150, 0], high: [255, 255, 255]}   # what nobody named
+///   - {colour: other, low: [0, 150, 0], high: [255, 255, 255]}   # any colour without a name
 /// ```
-ColourThresholds load_colours(const std::string& path);
-/// The same from text; `file_name` stands in messages.
-ColourThresholds parse_colours(const std::string& text, const std::string& file_name);
-/// What parse_colours() reads back.
-std::string colours_text(const ColourThresholds& thresholds);
+[[nodiscard]] ColourThresholds load_colours(const std::string& path);
+/// The same from text; `file_name` appears in error messages.
+[[nodiscard]] ColourThresholds parse_colours(const std::string& text, const std::string& file_name);
+/// The text of a file that parse_colours() reads.
+[[nodiscard]] std::string colours_text(const ColourThresholds& thresholds);
 
 }  // namespace sidestep

@@ -5,49 +5,50 @@
 #include <cmath>
 #include <optional>
 
-#include "vision/colours/known_pixels.hpp"
+#include "vision/colours/labelled_pixels.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr int kGrey = 128;
-constexpr int kColourful = 25;  // from grey, on U or V; less does not tell a colour
-constexpr int kSpread = 14;     // beyond what was seen, on U and V, of a number that is not colourful
-constexpr double kEdge = 0.4;   // of the way from grey to a colour: there a patch ends
-constexpr double kTrust = 0.5;  // in brightness, against U and V: light is uneven
-constexpr double kOutliers = 0.002, kFloorOutliers = 0.1;
+constexpr int kMinChroma = 25;             // distance from grey on U or V that identifies a colour
+constexpr int kRangeMargin = 14;           // around the observed range on U or V below that distance
+constexpr double kEdgeShare = 0.4;         // of the way from grey to a colour: there a region ends
+constexpr double kBrightnessWeight = 0.5;  // of gaps in brightness against U and V: light is uneven
+constexpr double kOutlierShare = 0.002, kFloorOutlierShare = 0.1;
 
-// Of other colours.
+// For boxes of other colours.
 constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // of brightness
-constexpr double kGroundOutliers = 0.001;  // white lines are less than a hundredth of the floor
-constexpr int kClear = 8;                  // from the background that was seen, on U or V
-constexpr double kTint = 0.07;             // of the brightness: what a tenth more red or blue makes of grey
-constexpr int kNoise = 4;                  // and noise, on U or V
-constexpr int kCoarse = 16;                // segmentation rules out a sixteenth of the range at once
+constexpr double kGroundOutlierShare = 0.001;              // white lines cover less than 1 % of the floor
+constexpr int kGroundMargin = 8;                           // around the observed background, on U or V
+constexpr double kTintShare = 0.07;  // of the brightness: chroma of grey with a tenth more red or blue
+constexpr int kNoiseMargin = 4;      // on U or V
+constexpr int kCoarseStep = 16;      // range of a high nibble, by which segmentation excludes pixels
 
 }  // namespace
 
-void ColourLearner::Seen::add(const Yuv& pixel) {
+void ColourLearner::Histogram::add(const Yuv& pixel) {
   ++count;
-  ++of[0][pixel.y];
-  ++of[1][pixel.u];
-  ++of[2][pixel.v];
+  ++bins[0][pixel.y];
+  ++bins[1][pixel.u];
+  ++bins[2][pixel.v];
 }
 
-/// The number that this share of all pixels does not exceed.
-int ColourLearner::Seen::at(std::size_t channel, double share) const {
-  const double wanted = share * static_cast<double>(count);
+/// The smallest value that more than this share of all pixels do not exceed.
+int ColourLearner::Histogram::quantile(std::size_t channel, double share) const {
+  const double target = share * static_cast<double>(count);
   std::uint64_t sum = 0;
   for (int value = 0; value < 256; ++value) {
-    sum += of[channel][static_cast<std::size_t>(value)];
-    if (static_cast<double>(sum) > wanted) return value;
+    sum += bins[channel][static_cast<std::size_t>(value)];
+    if (static_cast<double>(sum) > target) return value;
   }
   return 255;
 }
 
-ColourLearner::Ranges ColourLearner::Seen::ranges(double left_out) const {
+ColourLearner::Ranges ColourLearner::Histogram::ranges(double outlier_share) const {
   Ranges ranges;
-  for (std::size_t c = 0; c < ranges.size(); ++c) ranges[c] = {at(c, left_out), at(c, 1 - left_out)};
+  for (std::size_t c = 0; c < ranges.size(); ++c)
+    ranges[c] = {quantile(c, outlier_share), quantile(c, 1 - outlier_share)};
   return ranges;
 }
 
@@ -55,44 +56,45 @@ void ColourLearner::add_background(const Yuv& pixel) {
   background_.add(pixel);
   std::size_t band = 0;
   while (pixel.y >= kBandEdges[band + 1]) ++band;
-  by_brightness_[band].add(pixel);
+  background_bands_[band].add(pixel);
 }
 
-void ColourLearner::add(const ImageView& image, std::span<const KnownDisc> discs,
-                        std::span<const KnownDisc> unknown) {
-  for_known_pixels(
-      image, discs, unknown,
-      [&](const KnownDisc& disc, int x, int y) { add(disc.colour, pixel_at(image, x, y)); },
+void ColourLearner::add(const ImageView& image, std::span<const LabelledDisc> discs,
+                        std::span<const LabelledDisc> ignored) {
+  for_labelled_pixels(
+      image, discs, ignored,
+      [&](const LabelledDisc& disc, int x, int y) { add(disc.colour, pixel_at(image, x, y)); },
       [&](int x, int y) { add_background(pixel_at(image, x, y)); });
 }
 
-ColourLearner::Ranges ColourLearner::generous(const Seen& seen) const {
-  const Ranges own = seen.ranges(kOutliers);
+/// The box of a colour before it is cut at its neighbours.
+ColourLearner::Ranges ColourLearner::extended_box(const Histogram& histogram) const {
+  const Ranges observed = histogram.ranges(kOutlierShare);
   Ranges box;
-  box[0] = {static_cast<int>(least_light_ * own[0].low), 255};
+  box[0] = {static_cast<int>(min_light_ratio_ * observed[0].low), 255};
   for (std::size_t c = 1; c < 3; ++c) {
-    const int middle = seen.at(c, 0.5) - kGrey, edge = static_cast<int>(kEdge * middle);
-    if (middle <= -kColourful) {
-      box[c] = {0, std::max(own[c].high, kGrey + edge)};
-    } else if (middle >= kColourful) {
-      box[c] = {std::min(own[c].low, kGrey + edge), 255};
+    const int median = histogram.quantile(c, 0.5) - kGrey, edge = static_cast<int>(kEdgeShare * median);
+    if (median <= -kMinChroma) {
+      box[c] = {0, std::max(observed[c].high, kGrey + edge)};
+    } else if (median >= kMinChroma) {
+      box[c] = {std::min(observed[c].low, kGrey + edge), 255};
     } else {
-      box[c] = {own[c].low - kSpread, own[c].high + kSpread};
+      box[c] = {observed[c].low - kRangeMargin, observed[c].high + kRangeMargin};
     }
   }
   return box;
 }
 
-/// Room on a channel between what was seen of two colours: below 0 none; positive where `own` lies above.
+/// Gap on a channel between two observed ranges: 0 when they overlap, positive when `own` lies above.
 int ColourLearner::gap(const Range& own, const Range& other) {
   const int below = own.low - other.high, above = other.low - own.high;
   return below >= above ? std::max(0, below) : -std::max(0, above);
 }
 
 void ColourLearner::cut(Range& box, const Range& own, const Range& other) {
-  const int room = gap(own, other);
-  if (room > 0) box.low = std::max(box.low, (own.low + other.high) / 2 + 1);
-  if (room < 0) box.high = std::min(box.high, (own.high + other.low) / 2);
+  const int signed_gap = gap(own, other);
+  if (signed_gap > 0) box.low = std::max(box.low, (own.low + other.high) / 2 + 1);
+  if (signed_gap < 0) box.high = std::min(box.high, (own.high + other.low) / 2);
 }
 
 bool ColourLearner::overlap(const Ranges& a, const Ranges& b) {
@@ -102,42 +104,42 @@ bool ColourLearner::overlap(const Ranges& a, const Ranges& b) {
   return true;
 }
 
-/// Where two boxes overlap, draws the border between them where there is most room between what was seen of
-/// their colours; where there is none they stay as they are.
-void ColourLearner::separate(Ranges& a, const Ranges& seen_a, Ranges& b, const Ranges& seen_b) {
+/// Cuts two overlapping boxes on the channel with the widest gap between their observed ranges; leaves them
+/// as they are where there is no gap.
+void ColourLearner::separate(Ranges& a, const Ranges& observed_a, Ranges& b, const Ranges& observed_b) {
   if (!overlap(a, b)) return;
-  const auto room = [&](std::size_t c) {
-    return (c == 0 ? kTrust : 1.0) * std::abs(gap(seen_a[c], seen_b[c]));
+  const auto weighted_gap = [&](std::size_t c) {
+    return (c == 0 ? kBrightnessWeight : 1.0) * std::abs(gap(observed_a[c], observed_b[c]));
   };
   std::size_t best = 0;
   for (std::size_t c = 1; c < a.size(); ++c) {
-    if (room(c) > room(best)) best = c;
+    if (weighted_gap(c) > weighted_gap(best)) best = c;
   }
-  cut(a[best], seen_a[best], seen_b[best]);
-  cut(b[best], seen_b[best], seen_a[best]);
+  cut(a[best], observed_a[best], observed_b[best]);
+  cut(b[best], observed_b[best], observed_a[best]);
 }
 
 std::vector<ColourBox> ColourLearner::named_boxes() const {
   struct Learned {
     std::uint32_t colour;
-    Ranges seen, box;
+    Ranges observed, box;
   };
   std::vector<Learned> learned;
-  for (std::size_t k = 0; k < classes_.size(); ++k) {
-    if (classes_[k].count > 0)
+  for (std::size_t k = 0; k < colours_.size(); ++k) {
+    if (colours_[k].count > 0)
       learned.push_back(
-          {static_cast<std::uint32_t>(k), classes_[k].ranges(kOutliers), generous(classes_[k])});
+          {static_cast<std::uint32_t>(k), colours_[k].ranges(kOutlierShare), extended_box(colours_[k])});
   }
   if (background_.count > 0) {
-    // There is so much of the floor that every border that can be drawn is.
-    const Ranges floor = background_.ranges(kFloorOutliers);
+    // The floor covers most pixels, so boxes are cut on every channel that has a gap.
+    const Ranges floor = background_.ranges(kFloorOutlierShare);
     for (Learned& one : learned) {
-      for (std::size_t c = 0; c < floor.size(); ++c) cut(one.box[c], one.seen[c], floor[c]);
+      for (std::size_t c = 0; c < floor.size(); ++c) cut(one.box[c], one.observed[c], floor[c]);
     }
   }
   for (std::size_t i = 0; i < learned.size(); ++i) {
     for (std::size_t j = i + 1; j < learned.size(); ++j)
-      separate(learned[i].box, learned[i].seen, learned[j].box, learned[j].seen);
+      separate(learned[i].box, learned[i].observed, learned[j].box, learned[j].observed);
   }
   std::vector<ColourBox> boxes;
   for (const Learned& one : learned) {
@@ -152,32 +154,36 @@ std::vector<ColourBox> ColourLearner::named_boxes() const {
 std::vector<ColourBox> ColourLearner::other_boxes() const {
   std::vector<ColourBox> boxes;
   if (background_.count == 0) return boxes;
-  const Ranges floor = background_.ranges(kFloorOutliers), ground = background_.ranges(kGroundOutliers);
+  const Ranges floor = background_.ranges(kFloorOutlierShare),
+               ground = background_.ranges(kGroundOutlierShare);
   for (std::size_t band = 0; band < kBands; ++band) {
     const auto darkest = static_cast<std::uint8_t>(kBandEdges[band]);
     const auto brightest = static_cast<std::uint8_t>(kBandEdges[band + 1] - 1);
-    const int grey = static_cast<int>(kTint * brightest) + kNoise;
-    // The floor shines through at the edges of what is brighter or darker.
-    Ranges none = floor;
-    if (by_brightness_[band].count > 0) {
-      const Ranges seen = by_brightness_[band].ranges(kGroundOutliers);
+    const int grey_margin = static_cast<int>(kTintShare * brightest) + kNoiseMargin;
+    // The floor's chroma shows at the edges of brighter and darker objects.
+    Ranges excluded = floor;
+    if (background_bands_[band].count > 0) {
+      const Ranges observed = background_bands_[band].ranges(kGroundOutlierShare);
       for (std::size_t c = 1; c < 3; ++c)
-        none[c] = {std::min(none[c].low, seen[c].low), std::max(none[c].high, seen[c].high)};
+        excluded[c] = {std::min(excluded[c].low, observed[c].low),
+                       std::max(excluded[c].high, observed[c].high)};
     }
     for (std::size_t c = 1; c < 3; ++c) {
-      none[c] = {std::min(none[c].low - kClear, kGrey - grey), std::max(none[c].high + kClear, kGrey + grey)};
-      // Nothing in the floor's sixteenth of the range is another colour, or segmentation would lose its
-      // speed.
-      none[c].low = std::min(none[c].low, ground[c].low / kCoarse * kCoarse);
-      none[c].high = std::max(none[c].high, floor[c].high / kCoarse * kCoarse + kCoarse - 1);
+      excluded[c] = {std::min(excluded[c].low - kGroundMargin, kGrey - grey_margin),
+                     std::max(excluded[c].high + kGroundMargin, kGrey + grey_margin)};
+      // Values that share a high nibble with the floor are excluded: segmentation would otherwise have to
+      // compare most pixels exactly.
+      excluded[c].low = std::min(excluded[c].low, ground[c].low / kCoarseStep * kCoarseStep);
+      excluded[c].high =
+          std::max(excluded[c].high, floor[c].high / kCoarseStep * kCoarseStep + kCoarseStep - 1);
       const auto add = [&](int low, int high) {
         ColourBox box{{darkest, 0, 0}, {brightest, 255, 255}, kOtherColour};
         (c == 1 ? box.low.u : box.low.v) = static_cast<std::uint8_t>(low);
         (c == 1 ? box.high.u : box.high.v) = static_cast<std::uint8_t>(high);
         boxes.push_back(box);
       };
-      if (none[c].low > 0) add(0, none[c].low - 1);
-      if (none[c].high < 255) add(none[c].high + 1, 255);
+      if (excluded[c].low > 0) add(0, excluded[c].low - 1);
+      if (excluded[c].high < 255) add(excluded[c].high + 1, 255);
     }
   }
   return boxes;
@@ -186,9 +192,9 @@ std::vector<ColourBox> ColourLearner::other_boxes() const {
 std::vector<ColourBox> ColourLearner::boxes() const {
   std::vector<ColourBox> all = named_boxes();
   const std::vector<ColourBox> others = other_boxes();
-  const std::size_t room = kMaxColours - all.size();
+  const std::size_t free_boxes = kMaxColours - all.size();
   all.insert(all.end(), others.begin(),
-             others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
+             others.begin() + static_cast<std::ptrdiff_t>(std::min(free_boxes, others.size())));
   return all;
 }
 

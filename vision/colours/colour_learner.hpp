@@ -15,85 +15,83 @@
 
 namespace sidestep {
 
-/// Of boxes: the colour of what nobody named, which is neither the floor nor a colour that was learned. It
-/// stands behind those of Colours.
+/// Colour number of boxes for everything that is neither the floor nor a learned colour; follows those of
+/// Colour.
 inline constexpr std::uint32_t kOtherColour = kColours.size();
 
-/// As files spell it. Precondition: one of Colours, or kOtherColour.
+/// The name used in files. Precondition: the number of a Colour, or kOtherColour.
 constexpr std::string_view name_of_colour(std::uint32_t colour) {
   return colour == kOtherColour ? "other" : kColours[colour].name;
 }
 
-/// A disc of one colour that is known to be in a frame.
-struct KnownDisc {
+/// A disc of one colour whose position in a frame is known.
+struct LabelledDisc {
   Colour colour{};
   Vec2 centre_px{0, 0};
   double radius_px = 0;
 
-  /// Whether a pixel shows nothing else: the lens blurs the disc's edge.
+  /// Whether a pixel shows only the disc; the lens blurs its edge.
   bool is_inside(int x, int y) const { return (Vec2(x, y) - centre_px).norm() <= 0.6 * radius_px; }
-  /// Whether a pixel may show something of it.
+  /// Whether a pixel may show part of the disc.
   bool is_near(int x, int y) const { return (Vec2(x, y) - centre_px).norm() < 1.6 * radius_px + 3; }
 };
 
-/// Learns from frames in which is known what stands where by what numbers colours are to be told from each
-/// other and from the floor.
+/// Learns thresholds that separate colours from each other and from the floor, from frames with labelled
+/// discs.
 class ColourLearner {
  public:
-  /// Light may fall to this share of the least that was seen.
-  explicit ColourLearner(double least_light = 0.5) : least_light_(least_light) {}
+  /// Colours are recognised in light down to `min_light_ratio` of the darkest observed.
+  explicit ColourLearner(double min_light_ratio = 0.5) : min_light_ratio_(min_light_ratio) {}
 
-  /// The inner parts of discs are their colours; what is far from all discs is background, most of it floor.
-  /// `unknown` are discs of whatever colour, of which nothing is learned.
-  void add(const ImageView& image, std::span<const KnownDisc> discs, std::span<const KnownDisc> unknown = {});
-  /// One pixel of a colour.
-  void add(Colour colour, const Yuv& pixel) { classes_[static_cast<std::size_t>(colour)].add(pixel); }
-  /// One pixel of the background.
+  /// Adds a frame. The inner parts of `discs` show their colours; pixels far from all discs are background,
+  /// mostly floor. Nothing is learned from the discs in `ignored`.
+  void add(const ImageView& image, std::span<const LabelledDisc> discs,
+           std::span<const LabelledDisc> ignored = {});
+  /// Adds one pixel of a colour.
+  void add(Colour colour, const Yuv& pixel) { colours_[static_cast<std::size_t>(colour)].add(pixel); }
+  /// Adds one pixel of the background.
   void add_background(const Yuv& pixel);
 
-  /// Pixels seen of a colour so far.
-  std::uint64_t seen(Colour colour) const { return classes_[static_cast<std::size_t>(colour)].count; }
+  /// A box for each observed colour. It extends from two fifths of the way from grey to the colour, so that
+  /// regions keep their size and darker light is tolerated, to the end of the range. Towards another colour
+  /// or the floor the border is midway between the observed ranges. Boxes of colours that no border separates
+  /// overlap; the first one wins.
+  [[nodiscard]] std::vector<ColourBox> named_boxes() const;
 
-  /// A box for each colour that was seen. It reaches from two fifths of the way from grey to the colour, so
-  /// that patches keep their size and darker light does no harm, to the end of the range; where that comes
-  /// upon another colour or the floor the border lies half way between what was seen of the two. Colours that
-  /// cannot be told apart by a box keep boxes that overlap: then the first counts.
-  std::vector<ColourBox> named_boxes() const;
+  /// Boxes of kOtherColour for everything clearly outside the observed background and not grey in tinted
+  /// light; empty when no background was observed. They overlap with each other and with named boxes, which
+  /// must precede them.
+  [[nodiscard]] std::vector<ColourBox> other_boxes() const;
 
-  /// Boxes of kOtherColour for what is clearly none of the background that was seen, and not grey in light
-  /// that has a colour of its own; none when no background was seen. They overlap with each other and with
-  /// those of the colours, which have to count first.
-  std::vector<ColourBox> other_boxes() const;
-
-  /// Both, in the order in which they are to count.
-  std::vector<ColourBox> boxes() const;
+  /// Named boxes, followed by other boxes up to kMaxColours.
+  [[nodiscard]] std::vector<ColourBox> boxes() const;
 
  private:
   struct Range {
     int low = 0, high = 0;
   };
   using Ranges = std::array<Range, 3>;  ///< of Y, U and V
-  struct Seen {
+  struct Histogram {
     std::uint64_t count = 0;
-    std::array<std::array<std::uint64_t, 256>, 3> of{};  ///< by number, of Y, U and V
+    std::array<std::array<std::uint64_t, 256>, 3> bins{};  ///< of Y, U and V
 
     void add(const Yuv& pixel);
-    int at(std::size_t channel, double share) const;
-    Ranges ranges(double left_out) const;
+    int quantile(std::size_t channel, double share) const;
+    Ranges ranges(double outlier_share) const;
   };
 
-  Ranges generous(const Seen& seen) const;
+  Ranges extended_box(const Histogram& histogram) const;
   static int gap(const Range& own, const Range& other);
   static void cut(Range& box, const Range& own, const Range& other);
   static bool overlap(const Ranges& a, const Ranges& b);
-  static void separate(Ranges& a, const Ranges& seen_a, Ranges& b, const Ranges& seen_b);
+  static void separate(Ranges& a, const Ranges& observed_a, Ranges& b, const Ranges& observed_b);
 
   static constexpr std::size_t kBands = 3;
 
-  double least_light_;
-  std::array<Seen, kColours.size()> classes_;
-  Seen background_;
-  std::array<Seen, kBands> by_brightness_;  ///< the same, in bands
+  double min_light_ratio_;
+  std::array<Histogram, kColours.size()> colours_;
+  Histogram background_;
+  std::array<Histogram, kBands> background_bands_;  ///< the background by brightness
 };
 
 }  // namespace sidestep

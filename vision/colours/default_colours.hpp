@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// Thresholds for those who have no file: what a ColourLearner makes of the colours by name
-/// (common/marking/colours.hpp), as they are in full light down to 55 % of it, with a sensor's noise. Known
-/// are the colours that the layout wears and the ball's; the ground is carpet, white and black.
-ColourThresholds default_colours(PixelFormat format, const MarkingLayout& layout = butterfly());
+/// Thresholds for use without a file: what a ColourLearner learns from the named colours
+/// (common/marking/colours.hpp) between full light and 55 % of it, with sensor noise. Covers the colours of
+/// the layout and the ball; the ground is the field surface, white and black.
+[[nodiscard]] ColourThresholds default_colours(PixelFormat format, const MarkerLayout& layout = butterfly());
 
 }  // namespace sidestep

@@ -9,56 +9,59 @@
 namespace sidestep {
 namespace {
 
-// A ball is lit from above: what has its colour is a part of its disc.
-constexpr double kLeastBall = 0.25, kMostBall = 2.0;
+// Lit from above, a ball shows its colour on only a part of its disc.
+constexpr double kMinBallAreaRatio = 0.25, kMaxBallAreaRatio = 2.0;
 
-/// Dots of one colour are to stay apart.
+// A small merge gap keeps dots of one colour apart.
 constexpr SegmentationSettings kSegmentation{3, {0.5, 1}};
 
-double confidence_of(const MarkedRobot& robot, const MarkingLayout& layout) {
-  return robot.seen / static_cast<double>(layout.dots.size() + 1);
+double confidence_of(const DetectedPattern& pattern, const MarkerLayout& layout) {
+  return pattern.dot_count / static_cast<double>(layout.dots.size() + 1);
 }
 
-/// The sight of a robot ends so far outside it, and where it was expected it may be missed by so much.
-constexpr double kEdge_m = 0.01, kMissed_m = 0.04;
+// Margins around the radius within which pixels are attributed to a robot: one that was found, and one that
+// was expected but not found.
+constexpr double kFoundRobotMargin_m = 0.01, kMissedRobotMargin_m = 0.04;
 
-/// Tint moves a colour so far out of its thresholds; the other team's is so many times as far.
-constexpr double kTint = 24, kFar = 3;
+// A tinted centre may be this far outside its team's thresholds, in U and V, if the other team's are at least
+// this many times as far.
+constexpr double kMaxTeamDistance = 24, kMinTeamDistanceRatio = 3;
 
 std::uint32_t bit(Colour colour) { return std::uint32_t{1} << static_cast<std::uint32_t>(colour); }
 
-std::uint32_t worn_by(const MarkingLayout& layout) {
+std::uint32_t colours_of(const MarkerLayout& layout) {
   std::uint32_t colours = bit(layout.blue_team) | bit(layout.yellow_team);
-  for (const MarkingPattern& pattern : layout.patterns)
+  for (const MarkerPattern& pattern : layout.patterns)
     for (const Colour colour : pattern.colours) colours |= bit(colour);
   return colours;
 }
 
-ObstacleRules rules_for(const FrameTask& task) {
-  ObstacleRules rules;
-  rules.ground = (bit(Colour::kField) | bit(Colour::kWhite) | bit(Colour::kBlack)) & ~worn_by(task.layout);
-  rules.largest_dot_m = std::max(task.layout.centre.radius_m, task.ball_radius_m);
-  for (const MarkingDot& dot : task.layout.dots)
-    rules.largest_dot_m = std::max(rules.largest_dot_m, dot.radius_m);
-  rules.least_radius_m = task.least_obstacle_m;
-  rules.robot_height_m = task.robot_height_m;
-  rules.known = task.known_obstacles;
-  return rules;
+ObstacleFinderSettings obstacle_finder_settings(const DetectorSettings& settings) {
+  ObstacleFinderSettings result;
+  result.ground_colours =
+      (bit(Colour::kField) | bit(Colour::kWhite) | bit(Colour::kBlack)) & ~colours_of(settings.layout);
+  result.max_dot_radius_m = std::max(settings.layout.centre.radius_m, settings.ball_radius_m);
+  for (const Marker& dot : settings.layout.dots)
+    result.max_dot_radius_m = std::max(result.max_dot_radius_m, dot.radius_m);
+  result.min_radius_m = settings.min_obstacle_radius_m;
+  result.robot_height_m = settings.robot_height_m;
+  result.known_obstacles = settings.known_obstacles;
+  return result;
 }
 
 }  // namespace
 
-Detector::Detector(const CameraModel& camera, const FrameTask& task)
+Detector::Detector(const CameraModel& camera, const DetectorSettings& settings)
     : camera_(camera),
-      task_(task),
-      segmenter_(ColourClasses(task.boxes), kSegmentation),
-      finder_(task.layout),
-      identifier_(task.roster),
-      worn_(worn_by(task.layout)),
-      obstacle_finder_(camera, rules_for(task)) {}
+      settings_(settings),
+      segmenter_(ColourClasses(settings.boxes), kSegmentation),
+      pattern_finder_(settings.layout),
+      identifier_(settings.roster),
+      marking_colours_(colours_of(settings.layout)),
+      obstacle_finder_(camera, obstacle_finder_settings(settings)) {}
 
-void Detector::read(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
-                       msg::DetectionFrame& frame) {
+void Detector::detect(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
+                      msg::DetectionFrame& frame) {
   frame.captured_at_ns(to_ns(captured_at));
   regions_ = segmenter_.segment(image);
   find_robots(image, captured_at, expected, frame);
@@ -66,116 +69,123 @@ void Detector::read(const ImageView& image, Time captured_at, std::span<const Ex
   find_balls(frame);
 }
 
-/// Of U and V from what thresholds call this colour.
-double Detector::distance_from(Colour colour, const Vec2& uv) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const ColourBox& box : task_.boxes) {
+/// Distance of U and V from the nearest box of a colour.
+double Detector::chroma_distance(Colour colour, const Vec2& uv) const {
+  double min_distance = std::numeric_limits<double>::infinity();
+  for (const ColourBox& box : settings_.boxes) {
     if (box.colour != static_cast<std::uint32_t>(colour)) continue;
     const Vec2 low(box.low.u, box.low.v), high(box.high.u, box.high.v);
-    least = std::min(least, (uv - uv.cwiseMax(low).cwiseMin(high)).norm());
+    min_distance = std::min(min_distance, (uv - uv.cwiseMax(low).cwiseMin(high)).norm());
   }
-  return least;
+  return min_distance;
 }
 
-/// The team of a robot whose other dots were found, and whose centre has neither team's colour, as light's
-/// tint may have it: the one whose colour it nearly has, when the other's is far.
-std::optional<Team> Detector::team_at(const ImageView& image, const Vec2& centre_m) const {
-  const auto at = camera_.pixel_of({centre_m.x(), centre_m.y(), task_.robot_height_m});
-  if (!at) return std::nullopt;
-  const auto x = static_cast<int>(std::lround(at->x())), y = static_cast<int>(std::lround(at->y()));
+/// The team of a pattern whose centre dot is missing because tinted light moves it out of its team's
+/// thresholds: the team whose colour is near, if the other's is far.
+std::optional<Team> Detector::team_by_chroma(const ImageView& image, const Vec2& centre_m) const {
+  const auto centre = camera_.pixel_of({centre_m.x(), centre_m.y(), settings_.robot_height_m});
+  if (!centre) return std::nullopt;
+  const auto x = static_cast<int>(std::lround(centre->x())), y = static_cast<int>(std::lround(centre->y()));
   if (x < 1 || y < 1 || x + 1 >= image.width_px || y + 1 >= image.height_px) return std::nullopt;
   Vec2 uv(0, 0);
   for (int i = 0; i < 9; ++i) {
     const Yuv pixel = pixel_at(image, x - 1 + i % 3, y - 1 + i / 3);
     uv += Vec2(pixel.u, pixel.v) / 9;
   }
-  const double blue = distance_from(task_.layout.blue_team, uv);
-  const double yellow = distance_from(task_.layout.yellow_team, uv);
-  if (std::min(blue, yellow) > kTint || std::max(blue, yellow) < kFar * std::min(blue, yellow))
+  const double blue = chroma_distance(settings_.layout.blue_team, uv);
+  const double yellow = chroma_distance(settings_.layout.yellow_team, uv);
+  if (std::min(blue, yellow) > kMaxTeamDistance ||
+      std::max(blue, yellow) < kMinTeamDistanceRatio * std::min(blue, yellow))
     return std::nullopt;
   return blue < yellow ? Team::kBlue : Team::kYellow;
 }
 
-void Detector::find_robots(const ImageView& image, Time captured_at,
-                              std::span<const ExpectedRobot> expected, msg::DetectionFrame& frame) {
-  patches_.clear();
+void Detector::find_robots(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
+                           msg::DetectionFrame& frame) {
+  dot_regions_.clear();
   for (const Region& region : regions_) {
-    if ((worn_ >> region.colour & 1) == 0) continue;
-    if (const auto patch = patch_of(region, camera_, task_.robot_height_m)) patches_.push_back(*patch);
+    if ((marking_colours_ >> region.colour & 1) == 0) continue;
+    if (const auto projected = project_region(region, camera_, settings_.robot_height_m))
+      dot_regions_.push_back(*projected);
   }
-  const auto found = finder_.find(patches_);
-  marked_.assign(found.begin(), found.end());
-  for (MarkedRobot& robot : marked_) {
-    if (!robot.team) robot.team = team_at(image, robot.pose.to_world(task_.layout.centre.position_m));
+  const auto found = pattern_finder_.find(dot_regions_);
+  patterns_.assign(found.begin(), found.end());
+  for (DetectedPattern& pattern : patterns_) {
+    if (!pattern.team)
+      pattern.team = team_by_chroma(image, pattern.pose.to_world(settings_.layout.centre.position_m));
   }
-  robots_ = identifier_.identify(captured_at, marked_, expected);
+  robots_ = identifier_.identify(captured_at, patterns_, expected);
   frame.robots().clear();
   for (const IdentifiedRobot& robot : robots_) {
-    msg::RobotDetection seen;
-    seen.robot(robot.robot);
-    seen.x_m(robot.seen.pose.position_m.x());
-    seen.y_m(robot.seen.pose.position_m.y());
-    seen.heading_rad(wrapped_rad(robot.seen.pose.heading_rad));
-    seen.confidence(confidence_of(robot.seen, task_.layout));
-    frame.robots().push_back(seen);
+    msg::RobotDetection detection;
+    detection.robot(robot.robot);
+    detection.x_m(robot.pattern.pose.position_m.x());
+    detection.y_m(robot.pattern.pose.position_m.y());
+    detection.heading_rad(wrapped_rad(robot.pattern.pose.heading_rad));
+    detection.confidence(confidence_of(robot.pattern, settings_.layout));
+    frame.robots().push_back(detection);
   }
 }
 
-/// Whether a patch at the robots' height is a dot of one that was found: in coloured light it may seem to
-/// have another colour.
-bool Detector::is_dot(const Patch& patch) const {
-  const auto is_at = [&](const MarkedRobot& robot, const MarkingDot& dot) {
-    return (robot.pose.to_world(dot.position_m) - patch.position_m).norm() < dot.radius_m;
+/// Whether a region at the robots' height is a dot of an identified robot, which in tinted light may appear
+/// in another colour.
+bool Detector::is_robot_dot(const ProjectedRegion& region) const {
+  const auto is_at = [&](const DetectedPattern& pattern, const Marker& dot) {
+    return (pattern.pose.to_world(dot.position_m) - region.position_m).norm() < dot.radius_m;
   };
   return std::ranges::any_of(robots_, [&](const IdentifiedRobot& robot) {
-    return is_at(robot.seen, task_.layout.centre) ||
-           std::ranges::any_of(task_.layout.dots,
-                               [&](const MarkingDot& dot) { return is_at(robot.seen, dot); });
+    return is_at(robot.pattern, settings_.layout.centre) ||
+           std::ranges::any_of(settings_.layout.dots,
+                               [&](const Marker& dot) { return is_at(robot.pattern, dot); });
   });
 }
 
-/// The most likely ones by their size.
+/// Reports the regions whose area is nearest to a ball's.
 void Detector::find_balls(msg::DetectionFrame& frame) {
-  balls_.clear();
+  ball_regions_.clear();
   for (const Region& region : regions_) {
-    if (static_cast<Colour>(region.colour) != task_.ball || obstacle_finder_.is_part(region)) continue;
-    const auto on_top = patch_of(region, camera_, task_.robot_height_m);
-    const auto on_floor = patch_of(region, camera_, task_.ball_radius_m);
-    if (on_top && on_floor && !is_dot(*on_top)) balls_.push_back(*on_floor);
+    if (static_cast<Colour>(region.colour) != settings_.ball || obstacle_finder_.is_part_of_obstacle(region))
+      continue;
+    const auto at_robot_height = project_region(region, camera_, settings_.robot_height_m);
+    const auto at_ball_height = project_region(region, camera_, settings_.ball_radius_m);
+    if (at_robot_height && at_ball_height && !is_robot_dot(*at_robot_height))
+      ball_regions_.push_back(*at_ball_height);
   }
-  const double disc_m2 = std::numbers::pi * task_.ball_radius_m * task_.ball_radius_m;
-  std::erase_if(balls_, [&](const Patch& patch) {
-    return patch.area_m2 < kLeastBall * disc_m2 || patch.area_m2 > kMostBall * disc_m2;
+  const double disc_m2 = std::numbers::pi * settings_.ball_radius_m * settings_.ball_radius_m;
+  std::erase_if(ball_regions_, [&](const ProjectedRegion& region) {
+    return region.area_m2 < kMinBallAreaRatio * disc_m2 || region.area_m2 > kMaxBallAreaRatio * disc_m2;
   });
-  const auto surprise = [&](const Patch& patch) { return std::abs(std::log(patch.area_m2 / disc_m2)); };
-  std::ranges::sort(balls_, {}, surprise);
-  if (balls_.size() > msg::MAX_DETECTED_BALLS) balls_.resize(msg::MAX_DETECTED_BALLS);
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
+  const auto log_area_error = [&](const ProjectedRegion& region) {
+    return std::abs(std::log(region.area_m2 / disc_m2));
+  };
+  std::ranges::sort(ball_regions_, {}, log_area_error);
+  if (ball_regions_.size() > msg::MAX_DETECTED_BALLS) ball_regions_.resize(msg::MAX_DETECTED_BALLS);
+  for (std::size_t i = 0; i < ball_regions_.size(); ++i) {
     msg::BallDetection& ball = frame.balls()[i];
-    ball.x_m(balls_[i].position_m.x());
-    ball.y_m(balls_[i].position_m.y());
-    ball.confidence(std::exp(-surprise(balls_[i])));
+    ball.x_m(ball_regions_[i].position_m.x());
+    ball.y_m(ball_regions_[i].position_m.y());
+    ball.confidence(std::exp(-log_area_error(ball_regions_[i])));
   }
-  frame.ball_count(static_cast<std::uint8_t>(balls_.size()));
+  frame.ball_count(static_cast<std::uint8_t>(ball_regions_.size()));
 }
 
-/// On robots that were found, or are expected though they were not, there are none.
+/// Ignores pixels on robots that were found, and on robots that were expected but not found.
 void Detector::find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
-                                 msg::DetectionFrame& frame) {
-  feet_.clear();
-  for (const MarkedRobot& robot : marked_)
-    feet_.push_back({robot.pose.position_m, task_.robot_radius_m + kEdge_m});
+                              msg::DetectionFrame& frame) {
+  footprints_.clear();
+  for (const DetectedPattern& pattern : patterns_)
+    footprints_.push_back({pattern.pose.position_m, settings_.robot_radius_m + kFoundRobotMargin_m});
   for (const ExpectedRobot& robot : expected) {
     if (std::ranges::find(robots_, robot.robot, &IdentifiedRobot::robot) == robots_.end())
-      feet_.push_back({robot.pose.position_m, task_.robot_radius_m + kMissed_m});
+      footprints_.push_back({robot.pose.position_m, settings_.robot_radius_m + kMissedRobotMargin_m});
   }
   std::uint8_t count = 0;
-  for (const Circle& found : obstacle_finder_.find(image, segmenter_.classes(), regions_, feet_)) {
+  for (const Circle& obstacle : obstacle_finder_.find(image, segmenter_.classes(), regions_, footprints_)) {
     if (count == msg::MAX_OBSTACLES) break;
-    msg::ObstacleDetection& seen = frame.obstacles()[count++];
-    seen.x_m(found.centre_m.x());
-    seen.y_m(found.centre_m.y());
-    seen.radius_m(found.radius_m);
+    msg::ObstacleDetection& detection = frame.obstacles()[count++];
+    detection.x_m(obstacle.centre_m.x());
+    detection.y_m(obstacle.centre_m.y());
+    detection.radius_m(obstacle.radius_m);
   }
   frame.obstacle_count(count);
 }

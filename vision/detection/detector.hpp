@@ -14,57 +14,55 @@
 
 namespace sidestep {
 
-/// What cameras look for.
-struct FrameTask {
-  std::vector<ColourBox> boxes;  ///< of Colours, by their numbers, and of kOtherColour
-  MarkingLayout layout;
+struct DetectorSettings {
+  std::vector<ColourBox> boxes;  ///< numbered as Colour, or kOtherColour
+  MarkerLayout layout;
   std::vector<RosterEntry> roster;
   double robot_radius_m = 0.09;
   double robot_height_m = 0.15;
   double ball_radius_m = 0.0215;
   Colour ball = Colour::kOrange;
-  double least_obstacle_m = 0.03;       ///< radius below which nothing is an obstacle
-  std::vector<Circle> known_obstacles;  ///< that need not be told
+  double min_obstacle_radius_m = 0.03;
+  std::vector<Circle> known_obstacles;  ///< not reported
 };
 
-/// Reads one camera's frames: robots by their dots, balls, and as obstacles what else is not the ground
-/// (ObstacleFinder).
+/// Detects robots, balls and obstacles in the frames of one camera. Obstacles are all that is neither robot,
+/// ball nor ground (ObstacleFinder).
 class Detector {
  public:
-  Detector(const CameraModel& camera, const FrameTask& task);
+  Detector(const CameraModel& camera, const DetectorSettings& settings);
 
-  /// Sets all but the head and the camera. `expected` is where robots are taken to be when the frame is
-  /// captured. Precondition: the image has the camera's size.
-  void read(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
-            msg::DetectionFrame& frame);
+  /// Fills in the frame except its header and camera. `expected` holds predicted poses at the time of
+  /// capture. Precondition: the image has the camera's size.
+  void detect(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
+              msg::DetectionFrame& frame);
 
-  /// Of the last frame.
+  /// Regions of the last frame.
   std::span<const Region> regions() const { return regions_; }
-  std::span<const IdentifiedRobot> robots() const { return robots_; }
 
  private:
   void find_robots(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
                    msg::DetectionFrame& frame);
-  double distance_from(Colour colour, const Vec2& uv) const;
-  std::optional<Team> team_at(const ImageView& image, const Vec2& centre_m) const;
-  bool is_dot(const Patch& patch) const;
+  double chroma_distance(Colour colour, const Vec2& uv) const;
+  std::optional<Team> team_by_chroma(const ImageView& image, const Vec2& centre_m) const;
+  bool is_robot_dot(const ProjectedRegion& region) const;
   void find_balls(msg::DetectionFrame& frame);
   void find_obstacles(const ImageView& image, std::span<const ExpectedRobot> expected,
                       msg::DetectionFrame& frame);
 
   CameraModel camera_;
-  FrameTask task_;
+  DetectorSettings settings_;
   Segmenter segmenter_;
-  PatternFinder finder_;
+  PatternFinder pattern_finder_;
   Identifier identifier_;
-  std::uint32_t worn_;  ///< bit c: colour c is on somebody's dots
+  std::uint32_t marking_colours_;  ///< bit c: colour c occurs in the layout
   ObstacleFinder obstacle_finder_;
   std::span<const Region> regions_;
-  std::vector<MarkedRobot> marked_;
+  std::vector<DetectedPattern> patterns_;
   std::span<const IdentifiedRobot> robots_;
-  std::vector<Patch> patches_;
-  std::vector<Patch> balls_;
-  std::vector<Circle> feet_;
+  std::vector<ProjectedRegion> dot_regions_;
+  std::vector<ProjectedRegion> ball_regions_;
+  std::vector<Circle> footprints_;
 };
 
 }  // namespace sidestep

@@ -8,20 +8,19 @@ namespace sidestep {
 
 ImageInput::ImageInput(Bus& bus, ImageReader reader, VisionNode& to)
     : bus_(bus), reader_(std::move(reader)), node_(to) {
-  bus.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) { take(image); });
+  bus.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) { handle(image); });
 }
 
-void ImageInput::take(const msg::CameraImage& image) {
+void ImageInput::handle(const msg::CameraImage& image) {
   if (reader_.read(image, bus_.now(), node_.world(), frame_)) {
-    node_.take(frame_);
+    node_.add_frame(frame_);
     return;
   }
-  if (++refused_ < next_report_) return;
+  if (++rejected_ < next_report_) return;
   next_report_ *= 10;
-  fmt::print(
-      stderr,
-      "sidestep-vision: {} image(s) refused so far, the last of camera {}: {} x {} pixels in {} bytes\n",
-      refused_, image.camera(), image.width_px(), image.height_px(), image.pixels().size());
+  fmt::print(stderr,
+             "sidestep-vision: {} image(s) rejected so far; latest: camera {}, {} x {} pixels, {} bytes\n",
+             rejected_, image.camera(), image.width_px(), image.height_px(), image.pixels().size());
 }
 
 }  // namespace sidestep

@@ -6,30 +6,27 @@
 
 #include "common/messaging/bus.hpp"
 #include "vision/images/image_reader.hpp"
-#include "vision/vision_node.hpp"
+#include "vision/tracking/vision_node.hpp"
 
 namespace sidestep {
 
-/// Feeds a vision node with what the bus's images show, and says on stderr which images it cannot use. The
-/// bus must not call back any more when this has gone.
+/// Feeds a vision node with detections from images on the bus, and reports rejected images on stderr.
+/// Precondition: the bus makes no callbacks after this object's destruction.
 class ImageInput {
  public:
   ImageInput(Bus& bus, ImageReader reader, VisionNode& to);
   ImageInput(const ImageInput&) = delete;
   ImageInput& operator=(const ImageInput&) = delete;
 
-  /// Images that no camera of the scenario makes, or made long ago.
-  std::uint64_t refused() const { return refused_; }
-
  private:
-  void take(const msg::CameraImage& image);
+  void handle(const msg::CameraImage& image);
 
   Bus& bus_;
   ImageReader reader_;
   VisionNode& node_;
   msg::DetectionFrame frame_;
-  std::uint64_t refused_ = 0;
-  std::uint64_t next_report_ = 1;
+  std::uint64_t rejected_ = 0;
+  std::uint64_t next_report_ = 1;  ///< value of rejected_ at which it is reported
 };
 
 }  // namespace sidestep

@@ -6,8 +6,7 @@
 namespace sidestep {
 namespace {
 
-// What the world knew of a robot longer ago says nothing of where it is.
-constexpr double kOldest_s = 0.25;
+constexpr double kMaxWorldAge_s = 0.25;  // older poses are not extrapolated
 
 std::optional<PixelFormat> format_of(msg::ImageFormat format) {
   switch (format) {
@@ -21,16 +20,16 @@ std::optional<PixelFormat> format_of(msg::ImageFormat format) {
 
 }  // namespace
 
-FrameTask frame_task(const Scenario& scenario, const std::vector<ColourBox>& boxes,
-                     const MarkingLayout& layout) {
-  FrameTask task;
-  task.boxes = boxes;
-  task.layout = layout;
+DetectorSettings detector_settings(const Scenario& scenario, const std::vector<ColourBox>& boxes,
+                                   const MarkerLayout& layout) {
+  DetectorSettings settings;
+  settings.boxes = boxes;
+  settings.layout = layout;
   for (const RobotSpec& robot : scenario.robots)
-    task.roster.push_back({robot.id, robot.team, pattern_of(layout, robot.id)});
-  task.robot_radius_m = scenario.radius_m;
-  task.known_obstacles = scenario.obstacles;
-  return task;
+    settings.roster.push_back({robot.id, robot.team, pattern_of(layout, robot.id)});
+  settings.robot_radius_m = scenario.radius_m;
+  settings.known_obstacles = scenario.obstacles;
+  return settings;
 }
 
 std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera) {
@@ -44,10 +43,10 @@ std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraMo
 }
 
 ImageReader::ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras,
-                         const ColourThresholds& colours, const MarkingLayout& layout)
+                         const ColourThresholds& colours, const MarkerLayout& layout)
     : cameras_(std::move(cameras)), format_(colours.format) {
-  const FrameTask task = frame_task(scenario, colours.boxes, layout);
-  for (const CameraModel& camera : cameras_) readers_.emplace_back(camera, task);
+  const DetectorSettings settings = detector_settings(scenario, colours.boxes, layout);
+  for (const CameraModel& camera : cameras_) detectors_.emplace_back(camera, settings);
 }
 
 bool ImageReader::read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
@@ -56,17 +55,17 @@ bool ImageReader::read(const msg::CameraImage& message, Time now, const msg::Wor
   const auto view = view_of(message, cameras_[message.camera()]);
   if (!view || view->format != format_) return false;
   const Time captured_at = time_from_ns(message.captured_at_ns());
-  const double since_s = to_seconds(captured_at - time_from_ns(world.valid_at_ns()));
+  const double elapsed_s = to_seconds(captured_at - time_from_ns(world.valid_at_ns()));
   expected_.clear();
-  if (std::abs(since_s) <= kOldest_s) {
+  if (std::abs(elapsed_s) <= kMaxWorldAge_s) {
     for (const msg::TrackedRobot& robot : world.robots()) {
-      const Vec2 position_m(robot.x_m() + since_s * robot.vx_mps(), robot.y_m() + since_s * robot.vy_mps());
+      const Vec2 position_m(robot.x_m() + elapsed_s * robot.vx_mps(), robot.y_m() + elapsed_s * robot.vy_mps());
       expected_.push_back(
-          {robot.robot(), {position_m, wrapped_rad(robot.heading_rad() + since_s * robot.angular_radps())}});
+          {robot.robot(), {position_m, wrapped_rad(robot.heading_rad() + elapsed_s * robot.angular_radps())}});
     }
   }
   frame.camera(message.camera());
-  readers_[message.camera()].read(*view, captured_at, expected_, frame);
+  detectors_[message.camera()].detect(*view, captured_at, expected_, frame);
   return true;
 }
 

@@ -12,34 +12,33 @@
 
 namespace sidestep {
 
-/// The image that a message holds; nothing when its size or format does not fit its bytes or the camera.
-std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera);
+/// The image in a message; nothing when its size or format does not match its bytes or the camera.
+[[nodiscard]] std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera);
 
-/// What a scenario's cameras look for. Its robots wear the layout's pattern of their number; throws
+/// Detector settings for a scenario. Robots wear the layout's pattern of their number; throws
 /// std::invalid_argument when a robot's number has none.
-FrameTask frame_task(const Scenario& scenario, const std::vector<ColourBox>& boxes,
-                     const MarkingLayout& layout);
+[[nodiscard]] DetectorSettings detector_settings(const Scenario& scenario, const std::vector<ColourBox>& boxes,
+                                                 const MarkerLayout& layout);
 
-/// Reads the images of all cameras of a scenario.
+/// Runs detection on the images of all cameras of a scenario.
 class ImageReader {
  public:
-  /// `cameras` go by their numbers in messages. Throws as frame_task() does.
+  /// `cameras` are indexed by their numbers in messages. Throws as detector_settings() does.
   ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras, const ColourThresholds& colours,
-              const MarkingLayout& layout);
+              const MarkerLayout& layout);
 
-  /// What the image shows; all is set but the head. False, and nothing done, for an image that no camera here
-  /// makes now. `world` says where robots were lately.
+  /// Fills in the detections of an image, all but the frame's header. False, and the frame unchanged, when the
+  /// image is not timely or not from one of the cameras. `world` provides recent poses of the robots.
   bool read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
             msg::DetectionFrame& frame);
 
-  /// The camera's reader, and what it knows of its last image.
-  const Detector& camera(std::size_t number) const { return readers_[number]; }
+  const Detector& detector(std::size_t camera) const { return detectors_[camera]; }
   const std::vector<CameraModel>& cameras() const { return cameras_; }
 
  private:
   std::vector<CameraModel> cameras_;
   PixelFormat format_;
-  std::vector<Detector> readers_;
+  std::vector<Detector> detectors_;
   std::vector<ExpectedRobot> expected_;
 };
 

@@ -6,57 +6,65 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kSilence{3'000'000'000};
-constexpr double kSameField_m = 0.05;
+constexpr Duration kSilenceTimeout{3'000'000'000};
+constexpr double kFieldTolerance_m = 0.05;
 
 }  // namespace
 
-LeagueInput::LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddress& from, VisionNode& to)
+LeagueInput::LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddress& address,
+                         VisionNode& node)
     : bus_(bus),
-      address_(from),
+      address_(address),
       field_(scenario.field),
-      node_(to),
+      node_(node),
       source_(scenario),
-      receiver_(league::multicast_endpoint(from.endpoint), from.interface) {
+      receiver_(league::parse_multicast_endpoint(address.endpoint), address.interface) {
   bus.watch(receiver_.descriptor(), [this] {
     receiver_.receive([this](std::span<const std::byte> datagram, const league::Endpoint& sender) {
-      take(datagram, sender);
+      handle(datagram, sender);
     });
   });
-  fmt::print(stderr, "sidestep-vision: reads the league's packets of {} on {}\n", from.endpoint,
-             from.interface);
-  bus.at(bus.now() + kSilence, [this] { report_silence(); });
+  fmt::print(stderr, "sidestep-vision: receiving league packets from {} on interface {}\n", address.endpoint,
+             address.interface);
+  bus.at(bus.now() + kSilenceTimeout, [this] { report_silence(); });
 }
 
-void LeagueInput::take(std::span<const std::byte> datagram, const league::Endpoint& from) {
-  const msg::DetectionFrame* const frame = source_.take(datagram, from, bus_.now());
-  if (frame) node_.take(*frame);
-  if (source_.refusal() != league::Refusal::kNone) report_refusal(from);
+void LeagueInput::handle(std::span<const std::byte> datagram, const league::Endpoint& sender) {
+  const msg::DetectionFrame* const frame = source_.decode(datagram, sender, bus_.now());
+  if (frame) node_.add_frame(*frame);
+  if (source_.error() != league::DecodeError::kNone) report_rejection(sender);
   if (source_.field() && !has_reported_field_) report_field();
+  if (source_.clock_jumps() > reported_jumps_) report_clock_jump(sender);
 }
 
 void LeagueInput::report_silence() {
   if (source_.counts().packets > 0) return;
-  fmt::print(stderr, "sidestep-vision: no packet has come to {} on the interface {} yet\n", address_.endpoint,
-             address_.interface);
+  fmt::print(stderr, "sidestep-vision: no packet received from {} on interface {} so far\n",
+             address_.endpoint, address_.interface);
 }
 
-void LeagueInput::report_refusal(const league::Endpoint& from) {
-  if (source_.refused() < next_report_) return;
+void LeagueInput::report_rejection(const league::Endpoint& sender) {
+  if (source_.rejected() < next_report_) return;
   next_report_ *= 10;
-  fmt::print(stderr, "sidestep-vision: {} packet(s) refused so far; the latest, from {}: {}\n",
-             source_.refused(), to_text(from), in_words(source_.refusal()));
+  fmt::print(stderr, "sidestep-vision: {} packet(s) rejected so far; latest, from {}: {}\n",
+             source_.rejected(), to_text(sender), describe(source_.error()));
 }
 
 void LeagueInput::report_field() {
   has_reported_field_ = true;
-  const league::FieldSize& theirs = *source_.field();
-  if (std::abs(theirs.length_m - field_.length_m) <= kSameField_m &&
-      std::abs(theirs.width_m - field_.width_m) <= kSameField_m) {
+  const league::FieldSize& sender_field = *source_.field();
+  if (std::abs(sender_field.length_m - field_.length_m) <= kFieldTolerance_m &&
+      std::abs(sender_field.width_m - field_.width_m) <= kFieldTolerance_m) {
     return;
   }
-  fmt::print(stderr, "sidestep-vision: the sender's field is {:g} x {:g} m, the scenario's {:g} x {:g} m\n",
-             theirs.length_m, theirs.width_m, field_.length_m, field_.width_m);
+  fmt::print(stderr,
+             "sidestep-vision: the sender's field is {:g} x {:g} m, the scenario's is {:g} x {:g} m\n",
+             sender_field.length_m, sender_field.width_m, field_.length_m, field_.width_m);
+}
+
+void LeagueInput::report_clock_jump(const league::Endpoint& sender) {
+  reported_jumps_ = source_.clock_jumps();
+  fmt::print(stderr, "sidestep-vision: the clock of the sender {} has been set\n", to_text(sender));
 }
 
 }  // namespace sidestep

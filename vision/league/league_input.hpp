@@ -3,31 +3,33 @@
 
 #include <string>
 
-#include "common/messaging/dds/dds_bus.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "vision/league/league_source.hpp"
-#include "vision/vision_node.hpp"
+#include "vision/tracking/vision_node.hpp"
 
 namespace sidestep {
 
-/// Where the league's packets come from and go to.
+/// Where the league's packets are received.
 struct LeagueAddress {
-  std::string endpoint;  ///< ADDRESS:PORT of a group
+  std::string endpoint;  ///< ADDRESS:PORT of the multicast group
   std::string interface = league::kLeagueInterface;
 };
 
-/// Feeds a vision node with what comes from the league's multicast, and says on stderr what is wrong with it.
-/// The bus must not call back any more when this has gone. Throws as MulticastReceiver and LeagueSource do.
+/// Feeds a vision node with detections from the league's multicast, and reports problems on stderr.
+/// Precondition: the bus makes no callbacks after this object's destruction. Throws as MulticastReceiver and
+/// LeagueSource do.
 class LeagueInput {
  public:
-  LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddress& from, VisionNode& to);
+  LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddress& address, VisionNode& node);
   LeagueInput(const LeagueInput&) = delete;
   LeagueInput& operator=(const LeagueInput&) = delete;
 
  private:
-  void take(std::span<const std::byte> datagram, const league::Endpoint& from);
+  void handle(std::span<const std::byte> datagram, const league::Endpoint& sender);
   void report_silence();
-  void report_refusal(const league::Endpoint& from);
+  void report_rejection(const league::Endpoint& sender);
   void report_field();
+  void report_clock_jump(const league::Endpoint& sender);
 
   DdsBus& bus_;
   LeagueAddress address_;
@@ -35,8 +37,9 @@ class LeagueInput {
   VisionNode& node_;
   LeagueSource source_;
   league::MulticastReceiver receiver_;
-  std::uint64_t next_report_ = 1;
+  std::uint64_t next_report_ = 1;  ///< number of rejected packets at which it is reported
   bool has_reported_field_ = false;
+  std::uint64_t reported_jumps_ = 0;
 };
 
 }  // namespace sidestep

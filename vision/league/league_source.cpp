@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMostSenders = 16;
-/// Robots are at most 180 mm wide.
+constexpr std::size_t kMaxSenders = 16;
+/// The league limits robots to a diameter of 180 mm.
 constexpr double kLeagueRadius_m = 0.09;
 
 std::size_t index_of(Team team) { return team == Team::kBlue ? 0 : 1; }
@@ -16,13 +16,13 @@ std::size_t index_of(Team team) { return team == Team::kBlue ? 0 : 1; }
 }  // namespace
 
 LeagueSource::LeagueSource(const Scenario& scenario) {
-  require_own_numbers(scenario);
+  require_unique_numbers(scenario);
   for (const RobotSpec& robot : scenario.robots) ids_[index_of(robot.team)][number_of(robot.id)] = robot.id;
-  senders_.reserve(kMostSenders);
+  senders_.reserve(kMaxSenders);
 }
 
-std::uint64_t LeagueSource::refused() const {
-  return std::accumulate(counts_.refused.begin(), counts_.refused.end(), std::uint64_t{0});
+std::uint64_t LeagueSource::rejected() const {
+  return std::accumulate(counts_.rejected.begin(), counts_.rejected.end(), std::uint64_t{0});
 }
 
 std::uint64_t LeagueSource::clock_jumps() const {
@@ -31,49 +31,49 @@ std::uint64_t LeagueSource::clock_jumps() const {
   return sum;
 }
 
-const msg::DetectionFrame* LeagueSource::take(std::span<const std::byte> datagram,
-                                              const league::Endpoint& from, Time now) {
+const msg::DetectionFrame* LeagueSource::decode(std::span<const std::byte> datagram,
+                                                const league::Endpoint& endpoint, Time now) {
   ++counts_.packets;
   const auto decoded = league::decode_vision(datagram);
-  refusal_ = decoded.refusal;
+  error_ = decoded.error;
   if (!decoded.packet) {
-    ++counts_.refused[static_cast<std::size_t>(refusal_)];
+    ++counts_.rejected[static_cast<std::size_t>(error_)];
     return nullptr;
   }
   if (decoded.packet->geometry) field_ = decoded.packet->geometry->field;
   if (!decoded.packet->detection) return nullptr;
 
-  const league::Detection& detection = *decoded.packet->detection;
-  Sender& who = sender(from, now);
-  if (is_doubled(who, detection)) {
-    ++counts_.doubled;
+  const league::DetectionFrame& detection = *decoded.packet->detection;
+  Sender& sender = sender_at(endpoint, now);
+  if (is_duplicate(sender, detection)) {
+    ++counts_.duplicates;
     return nullptr;
   }
-  const auto captured_at = who.clock.add(detection.captured, detection.sent, now);
+  const auto captured_at = sender.clock.add(detection.captured, detection.sent, now);
   if (!captured_at) {
-    ++counts_.undated;
+    ++counts_.unsynchronised;
     return nullptr;
   }
-  fill(detection, *captured_at);
+  fill_frame(detection, *captured_at);
   ++counts_.frames;
   return &frame_;
 }
 
-LeagueSource::Sender& LeagueSource::sender(const league::Endpoint& endpoint, Time now) {
+LeagueSource::Sender& LeagueSource::sender_at(const league::Endpoint& endpoint, Time now) {
   auto found = std::find_if(senders_.begin(), senders_.end(),
                             [&](const Sender& sender) { return sender.endpoint == endpoint; });
-  if (found == senders_.end() && senders_.size() < kMostSenders) {
+  if (found == senders_.end() && senders_.size() < kMaxSenders) {
     found = senders_.insert(senders_.end(), Sender{endpoint});
   } else if (found == senders_.end()) {
     found = std::min_element(senders_.begin(), senders_.end(),
-                             [](const Sender& a, const Sender& b) { return a.heard < b.heard; });
+                             [](const Sender& a, const Sender& b) { return a.last_received < b.last_received; });
     *found = Sender{endpoint};
   }
-  found->heard = now;
+  found->last_received = now;
   return *found;
 }
 
-bool LeagueSource::is_doubled(Sender& sender, const league::Detection& detection) {
+bool LeagueSource::is_duplicate(Sender& sender, const league::DetectionFrame& detection) {
   const FrameKey key{detection.camera, detection.frame_number, detection.captured};
   if (std::find(sender.recent.begin(), sender.recent.end(), key) != sender.recent.end()) return true;
   sender.recent[sender.next_recent] = key;
@@ -81,57 +81,57 @@ bool LeagueSource::is_doubled(Sender& sender, const league::Detection& detection
   return false;
 }
 
-void LeagueSource::fill(const league::Detection& detection, Time captured_at) {
+void LeagueSource::fill_frame(const league::DetectionFrame& detection, Time captured_at) {
   frame_.camera(detection.camera);
   frame_.captured_at_ns(to_ns(captured_at));
   frame_.robots().clear();
   frame_.obstacle_count(0);
-  for (const league::SeenRobot& robot : detection.yellow) add(Team::kYellow, robot);
-  for (const league::SeenRobot& robot : detection.blue) add(Team::kBlue, robot);
+  for (const league::DetectedRobot& robot : detection.yellow) add_robot(Team::kYellow, robot);
+  for (const league::DetectedRobot& robot : detection.blue) add_robot(Team::kBlue, robot);
   add_balls(detection.balls);
 }
 
-void LeagueSource::add(Team team, const league::SeenRobot& robot) {
+void LeagueSource::add_robot(Team team, const league::DetectedRobot& robot) {
   const auto id = robot.number ? ids_[index_of(team)][*robot.number] : std::nullopt;
   if (!id) return add_obstacle(robot.position_m);
   if (!robot.heading_rad) {
-    ++counts_.detections;
+    ++counts_.dropped;
     return;
   }
-  msg::RobotDetection seen;
-  seen.robot(*id);
-  seen.x_m(robot.position_m.x());
-  seen.y_m(robot.position_m.y());
-  seen.heading_rad(*robot.heading_rad);
-  seen.confidence(robot.confidence);
-  frame_.robots().push_back(seen);
+  msg::RobotDetection converted;
+  converted.robot(*id);
+  converted.x_m(robot.position_m.x());
+  converted.y_m(robot.position_m.y());
+  converted.heading_rad(*robot.heading_rad);
+  converted.confidence(robot.confidence);
+  frame_.robots().push_back(converted);
 }
 
 void LeagueSource::add_obstacle(const Vec2& position_m) {
   const std::uint8_t count = frame_.obstacle_count();
   if (count == msg::MAX_OBSTACLES) {
-    ++counts_.detections;
+    ++counts_.dropped;
     return;
   }
-  msg::ObstacleDetection& seen = frame_.obstacles()[count];
-  seen.x_m(position_m.x());
-  seen.y_m(position_m.y());
-  seen.radius_m(kLeagueRadius_m);
+  msg::ObstacleDetection& obstacle = frame_.obstacles()[count];
+  obstacle.x_m(position_m.x());
+  obstacle.y_m(position_m.y());
+  obstacle.radius_m(kLeagueRadius_m);
   frame_.obstacle_count(static_cast<std::uint8_t>(count + 1));
 }
 
-void LeagueSource::add_balls(std::span<const league::SeenBall> balls) {
+void LeagueSource::add_balls(std::span<const league::DetectedBall> balls) {
   by_confidence_.clear();
-  for (const league::SeenBall& ball : balls) by_confidence_.push_back(&ball);
+  for (const league::DetectedBall& ball : balls) by_confidence_.push_back(&ball);
   const std::size_t count = std::min<std::size_t>(balls.size(), msg::MAX_DETECTED_BALLS);
-  counts_.detections += balls.size() - count;
+  counts_.dropped += balls.size() - count;
   std::stable_sort(by_confidence_.begin(), by_confidence_.end(),
                    [](const auto* a, const auto* b) { return a->confidence > b->confidence; });
   for (std::size_t i = 0; i < count; ++i) {
-    msg::BallDetection& seen = frame_.balls()[i];
-    seen.x_m(by_confidence_[i]->position_m.x());
-    seen.y_m(by_confidence_[i]->position_m.y());
-    seen.confidence(by_confidence_[i]->confidence);
+    msg::BallDetection& ball = frame_.balls()[i];
+    ball.x_m(by_confidence_[i]->position_m.x());
+    ball.y_m(by_confidence_[i]->position_m.y());
+    ball.confidence(by_confidence_[i]->confidence);
   }
   frame_.ball_count(static_cast<std::uint8_t>(count));
 }

@@ -15,36 +15,38 @@
 
 namespace sidestep {
 
-/// Makes of the league's vision packets what our own cameras send. Robots go by team and number; who has
-/// none, or one that no robot of the scenario has, is an obstacle with the radius of the league's robots.
-/// Each sender has a clock of its own. What is malformed, hostile, doubled or cannot be dated is counted and
-/// dropped.
+/// Converts the league's vision packets to detection frames. Robots are identified by team and number; a robot
+/// without a number, or with one that is not in the scenario, becomes an obstacle with the radius of a league
+/// robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and packets
+/// whose capture time cannot be determined, are counted and dropped.
 class LeagueSource {
  public:
   struct Counts {
     std::uint64_t packets = 0;
-    std::uint64_t frames = 0;                                ///< that take() has given
-    std::array<std::uint64_t, league::kRefusals> refused{};  ///< packets, by league::Refusal
-    std::uint64_t doubled = 0;                               ///< frames that had come before
-    std::uint64_t undated = 0;     ///< frames that came too late, or that a clock that was set stamped
-    std::uint64_t detections = 0;  ///< of frames, left out: balls or obstacles beyond what a frame holds, and
-                                   ///< robots of the scenario without a heading
+    std::uint64_t frames = 0;                                     ///< returned by decode()
+    std::array<std::uint64_t, league::kDecodeErrors> rejected{};  ///< packets, by league::DecodeError
+    std::uint64_t duplicates = 0;                                 ///< frames received before
+    std::uint64_t unsynchronised = 0;  ///< frames whose capture time could not be determined
+    std::uint64_t dropped = 0;         ///< detections: balls or obstacles beyond the capacity of a frame, and
+                                       ///< robots of the scenario without a heading
   };
 
-  /// Throws std::invalid_argument when two robots of the scenario have one team and number.
+  /// Throws std::invalid_argument when two robots of the scenario have the same team and number.
   explicit LeagueSource(const Scenario& scenario);
 
-  /// What a datagram says that came from there at that time, valid until the next call; nullptr for nothing.
-  const msg::DetectionFrame* take(std::span<const std::byte> datagram, const league::Endpoint& from,
-                                  Time now);
+  /// The detections in a datagram that has just been received; nullptr when there are none. Valid until the
+  /// next call.
+  [[nodiscard]] const msg::DetectionFrame* decode(std::span<const std::byte> datagram,
+                                                  const league::Endpoint& sender, Time now);
 
   const Counts& counts() const { return counts_; }
-  std::uint64_t refused() const;
-  /// Why the latest packet was refused; kNone when it was not.
-  league::Refusal refusal() const { return refusal_; }
-  /// Times that senders' clocks were found to have been set.
+  /// Number of packets rejected so far, for any reason.
+  std::uint64_t rejected() const;
+  /// Why the latest packet was rejected; kNone when it was not.
+  league::DecodeError error() const { return error_; }
+  /// Number of jumps detected in the senders' clocks.
   std::uint64_t clock_jumps() const;
-  /// The field of the latest geometry, of which nothing else is used.
+  /// The field of the latest geometry packet, the only part of it that is used.
   const std::optional<league::FieldSize>& field() const { return field_; }
 
  private:
@@ -56,25 +58,25 @@ class LeagueSource {
   };
   struct Sender {
     league::Endpoint endpoint;
-    Time heard{};
+    Time last_received{};
     SenderClock clock{};
-    std::array<FrameKey, 64> recent{};  ///< a ring: half a second of two cameras
+    std::array<FrameKey, 64> recent{};  ///< ring buffer: half a second of two cameras
     std::size_t next_recent = 0;
   };
 
-  Sender& sender(const league::Endpoint& endpoint, Time now);
-  static bool is_doubled(Sender& sender, const league::Detection& detection);
-  void fill(const league::Detection& detection, Time captured_at);
-  void add(Team team, const league::SeenRobot& robot);
+  Sender& sender_at(const league::Endpoint& endpoint, Time now);
+  static bool is_duplicate(Sender& sender, const league::DetectionFrame& detection);
+  void fill_frame(const league::DetectionFrame& detection, Time captured_at);
+  void add_robot(Team team, const league::DetectedRobot& robot);
   void add_obstacle(const Vec2& position_m);
-  void add_balls(std::span<const league::SeenBall> balls);
+  void add_balls(std::span<const league::DetectedBall> balls);
 
-  std::array<std::array<std::optional<RobotId>, league::kMaxNumbers>, 2> ids_;  ///< by team and number
+  std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;  ///< by team and number
   std::vector<Sender> senders_;
   msg::DetectionFrame frame_;
-  std::vector<const league::SeenBall*> by_confidence_;
+  std::vector<const league::DetectedBall*> by_confidence_;
   std::optional<league::FieldSize> field_;
-  league::Refusal refusal_ = league::Refusal::kNone;
+  league::DecodeError error_ = league::DecodeError::kNone;
   Counts counts_;
 };
 

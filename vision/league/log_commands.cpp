@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/league/log_commands.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <functional>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "common/league/log_file.hpp"
 #include "common/league/multicast.hpp"
 #include "common/messaging/dds/event_loop.hpp"
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "vision/league/replay.hpp"
@@ -30,23 +30,22 @@ struct LogOptions {
   double speed = 1;
 };
 
-void add_log_options(CLI::App& app, LogOptions& options) {
-  app.add_option("FILE", options.file, "log file, version 1")->required();
-  app.add_option("--ssl-vision", options.vision, "ADDRESS:PORT of vision packets")->capture_default_str();
-  app.add_option("--tracked", options.tracked, "ADDRESS:PORT of tracked packets")->capture_default_str();
-  app.add_option("--referee", options.referee, "ADDRESS:PORT of the referee's packets")
-      ->capture_default_str();
+void add_log_options(const Command& app, LogOptions& options) {
+  app.add_option("FILE", options.file, "log file, version 1").required();
+  app.add_option("--ssl-vision", options.vision, "ADDRESS:PORT of vision packets").show_default();
+  app.add_option("--tracked", options.tracked, "ADDRESS:PORT of tracked packets").show_default();
+  app.add_option("--referee", options.referee, "ADDRESS:PORT of the referee's packets").show_default();
   app.add_option("--league-interface", options.interface, "address of the network interface to use")
-      ->capture_default_str();
+      .show_default();
 }
 
-/// A sender for each of the groups.
-class Players {
+/// One sender per multicast group.
+class LogSenders {
  public:
-  explicit Players(const LogOptions& options)
-      : vision_(league::multicast_endpoint(options.vision), options.interface),
-        tracked_(league::multicast_endpoint(options.tracked), options.interface),
-        referee_(league::multicast_endpoint(options.referee), options.interface) {}
+  explicit LogSenders(const LogOptions& options)
+      : vision_(league::parse_multicast_endpoint(options.vision), options.interface),
+        tracked_(league::parse_multicast_endpoint(options.tracked), options.interface),
+        referee_(league::parse_multicast_endpoint(options.referee), options.interface) {}
 
   void send(const league::LogRecord& record) {
     league::MulticastSender& to = record.type == LogType::kTracked   ? tracked_
@@ -67,33 +66,33 @@ class Players {
 int replay(const LogOptions& options) {
   league::LogReader reader(options.file);
   if (options.seek_s > 0 && !reader.seek(from_seconds(options.seek_s))) {
-    throw std::invalid_argument(
-        fmt::format("{}: nothing was received {:g} s after the first packet or later{}", options.file,
-                    options.seek_s, reader.damage().empty() ? "" : "; " + reader.damage()));
+    throw std::invalid_argument(fmt::format("{}: --seek {:g}: the log has no packet that late{}",
+                                            options.file, options.seek_s,
+                                            reader.error().empty() ? "" : "; " + reader.error()));
   }
-  Players players(options);
+  LogSenders senders(options);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   Replay replay(reader, options.speed);
   const std::function<void()> advance = [&] {
     const auto next =
-        replay.advance(loop.now(), [&](const league::LogRecord& record) { players.send(record); });
+        replay.advance(loop.now(), [&](const league::LogRecord& record) { senders.send(record); });
     if (!next) return loop.stop();
     loop.at(*next, advance);
   };
   loop.at(loop.now(), advance);
   loop.run_until(Time::max());
-  fmt::print(stderr, "sidestep-vision replay: {}\n", players.summary());
-  if (!reader.damage().empty()) fmt::print(stderr, "sidestep-vision replay: {}\n", reader.damage());
-  return reader.end() == league::LogEnd::kDamaged ? kExitFailure : 0;
+  fmt::print(stderr, "sidestep-vision replay: {}\n", senders.summary());
+  if (!reader.error().empty()) fmt::print(stderr, "sidestep-vision replay: {}\n", reader.error());
+  return reader.status() == league::LogStatus::kCorrupt ? kExitFailure : 0;
 }
 
-/// Writes what comes to a group into a log.
+/// Records the packets of one multicast group.
 class Recorder {
  public:
   Recorder(EventLoop& loop, league::LogWriter& log, const std::string& endpoint, const std::string& interface,
            LogType type)
-      : receiver_(league::multicast_endpoint(endpoint), interface) {
+      : receiver_(league::parse_multicast_endpoint(endpoint), interface) {
     loop.watch(receiver_.descriptor(), [this, &log, type] {
       receiver_.receive([&](std::span<const std::byte> datagram, const league::Endpoint&) {
         log.add(EventLoop::now(), type, datagram);
@@ -112,37 +111,36 @@ int record(const LogOptions& options) {
   Recorder vision(loop, log, options.vision, options.interface, LogType::kVision);
   Recorder tracked(loop, log, options.tracked, options.interface, LogType::kTracked);
   Recorder referee(loop, log, options.referee, options.interface, LogType::kReferee);
-  fmt::print(stderr, "sidestep-vision record: writes {} until SIGINT\n", options.file);
+  fmt::print(stderr, "sidestep-vision record: recording to {}, stop with SIGINT\n", options.file);
   loop.run_until(Time::max());
   log.close();
-  fmt::print(stderr, "sidestep-vision record: {} packets\n", log.records());
+  fmt::print(stderr, "sidestep-vision record: {} packets recorded\n", log.records());
   return 0;
 }
 
 }  // namespace
 
 int replay_command(int argc, char** argv) {
-  CLI::App app("Sends the packets of a log again, as they were received.", "sidestep-vision replay");
+  CommandLine command_line("Sends the packets of a log with the timing with which they were received.",
+                           "sidestep-vision replay");
+  const Command app = command_line.root();
   LogOptions options;
   add_log_options(app, options);
-  app.add_option("--seek", options.seek_s, "seconds after the log's beginning to begin at")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  app.add_option("--speed", options.speed, "so many times as fast")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->capture_default_str();
-  const int exit_code = parse_options(app, argc, argv);
-  if (exit_code >= 0) return exit_code;
-  return guarded("sidestep-vision replay", [&] { return replay(options); });
+  app.add_option("--seek", options.seek_s, "start this many seconds after the first packet")
+      .check(in_range(0.0, 1e9))
+      .show_default();
+  app.add_option("--speed", options.speed, "speed factor").check(in_range(0.001, 1000.0)).show_default();
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  return run_guarded("sidestep-vision replay", [&] { return replay(options); });
 }
 
 int record_command(int argc, char** argv) {
-  CLI::App app("Writes what comes from the league's multicast into a log.", "sidestep-vision record");
+  CommandLine command_line("Records the league's multicast packets in a log.", "sidestep-vision record");
+  const Command app = command_line.root();
   LogOptions options;
   add_log_options(app, options);
-  const int exit_code = parse_options(app, argc, argv);
-  if (exit_code >= 0) return exit_code;
-  return guarded("sidestep-vision record", [&] { return record(options); });
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  return run_guarded("sidestep-vision record", [&] { return record(options); });
 }
 
 }  // namespace sidestep

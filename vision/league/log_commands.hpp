@@ -3,12 +3,12 @@
 
 namespace sidestep {
 
-/// `sidestep-vision replay FILE`: sends a log's packets again, as they were received. Returns the exit code;
-/// 1 when the file is damaged, after what came before has been sent.
+/// `sidestep-vision replay FILE`: sends a log's packets with the timing with which they were received. Returns
+/// the exit code: 1 when the file is corrupt, after the packets before the corruption have been sent.
 int replay_command(int argc, char** argv);
 
-/// `sidestep-vision record FILE`: writes what comes from the league's multicast into a log until it is told
-/// to stop. Returns the exit code.
+/// `sidestep-vision record FILE`: records the league's multicast packets in a log until SIGINT or SIGTERM.
+/// Returns the exit code.
 int record_command(int argc, char** argv);
 
 }  // namespace sidestep

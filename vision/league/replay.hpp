@@ -8,17 +8,17 @@
 
 namespace sidestep {
 
-/// Gives a log's records back in the rhythm in which they were received, so many times as fast.
+/// Replays a log's records with the timing with which they were received, scaled by a speed factor.
 class Replay {
  public:
   using Send = std::function<void(const league::LogRecord&)>;
 
-  /// Precondition: speed > 0. The reader stays the caller's.
+  /// Precondition: speed > 0, and the reader outlives this object.
   Replay(league::LogReader& reader, double speed) : reader_(reader), speed_(speed) {}
 
-  /// Sends what is due, and says when the next record will be; nothing at the log's end. The first call is
-  /// the beginning. Records that were received before the one ahead of them are due with it.
-  std::optional<Time> advance(Time now, const Send& send);
+  /// Sends the records that are due. Returns when the next one is due; nothing at the end of the log. The first
+  /// call starts the replay. A record received before its predecessor in the log is due with it.
+  [[nodiscard]] std::optional<Time> advance(Time now, const Send& send);
 
  private:
   Time due(Time received) const;

@@ -5,52 +5,53 @@
 
 namespace sidestep {
 
-Duration SenderClock::least() const {
-  return *std::min_element(least_.begin(), least_.begin() + static_cast<std::ptrdiff_t>(parts_));
+Duration SenderClock::min_lag() const {
+  return *std::min_element(min_lags_.begin(), min_lags_.begin() + static_cast<std::ptrdiff_t>(parts_));
 }
 
-void SenderClock::begin(Duration lag, Time arrival) {
-  least_[0] = lag;
+void SenderClock::reset(Duration lag, Time arrival) {
+  min_lags_[0] = lag;
   parts_ = 1;
   part_since_ = arrival;
-  doubt_ = {};
+  disagreement_ = {};
 }
 
-void SenderClock::note(Duration lag, Time arrival) {
-  doubt_ = {};
-  if (arrival - part_since_ < kPart) {
-    least_[0] = std::min(least_[0], lag);
+void SenderClock::update(Duration lag, Time arrival) {
+  disagreement_ = {};
+  if (arrival - part_since_ < kWindowPart) {
+    min_lags_[0] = std::min(min_lags_[0], lag);
     return;
   }
-  std::copy_backward(least_.begin(), least_.end() - 1, least_.end());
-  least_[0] = lag;
-  parts_ = std::min(parts_ + 1, kParts);
+  std::copy_backward(min_lags_.begin(), min_lags_.end() - 1, min_lags_.end());
+  min_lags_[0] = lag;
+  parts_ = std::min(parts_ + 1, kWindowParts);
   part_since_ = arrival;
 }
 
-bool SenderClock::is_jump(Duration lag, Time arrival, bool is_ahead) {
-  const bool agrees =
-      doubt_.count > 0 && lag >= doubt_.least - kMostAhead && lag <= doubt_.least + kMostAhead;
-  if (!agrees) doubt_ = {lag, arrival, 0};
-  doubt_.least = std::min(doubt_.least, lag);
-  ++doubt_.count;
-  return doubt_.count >= kAgreeing && (is_ahead || arrival - doubt_.since >= kAgreeingFor);
+bool SenderClock::confirms_jump(Duration lag, Time arrival, bool is_forward) {
+  const bool agrees = disagreement_.count > 0 && lag >= disagreement_.min_lag - kMaxAhead &&
+                      lag <= disagreement_.min_lag + kMaxAhead;
+  if (!agrees) disagreement_ = {lag, arrival, 0};
+  disagreement_.min_lag = std::min(disagreement_.min_lag, lag);
+  ++disagreement_.count;
+  return disagreement_.count >= kMinAgreeing &&
+         (is_forward || arrival - disagreement_.since >= kMinAgreementTime);
 }
 
 std::optional<Time> SenderClock::add(Duration captured, Duration sent, Time arrival) {
-  if (sent < captured || sent - captured > kMostDelay) sent = captured;
+  if (sent < captured || sent - captured > kMaxDelay) sent = captured;
   const Duration lag = arrival.time_since_epoch() - sent;
   if (parts_ == 0) {
-    settled_at_ = arrival + kSettling;
-    begin(lag, arrival);
-  } else if (lag < least() - kMostAhead || lag > least() + kMostDelay) {
-    if (!is_jump(lag, arrival, lag < least())) return std::nullopt;
+    settled_at_ = arrival + kSettlingTime;
+    reset(lag, arrival);
+  } else if (lag < min_lag() - kMaxAhead || lag > min_lag() + kMaxDelay) {
+    if (!confirms_jump(lag, arrival, lag < min_lag())) return std::nullopt;
     ++jumps_;
-    begin(doubt_.least, arrival);
+    reset(disagreement_.min_lag, arrival);
   } else {
-    note(lag, arrival);
+    update(lag, arrival);
   }
-  return arrival >= settled_at_ ? std::optional(Time{captured + least()}) : std::nullopt;
+  return arrival >= settled_at_ ? std::optional(Time{captured + min_lag()}) : std::nullopt;
 }
 
 }  // namespace sidestep

@@ -9,54 +9,55 @@
 
 namespace sidestep {
 
-/// Maps times of a sender's clock, whose zero is anywhere, to one's own from messages that come one way only.
-/// A message's arrival is later than its sending by the offset between the clocks and a delay; the least of
-/// these sums is the offset but for the least delay. It is taken over the last two seconds in which messages
-/// came, so clocks may drift by 200 ppm for an error of 0.4 ms, and a delayed message changes nothing as long
-/// as one in two seconds is on time. The sender's clock has to run as fast as one's own.
+/// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages. The
+/// lag of a message, arrival minus sending time, is the clock offset plus a delay. The minimum lag over the
+/// last two seconds in which messages arrived is the offset up to the minimum delay: a drift of 200 ppm causes
+/// an error of 0.4 ms, and delayed messages have no effect while one in two seconds is on time. The sender's
+/// clock must run at the rate of the local one.
 class SenderClock {
  public:
-  /// Beyond this a message is of no use any more, or the clock was set.
-  static constexpr Duration kMostDelay{500'000'000};
-  /// A sum that is less by more than this is not believed before others agree.
-  static constexpr Duration kMostAhead{50'000'000};
+  /// A message with a longer delay is useless, or the sender's clock has been set.
+  static constexpr Duration kMaxDelay{500'000'000};
+  /// A lag below the minimum by more than this is accepted only after other messages agree.
+  static constexpr Duration kMaxAhead{50'000'000};
 
-  /// For so long a sender is only listened to: who was held up finds its first messages all at once, and old.
-  static constexpr Duration kSettling{100'000'000};
+  /// Initial time without output: a process that was suspended receives old messages all at once.
+  static constexpr Duration kSettlingTime{100'000'000};
 
-  /// When a frame was captured, by one's own clock. `captured` and `sent` are by the sender's; a `sent` that
-  /// is before `captured` or more than kMostDelay after it is of another clock and not used. Nothing within
-  /// kSettling of the first message, for a message that came more than kMostDelay late, or that contradicts
-  /// those before: a clock that was set ahead is believed after 5 messages in a row that agree, one that was
-  /// set back after a second of them, since a process that was held up finds late messages only for a while.
-  std::optional<Time> add(Duration captured, Duration sent, Time arrival);
+  /// The local time of a frame's capture. `captured` and `sent` are by the sender's clock; a `sent` before
+  /// `captured` or more than kMaxDelay after it is from another clock and ignored. Nothing within
+  /// kSettlingTime of the first message, for a message delayed by more than kMaxDelay, and for one that
+  /// contradicts earlier messages. A clock that was set forward is accepted after 5 consecutive messages that
+  /// agree; one that was set back after 1 s of them, because a suspended process receives late messages only
+  /// for a short time.
+  [[nodiscard]] std::optional<Time> add(Duration captured, Duration sent, Time arrival);
 
-  /// Times that the sender's clock was found to have been set.
+  /// Number of jumps detected in the sender's clock.
   std::uint64_t jumps() const { return jumps_; }
 
  private:
-  static constexpr Duration kPart{250'000'000};
-  static constexpr std::size_t kParts = 8;
-  static constexpr int kAgreeing = 5;
-  static constexpr Duration kAgreeingFor{1'000'000'000};
+  static constexpr Duration kWindowPart{250'000'000};
+  static constexpr std::size_t kWindowParts = 8;
+  static constexpr int kMinAgreeing = 5;
+  static constexpr Duration kMinAgreementTime{1'000'000'000};
 
-  /// Messages in a row that contradict the estimate and agree with each other.
-  struct Doubt {
-    Duration least{0};
+  /// Consecutive messages that contradict the estimate and agree with each other.
+  struct Disagreement {
+    Duration min_lag{0};
     Time since{};
     int count = 0;
   };
 
-  Duration least() const;
-  void begin(Duration lag, Time arrival);
-  void note(Duration lag, Time arrival);
-  bool is_jump(Duration lag, Time arrival, bool is_ahead);
+  Duration min_lag() const;
+  void reset(Duration lag, Time arrival);
+  void update(Duration lag, Time arrival);
+  bool confirms_jump(Duration lag, Time arrival, bool is_forward);
 
-  std::array<Duration, kParts> least_{};  ///< of each part of the window, the newest first
-  std::size_t parts_ = 0;                 ///< in use
+  std::array<Duration, kWindowParts> min_lags_{};  ///< of each part of the window, newest first
+  std::size_t parts_ = 0;                          ///< in use
   Time part_since_{};
   Time settled_at_{};
-  Doubt doubt_;
+  Disagreement disagreement_;
   std::uint64_t jumps_ = 0;
 };
 

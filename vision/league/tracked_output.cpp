@@ -8,10 +8,10 @@
 namespace sidestep {
 namespace {
 
-constexpr std::int64_t kVisible_ns = 100'000'000;
+constexpr std::int64_t kVisibleFor_ns = 100'000'000;
 
-/// A random one (RFC 4122, version 4).
-std::string uuid(Rng rng) {
+/// A random UUID (RFC 4122, version 4).
+std::string random_uuid(Rng rng) {
   const std::uint64_t high = (rng.bits() & ~0xf000ULL) | 0x4000,
                       low = (rng.bits() & ~(3ULL << 62)) | 2ULL << 62;
   return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", high >> 32, high >> 16 & 0xffff, high & 0xffff,
@@ -21,8 +21,8 @@ std::string uuid(Rng rng) {
 }  // namespace
 
 TrackedOutput::TrackedOutput(const Scenario& scenario, Incarnation incarnation) : scenario_(scenario) {
-  require_own_numbers(scenario);
-  packet_.uuid = uuid(Rng(incarnation));
+  require_unique_numbers(scenario);
+  packet_.uuid = random_uuid(Rng(incarnation));
   packet_.source_name = "Sidestep";
   packet_.frame.emplace();
 }
@@ -42,7 +42,7 @@ const league::TrackedPacket& TrackedOutput::packet_of(const msg::WorldState& wor
     tracked.heading_rad = wrapped_rad(robot.heading_rad());
     tracked.velocity_mps = {robot.vx_mps(), robot.vy_mps()};
     tracked.angular_radps = robot.angular_radps();
-    tracked.visibility = world.valid_at_ns() - robot.seen_at_ns() <= kVisible_ns ? 1 : 0;
+    tracked.visibility = world.valid_at_ns() - robot.observed_at_ns() <= kVisibleFor_ns ? 1 : 0;
     frame.robots.push_back(tracked);
   }
   frame.balls.clear();

@@ -9,16 +9,16 @@
 
 namespace sidestep {
 
-/// Makes of worlds what others in the league read. Obstacles are left out: there is no word for them.
+/// Converts worlds to the league's tracked packets, which have no obstacles.
 class TrackedOutput {
  public:
-  /// The incarnation becomes the sender's unique name. Throws std::invalid_argument when two robots of the
-  /// scenario have one team and number.
+  /// The sender's UUID is derived from the incarnation. Throws std::invalid_argument when two robots of the
+  /// scenario have the same team and number.
   TrackedOutput(const Scenario& scenario, Incarnation incarnation);
 
-  /// Valid until the next call. A robot that was not seen for the last 100 ms is not visible, however well it
-  /// is known where it is.
-  const league::TrackedPacket& packet_of(const msg::WorldState& world);
+  /// Valid until the next call. A robot not observed in the last 100 ms is reported as not visible, whatever
+  /// its variance.
+  [[nodiscard]] const league::TrackedPacket& packet_of(const msg::WorldState& world);
 
  private:
   const Scenario scenario_;

@@ -7,19 +7,19 @@
 namespace sidestep {
 namespace {
 
-constexpr double kSeenBeside_m = 0.02;
+constexpr double kPositionTolerance_m = 0.02;
 
 std::size_t count(const std::vector<bool>& flags) {
   return static_cast<std::size_t>(std::ranges::count(flags, true));
 }
 
-std::vector<bool> both(const std::vector<bool>& a, const std::vector<bool>& b) {
+std::vector<bool> intersection(const std::vector<bool>& a, const std::vector<bool>& b) {
   std::vector<bool> result(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] && b[i];
   return result;
 }
 
-std::size_t only(const std::vector<bool>& flags) {
+std::size_t first_set(const std::vector<bool>& flags) {
   return static_cast<std::size_t>(std::ranges::find(flags, true) - flags.begin());
 }
 
@@ -28,66 +28,72 @@ std::size_t only(const std::vector<bool>& flags) {
 Identifier::Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings)
     : roster_(roster.begin(), roster.end()), settings_(settings) {}
 
-/// Who is seen elsewhere in the frame, by more dots, is not here.
-std::vector<bool> Identifier::fitting(const MarkedRobot& seen) const {
-  std::vector<bool> fits(roster_.size());
+/// Robots whose pattern matches, except those that a pattern with more dots has already identified in this
+/// frame.
+Identifier::RosterMask Identifier::matching_robots(const DetectedPattern& pattern) const {
+  RosterMask matches(roster_.size());
   for (std::size_t i = 0; i < roster_.size(); ++i) {
     const bool is_found = std::ranges::any_of(
         found_, [&](const IdentifiedRobot& found) { return found.robot == roster_[i].robot; });
-    fits[i] = !is_found && seen.can_be(roster_[i].team, roster_[i].pattern);
+    matches[i] = !is_found && pattern.matches(roster_[i].team, roster_[i].pattern);
   }
-  return fits;
+  return matches;
 }
 
-bool Identifier::is_expected_at(const ExpectedRobot& expected, const MarkedRobot& seen) const {
-  return (expected.pose.position_m - seen.pose.position_m).norm() <= settings_.gate_m &&
-         std::abs(wrapped_rad(expected.pose.heading_rad - seen.pose.heading_rad)) <= settings_.gate_rad;
+bool Identifier::is_within_gates(const ExpectedRobot& expected, const DetectedPattern& pattern) const {
+  return (expected.pose.position_m - pattern.pose.position_m).norm() <= settings_.gate_m &&
+         std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= settings_.gate_rad;
 }
 
-/// Two cannot stand in one place: who is expected there is who is there, or the dots were misread.
-std::vector<bool> Identifier::expected_there(const MarkedRobot& seen,
-                                             std::span<const ExpectedRobot> expected) const {
-  std::vector<bool> there(roster_.size());
+/// Two robots cannot occupy one position: a pattern here is an expected robot, or its dots were misread.
+Identifier::RosterMask Identifier::robots_expected_at(const DetectedPattern& pattern,
+                                                      std::span<const ExpectedRobot> expected) const {
+  RosterMask robots(roster_.size());
   for (const ExpectedRobot& one : expected) {
-    if (!is_expected_at(one, seen)) continue;
+    if (!is_within_gates(one, pattern)) continue;
     const auto entry = std::ranges::find(roster_, one.robot, &RosterEntry::robot);
-    if (entry != roster_.end()) there[static_cast<std::size_t>(entry - roster_.begin())] = true;
+    if (entry != roster_.end()) robots[static_cast<std::size_t>(entry - roster_.begin())] = true;
   }
-  return there;
+  return robots;
 }
 
-/// Who it may be by all that was seen of it so far.
-std::vector<bool> Identifier::remembered(Time captured_at, const MarkedRobot& seen, std::vector<bool> fits) {
-  std::erase_if(nameless_,
-                [&](const Nameless& one) { return captured_at - one.seen_at > settings_.forgets_after; });
-  const auto distance_m = [&](const Nameless& one) { return (one.position_m - seen.pose.position_m).norm(); };
-  const auto nearest = std::ranges::min_element(nameless_, {}, distance_m);
+/// Robots that match this pattern and all earlier observations of the same unidentified robot.
+Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const DetectedPattern& pattern,
+                                                       const RosterMask& matches) {
+  std::erase_if(unidentified_, [&](const UnidentifiedRobot& one) {
+    return captured_at - one.observed_at > settings_.history_timeout;
+  });
+  const auto distance_m = [&](const UnidentifiedRobot& one) {
+    return (one.position_m - pattern.pose.position_m).norm();
+  };
+  const auto nearest = std::ranges::min_element(unidentified_, {}, distance_m);
   const bool is_known =
-      nearest != nameless_.end() &&
+      nearest != unidentified_.end() &&
       distance_m(*nearest) <=
-          std::min(
-              settings_.gate_m,
-              kSeenBeside_m + settings_.speed_mps * std::abs(to_seconds(captured_at - nearest->seen_at)));
+          std::min(settings_.gate_m,
+                   kPositionTolerance_m + settings_.max_speed_mps *
+                                              std::abs(to_seconds(captured_at - nearest->observed_at)));
   if (!is_known) {
-    nameless_.push_back({seen.pose.position_m, captured_at, fits});
-    return fits;
+    unidentified_.push_back({pattern.pose.position_m, captured_at, matches});
+    return matches;
   }
-  std::vector<bool> left = both(fits, nearest->may_be);
-  if (count(left) == 0) left = fits;  // it was somebody else
-  *nearest = {seen.pose.position_m, captured_at, left};
-  return left;
+  RosterMask remaining = intersection(matches, nearest->matches);
+  if (count(remaining) == 0) remaining = matches;  // the earlier observations were of another robot
+  *nearest = {pattern.pose.position_m, captured_at, remaining};
+  return remaining;
 }
 
-std::span<const IdentifiedRobot> Identifier::identify(Time captured_at, std::span<const MarkedRobot> seen,
+std::span<const IdentifiedRobot> Identifier::identify(Time captured_at,
+                                                      std::span<const DetectedPattern> patterns,
                                                       std::span<const ExpectedRobot> expected) {
   found_.clear();
-  for (const MarkedRobot& robot : seen) {
-    std::vector<bool> fits = fitting(robot);
-    const std::vector<bool> there = expected_there(robot, expected);
-    const bool is_expected = count(there) > 0;
-    if (is_expected) fits = both(fits, there);
-    if (!is_expected && count(fits) > 1) fits = remembered(captured_at, robot, std::move(fits));
-    if (count(fits) == 1) found_.push_back({roster_[only(fits)].robot, robot});
+  for (const DetectedPattern& pattern : patterns) {
+    RosterMask matches = matching_robots(pattern);
+    const RosterMask expected_here = robots_expected_at(pattern, expected);
+    const bool is_expected = count(expected_here) > 0;
+    if (is_expected) matches = intersection(matches, expected_here);
+    if (!is_expected && count(matches) > 1) matches = narrowed_by_history(captured_at, pattern, matches);
+    if (count(matches) == 1) found_.push_back({roster_[first_set(matches)].robot, pattern});
   }
   return found_;
 }

@@ -10,14 +10,14 @@
 
 namespace sidestep {
 
-/// A robot that takes part, and what it wears.
+/// A participating robot, and the pattern it wears.
 struct RosterEntry {
   RobotId robot = 0;
   Team team = Team::kBlue;
-  MarkingPattern pattern;
+  MarkerPattern pattern;
 };
 
-/// Where a robot is expected.
+/// The predicted pose of a robot.
 struct ExpectedRobot {
   RobotId robot = 0;
   Pose pose;
@@ -25,43 +25,47 @@ struct ExpectedRobot {
 
 struct IdentifiedRobot {
   RobotId robot = 0;
-  MarkedRobot seen;
+  DetectedPattern pattern;
 };
 
 struct IdentifierSettings {
-  double gate_m = 0.09;   ///< who is expected within that of here is here: bodies have that radius
-  double gate_rad = 0.8;  ///< and within that of this heading
-  double speed_mps = 3;   ///< that no robot exceeds
-  Duration forgets_after{500'000'000};
+  double gate_m = 0.09;      ///< maximum distance from the expected position; the radius of a robot
+  double gate_rad = 0.8;     ///< maximum deviation from the expected heading
+  double max_speed_mps = 3;  ///< maximum speed of a robot
+  Duration history_timeout{500'000'000};
 };
 
-/// Says who the robots are whose dots were found. All dots together name a robot; with one missing several
-/// may fit, and then it is the one that is expected there, or the only one that fits all that was seen there
-/// before. Who is expected somewhere is not mistaken for somebody else because a dot was misread. What is not
-/// certain is nobody.
+/// Identifies robots by the colours of their dots. A complete pattern names one robot. With a dot missing,
+/// several robots may match; the robot expected at that position is chosen, or the only one that matches
+/// everything observed there so far. A robot expected at a position is not mistaken for another because a
+/// dot was misread. An ambiguous pattern stays unidentified.
 class Identifier {
  public:
   explicit Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings = {});
 
-  /// Of one camera's frames, in any order. At most one sight for each robot. Valid until the next call.
-  std::span<const IdentifiedRobot> identify(Time captured_at, std::span<const MarkedRobot> seen,
+  /// Identifies the patterns of one camera's frame; frames may come in any order. Returns each robot at most
+  /// once. Valid until the next call.
+  std::span<const IdentifiedRobot> identify(Time captured_at, std::span<const DetectedPattern> patterns,
                                             std::span<const ExpectedRobot> expected);
 
  private:
-  /// Somebody whose name is not known yet, and who it may be, as the roster.
-  struct Nameless {
+  /// Flags in the order of the roster.
+  using RosterMask = std::vector<bool>;
+  /// A robot observed without its identity being known.
+  struct UnidentifiedRobot {
     Vec2 position_m;
-    Time seen_at;
-    std::vector<bool> may_be;
+    Time observed_at;
+    RosterMask matches;  ///< robots that match all observations so far
   };
-  std::vector<bool> fitting(const MarkedRobot& seen) const;
-  bool is_expected_at(const ExpectedRobot& expected, const MarkedRobot& seen) const;
-  std::vector<bool> expected_there(const MarkedRobot& seen, std::span<const ExpectedRobot> expected) const;
-  std::vector<bool> remembered(Time captured_at, const MarkedRobot& seen, std::vector<bool> fits);
+  RosterMask matching_robots(const DetectedPattern& pattern) const;
+  bool is_within_gates(const ExpectedRobot& expected, const DetectedPattern& pattern) const;
+  RosterMask robots_expected_at(const DetectedPattern& pattern,
+                                std::span<const ExpectedRobot> expected) const;
+  RosterMask narrowed_by_history(Time captured_at, const DetectedPattern& pattern, const RosterMask& matches);
 
   std::vector<RosterEntry> roster_;
   IdentifierSettings settings_;
-  std::vector<Nameless> nameless_;
+  std::vector<UnidentifiedRobot> unidentified_;
   std::vector<IdentifiedRobot> found_;
 };
 

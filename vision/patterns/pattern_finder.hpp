@@ -8,63 +8,62 @@
 #include <vector>
 
 #include "common/marking/layout.hpp"
-#include "vision/patterns/patch.hpp"
 #include "vision/patterns/pose_fit.hpp"
+#include "vision/patterns/projected_region.hpp"
 
 namespace sidestep {
 
-/// Limits are on the floor, not in pixels: they hold wherever the camera hangs.
+/// All limits apply on the plane of the dots, not in pixels, so they hold at any camera height.
 struct PatternSettings {
-  double tolerance_m = 0.012;  ///< by which a dot may be seen beside where the others put it
-  double least_area = 0.3;     ///< of a dot's area, below which a patch is something else
-  double most_area = 2.5;      ///< and above which
+  double tolerance_m = 0.012;   ///< maximum distance of a dot from the position that the pose predicts
+  double min_area_ratio = 0.3;  ///< minimum area of a region, as a fraction of the dot's area
+  double max_area_ratio = 2.5;  ///< maximum area of a region, as a fraction of the dot's area
 };
 
-/// Dots that stand as a layout's do. At most one of them is missing.
-struct MarkedRobot {
+/// Dots arranged as in the layout, with at most one of them missing.
+struct DetectedPattern {
   Pose pose;
-  double residual_m = 0;     ///< root mean square distance of the dots from where the pose puts them
-  std::optional<Team> team;  ///< nothing: it is the centre dot that is missing
-  int seen = 0;              ///< dots, the centre included
-  std::array<std::optional<Colour>, kMaxDots> colours{};  ///< of the layout's dots; nothing: missing
+  double rms_residual_m = 0;  ///< root mean square distance of the dots from their predicted positions
+  std::optional<Team> team;   ///< nothing when the centre dot is missing
+  int dot_count = 0;          ///< dots found, the centre included
+  std::array<std::optional<Colour>, kMaxDots> colours{};  ///< of the layout's dots; nothing for a missing dot
 
-  /// Whether the dots that are seen are what this one wears.
-  bool can_be(Team its_team, const MarkingPattern& pattern) const;
+  /// Whether all dots found have the colours of this team and pattern.
+  [[nodiscard]] bool matches(Team other_team, const MarkerPattern& pattern) const;
 };
 
-/// Finds robots among patches by how their dots stand, whatever their colours: one dot that is missing, and
-/// dots that belong to nobody, do no harm. Who it is has to be told by the colours that are left
-/// (Identifier).
+/// Finds robots by the arrangement of their dots, regardless of the dots' colours. Tolerates one missing dot
+/// per robot and dots that belong to no robot. The colours identify the robot afterwards (Identifier).
 class PatternFinder {
  public:
-  explicit PatternFinder(const MarkingLayout& layout, const PatternSettings& settings = {});
+  explicit PatternFinder(const MarkerLayout& layout, const PatternSettings& settings = {});
 
-  /// Best first: more dots, then smaller residuals. No patch is used twice. Valid until the next call.
-  std::span<const MarkedRobot> find(std::span<const Patch> patches);
+  /// Best first: more dots, then smaller residuals. No region is used twice. Valid until the next call.
+  std::span<const DetectedPattern> find(std::span<const ProjectedRegion> regions);
 
  private:
   struct Candidate {
-    MarkedRobot robot;
-    int centre = -1;                   ///< index into centres_
+    DetectedPattern pattern;
+    int centre = -1;                   ///< index into centres_, -1: missing
     std::array<int, kMaxDots> dots{};  ///< indices into dots_, -1: missing
   };
-  void sort_out(std::span<const Patch> patches);
-  bool has_area_of(const Patch& patch, double radius_m) const;
-  int nearest_dot(const Vec2& at_m) const;
+  void classify_regions(std::span<const ProjectedRegion> regions);
+  bool has_disc_area(const ProjectedRegion& region, double radius_m) const;
+  int nearest_dot(const Vec2& position_m) const;
   std::optional<Candidate> candidate_at(const Pose& guess, int centre) const;
-  std::optional<Candidate> completed(Pose pose, int centre) const;
+  std::optional<Candidate> refined(const Pose& guess, int centre) const;
   std::optional<Candidate> best_around(int centre) const;
   void find_with_centres();
   void find_without_centres();
   void accept(const Candidate& candidate);
 
-  MarkingLayout layout_;
+  MarkerLayout layout_;
   PatternSettings settings_;
-  double reach_m_ = 0;  ///< of the dot farthest from the centre
-  std::vector<Patch> centres_, dots_;
-  std::vector<bool> is_taken_;  ///< as dots_
+  double max_dot_distance_m_ = 0;  ///< from the centre dot to the farthest other dot
+  std::vector<ProjectedRegion> centres_, dots_;
+  std::vector<bool> is_used_;  ///< in the order of dots_
   std::vector<Candidate> candidates_;
-  std::vector<MarkedRobot> found_;
+  std::vector<DetectedPattern> found_;
 };
 
 }  // namespace sidestep

@@ -5,28 +5,29 @@
 
 namespace sidestep {
 
-Pose fitted_pose(std::span<const SeenPoint> points) {
-  Vec2 centre(0, 0), seen(0, 0);
-  for (const SeenPoint& point : points) {
-    centre += point.of_robot_m;
-    seen += point.seen_m;
+Pose fit_pose(std::span<const PointCorrespondence> points) {
+  Vec2 body_centroid(0, 0), observed_centroid(0, 0);
+  for (const PointCorrespondence& point : points) {
+    body_centroid += point.body_m;
+    observed_centroid += point.observed_m;
   }
   const auto count = static_cast<double>(points.size());
-  centre /= count;
-  seen /= count;
-  double along = 0, across = 0;
-  for (const SeenPoint& point : points) {
-    const Vec2 r = point.of_robot_m - centre, s = point.seen_m - seen;
-    along += r.dot(s);
-    across += cross(r, s);
+  body_centroid /= count;
+  observed_centroid /= count;
+  double dot_sum = 0, cross_sum = 0;
+  for (const PointCorrespondence& point : points) {
+    const Vec2 body = point.body_m - body_centroid, observed = point.observed_m - observed_centroid;
+    dot_sum += body.dot(observed);
+    cross_sum += cross(body, observed);
   }
-  const double heading_rad = std::atan2(across, along);
-  return {seen - rotated(centre, heading_rad), heading_rad};
+  const double heading_rad = std::atan2(cross_sum, dot_sum);
+  return {observed_centroid - rotated(body_centroid, heading_rad), heading_rad};
 }
 
-double residual_m(const Pose& pose, std::span<const SeenPoint> points) {
+double rms_residual_m(const Pose& pose, std::span<const PointCorrespondence> points) {
   double sum = 0;
-  for (const SeenPoint& point : points) sum += (point.seen_m - pose.to_world(point.of_robot_m)).squaredNorm();
+  for (const PointCorrespondence& point : points)
+    sum += (point.observed_m - pose.to_world(point.body_m)).squaredNorm();
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 

@@ -11,21 +11,22 @@ struct Pose {
   Vec2 position_m{0, 0};
   double heading_rad = 0;
 
-  Vec2 to_world(const Vec2& of_robot_m) const { return position_m + rotated(of_robot_m, heading_rad); }
+  /// Transforms a point from the robot's frame to the world's.
+  Vec2 to_world(const Vec2& body_m) const { return position_m + rotated(body_m, heading_rad); }
 };
 
-/// A point of the robot, and where it is seen.
-struct SeenPoint {
-  Vec2 of_robot_m{0, 0};
-  Vec2 seen_m{0, 0};
+/// A point in the robot's frame, and the position in the world where it was observed.
+struct PointCorrespondence {
+  Vec2 body_m{0, 0};
+  Vec2 observed_m{0, 0};
 };
 
-/// The pose that puts the points where they are seen, by least squares (Bruce, appendix A.3): centroid onto
-/// centroid, turned by the angle of the sums of dot and cross products. Precondition: at least two points,
-/// not all in one place.
-Pose fitted_pose(std::span<const SeenPoint> points);
+/// The least-squares pose of a robot (Bruce, CMU-CS-06-181, appendix A.2.2): maps the centroid of the body
+/// points onto that of the observed points, and rotates by the angle of the sums of dot and cross products.
+/// Precondition: at least two points that do not coincide.
+[[nodiscard]] Pose fit_pose(std::span<const PointCorrespondence> points);
 
-/// The root of the mean squared distance between where the points are and where the pose puts them.
-double residual_m(const Pose& pose, std::span<const SeenPoint> points);
+/// Root mean square distance between the observed points and the body points at this pose.
+[[nodiscard]] double rms_residual_m(const Pose& pose, std::span<const PointCorrespondence> points);
 
 }  // namespace sidestep

@@ -15,18 +15,17 @@
 
 namespace sidestep {
 
-/// A pixel's brightness, and what it has more of blue and of red than that, as thresholds see it: for kYuv422
-/// what the frame holds; for kRgb, where thresholds of red, green and blue would not survive uneven light, Y
-/// = ((R + B + 1) / 2 + G + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, each rounded down.
-/// Precondition: the pixel in column x and row y exists.
+/// The numbers of a pixel that thresholds apply to. kYuv422: as the frame holds them. kRgb, where thresholds
+/// on red, green and blue would not tolerate uneven light: Y = ((R + B + 1) / 2 + G + 1) / 2,
+/// U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, each rounded down. Precondition: column x and row y exist.
 Yuv pixel_at(const ImageView& image, int x, int y);
 
-/// Pixels of a colour: all three numbers lie within low and high, both included. Precondition: none of low is
-/// above high's.
+/// The pixels of a colour: all three numbers lie between low and high, both included. Precondition: no
+/// component of low is above high's.
 struct ColourBox {
   Yuv low;
   Yuv high;
-  std::uint32_t colour = 0;  ///< below kMaxColours; several boxes may belong to one
+  std::uint32_t colour = 0;  ///< below kMaxColours; several boxes may share one
 };
 
 constexpr bool is_within(const ColourBox& box, const Yuv& pixel) {
@@ -36,23 +35,23 @@ constexpr bool is_within(const ColourBox& box, const Yuv& pixel) {
 
 inline constexpr std::size_t kMaxColours = segmentation::kMasks;
 
-/// Which colour a pixel has: thresholds by look-up of each number in a table of bits, one for each colour,
-/// and the bitwise AND of the three words (CMVision; Bruce, appendix A.2).
+/// Classifies pixels by colour: each number is looked up in a table with one bit per box, and the three words
+/// are combined by bitwise AND (CMVision; Bruce, CMU-CS-06-181, appendix A.1).
 class ColourClasses {
  public:
-  /// Where boxes overlap, the first one counts. Precondition: at most kMaxColours of them.
+  /// Where boxes overlap, the first one wins. Precondition: at most kMaxColours boxes.
   explicit ColourClasses(std::span<const ColourBox> boxes);
 
   std::span<const ColourBox> boxes() const { return boxes_; }
   /// Bit k: whether the pixel lies in box k.
   std::uint32_t bits(const Yuv& pixel) const { return y_[pixel.y] & u_[pixel.u] & v_[pixel.v]; }
-  /// That of the first box that the pixel lies in.
-  std::optional<std::uint32_t> colour_of(const Yuv& pixel) const {
-    const std::uint32_t found = bits(pixel);
-    if (found == 0) return std::nullopt;
-    return boxes_[static_cast<std::size_t>(std::countr_zero(found))].colour;
+  /// The colour of the first box that contains the pixel.
+  [[nodiscard]] std::optional<std::uint32_t> colour_of(const Yuv& pixel) const {
+    const std::uint32_t matches = bits(pixel);
+    if (matches == 0) return std::nullopt;
+    return boxes_[static_cast<std::size_t>(std::countr_zero(matches))].colour;
   }
-  /// By number, which boxes have it within: bit k for box k.
+  /// By value, the boxes whose range contains it: bit k for box k.
   std::span<const std::uint32_t, 256> y() const { return y_; }
   std::span<const std::uint32_t, 256> u() const { return u_; }
   std::span<const std::uint32_t, 256> v() const { return v_; }

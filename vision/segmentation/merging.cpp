@@ -24,37 +24,37 @@ double density(const Region& region) {
   return region.area_px / (width * height);
 }
 
-bool is_swallowed(const Region& region) { return region.area_px == 0; }
+bool is_absorbed(const Region& region) { return region.area_px == 0; }
 
-/// What begins farther down, or has another colour, cannot; nor can anything after it.
-bool may_touch(const Region& upper, const Region& lower, const MergeSettings& settings) {
-  return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= settings.most_gap_px;
+/// False for a region of another colour or too far below, and then for all regions after it.
+bool is_within_rows(const Region& upper, const Region& lower, const MergeSettings& settings) {
+  return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= settings.max_gap_px;
 }
 
-bool are_beside(const Region& a, const Region& b, const MergeSettings& settings) {
-  return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) - 1 <= settings.most_gap_px;
+bool is_within_columns(const Region& a, const Region& b, const MergeSettings& settings) {
+  return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) - 1 <= settings.max_gap_px;
 }
 
 }  // namespace
 
 void merge_by_density(std::vector<Region>& regions, const MergeSettings& settings) {
-  if (settings.most_gap_px < 0) return;
+  if (settings.max_gap_px < 0) return;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (is_swallowed(regions[i])) continue;
+    if (is_absorbed(regions[i])) continue;
     std::size_t j = i + 1;
-    while (j < regions.size() && may_touch(regions[i], regions[j], settings)) {
+    while (j < regions.size() && is_within_rows(regions[i], regions[j], settings)) {
       const Region both = merged(regions[i], regions[j]);
-      if (is_swallowed(regions[j]) || !are_beside(regions[i], regions[j], settings) ||
-          density(both) < settings.least_density) {
+      if (is_absorbed(regions[j]) || !is_within_columns(regions[i], regions[j], settings) ||
+          density(both) < settings.min_density) {
         ++j;
         continue;
       }
       regions[i] = both;
       regions[j].area_px = 0;
-      j = i + 1;  // those that were passed over may fit now
+      j = i + 1;  // regions that were skipped may fit the larger one
     }
   }
-  std::erase_if(regions, is_swallowed);
+  std::erase_if(regions, is_absorbed);
 }
 
 }  // namespace sidestep

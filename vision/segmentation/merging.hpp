@@ -8,13 +8,14 @@
 namespace sidestep {
 
 struct MergeSettings {
-  double least_density = 0.5;  ///< share of the common bounding box that both together fill
-  int most_gap_px = 2;         ///< columns or rows between their bounding boxes; below 0: nothing is merged
+  double min_density = 0.5;  ///< share of the common bounding box that both regions fill together
+  int max_gap_px = 2;        ///< columns or rows between their bounding boxes; negative: no merging
 };
 
-/// Makes one region of two of a colour that lie close and together fill their bounding box well: a patch that
-/// noise or a line has torn apart (CMVision; Bruce, appendix A.2). Each takes what it can of those that begin
-/// farther down. Precondition: regions of a colour stand side by side, ascending by top_px; they stay so.
+/// Merges regions of one colour that are close and together fill their common bounding box well: parts of one
+/// patch of colour that noise or a line has split (CMVision; Bruce, CMU-CS-06-181, appendix A.1). Each region
+/// absorbs regions that start farther down. Precondition: regions are grouped by colour, ascending by top_px;
+/// the order is preserved.
 void merge_by_density(std::vector<Region>& regions, const MergeSettings& settings);
 
 }  // namespace sidestep

@@ -5,14 +5,14 @@
 
 namespace sidestep {
 
-/// Pixels of one colour that hang together, corners included. Pixel (0, 0) is the upper left one, and a
-/// pixel's centre has whole numbers.
+/// A connected component of one colour in 8-connectivity. Pixel (0, 0) is the upper left one; whole numbers
+/// are the centres of pixels.
 struct Region {
-  std::uint32_t colour = 0;   ///< of the boxes that its pixels lie in
+  std::uint32_t colour = 0;
   std::uint32_t area_px = 0;  ///< number of pixels
-  double x_px = 0;            ///< their mean
+  double x_px = 0;            ///< centroid
   double y_px = 0;
-  int left_px = 0;  ///< columns and rows of the outermost ones
+  int left_px = 0;  ///< bounding box, inclusive
   int right_px = 0;
   int top_px = 0;
   int bottom_px = 0;

@@ -27,13 +27,14 @@ std::uint32_t RegionBuilder::root_of(std::uint32_t region) {
 
 std::uint32_t RegionBuilder::united(std::uint32_t a, std::uint32_t b) {
   if (a == b) return a;
-  // The older one stays, so that finish() meets parents before their children.
+  // The older region becomes the parent: finish() counts down, and so reaches children before their parents.
   if (b < a) std::swap(a, b);
   regions_[b].parent = a;
   return a;
 }
 
-/// The one region of all runs above that a run touches; none: a new one. `above` goes on from run to run.
+/// The merged region of all runs above that a run touches, or a new one. `above` is the index of the first
+/// run above that may touch; it advances from run to run.
 std::uint32_t RegionBuilder::region_for(const Run& run, std::size_t& above) {
   while (above < row_above_.size() && row_above_[above].end_px < run.begin_px) ++above;
   std::uint32_t region = kNone;
@@ -43,14 +44,11 @@ std::uint32_t RegionBuilder::region_for(const Run& run, std::size_t& above) {
     region = region == kNone ? touched : united(region, touched);
   }
   if (region != kNone) return region;
-  if (regions_.size() == kMaxRegions) {
-    ++left_out_;
-    return kNone;
-  }
-  const auto made = static_cast<std::uint32_t>(regions_.size());
-  constexpr int kFar = std::numeric_limits<int>::max();
-  regions_.push_back({made, 0, 0, 0, kFar, -kFar, kFar, -kFar});
-  return made;
+  if (regions_.size() == kMaxRegions) return kNone;
+  const auto created = static_cast<std::uint32_t>(regions_.size());
+  constexpr int kMax = std::numeric_limits<int>::max();
+  regions_.push_back({created, 0, 0, 0, kMax, -kMax, kMax, -kMax});
+  return created;
 }
 
 void RegionBuilder::add(const Run& run, int y_px) {
@@ -75,7 +73,7 @@ void RegionBuilder::end_row(int y_px) {
   row_.clear();
 }
 
-void RegionBuilder::finish(std::uint32_t colour, std::uint32_t least_area_px, std::vector<Region>& regions) {
+void RegionBuilder::finish(std::uint32_t colour, std::uint32_t min_area_px, std::vector<Region>& regions) {
   for (std::size_t i = regions_.size(); i-- > 0;) {
     const Sums& part = regions_[i];
     if (part.parent == i) continue;
@@ -90,16 +88,16 @@ void RegionBuilder::finish(std::uint32_t colour, std::uint32_t least_area_px, st
   }
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     const Sums& sums = regions_[i];
-    if (sums.parent != i || sums.area_px < least_area_px) continue;
+    if (sums.parent != i || sums.area_px < min_area_px) continue;
     const auto area = static_cast<double>(sums.area_px);
     regions.push_back({colour, sums.area_px, static_cast<double>(sums.x_px) / area,
                        static_cast<double>(sums.y_px) / area, sums.left_px, sums.right_px, sums.top_px,
                        sums.bottom_px});
   }
-  // They change places from row to row.
-  const std::size_t most = std::max(row_.capacity(), row_above_.capacity());
-  row_.reserve(most);
-  row_above_.reserve(most);
+  // The two rows are swapped after every row: equal capacities avoid later allocations.
+  const std::size_t capacity = std::max(row_.capacity(), row_above_.capacity());
+  row_.reserve(capacity);
+  row_above_.reserve(capacity);
 }
 
 }  // namespace sidestep

@@ -9,17 +9,17 @@
 
 namespace sidestep {
 
-/// Puts the runs of one colour together to regions, row by row: a run belongs to the regions of the row above
-/// that it touches, corners included, and union-find makes one of them (CMVision; Bruce, appendix A.2). Keeps
-/// two rows of runs and sums for each region. Allocates when a frame has more runs in a row, or more regions,
-/// than any before.
+/// Joins the runs of one colour to regions, row by row: a run belongs to the regions of all runs in the row
+/// above that it touches, corners included, and union-find merges these (CMVision; Bruce, CMU-CS-06-181,
+/// appendix A.1). Stores two rows of runs, and sums for each region. Allocates when a frame has more runs in
+/// a row, or more regions, than any before.
 class RegionBuilder {
  public:
-  /// A frame with more regions than this in one colour is noise: what begins then is left out and counted.
+  /// A frame with more regions in one colour is noise: regions that start after these are dropped.
   static constexpr std::size_t kMaxRegions = 1 << 16;
 
   void begin_frame();
-  /// Pixels begin .. end - 1 of the current row, in ascending order.
+  /// Adds pixels begin .. end - 1 of the current row, in ascending order.
   void add_run(int begin_px, int end_px) {
     if (!row_.empty() && row_.back().end_px == begin_px) {
       row_.back().end_px = end_px;
@@ -27,12 +27,11 @@ class RegionBuilder {
       row_.push_back({begin_px, end_px, 0});
     }
   }
-  /// Every row is to be ended in which, or in the row above which, there are runs.
+  /// Whether the current row or the row above has runs; only then must the row be ended.
   bool has_runs() const { return !row_.empty() || !row_above_.empty(); }
   void end_row(int y_px);
-  /// Appends the regions of at least so many pixels.
-  void finish(std::uint32_t colour, std::uint32_t least_area_px, std::vector<Region>& regions);
-  std::uint64_t left_out() const { return left_out_; }
+  /// Appends the regions of at least `min_area_px` pixels.
+  void finish(std::uint32_t colour, std::uint32_t min_area_px, std::vector<Region>& regions);
 
  private:
   struct Run {
@@ -40,7 +39,7 @@ class RegionBuilder {
     std::uint32_t region;
   };
   struct Sums {
-    std::uint32_t parent;  ///< itself, if nobody
+    std::uint32_t parent;  ///< its own index for a root
     std::uint32_t area_px = 0;
     std::uint64_t x_px = 0, y_px = 0;
     int left_px, right_px, top_px, bottom_px;
@@ -53,7 +52,6 @@ class RegionBuilder {
 
   std::vector<Run> row_, row_above_;
   std::vector<Sums> regions_;
-  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace sidestep

@@ -11,13 +11,15 @@ namespace {
 
 using namespace segmentation;
 
-template <typename Do>
-void for_each_bit(std::uint32_t bits, Do what) {
-  for (; bits != 0; bits &= bits - 1) what(static_cast<std::size_t>(std::countr_zero(bits)));
+constexpr std::size_t kBoxGroups = 8;  // as many as a byte of CoarseTables has bits
+
+template <typename Visit>
+void for_each_bit(std::uint32_t bits, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-void repeat(Repeated& row, std::uint8_t even, std::uint8_t odd) {
-  for (std::size_t i = 0; i < sizeof row.bytes; ++i) row.bytes[i] = i % 2 == 0 ? even : odd;
+void fill(VectorConstant& constant, std::uint8_t even, std::uint8_t odd) {
+  for (std::size_t i = 0; i < sizeof constant.bytes; ++i) constant.bytes[i] = i % 2 == 0 ? even : odd;
 }
 
 std::uint8_t span_of(std::uint8_t low, std::uint8_t high) { return static_cast<std::uint8_t>(high - low); }
@@ -27,19 +29,19 @@ Thresholds thresholds_of(const ColourBox& box) {
                      v = span_of(box.low.v, box.high.v);
   Thresholds t;
   t.colour = box.colour;
-  repeat(t.y_low, box.low.y, box.low.y);
-  repeat(t.y_span, y, y);
-  repeat(t.u_low, box.low.u, box.low.u);
-  repeat(t.u_span, u, u);
-  repeat(t.v_low, box.low.v, box.low.v);
-  repeat(t.v_span, v, v);
-  repeat(t.uv_low, box.low.u, box.low.v);
-  repeat(t.uv_span, u, v);
+  fill(t.y_low, box.low.y, box.low.y);
+  fill(t.y_span, y, y);
+  fill(t.u_low, box.low.u, box.low.u);
+  fill(t.u_span, u, u);
+  fill(t.v_low, box.low.v, box.low.v);
+  fill(t.v_span, v, v);
+  fill(t.uv_low, box.low.u, box.low.v);
+  fill(t.uv_span, u, v);
   return t;
 }
 
-/// The upper halves of the numbers that boxes allow: bit i for i.
-struct UpperHalves {
+/// The high nibbles of the values that a group of boxes accepts: bit i for nibble i.
+struct HighNibbles {
   std::array<std::uint32_t, 3> of{};  ///< of Y, U and V
 
   void add(const ColourBox& box) {
@@ -50,44 +52,44 @@ struct UpperHalves {
     of[1] |= range(box.low.u, box.high.u);
     of[2] |= range(box.low.v, box.high.v);
   }
-  /// How many pairs of U and V they allow.
+  /// The number of pairs of U and V nibbles accepted.
   int pairs() const { return std::popcount(of[1]) * std::popcount(of[2]); }
 };
 
-/// Puts a box into a group that allows what it does, else into an empty one, and when there is none into that
-/// which thereby allows least more. Returns the group's bit.
-std::uint32_t joined(std::array<UpperHalves, 8>& groups, const ColourBox& box) {
+/// Adds a box to the group that accepts the fewest additional pairs as a result; an empty group counts as one
+/// additional pair. Returns the group's bit.
+std::uint32_t add_to_group(std::array<HighNibbles, kBoxGroups>& groups, const ColourBox& box) {
   std::size_t best = 0;
-  int least = std::numeric_limits<int>::max();
+  int min_added = std::numeric_limits<int>::max();
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    UpperHalves with = groups[g];
-    with.add(box);
-    const int allowed = groups[g].pairs();
-    const int more = allowed == 0 ? 1 : with.pairs() - allowed;
-    if (more < least) {
+    HighNibbles extended = groups[g];
+    extended.add(box);
+    const int accepted = groups[g].pairs();
+    const int added = accepted == 0 ? 1 : extended.pairs() - accepted;
+    if (added < min_added) {
       best = g;
-      least = more;
+      min_added = added;
     }
   }
   groups[best].add(box);
   return std::uint32_t{1} << best;
 }
 
-void set_bits(Repeated& coarse, std::uint32_t upper_halves, std::uint8_t bit) {
-  for (std::size_t i = 0; i < sizeof coarse.bytes; ++i) {
-    if ((upper_halves >> i % 16 & 1) != 0) coarse.bytes[i] |= bit;
+void set_bits(VectorConstant& table, std::uint32_t high_nibbles, std::uint8_t bit) {
+  for (std::size_t i = 0; i < sizeof table.bytes; ++i) {
+    if ((high_nibbles >> i % 16 & 1) != 0) table.bytes[i] |= bit;
   }
 }
 
-Coarse coarse_of(const std::array<UpperHalves, 8>& groups) {
-  Coarse coarse{};
+CoarseTables coarse_tables_of(const std::array<HighNibbles, kBoxGroups>& groups) {
+  CoarseTables tables{};
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto bit = static_cast<std::uint8_t>(1 << g);
-    set_bits(coarse.y, groups[g].of[0], bit);
-    set_bits(coarse.u, groups[g].of[1], bit);
-    set_bits(coarse.v, groups[g].of[2], bit);
+    set_bits(tables.y, groups[g].of[0], bit);
+    set_bits(tables.u, groups[g].of[1], bit);
+    set_bits(tables.v, groups[g].of[2], bit);
   }
-  return coarse;
+  return tables;
 }
 
 void add_runs_of(std::uint64_t bits, int begin_px, RegionBuilder& builder) {
@@ -95,7 +97,7 @@ void add_runs_of(std::uint64_t bits, int begin_px, RegionBuilder& builder) {
     const int first = std::countr_zero(bits);
     const int length = std::countr_one(bits >> first);
     builder.add_run(begin_px + first, begin_px + first + length);
-    // A sum would overflow where the run reaches the end of the word: then nothing is left.
+    // Shifting by 64 is undefined; a run that reaches the end of the word is the last one.
     bits = first + length == 64 ? 0 : bits & (~std::uint64_t{0} << (first + length));
   }
 }
@@ -108,13 +110,13 @@ Segmenter::Segmenter(const ColourClasses& classes, const SegmentationSettings& s
 Segmenter::Segmenter(const ColourClasses& classes, const SegmentationSettings& settings,
                      const Kernels& kernels)
     : classes_(classes), settings_(settings), kernels_(kernels) {
-  std::array<UpperHalves, 8> groups;
+  std::array<HighNibbles, kBoxGroups> groups;
   for (const ColourBox& box : classes.boxes()) {
     colours_ |= std::uint32_t{1} << box.colour;
     thresholds_.push_back(thresholds_of(box));
-    thresholds_.back().group = joined(groups, box);
+    thresholds_.back().group = add_to_group(groups, box);
   }
-  coarse_ = coarse_of(groups);
+  coarse_ = coarse_tables_of(groups);
 }
 
 ClassesView Segmenter::view() const {
@@ -155,16 +157,10 @@ std::span<const Region> Segmenter::segment(const ImageView& image) {
   }
   regions_.clear();
   for_each_bit(colours_, [&](std::size_t colour) {
-    builders_[colour].finish(static_cast<std::uint32_t>(colour), settings_.least_area_px, regions_);
+    builders_[colour].finish(static_cast<std::uint32_t>(colour), settings_.min_area_px, regions_);
   });
   merge_by_density(regions_, settings_.merge);
   return regions_;
-}
-
-std::uint64_t Segmenter::left_out() const {
-  std::uint64_t sum = 0;
-  for (const RegionBuilder& builder : builders_) sum += builder.left_out();
-  return sum;
 }
 
 }  // namespace sidestep

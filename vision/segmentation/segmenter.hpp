@@ -16,25 +16,23 @@
 namespace sidestep {
 
 struct SegmentationSettings {
-  std::uint32_t least_area_px = 3;  ///< smaller regions are noise; counted before regions are merged
+  std::uint32_t min_area_px = 3;  ///< smaller regions are noise; applied before merging
   MergeSettings merge;
 };
 
-/// From a frame to regions of its colours in one pass: each row is classified, cut into runs and put to the
-/// regions above while it is in the cache; what has no colour costs next to nothing. Allocates when a frame
-/// is wider or has more regions than any before.
+/// Finds the colour regions of a frame in one pass: each row is classified, cut into runs and joined to the
+/// regions above while it is in the cache. Pixels without a colour cost next to nothing. Allocates when a
+/// frame is wider or has more regions than any before.
 class Segmenter {
  public:
   explicit Segmenter(const ColourClasses& classes, const SegmentationSettings& settings = {});
-  /// With given inner loops.
+  /// Uses the given kernels instead of the fastest.
   Segmenter(const ColourClasses& classes, const SegmentationSettings& settings,
             const segmentation::Kernels& kernels);
 
   const ColourClasses& classes() const { return classes_; }
-  /// By colour, then from the top. Valid until the next call.
+  /// Regions sorted by colour, then by top row. Valid until the next call.
   std::span<const Region> segment(const ImageView& image);
-  /// Regions left out so far, of frames that were but noise.
-  std::uint64_t left_out() const;
 
  private:
   void add_runs(std::size_t words, int y_px);
@@ -45,7 +43,7 @@ class Segmenter {
   SegmentationSettings settings_;
   segmentation::Kernels kernels_;
   std::vector<segmentation::Thresholds> thresholds_;
-  segmentation::Coarse coarse_{};
+  segmentation::CoarseTables coarse_{};
   std::uint32_t colours_ = 0;  ///< bit c: colour c has a box
   std::vector<std::uint64_t> any_, masks_;
   std::array<RegionBuilder, kMaxColours> builders_;

@@ -9,25 +9,25 @@ namespace {
 
 constexpr double kMaxPosition_m = 100;
 constexpr double kMaxObstacle_m = 10;
-constexpr double kMaxHeading_rad = 7;  // one turn either way, whatever range the sender prefers
+constexpr double kMaxHeading_rad = 7;  // a full turn either way covers every sender's range
 constexpr Duration kMaxAge{500'000'000};
 constexpr Duration kMaxAhead{100'000'000};
 
-// Comparisons with NaN are false, so these refuse it.
+// Comparisons with NaN are false, so both reject it.
 bool is_within(double value, double bound) { return std::abs(value) <= bound; }
 bool is_probability(double value) { return value >= 0 && value <= 1; }
 
-bool is_sane(const msg::RobotDetection& d) {
+bool is_valid(const msg::RobotDetection& d) {
   return d.robot() < kMaxRobots && is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
          is_within(d.heading_rad(), kMaxHeading_rad) && is_probability(d.confidence());
 }
 
-bool is_sane(const msg::BallDetection& d) {
+bool is_valid(const msg::BallDetection& d) {
   return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
          is_probability(d.confidence());
 }
 
-bool is_sane(const msg::ObstacleDetection& d) {
+bool is_valid(const msg::ObstacleDetection& d) {
   return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) && d.radius_m() > 0 &&
          d.radius_m() <= kMaxObstacle_m;
 }
@@ -55,7 +55,7 @@ void Frame::assign(const msg::DetectionFrame& message, Time now) {
   }
   is_usable_ = true;
   for (const auto& d : message.robots()) {
-    if (is_sane(d)) {
+    if (is_valid(d)) {
       robots_[robot_count_++] = {d.robot(), {d.x_m(), d.y_m()}, wrapped_rad(d.heading_rad())};
     } else {
       ++rejected_;
@@ -63,7 +63,7 @@ void Frame::assign(const msg::DetectionFrame& message, Time now) {
   }
   for (std::size_t i = 0; i < message.ball_count(); ++i) {
     const auto& d = message.balls()[i];
-    if (is_sane(d)) {
+    if (is_valid(d)) {
       balls_[ball_count_++] = {d.x_m(), d.y_m()};
     } else {
       ++rejected_;
@@ -71,7 +71,7 @@ void Frame::assign(const msg::DetectionFrame& message, Time now) {
   }
   for (std::size_t i = 0; i < message.obstacle_count(); ++i) {
     const auto& d = message.obstacles()[i];
-    if (is_sane(d)) {
+    if (is_valid(d)) {
       obstacles_[obstacle_count_++] = {{d.x_m(), d.y_m()}, d.radius_m()};
     } else {
       ++rejected_;

@@ -23,25 +23,25 @@ struct ObstacleObservation {
   double radius_m = 0;
 };
 
-/// Whether a capture time is one that frames may have which arrive now: from 500 ms ago to 100 ms ahead,
+/// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most 100 ms ahead,
 /// because cameras' clocks differ.
-bool is_timely(std::int64_t captured_at_ns, Time now);
+[[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now);
 
-/// A DetectionFrame of which every number has been checked, and nothing else kept.
+/// The valid content of a DetectionFrame: every number has been checked.
 class Frame {
  public:
   std::uint32_t camera() const { return camera_; }
   Time captured_at() const { return captured_at_; }
-  /// Not usable: its stamp or its counts made no sense, and it holds no detection.
+  /// False when the capture time or a count was invalid; the frame then holds no detections.
   bool is_usable() const { return is_usable_; }
   std::span<const RobotObservation> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
-  /// Detections of the message that are not in here; for a frame that is not usable at least 1.
+  /// Number of detections of the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }
 
-  /// Takes over what makes sense: timely stamps, positions within 100 m, confidences in 0..1, robot numbers
-  /// below kMaxRobots, obstacles' radii up to 10 m. Allocates nothing.
+  /// Copies the valid detections: timely frames, positions within 100 m, confidences in 0..1, robot numbers
+  /// below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now);
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 Eigen::Matrix2d process_noise(double dt_s, const MotionNoise& noise) {
   const double dt2 = dt_s * dt_s;
-  const double q = noise.jitter_m2ps3, a2 = noise.manoeuvre_mps2 * noise.manoeuvre_mps2;
+  const double q = noise.acceleration_psd_m2ps3, a2 = noise.manoeuvre_mps2 * noise.manoeuvre_mps2;
   const double position = q * std::abs(dt_s) * dt2 / 3 + a2 * dt2 * dt2 / 4;
   const double cross = q * dt_s * std::abs(dt_s) / 2 + a2 * dt2 * dt_s / 2;
   const double velocity = q * std::abs(dt_s) + a2 * dt2;
@@ -30,9 +30,9 @@ void ConstantVelocityFilter<Dim>::predict(double dt_s, const MotionNoise& noise,
   const double speed = velocity_.norm();
   if (deceleration_mps2 > 0 && speed > 0 && dt_s > 0) {
     const double rolling_s = std::min(dt_s, speed / deceleration_mps2);
-    const Vector lost = velocity_ / speed * deceleration_mps2 * rolling_s;
-    position_ += (velocity_ - lost / 2) * rolling_s;
-    velocity_ -= lost;
+    const Vector velocity_loss = velocity_ / speed * deceleration_mps2 * rolling_s;
+    position_ += (velocity_ - velocity_loss / 2) * rolling_s;
+    velocity_ -= velocity_loss;
   } else {
     position_ += velocity_ * dt_s;
   }

@@ -5,11 +5,11 @@
 
 namespace sidestep {
 
-/// What a constant-velocity model does not know about a motion. SI; for angles read rad in place of m.
+/// Process noise of a constant-velocity model. SI units; for angles read rad in place of m.
 struct MotionNoise {
-  double jitter_m2ps3 = 0;  ///< spectral density of white acceleration, acting between any two sights
-  double manoeuvre_mps2 =
-      0;  ///< standard deviation of one acceleration held over the whole prediction: long gaps
+  double acceleration_psd_m2ps3 = 0;  ///< power spectral density of white acceleration
+  double manoeuvre_mps2 = 0;  ///< standard deviation of an acceleration held constant over the prediction;
+                              ///< dominates over long gaps
 };
 
 /// Constant-velocity Kalman filter with white-noise acceleration (Bar-Shalom, Li, Kirubarajan 2001,
@@ -20,22 +20,22 @@ class ConstantVelocityFilter {
   using Vector = Eigen::Matrix<double, Dim, 1>;
 
   ConstantVelocityFilter() = default;
-  /// At a position, with nothing known about the velocity but its variance around zero.
+  /// Starts at a position with zero velocity of the given variance.
   ConstantVelocityFilter(const Vector& position, double position_variance, double velocity_variance);
 
-  /// Moves the estimate on by dt_s (back, when negative); `deceleration_mps2` is rolling friction, against
+  /// Predicts by `dt_s`, backwards when negative. `deceleration_mps2` is rolling friction: it acts against
   /// the velocity until rest.
   void predict(double dt_s, const MotionNoise& noise, double deceleration_mps2 = 0);
-  /// Takes in a measured position, given as its difference from position(), with its variance per axis.
+  /// Updates with a measured position, given as its difference from position(), and its variance per axis.
   void correct(const Vector& innovation, double variance);
-  /// Squared Mahalanobis distance of a measured position, chi-squared with Dim degrees of freedom.
+  /// Squared Mahalanobis distance of a measured position; chi-squared with Dim degrees of freedom.
   double squared_distance(const Vector& innovation, double variance) const {
     return innovation.squaredNorm() / (covariance_(0, 0) + variance);
   }
 
   const Vector& position() const { return position_; }
   const Vector& velocity() const { return velocity_; }
-  /// Of (position, velocity), on each axis.
+  /// Covariance of (position, velocity), per axis.
   const Eigen::Matrix2d& covariance() const { return covariance_; }
 
  private:

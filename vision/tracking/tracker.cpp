@@ -12,19 +12,19 @@
 namespace sidestep {
 namespace {
 
-void fill(msg::TrackedRobot& robot, const Estimate& now, const Sight& seen) {
-  robot.x_m(now.position_m.x());
-  robot.y_m(now.position_m.y());
-  robot.heading_rad(now.heading_rad);
-  robot.vx_mps(now.velocity_mps.x());
-  robot.vy_mps(now.velocity_mps.y());
-  robot.angular_radps(now.angular_radps);
-  robot.position_variance_m2(now.position_variance_m2);
-  robot.velocity_variance_m2ps2(now.velocity_variance_m2ps2);
-  robot.seen_at_ns(to_ns(seen.captured_at));
-  robot.seen_x_m(seen.position_m.x());
-  robot.seen_y_m(seen.position_m.y());
-  robot.seen_heading_rad(seen.heading_rad);
+void fill(msg::TrackedRobot& robot, const Estimate& estimate, const Observation& observation) {
+  robot.x_m(estimate.position_m.x());
+  robot.y_m(estimate.position_m.y());
+  robot.heading_rad(estimate.heading_rad);
+  robot.vx_mps(estimate.velocity_mps.x());
+  robot.vy_mps(estimate.velocity_mps.y());
+  robot.angular_radps(estimate.angular_radps);
+  robot.position_variance_m2(estimate.position_variance_m2);
+  robot.velocity_variance_m2ps2(estimate.velocity_variance_m2ps2);
+  robot.observed_at_ns(to_ns(observation.captured_at));
+  robot.observed_x_m(observation.position_m.x());
+  robot.observed_y_m(observation.position_m.y());
+  robot.observed_heading_rad(observation.heading_rad);
 }
 
 msg::TrackedBall tracked_ball(const State& state) {
@@ -37,17 +37,17 @@ msg::TrackedBall tracked_ball(const State& state) {
   return ball;
 }
 
-constexpr double kDotError_px = 0.19;  // of single dots in images, as sidestep study vision measures
-constexpr double kTop_m = 0.15;        // height of the dots
-/// Cameras see an obstacle's outline from different sides, and where it ends is a matter of thresholds.
-constexpr double kOutlineError_m = 0.008;
+constexpr double kDotError_px = 0.19;    // of single dots in images, measured by sidestep-evaluation study vision
+constexpr double kRobotHeight_m = 0.15;  // height of the dots
+// Cameras observe an obstacle's contour from different sides, and its edge depends on thresholds.
+constexpr double kContourError_m = 0.008;
 
-void expect_images(const Scenario& scenario, TrackModel& robot) {
-  const CameraModel camera = hang_grid(scenario).front();
-  const Vec3 middle_m(camera.position_m().x(), camera.position_m().y(), kTop_m);
-  const double px2_per_m2 = std::abs(camera.pixels_per_metre(middle_m)->leftCols<2>().determinant());
+void set_image_noise(const Scenario& scenario, TrackModel& robot) {
+  const CameraModel camera = camera_grid(scenario).front();
+  const Vec3 below_m(camera.position_m().x(), camera.position_m().y(), kRobotHeight_m);
+  const double px2_per_m2 = std::abs(camera.projection_jacobian(below_m)->leftCols<2>().determinant());
   const PoseError error = predicted_pose_error(butterfly(), kDotError_px / std::sqrt(px2_per_m2));
-  robot.position_noise_m = std::max(error.ahead_m, error.aside_m);
+  robot.position_noise_m = std::max(error.longitudinal_m, error.lateral_m);
   robot.heading_noise_rad = error.heading_rad;
 }
 
@@ -65,18 +65,17 @@ TrackModel TrackerSettings::ball_model() {
 }
 
 TrackerSettings tracker_settings(const Scenario& scenario) {
-  // A camera is never trusted beyond this, so that a scenario without noise does not make the gates
-  // infinitely narrow.
-  constexpr double kBestPosition_m = 0.0002, kBestHeading_rad = 0.002;
+  // Lower bounds: a scenario without noise must not make the gates infinitely narrow.
+  constexpr double kMinPositionNoise_m = 0.0002, kMinHeadingNoise_rad = 0.002;
   TrackerSettings settings;
-  settings.robot.position_noise_m = std::max(kBestPosition_m, scenario.vision.position_noise_m);
-  settings.robot.heading_noise_rad = std::max(kBestHeading_rad, scenario.vision.heading_noise_rad);
-  if (scenario.vision.images) expect_images(scenario, settings.robot);
+  settings.robot.position_noise_m = std::max(kMinPositionNoise_m, scenario.vision.position_noise_m);
+  settings.robot.heading_noise_rad = std::max(kMinHeadingNoise_rad, scenario.vision.heading_noise_rad);
+  if (scenario.vision.images) set_image_noise(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
   settings.ball.position_noise_m = settings.robot.position_noise_m;
   settings.obstacles.position_noise_m =
-      scenario.vision.images ? kOutlineError_m : settings.robot.position_noise_m;
-  settings.obstacles.speed_mps = scenario.opponent_speed_mps;
+      scenario.vision.images ? kContourError_m : settings.robot.position_noise_m;
+  settings.obstacles.max_speed_mps = scenario.max_opponent_speed_mps;
   settings.field = scenario.field;
   settings.floor_obstacles = scenario.obstacles;
   settings.robot_radius_m = scenario.radius_m;
@@ -89,7 +88,7 @@ Tracker::Tracker(const TrackerSettings& settings, std::span<const RobotId> roste
       robots_(roster.size()),
       obstacles_(settings.obstacles) {
   std::sort(roster_.begin(), roster_.end());
-  index_of_.fill(kStranger);
+  index_of_.fill(kNotInRoster);
   for (std::size_t i = 0; i < roster_.size(); ++i) index_of_.at(roster_[i]) = static_cast<std::uint16_t>(i);
 }
 
@@ -97,14 +96,14 @@ void Tracker::update(const Frame& frame) {
   rejected_ += frame.rejected();
   if (!frame.is_usable()) return;
   bool is_new = frame.robots().empty() && frame.balls().empty();
-  for (const RobotObservation& sight : frame.robots()) {
-    const std::uint16_t index = index_of_[sight.robot];
-    if (index == kStranger) {
+  for (const RobotObservation& robot : frame.robots()) {
+    const std::uint16_t index = index_of_[robot.robot];
+    if (index == kNotInRoster) {
       ++rejected_;
       continue;
     }
-    const Sight taken{frame.captured_at(), frame.camera(), sight.position_m, sight.heading_rad};
-    is_new |= robots_[index].add(taken, settings_.robot);
+    const Observation observation{frame.captured_at(), frame.camera(), robot.position_m, robot.heading_rad};
+    is_new |= robots_[index].add(observation, settings_.robot);
   }
   for (const Vec2& position_m : frame.balls()) {
     is_new |= ball_.add({frame.captured_at(), frame.camera(), position_m, 0}, settings_.ball);
@@ -123,7 +122,7 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
     if (const auto estimate = estimate_at(state, t, settings_.robot)) {
       msg::TrackedRobot& robot = world.robots()[count++];
       robot.robot(roster_[i]);
-      fill(robot, *estimate, state.seen);
+      fill(robot, *estimate, state.last);
     }
   }
   world.robots().resize(count);
@@ -131,25 +130,25 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
   world.frames(frames_);
   world.rejected(rejected);
   obstacles_.world_at(t, world);
-  const bool is_known = estimate_at(ball_.state(), t, settings_.ball).has_value();
-  world.ball(is_known ? tracked_ball(ball_at(t, world)) : msg::TrackedBall());
+  const bool is_tracked = estimate_at(ball_.state(), t, settings_.ball).has_value();
+  world.ball(is_tracked ? tracked_ball(ball_at(t, world)) : msg::TrackedBall());
 }
 
-/// `world` holds the robots at that time.
+/// Precondition: `world` holds the robots at time `t`.
 State Tracker::ball_at(Time t, const msg::WorldState& world) const {
   constexpr double kStep_s = 0.005;
   const TrackState& track = ball_.state();
   RollingBall ball({track.filter.position.position(), track.filter.position.velocity()}, BallSettings());
-  double left_s = to_seconds(t - track.seen.captured_at);
-  while (left_s > 0) {
-    const double step_s = std::min(left_s, kStep_s);
-    left_s -= step_s;
+  double remaining_s = to_seconds(t - track.last.captured_at);
+  while (remaining_s > 0) {
+    const double step_s = std::min(remaining_s, kStep_s);
+    remaining_s -= step_s;
     ball.roll(step_s);
     for (const Circle& obstacle : settings_.floor_obstacles) ball.bounce_off(obstacle);
     for (const msg::TrackedRobot& robot : world.robots()) {
       const Vec2 velocity_mps(robot.vx_mps(), robot.vy_mps());
-      const Vec2 then_m = Vec2(robot.x_m(), robot.y_m()) - left_s * velocity_mps;
-      ball.bounce_off_robot({then_m, settings_.robot_radius_m}, velocity_mps);
+      const Vec2 position_m = Vec2(robot.x_m(), robot.y_m()) - remaining_s * velocity_mps;
+      ball.bounce_off_robot({position_m, settings_.robot_radius_m}, velocity_mps);
     }
     ball.bounce_off_walls(settings_.field);
   }

@@ -18,41 +18,41 @@ namespace sidestep {
 struct TrackerSettings {
   TrackModel robot;
   TrackModel ball = ball_model();
-  ObstacleSettings obstacles;
-  Field field;                          ///< off whose walls the ball bounces,
-  std::vector<Circle> floor_obstacles;  ///< and off these,
-  double robot_radius_m = 0.09;         ///< and off robots
+  ObstacleTrackerSettings obstacles;
+  // The ball bounces off the field's walls, these obstacles, and robots of this radius.
+  Field field;
+  std::vector<Circle> floor_obstacles;
+  double robot_radius_m = 0.09;
 
-  /// A ball keeps no heading, rolls with friction and is kicked: fast, and suddenly elsewhere.
+  /// A ball has no heading, rolls with friction, and changes velocity abruptly when it is kicked.
   static TrackModel ball_model();
 };
 
-/// Settings for the cameras and the robots of a scenario.
-TrackerSettings tracker_settings(const Scenario& scenario);
+/// Settings for the cameras and robots of a scenario.
+[[nodiscard]] TrackerSettings tracker_settings(const Scenario& scenario);
 
-/// Fuses the frames of all cameras, in whatever order they come, into one world. Robots that are not in the
-/// roster do not exist for it. Allocates only when it is made.
+/// Fuses the frames of all cameras, in any order of arrival, into one world. Ignores robots that are not in
+/// the roster. Allocates only in the constructor.
 class Tracker {
  public:
-  /// Numbers in the roster are below kMaxRobots.
+  /// Precondition: the roster's numbers are below kMaxRobots.
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Fills in valid_at_ns, counters, ball and robots as they are at a time, by extrapolation from their last
-  /// sight, and obstacles as they were at their last sight; ascending by number. The ball bounces off what is
-  /// known to be in its way, as long as nobody sees it. Allocates when the message has held fewer robots so
-  /// far.
+  /// Fills in valid_at_ns, the counters, the ball and robots extrapolated from their last observations to
+  /// this time, and obstacles at their last observations; ascending by number. An unobserved ball bounces off
+  /// everything known on the floor. Allocates when the message has held fewer robots so far.
   void world_at(Time t, msg::WorldState& world) const;
 
  private:
   State ball_at(Time t, const msg::WorldState& world) const;
 
-  static constexpr std::uint16_t kStranger = kMaxRobots;
+  static constexpr std::uint16_t kNotInRoster = kMaxRobots;
 
   TrackerSettings settings_;
   std::vector<RobotId> roster_;                     ///< ascending
-  std::array<std::uint16_t, kMaxRobots> index_of_;  ///< place in the roster, or kStranger
-  std::vector<Track> robots_;                       ///< as the roster
+  std::array<std::uint16_t, kMaxRobots> index_of_;  ///< index in the roster, or kNotInRoster
+  std::vector<Track> robots_;                       ///< in the order of the roster
   Track ball_;
   ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;

@@ -11,11 +11,11 @@
 
 namespace sidestep {
 
-/// A picture's line colour, in blue, green and red.
+/// Line colour in blue, green and red.
 using Ink = cv::Scalar;
 
-/// Draws on a camera's picture what lies flat at a height over the floor. What the camera does not see is
-/// left out.
+/// Draws horizontal shapes at a height above the floor into a camera's picture. Shapes that the camera cannot
+/// see are omitted.
 class FloorPen {
  public:
   FloorPen(cv::Mat3b& picture, const CameraModel& camera) : picture_(picture), camera_(camera) {}
@@ -23,16 +23,16 @@ class FloorPen {
   void circle(const Vec2& centre_m, double height_m, double radius_m, const Ink& ink);
   void cross(const Vec2& centre_m, double height_m, double radius_m, const Ink& ink);
   void line(const Vec2& from_m, const Vec2& to_m, double height_m, const Ink& ink);
-  void words(const std::string& text, const Vec2& at_m, double height_m, const Ink& ink);
+  void text(const std::string& text, const Vec2& position_m, double height_m, const Ink& ink);
 
  private:
-  std::optional<cv::Point> pixel_of(const Vec2& at_m, double height_m) const;
+  std::optional<cv::Point> pixel_of(const Vec2& position_m, double height_m) const;
 
   cv::Mat3b& picture_;
   const CameraModel& camera_;
 };
 
 /// Draws detections: robots with their numbers in their team's colour, balls, obstacles.
-void draw_detections(const msg::DetectionFrame& seen, const Scenario& scenario, FloorPen& pen);
+void draw_detections(const msg::DetectionFrame& frame, const Scenario& scenario, FloorPen& pen);
 
 }  // namespace sidestep

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "agents/planning/domain/free_places.hpp"
+#include "agents/planning/domain/free_positions.hpp"
 
 namespace sidestep {
 namespace {
 
-/// Of length 1, in any direction (Marsaglia 1972).
+/// Uniformly distributed unit vector (Marsaglia 1972).
 Vec2 random_direction(Rng& rng) {
   for (;;) {
     const double x = rng.uniform(-1, 1), y = rng.uniform(-1, 1), length2 = x * x + y * y;
@@ -18,46 +18,47 @@ Vec2 random_direction(Rng& rng) {
   }
 }
 
-/// A place beside a corner between two edges that leave it along `out_along` and came in along `in_along`,
-/// both of length 1 and counter-clockwise: beside its end of one of the edges, or between.
-Vec2 beside_corner(const Vec2& corner, const Vec2& in_along, const Vec2& out_along, double off_m, Rng& rng) {
+/// Samples one of three positions at distance `offset_m` from a corner: perpendicular to either adjacent
+/// edge, or between these two. `in_along` and `out_along` are the unit directions of the incoming and the
+/// outgoing edge, counter-clockwise.
+Vec2 sample_near_corner(const Vec2& corner, const Vec2& in_along, const Vec2& out_along, double offset_m, Rng& rng) {
   const Vec2 first = -left_of(in_along), last = -left_of(out_along);
   const auto which = rng.below(3);
-  if (which == 0) return corner + off_m * first;
-  if (which == 1) return corner + off_m * last;
-  return corner + off_m * (first + last).normalized();
+  if (which == 0) return corner + offset_m * first;
+  if (which == 1) return corner + offset_m * last;
+  return corner + offset_m * (first + last).normalized();
 }
 
-Vec2 beside(const Circle& circle, double off_m, Rng& rng) {
-  return circle.centre_m + (circle.radius_m + off_m) * random_direction(rng);
+Vec2 sample_near(const Circle& circle, double offset_m, Rng& rng) {
+  return circle.centre_m + (circle.radius_m + offset_m) * random_direction(rng);
 }
 
-Vec2 beside(const Box& box, double off_m, Rng& rng) {
+Vec2 sample_near(const Box& box, double offset_m, Rng& rng) {
   const auto which = rng.below(4);
   static const Vec2 kAlong[4] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
   const Vec2 corner(which == 1 || which == 2 ? box.max_m.x() : box.min_m.x(),
                     which >= 2 ? box.max_m.y() : box.min_m.y());
-  return beside_corner(corner, kAlong[which], kAlong[(which + 1) % 4], off_m, rng);
+  return sample_near_corner(corner, kAlong[which], kAlong[(which + 1) % 4], offset_m, rng);
 }
 
-Vec2 beside(const ConvexPolygon& polygon, double off_m, Rng& rng) {
+Vec2 sample_near(const ConvexPolygon& polygon, double offset_m, Rng& rng) {
   const std::size_t count = polygon.corners_m.size(), i = rng.below(count);
   const Vec2& corner = polygon.corners_m[i];
   const Vec2 in = corner - polygon.corners_m[(i + count - 1) % count];
   const Vec2 out = polygon.corners_m[(i + 1) % count] - corner;
-  return beside_corner(corner, in.normalized(), out.normalized(), off_m, rng);
+  return sample_near_corner(corner, in.normalized(), out.normalized(), offset_m, rng);
 }
 
-Vec2 beside(const Segment& segment, double off_m, Rng& rng) {
+Vec2 sample_near(const Segment& segment, double offset_m, Rng& rng) {
   const Vec2 along = segment.to_m - segment.from_m;
   const double length = along.norm();
-  if (length == 0) return segment.from_m + off_m * random_direction(rng);
+  if (length == 0) return segment.from_m + offset_m * random_direction(rng);
   const bool at_end = rng.chance(0.5);
   const Vec2 outwards = (at_end ? 1 : -1) / length * along;
   const Vec2& end = at_end ? segment.to_m : segment.from_m;
   const auto which = rng.below(3);
-  if (which == 0) return end + off_m * outwards;
-  return end + off_m * (which == 1 ? left_of(outwards) : Vec2(-left_of(outwards)));
+  if (which == 0) return end + offset_m * outwards;
+  return end + offset_m * (which == 1 ? left_of(outwards) : Vec2(-left_of(outwards)));
 }
 
 }  // namespace
@@ -68,33 +69,33 @@ DiscDomain::DiscDomain(const ObstacleWorld& world, const Field& field, double ra
       field_(field),
       radius_m_(radius_m),
       start_m_(start_m),
-      wanted_m_(goal_m),
+      requested_goal_m_(goal_m),
       goal_m_(goal_m),
       start_is_blocked_(!is_free(start_m)),
       goal_is_blocked_(!is_free(goal_m)),
       settings_(settings) {
   if (!goal_is_blocked_) return;
-  if (const std::optional<Vec2> out = pushed_out(goal_m)) {
-    goal_m_ = *out;
+  if (const std::optional<Vec2> projected = projected_out(goal_m)) {
+    goal_m_ = *projected;
     return;
   }
-  const std::vector<Vec2> places = places_near_goal();
-  if (!places.empty()) goal_m_ = places.front();
+  const std::vector<Vec2> positions = free_positions_near_goal();
+  if (!positions.empty()) goal_m_ = positions.front();
 }
 
-std::optional<Vec2> DiscDomain::pushed_out(const Vec2& place) const {
-  const Nearest nearest = world_->nearest(place);
+std::optional<Vec2> DiscDomain::projected_out(const Vec2& position) const {
+  const Nearest nearest = world_->nearest(position);
   if (nearest.obstacle == kNoObstacle) return std::nullopt;
-  // Nothing that is free is nearer than what is touched most makes it.
+  // Leaving the deepest obstacle takes at least this far, so a free projection is the nearest free position.
   const Shape& shape = world_->shape(nearest.obstacle);
-  constexpr double kStep_m = 1e-6, kRoom_m = 1e-6;
+  constexpr double kStep_m = 1e-6, kClearance_m = 1e-6;
   const auto slope = [&](const Vec2& step) {
-    return (signed_distance(place + step, shape) - signed_distance(place - step, shape)) / (2 * kStep_m);
+    return (signed_distance(position + step, shape) - signed_distance(position - step, shape)) / (2 * kStep_m);
   };
   const Vec2 away(slope({kStep_m, 0}), slope({0, kStep_m}));
   if (std::abs(away.norm() - 1) > 1e-3) return std::nullopt;
-  const Vec2 out = place + (radius_m_ + kRoom_m - nearest.distance_m) * away.normalized();
-  return is_free(out) ? std::optional(out) : std::nullopt;
+  const Vec2 projected = position + (radius_m_ + kClearance_m - nearest.distance_m) * away.normalized();
+  return is_free(projected) ? std::optional(projected) : std::nullopt;
 }
 
 std::optional<Vec2> DiscDomain::extend(const Vec2& from, const Vec2& to) const {
@@ -104,15 +105,15 @@ std::optional<Vec2> DiscDomain::extend(const Vec2& from, const Vec2& to) const {
   if (length == 0) return std::nullopt;
   if (length > settings_.step_m) end = from + settings_.step_m / length * (end - from);
   if (!world_->touches(from, end, radius_m_)) return end;
-  return start_is_blocked_ && leaves(from, end) ? std::optional(end) : std::nullopt;
+  return start_is_blocked_ && is_escape(from, end) ? std::optional(end) : std::nullopt;
 }
 
-bool DiscDomain::leaves(const Vec2& from, const Vec2& to) const {
+bool DiscDomain::is_escape(const Vec2& from, const Vec2& to) const {
   if (from == to) return false;
-  return to == start_m_ ? leads_out(to, from) : !is_free(from) && leads_out(from, to);
+  return to == start_m_ ? escapes(to, from) : !is_free(from) && escapes(from, to);
 }
 
-bool DiscDomain::leads_out(const Vec2& from, const Vec2& to) const {
+bool DiscDomain::escapes(const Vec2& from, const Vec2& to) const {
   const double x = field_.length_m / 2 - radius_m_, y = field_.width_m / 2 - radius_m_;
   if (std::abs(to.x()) > std::max(x, std::abs(from.x())) ||
       std::abs(to.y()) > std::max(y, std::abs(from.y())))
@@ -125,8 +126,8 @@ bool DiscDomain::leads_out(const Vec2& from, const Vec2& to) const {
     if (from_m > radius_m_) {
       if (squared_distance(Segment{from, to}, shape) <= radius_m_ * radius_m_) return false;
     } else if (signed_distance(from + step, shape) < from_m - kRounding_m) {
-      // The distance from what is convex is a convex function of the way: if it does not shrink at first, it
-      // never does.
+      // Along a line, the distance from a convex shape is a convex function: if it does not shrink at first,
+      // it never does.
       return false;
     }
   }
@@ -134,39 +135,39 @@ bool DiscDomain::leads_out(const Vec2& from, const Vec2& to) const {
 }
 
 std::optional<Vec2> DiscDomain::exit() const {
-  if (const std::optional<Vec2> out = pushed_out(start_m_); out && leads_out(start_m_, *out)) return out;
-  const auto is_exit = [&](const Vec2& place) { return is_free(place) && leads_out(start_m_, place); };
-  const std::vector<Vec2> places =
-      free_places_near(start_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m), is_exit);
-  return places.empty() ? std::nullopt : std::optional(places.front());
+  if (const std::optional<Vec2> projected = projected_out(start_m_); projected && escapes(start_m_, *projected)) return projected;
+  const auto is_exit = [&](const Vec2& position) { return is_free(position) && escapes(start_m_, position); };
+  const std::vector<Vec2> positions =
+      free_positions_near(start_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m), is_exit);
+  return positions.empty() ? std::nullopt : std::optional(positions.front());
 }
 
-std::vector<Vec2> DiscDomain::places_near_goal() const {
-  return free_places_near(wanted_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m),
-                          [&](const Vec2& place) { return is_free(place); });
+std::vector<Vec2> DiscDomain::free_positions_near_goal() const {
+  return free_positions_near(requested_goal_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m),
+                          [&](const Vec2& position) { return is_free(position); });
 }
 
-DiscDomain DiscDomain::with_goal_at(const Vec2& place) const {
+DiscDomain DiscDomain::with_goal_at(const Vec2& position) const {
   DiscDomain domain = *this;
-  domain.goal_m_ = place;
+  domain.goal_m_ = position;
   return domain;
 }
 
 Vec2 DiscDomain::sample(Rng& rng) const {
   if (world_->size() > 0 && rng.chance(settings_.contact_probability)) return sample_contact(rng);
-  return sample_anywhere(rng);
+  return sample_uniform(rng);
 }
 
-Vec2 DiscDomain::sample_anywhere(Rng& rng) const {
+Vec2 DiscDomain::sample_uniform(Rng& rng) const {
   const double x = field_.length_m / 2 - radius_m_, y = field_.width_m / 2 - radius_m_;
   return {rng.uniform(-x, x), rng.uniform(-y, y)};
 }
 
 Vec2 DiscDomain::sample_contact(Rng& rng) const {
   const Shape& shape = world_->shape(world_->obstacle(rng.below(world_->size())));
-  // Mostly as near as can be, sometimes with room.
-  const double part = rng.uniform(), off_m = radius_m_ * (1 + 1e-6 + 0.5 * part * part * part);
-  return std::visit([&](const auto& obstacle) { return beside(obstacle, off_m, rng); }, shape);
+  // Mostly almost in contact, sometimes with clearance.
+  const double fraction = rng.uniform(), offset_m = radius_m_ * (1 + 1e-6 + 0.5 * fraction * fraction * fraction);
+  return std::visit([&](const auto& obstacle) { return sample_near(obstacle, offset_m, rng); }, shape);
 }
 
 }  // namespace sidestep

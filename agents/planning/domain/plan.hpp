@@ -11,41 +11,41 @@
 
 namespace sidestep {
 
-/// What a planner may spend. Whatever runs out first ends it.
+/// Limits of a planner's effort. The first limit reached ends planning.
 struct Budget {
-  std::size_t nodes = 20'000;    ///< states that it keeps
-  std::size_t samples = 50'000;  ///< states that it draws or looks at
-  Time until = Time::max();      ///< on `clock`; asked for only where there is one
+  std::size_t nodes = 20'000;    ///< states that the planner stores
+  std::size_t samples = 50'000;  ///< states that it samples or expands
+  Time until = Time::max();      ///< deadline on `clock`; ignored without a clock
   std::function<Time()> clock = {};
 
   bool is_spent(std::size_t used_nodes, std::size_t used_samples) const {
     if (used_nodes >= nodes || used_samples >= samples) return true;
-    // A clock costs as much as a sample, and most plans are made after a few.
+    // Reading a clock costs as much as a sample, and most plans take only a few samples.
     return clock && used_samples % 16 == 15 && clock() >= until;
   }
 };
 
-/// Why a planner returned what it did.
+/// Outcome of planning.
 enum class PlanReason {
-  kSolved,       ///< a way to the goal
-  kImproved,     ///< a way to the goal, shorter than the first one found
-  kBudgetSpent,  ///< no way found so far: the states lead as near to the goal as was reached
-  kUnreachable,  ///< there is no way, or none on this planner's grid or graph; the states as before
+  kSolved,       ///< path to the goal
+  kImproved,     ///< path to the goal, shorter than the first one found
+  kBudgetSpent,  ///< no path found within the budget; the states lead as near to the goal as was reached
+  kUnreachable,  ///< no path exists, or none on this planner's grid or graph; states as for kBudgetSpent
 };
-const char* name_of(PlanReason reason);
+[[nodiscard]] const char* name_of(PlanReason reason);
 
-/// A way, valid from state to state, and how it was found.
+/// A path whose motions from state to state are valid, and how it was found.
 template <typename State>
 struct Plan {
   PlanReason reason = PlanReason::kBudgetSpent;
-  /// The start touches an obstacle: the first motion only leads out of it.
+  /// The start touches an obstacle: the first motion leads out of it.
   bool start_blocked = false;
-  /// The goal touches an obstacle: the way leads to a state near it instead.
+  /// The goal touches an obstacle: the path leads to a state near it instead.
   bool goal_blocked = false;
-  std::vector<State> states;  ///< from the start; at least that
-  double length = 0;          ///< the distances from state to state, summed up
-  std::size_t nodes = 0;      ///< that were kept
-  std::size_t samples = 0;    ///< that were drawn or looked at
+  std::vector<State> states;  ///< beginning with the start; never empty
+  double length = 0;          ///< sum of the distances from state to state
+  std::size_t nodes = 0;      ///< states stored
+  std::size_t samples = 0;    ///< states sampled or expanded
 
   bool arrives() const { return reason == PlanReason::kSolved || reason == PlanReason::kImproved; }
 };
@@ -57,7 +57,7 @@ double length_of(const D& domain, const std::vector<typename D::State>& states) 
   return length;
 }
 
-/// Forgets an earlier plan without giving its memory back, and says what is blocked.
+/// Resets a plan, keeping its memory, and sets its blocked flags.
 template <PlanningDomain D>
 void begin_plan(const D& domain, const typename D::State& start, Plan<typename D::State>& plan) {
   plan.reason = PlanReason::kBudgetSpent;
@@ -69,7 +69,7 @@ void begin_plan(const D& domain, const typename D::State& start, Plan<typename D
   plan.nodes = plan.samples = 0;
 }
 
-/// Fills in the straight way to the goal if it is free: most ways on an open floor are.
+/// Fills in the straight path to the goal if it is free, as most are on an open floor; returns whether it is.
 template <PlanningDomain D>
 bool plan_straight(const D& domain, const typename D::State& start, Plan<typename D::State>& plan) {
   const typename D::State goal = domain.goal(start);

@@ -10,18 +10,17 @@
 
 namespace sidestep {
 
-/// All that a planner knows of what it plans for (Bruce 2006, section 4.6): states and how far they are
-/// apart, motions between them, states drawn at random, and the goal.
+/// The interface between planners and the problems they solve (Bruce 2006, section 4.5): states and their
+/// distances, motions between them, random states, and the goal.
 ///
-/// - `distance(a, b)`: what the motion from a to b costs if nothing is in its way; 0 only where a is as good
-///   as b.
-/// - `extend(from, to)`: the state that a free motion from `from` comes to on its way to `to`: `to` itself,
-///   the very same value, or a state nearer to it; none when nothing is gained. It may end after a step or go
-///   on as far as it is free.
-/// - `check(from, to)`: whether the whole motion is free; `check(a, a)` asks for a state.
+/// - `distance(a, b)`: cost of the motion from a to b without obstacles; 0 only if a and b are equivalent.
+/// - `extend(from, to)`: the state that a free motion from `from` towards `to` reaches: exactly `to`, or a
+///   state nearer to it; none if nothing is gained. The motion may end after one step or continue as far as
+///   it is free.
+/// - `check(from, to)`: whether the whole motion is free; `check(a, a)` checks a state.
 /// - `sample(rng)`: a state to grow towards, free or not.
-/// - `goal(from)`: the state to make for from here. It may differ from state to state (an orbit's tangent); a
-///   state has arrived when its distance from its goal is 0.
+/// - `goal(from)`: the goal state as seen from a state. It may differ between states (the tangent of an
+///   orbit); a state has arrived if its distance from its goal is 0.
 template <typename D>
 concept PlanningDomain = requires(const D& domain, const typename D::State& a, Rng& rng) {
   requires std::copyable<typename D::State>;
@@ -32,15 +31,15 @@ concept PlanningDomain = requires(const D& domain, const typename D::State& a, R
   { domain.goal(a) } -> std::same_as<typename D::State>;
 };
 
-/// A domain whose distance is the Euclidean one between its states' coordinates, so that neighbours can be
-/// looked up in a tree.
+/// A domain whose distance is the Euclidean distance between the coordinates of its states, so that a K-D
+/// tree can find nearest neighbours.
 template <typename D>
 concept EuclideanDomain = PlanningDomain<D> && requires(const D& domain, const typename D::State& a) {
   { domain.coordinates(a) } -> std::same_as<std::array<double, D::kDimensions>>;
 };
 
-/// A domain whose motions lead through states of their own, both ways the same: `between(a, b, part)` is the
-/// one after `part` of the distance. Backward trees and smoothing need it.
+/// A domain whose motions are symmetric and pass through intermediate states: `between(a, b, fraction)` is
+/// the state after that fraction of the distance. Required by trees that grow from the goal and by smoothing.
 template <typename D>
 concept StraightDomain = PlanningDomain<D> && requires(const D& domain, const typename D::State& a) {
   { domain.between(a, a, 0.5) } -> std::same_as<typename D::State>;

@@ -8,20 +8,20 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff, kStart = 0xfffffffe, kGoal = 0xfffffffd;
 
-Vec2 nearest_in(const ConvexPolygon& cell, const Vec2& place) {
-  if (signed_distance(place, std::span<const Vec2>(cell.corners_m)) <= 0) return place;
+Vec2 nearest_point_in(const ConvexPolygon& cell, const Vec2& position) {
+  if (signed_distance(position, std::span<const Vec2>(cell.corners_m)) <= 0) return position;
   Vec2 nearest = cell.corners_m[0];
   for (std::size_t i = 0, last = cell.corners_m.size() - 1; i < cell.corners_m.size(); last = i++) {
-    const Vec2 from = cell.corners_m[last], way = cell.corners_m[i] - from;
-    const double length2 = way.squaredNorm();
-    const double part = length2 > 0 ? std::clamp((place - from).dot(way) / length2, 0.0, 1.0) : 0.0;
-    const Vec2 on = from + part * way;
-    if ((on - place).squaredNorm() < (nearest - place).squaredNorm()) nearest = on;
+    const Vec2 from = cell.corners_m[last], edge = cell.corners_m[i] - from;
+    const double length2 = edge.squaredNorm();
+    const double fraction = length2 > 0 ? std::clamp((position - from).dot(edge) / length2, 0.0, 1.0) : 0.0;
+    const Vec2 on = from + fraction * edge;
+    if ((on - position).squaredNorm() < (nearest - position).squaredNorm()) nearest = on;
   }
   return nearest;
 }
 
-Vec2 middle_of(const ConvexPolygon& cell) {
+Vec2 centre_of(const ConvexPolygon& cell) {
   Vec2 sum(0, 0);
   for (const Vec2& corner : cell.corners_m) sum += corner;
   return sum / static_cast<double>(cell.corners_m.size());
@@ -29,35 +29,35 @@ Vec2 middle_of(const ConvexPolygon& cell) {
 
 }  // namespace
 
-void CellSearch::list_portals(const CellGraph& graph) {
-  first_.assign(graph.cells.size() + 1, 0);
+void CellSearch::index_portals(const CellGraph& graph) {
+  first_portal_.assign(graph.cells.size() + 1, 0);
   for (const Portal& portal : graph.portals) {
-    ++first_[portal.a];
-    ++first_[portal.b];
+    ++first_portal_[portal.a];
+    ++first_portal_[portal.b];
   }
   std::uint32_t sum = 0;
-  for (std::uint32_t& first : first_) {
+  for (std::uint32_t& first : first_portal_) {
     sum += first;
     first = sum;
   }
-  of_cell_.resize(sum);
+  portals_by_cell_.resize(sum);
   for (std::uint32_t i = 0; i < graph.portals.size(); ++i) {
-    of_cell_[--first_[graph.portals[i].a]] = i;
-    of_cell_[--first_[graph.portals[i].b]] = i;
+    portals_by_cell_[--first_portal_[graph.portals[i].a]] = i;
+    portals_by_cell_[--first_portal_[graph.portals[i].b]] = i;
   }
 }
 
-/// The nearest cell that the place sees; it enters it a little, so that rounding does not keep it out.
+/// The nearest visible cell. The entry point lies slightly inside it, so that rounding does not exclude it.
 std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const DiscDomain& domain,
-                                                   const Vec2& place) const {
+                                                   const Vec2& position) const {
   std::optional<Entry> best;
   double best_m = std::numeric_limits<double>::infinity();
   for (std::uint32_t cell = 0; cell < graph.cells.size(); ++cell) {
-    Vec2 at = nearest_in(graph.cells[cell], place);
-    const double distance_m = domain.distance(at, place);
+    Vec2 at = nearest_point_in(graph.cells[cell], position);
+    const double distance_m = domain.distance(at, position);
     if (distance_m >= best_m) continue;
-    if (distance_m > 0) at += 0.01 * (middle_of(graph.cells[cell]) - at);
-    if (distance_m > 0 && !domain.check(place, at)) continue;
+    if (distance_m > 0) at += 0.01 * (centre_of(graph.cells[cell]) - at);
+    if (distance_m > 0 && !domain.check(position, at)) continue;
     best = Entry{cell, at};
     best_m = distance_m;
     if (distance_m == 0) break;
@@ -65,34 +65,34 @@ std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const
   return best;
 }
 
-void CellSearch::look_into(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at,
+void CellSearch::expand(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at,
                            double cost_m, const Vec2& goal) {
-  for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-    const std::uint32_t portal = of_cell_[i];
+  for (std::uint32_t i = first_portal_[cell]; i < first_portal_[cell + 1]; ++i) {
+    const std::uint32_t portal = portals_by_cell_[i];
     if (came_from_[portal] != kNone) continue;
     const Vec2& middle = graph.portals[portal].middle_m;
     const double next_m = cost_m + (middle - at).norm();
     open_.push_back(
         {next_m + (goal - middle).norm(), next_m, portal, graph.portals[portal].other(cell), from});
     std::push_heap(open_.begin(), open_.end(),
-                   [](const Open& a, const Open& b) { return a.promise_m > b.promise_m; });
+                   [](const Open& a, const Open& b) { return a.estimate_m > b.estimate_m; });
   }
 }
 
-/// The last portal before the goal, kStart where both are in one cell, or none.
+/// Returns the last portal before the goal, kStart if start and goal share a cell, or none.
 std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const Entry& from, const Entry& to,
                                                 const Budget& budget, Plan<Vec2>& plan) {
   came_from_.assign(graph.portals.size(), kNone);
   open_.clear();
   if (from.cell == to.cell) return kStart;
-  look_into(graph, from.cell, kStart, from.at_m, 0, to.at_m);
+  expand(graph, from.cell, kStart, from.at_m, 0, to.at_m);
   while (!open_.empty()) {
     if (budget.is_spent(plan.nodes, plan.samples++)) {
       plan.reason = PlanReason::kBudgetSpent;
       return std::nullopt;
     }
     std::pop_heap(open_.begin(), open_.end(),
-                  [](const Open& a, const Open& b) { return a.promise_m > b.promise_m; });
+                  [](const Open& a, const Open& b) { return a.estimate_m > b.estimate_m; });
     const Open at = open_.back();
     open_.pop_back();
     if (at.portal == kGoal) return at.from;
@@ -100,12 +100,12 @@ std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const En
     came_from_[at.portal] = at.from;
     const Vec2& middle = graph.portals[at.portal].middle_m;
     if (at.cell == to.cell) {
-      const double whole_m = at.cost_m + (to.at_m - middle).norm();
-      open_.push_back({whole_m, whole_m, kGoal, at.cell, at.portal});
+      const double length_m = at.cost_m + (to.at_m - middle).norm();
+      open_.push_back({length_m, length_m, kGoal, at.cell, at.portal});
       std::push_heap(open_.begin(), open_.end(),
-                     [](const Open& a, const Open& b) { return a.promise_m > b.promise_m; });
+                     [](const Open& a, const Open& b) { return a.estimate_m > b.estimate_m; });
     }
-    look_into(graph, at.cell, at.portal, middle, at.cost_m, to.at_m);
+    expand(graph, at.cell, at.portal, middle, at.cost_m, to.at_m);
   }
   return std::nullopt;
 }
@@ -115,7 +115,7 @@ void CellSearch::plan(const CellGraph& graph, const DiscDomain& domain, const Ve
   plan.states.assign(1, start);
   plan.reason = PlanReason::kUnreachable;
   plan.nodes = graph.cells.size();
-  list_portals(graph);
+  index_portals(graph);
   const Vec2 goal = domain.goal(start);
   const std::optional<Entry> from = entry(graph, domain, start), to = entry(graph, domain, goal);
   if (!from || !to) return;

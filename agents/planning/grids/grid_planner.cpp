@@ -19,80 +19,80 @@ const Plan<Vec2>& GridPlanner::plan(const DiscDomain& domain, const Vec2& start,
   return plan_;
 }
 
-/// The start is the centre of a cell.
+/// Places the grid so that the start is the centre of a cell.
 void GridPlanner::lay_out(const DiscDomain& domain, const Vec2& start) {
   const double x = domain.field().length_m / 2, y = domain.field().width_m / 2;
-  const Vec2 before((start.x() + x) / settings_.cell_m, (start.y() + y) / settings_.cell_m);
-  const Vec2 behind((x - start.x()) / settings_.cell_m, (y - start.y()) / settings_.cell_m);
-  const auto cells = [](double part) { return static_cast<Cell>(std::max(std::floor(part), 0.0)); };
-  columns_ = cells(before.x()) + cells(behind.x()) + 1;
-  rows_ = cells(before.y()) + cells(behind.y()) + 1;
-  start_ = cells(before.y()) * columns_ + cells(before.x());
-  corner_m_ = start - settings_.cell_m * Vec2(cells(before.x()), cells(before.y()));
+  const Vec2 cells_before((start.x() + x) / settings_.cell_m, (start.y() + y) / settings_.cell_m);
+  const Vec2 cells_after((x - start.x()) / settings_.cell_m, (y - start.y()) / settings_.cell_m);
+  const auto floored = [](double count) { return static_cast<Cell>(std::max(std::floor(count), 0.0)); };
+  columns_ = floored(cells_before.x()) + floored(cells_after.x()) + 1;
+  rows_ = floored(cells_before.y()) + floored(cells_after.y()) + 1;
+  start_ = floored(cells_before.y()) * columns_ + floored(cells_before.x());
+  origin_m_ = start - settings_.cell_m * Vec2(floored(cells_before.x()), floored(cells_before.y()));
   start_m_ = start;
   goal_m_ = domain.goal(start);
   came_from_.assign(std::size_t{columns_} * rows_, kNone);
 }
 
-Vec2 GridPlanner::place_of(Cell cell) const {
+Vec2 GridPlanner::position_of(Cell cell) const {
   if (cell == start_) return start_m_;
-  return corner_m_ + settings_.cell_m * Vec2(cell % columns_, cell / columns_);
+  return origin_m_ + settings_.cell_m * Vec2(cell % columns_, cell / columns_);
 }
 
 void GridPlanner::search(const DiscDomain& domain, const Budget& budget) {
   open_.clear();
-  taken_ = 0;
-  put({0, 0, start_, start_});
+  queue_head_ = 0;
+  push({0, 0, start_, start_});
   Cell nearest = start_;
   plan_.reason = PlanReason::kUnreachable;
-  while (taken_ < open_.size()) {
+  while (queue_head_ < open_.size()) {
     if (budget.is_spent(plan_.nodes, plan_.samples++)) {
       plan_.reason = PlanReason::kBudgetSpent;
       break;
     }
-    const Open at = take();
+    const Open at = pop();
     if (came_from_[at.cell] != kNone) continue;
-    if (at.cell != start_ && !domain.check(place_of(at.from), place_of(at.cell))) continue;
+    if (at.cell != start_ && !domain.check(position_of(at.from), position_of(at.cell))) continue;
     came_from_[at.cell] = at.from;
     ++plan_.nodes;
-    const double to_goal_m = domain.distance(place_of(at.cell), goal_m_);
-    if (to_goal_m < domain.distance(place_of(nearest), goal_m_)) nearest = at.cell;
-    if (to_goal_m < 1.5 * settings_.cell_m && domain.check(place_of(at.cell), goal_m_)) {
+    const double to_goal_m = domain.distance(position_of(at.cell), goal_m_);
+    if (to_goal_m < domain.distance(position_of(nearest), goal_m_)) nearest = at.cell;
+    if (to_goal_m < 1.5 * settings_.cell_m && domain.check(position_of(at.cell), goal_m_)) {
       plan_.reason = PlanReason::kSolved;
       write_plan(at.cell);
       if (to_goal_m > 0) plan_.states.push_back(goal_m_);
       return;
     }
-    look_round(domain, at);
+    expand(domain, at);
   }
   write_plan(nearest);
 }
 
-void GridPlanner::look_round(const DiscDomain& domain, const Open& at) {
+void GridPlanner::expand(const DiscDomain& domain, const Open& at) {
   const Cell column = at.cell % columns_, row = at.cell / columns_;
   for (Cell y = row > 0 ? row - 1 : 0; y <= row + 1 && y < rows_; ++y) {
     for (Cell x = column > 0 ? column - 1 : 0; x <= column + 1 && x < columns_; ++x) {
       const Cell next = y * columns_ + x;
       if (came_from_[next] != kNone) continue;
-      const bool is_slanting = x != column && y != row;
-      const double cost_m = at.cost_m + settings_.cell_m * (is_slanting ? std::sqrt(2.0) : 1.0);
-      put({cost_m + domain.distance(place_of(next), goal_m_), cost_m, next, at.cell});
+      const bool is_diagonal = x != column && y != row;
+      const double cost_m = at.cost_m + settings_.cell_m * (is_diagonal ? std::sqrt(2.0) : 1.0);
+      push({cost_m + domain.distance(position_of(next), goal_m_), cost_m, next, at.cell});
     }
   }
 }
 
-void GridPlanner::put(const Open& open) {
+void GridPlanner::push(const Open& open) {
   open_.push_back(open);
   if (settings_.order != GridOrder::kAStar) return;
   std::push_heap(open_.begin(), open_.end(),
-                 [](const Open& a, const Open& b) { return a.promise_m > b.promise_m; });
+                 [](const Open& a, const Open& b) { return a.estimate_m > b.estimate_m; });
 }
 
-GridPlanner::Open GridPlanner::take() {
-  if (settings_.order == GridOrder::kBreadthFirst) return open_[taken_++];
+GridPlanner::Open GridPlanner::pop() {
+  if (settings_.order == GridOrder::kBreadthFirst) return open_[queue_head_++];
   if (settings_.order == GridOrder::kAStar) {
     std::pop_heap(open_.begin(), open_.end(),
-                  [](const Open& a, const Open& b) { return a.promise_m > b.promise_m; });
+                  [](const Open& a, const Open& b) { return a.estimate_m > b.estimate_m; });
   }
   const Open open = open_.back();
   open_.pop_back();
@@ -101,15 +101,15 @@ GridPlanner::Open GridPlanner::take() {
 
 void GridPlanner::write_plan(Cell cell) {
   plan_.states.clear();
-  for (; cell != start_; cell = came_from_[cell]) plan_.states.push_back(place_of(cell));
-  plan_.states.push_back(place_of(start_));
+  for (; cell != start_; cell = came_from_[cell]) plan_.states.push_back(position_of(cell));
+  plan_.states.push_back(position_of(start_));
   std::reverse(plan_.states.begin(), plan_.states.end());
 }
 
 std::vector<Segment> GridPlanner::steps() const {
   std::vector<Segment> steps;
   for (Cell cell = 0; cell < came_from_.size(); ++cell)
-    if (came_from_[cell] != kNone) steps.push_back({place_of(came_from_[cell]), place_of(cell)});
+    if (came_from_[cell] != kNone) steps.push_back({position_of(came_from_[cell]), position_of(cell)});
   return steps;
 }
 

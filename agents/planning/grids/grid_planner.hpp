@@ -6,11 +6,11 @@
 
 namespace sidestep {
 
-/// In which order a grid's cells are looked at.
+/// The order in which cells are expanded.
 enum class GridOrder {
-  kBreadthFirst,  ///< the fewest steps
-  kDepthFirst,    ///< any way
-  kAStar,         ///< the shortest way on the grid, with the straight distance as the bound
+  kBreadthFirst,  ///< finds a path with the fewest steps
+  kDepthFirst,    ///< finds any path
+  kAStar,         ///< finds the shortest path on the grid; the heuristic is the straight distance
 };
 
 struct GridSettings {
@@ -18,39 +18,39 @@ struct GridSettings {
   double cell_m = 0.1;
 };
 
-/// Search on a regular grid whose cells are joined with their eight neighbours, laid out from the start.
-/// Motions from cell to cell are checked as all others; unreachable means on this grid.
+/// Search on a regular 8-connected grid that has the start at the centre of a cell. Motions between cells are
+/// checked exactly. PlanReason::kUnreachable refers to this grid.
 class GridPlanner {
  public:
   explicit GridPlanner(const GridSettings& settings = {}) : settings_(settings) {}
 
-  /// The result is this planner's, until its next plan. Nothing in it is random.
+  /// The result belongs to this planner and is valid until its next plan. Deterministic.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
-  /// The motions by which the last plan came to cells.
+  /// The motions by which the last search reached cells.
   std::vector<Segment> steps() const;
 
  private:
   using Cell = std::uint32_t;
   struct Open {
-    double promise_m, cost_m;
+    double estimate_m, cost_m;
     Cell cell, from;
   };
 
   void lay_out(const DiscDomain& domain, const Vec2& start);
-  Vec2 place_of(Cell cell) const;
+  Vec2 position_of(Cell cell) const;
   void search(const DiscDomain& domain, const Budget& budget);
-  void look_round(const DiscDomain& domain, const Open& at);
-  void put(const Open& open);
-  Open take();
+  void expand(const DiscDomain& domain, const Open& at);
+  void push(const Open& open);
+  Open pop();
   void write_plan(Cell cell);
 
   GridSettings settings_;
-  Vec2 corner_m_{0, 0}, start_m_{0, 0}, goal_m_{0, 0};
+  Vec2 origin_m_{0, 0}, start_m_{0, 0}, goal_m_{0, 0};
   Cell columns_ = 0, rows_ = 0, start_ = 0;
   std::vector<Cell> came_from_;
-  std::vector<Open> open_;  // a heap, a stack, or a queue from `taken_`
-  std::size_t taken_ = 0;
+  std::vector<Open> open_;  // a heap, a stack, or a queue that starts at queue_head_
+  std::size_t queue_head_ = 0;
   Plan<Vec2> plan_;
 };
 

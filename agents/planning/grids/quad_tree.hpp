@@ -6,22 +6,22 @@
 namespace sidestep {
 
 struct QuadTreeSettings {
-  int depth = 8;  ///< of the tree: the smallest cell is the field's length / 2^depth wide
+  int depth = 8;  ///< of the tree: the smallest cell is as wide as the free area's longer side / 2^depth
 };
 
-/// Approximate cell decomposition: squares that are neither free nor blocked are quartered, down to a
-/// smallest one, which is left out. Made anew for each query.
+/// Approximate cell decomposition: squares that are neither free nor blocked are divided into four, down to a
+/// smallest size; squares still undecided are dropped. Rebuilt for each query.
 class QuadTree {
  public:
   explicit QuadTree(const QuadTreeSettings& settings = {}) : settings_(settings) {}
 
-  /// The result is this planner's, until its next plan. Nothing in it is random.
+  /// The result belongs to this planner and is valid until its next plan. Deterministic.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
   const CellGraph& cells() const { return graph_; }
 
  private:
-  void divide(const DiscDomain& domain, int x, int y, int size);
+  void subdivide(const DiscDomain& domain, int x, int y, int size);
   void add_cell(int x, int y, int size);
   void join_neighbours();
   void join(int x, int y, int size, bool upwards);
@@ -31,8 +31,8 @@ class QuadTree {
   };
   QuadTreeSettings settings_;
   double unit_m_ = 0;
-  Vec2 corner_m_{0, 0};
-  int side_ = 0;                        // in units
+  Vec2 origin_m_{0, 0};
+  int side_ = 0;                        // of the root square, in units of the smallest square
   std::vector<std::uint32_t> cell_at_;  // by unit
   std::vector<Square> squares_;         // by cell
   CellGraph graph_;

@@ -5,26 +5,28 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "agents/planning/domain/planning_domain.hpp"
 
 namespace sidestep {
 
-/// Which nodes a roadmap joins a new one with.
+/// The nodes that a new node is joined with.
 enum class Connection {
-  kNearest,  ///< those that are nearest (Kavraki et al. 1996)
-  kRadial,   ///< in each sector round it, of the first two coordinates, the nearest that it sees
-  kWithin,   ///< all within a radius
+  kNearest,  ///< the nearest ones (Kavraki et al. 1996)
+  kRadial,   ///< the nearest visible one in each sector around the node, by the first two coordinates
+  kRadius,   ///< all within a radius
 };
 
 struct ConnectionSettings {
   Connection method = Connection::kNearest;
-  std::size_t neighbours = 10;  ///< of a new node, or its sectors
-  double radius = 1.5;          ///< in which all are neighbours, for kWithin
+  std::size_t neighbours = 10;  ///< number of nearest nodes, or of sectors for kRadial
+  double radius = 1.5;          ///< for kRadius
 };
 
-/// States and motions between them that may be free, in a graph that grows, and loses what it got last.
+/// A graph of states and of motions between them that were free when added. New nodes can be removed again,
+/// last in first out.
 template <EuclideanDomain D>
 class Roadmap {
  public:
@@ -34,7 +36,7 @@ class Roadmap {
   struct Edge {
     Node a, b;
     double length;
-    std::uint32_t checked = 0;  ///< the version of the world in which it was
+    std::uint32_t checked = 0;  ///< version of the world for which is_free holds
     bool is_free = false;
 
     Node other(Node node) const { return node == a ? b : a; }
@@ -43,9 +45,9 @@ class Roadmap {
   std::size_t size() const { return states_.size(); }
   const State& operator[](Node node) const { return states_[node]; }
   const std::vector<Edge>& edges() const { return edges_; }
-  const std::vector<std::uint32_t>& edges_of(Node node) const { return joins_[node]; }
+  const std::vector<std::uint32_t>& edges_of(Node node) const { return incident_edges_[node]; }
 
-  /// Checks the edge unless that was done in this version.
+  /// Whether an edge is free; checked once per version of the world.
   bool is_free(const D& domain, std::uint32_t edge, std::uint32_t version) {
     Edge& e = edges_[edge];
     if (e.checked != version) {
@@ -55,82 +57,81 @@ class Roadmap {
     return e.is_free;
   }
 
-  /// Adds a state and joins it with its neighbours by free motions.
+  /// Adds a state and joins it to neighbours by free motions.
   Node add(const D& domain, const State& state, const ConnectionSettings& settings, std::uint32_t version) {
-    const Node node = grow(state);
+    const Node node = append(state);
     const bool is_radial = settings.method == Connection::kRadial;
-    find_neighbours(domain, node, settings);
+    find_candidates(domain, node, settings);
     sectors_.assign(settings.neighbours, false);
-    for (const Near& near : nearest_) {
-      const std::size_t sector = is_radial ? sector_of(domain, node, near.node) : 0;
+    for (const Neighbour& neighbour : candidates_) {
+      const std::size_t sector = is_radial ? sector_of(domain, node, neighbour.node) : 0;
       if (is_radial && sectors_[sector]) continue;
-      if (!domain.check(states_[node], states_[near.node])) continue;
+      if (!domain.check(states_[node], states_[neighbour.node])) continue;
       if (is_radial) sectors_[sector] = true;
-      join(node, near, version);
+      join(node, neighbour, version);
     }
     return node;
   }
 
   void clear() { shrink(0); }
 
-  /// Takes the last nodes, and what joins them, away.
+  /// Removes all but the first nodes, and their edges.
   void shrink(std::size_t nodes) {
     while (!edges_.empty() && std::max(edges_.back().a, edges_.back().b) >= nodes) {
-      joins_[edges_.back().a].pop_back();
-      joins_[edges_.back().b].pop_back();
+      incident_edges_[edges_.back().a].pop_back();
+      incident_edges_[edges_.back().b].pop_back();
       edges_.pop_back();
     }
     states_.erase(states_.begin() + static_cast<std::ptrdiff_t>(nodes), states_.end());
   }
 
  private:
-  static constexpr std::size_t kLooks = 8;  // neighbours looked at for each sector
-  struct Near {
+  static constexpr std::size_t kCandidatesPerSector = 8;
+  struct Neighbour {
     double distance;
     Node node;
-    bool operator<(const Near& other) const {
+    bool operator<(const Neighbour& other) const {
       return distance < other.distance || (distance == other.distance && node < other.node);
     }
   };
 
-  Node grow(const State& state) {
+  Node append(const State& state) {
     states_.push_back(state);
-    if (joins_.size() < states_.size()) joins_.emplace_back();
+    if (incident_edges_.size() < states_.size()) incident_edges_.emplace_back();
     return static_cast<Node>(states_.size() - 1);
   }
 
-  void join(Node node, const Near& near, std::uint32_t version) {
-    joins_[node].push_back(static_cast<std::uint32_t>(edges_.size()));
-    joins_[near.node].push_back(static_cast<std::uint32_t>(edges_.size()));
-    edges_.push_back({node, near.node, near.distance, version, true});
+  void join(Node node, const Neighbour& neighbour, std::uint32_t version) {
+    incident_edges_[node].push_back(static_cast<std::uint32_t>(edges_.size()));
+    incident_edges_[neighbour.node].push_back(static_cast<std::uint32_t>(edges_.size()));
+    edges_.push_back({node, neighbour.node, neighbour.distance, version, true});
   }
 
-  /// Those that the node may be joined with, the nearest first.
-  void find_neighbours(const D& domain, Node node, const ConnectionSettings& settings) {
-    const bool is_within = settings.method == Connection::kWithin;
-    nearest_.clear();
+  /// Writes the nodes that a node may be joined with to candidates_, nearest first.
+  void find_candidates(const D& domain, Node node, const ConnectionSettings& settings) {
+    const bool is_within = settings.method == Connection::kRadius;
+    candidates_.clear();
     for (Node other = 0; other < node; ++other) {
       const double distance = domain.distance(states_[node], states_[other]);
-      if (!is_within || distance <= settings.radius) nearest_.push_back({distance, other});
+      if (!is_within || distance <= settings.radius) candidates_.push_back({distance, other});
     }
-    const std::size_t looks = settings.neighbours * (settings.method == Connection::kRadial ? kLooks : 1);
-    const std::size_t kept = is_within ? nearest_.size() : std::min(looks, nearest_.size());
-    std::partial_sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(kept), nearest_.end());
-    nearest_.resize(kept);
+    const std::size_t candidate_count = settings.neighbours * (settings.method == Connection::kRadial ? kCandidatesPerSector : 1);
+    const std::size_t count = is_within ? candidates_.size() : std::min(candidate_count, candidates_.size());
+    std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(count), candidates_.end());
+    candidates_.resize(count);
   }
 
   std::size_t sector_of(const D& domain, Node from, Node to) const {
-    constexpr double kFull = 6.283185307179586;
     const auto a = domain.coordinates(states_[from]), b = domain.coordinates(states_[to]);
-    const double part = std::atan2(b[1] - a[1], b[0] - a[0]) / kFull + 0.5;
-    const auto sector = static_cast<std::size_t>(part * static_cast<double>(sectors_.size()));
+    const double fraction = std::atan2(b[1] - a[1], b[0] - a[0]) / (2 * std::numbers::pi) + 0.5;
+    const auto sector = static_cast<std::size_t>(fraction * static_cast<double>(sectors_.size()));
     return std::min(sector, sectors_.size() - 1);
   }
 
   std::vector<State> states_;
-  std::vector<std::vector<std::uint32_t>> joins_;  // by node; longer than what is in use
+  std::vector<std::vector<std::uint32_t>> incident_edges_;  // by node; may have unused entries at the end
   std::vector<Edge> edges_;
-  std::vector<Near> nearest_;
+  std::vector<Neighbour> candidates_;
   std::vector<bool> sectors_;
 };
 

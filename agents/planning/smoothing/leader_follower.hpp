@@ -9,14 +9,15 @@
 namespace sidestep {
 
 struct SmoothingSettings {
-  std::size_t rounds = 6;     ///< at most, each to and fro
-  double least_gain = 0.002;  ///< of the length, or it was the last round
-  std::size_t halvings = 6;   ///< of a motion, to find how far along it the follower sees
+  std::size_t rounds = 6;    ///< maximum number of rounds, each forwards and backwards
+  double min_gain = 0.002;   ///< smaller relative reduction of the length ends smoothing
+  std::size_t halvings = 6;  ///< bisections of a motion to find the farthest state visible from the follower
 };
 
-/// Leader-follower smoothing (Bruce 2006, section 4.7): a leader walks along the plan, as long as the
-/// follower can go straight to it; where it cannot any more, the follower goes to where it still could, and
-/// the leader walks on. Done to and fro, the way is drawn tight round what it passes. Keeps its memory.
+/// Leader-follower smoothing (Bruce 2006, section 4.6.1): a leader advances along the path while the follower
+/// can reach it on a straight motion. Where it no longer can, the follower moves to the last visible state,
+/// and the leader advances again. Repeated forwards and backwards, this pulls the path tight around
+/// obstacles. Keeps its memory.
 template <StraightDomain D>
 class LeaderFollower {
  public:
@@ -24,18 +25,18 @@ class LeaderFollower {
 
   explicit LeaderFollower(const SmoothingSettings& settings = {}) : settings_(settings) {}
 
-  /// Makes the plan's way shorter, or leaves it; it stays valid, and its ends stay.
+  /// Shortens the plan's path, or leaves it unchanged. The path stays valid and keeps its ends.
   void smooth(const D& domain, Plan<State>& plan) {
     smoothed_.reserve(plan.states.size());
-    turned_.reserve(plan.states.size());
+    reversed_.reserve(plan.states.size());
     for (std::size_t round = 0; round < settings_.rounds && plan.states.size() > 2; ++round) {
       follow(domain, plan.states);
       std::reverse(smoothed_.begin(), smoothed_.end());
-      turned_.swap(smoothed_);
-      follow(domain, turned_);
+      reversed_.swap(smoothed_);
+      follow(domain, reversed_);
       std::reverse(smoothed_.begin(), smoothed_.end());
       const double length = length_of(domain, smoothed_);
-      const bool is_last = length > plan.length * (1 - settings_.least_gain);
+      const bool is_last = length > plan.length * (1 - settings_.min_gain);
       if (length < plan.length) {
         plan.states = smoothed_;
         plan.length = length;
@@ -45,44 +46,44 @@ class LeaderFollower {
   }
 
  private:
-  /// Writes the follower's way.
-  void follow(const D& domain, const std::vector<State>& way) {
+  /// Writes the follower's path to smoothed_.
+  void follow(const D& domain, const std::vector<State>& path) {
     smoothed_.clear();
-    smoothed_.push_back(way.front());
-    // The leader stands on way[at], or between it and the next.
-    std::size_t at = 1;
-    State leader = way[1];
+    smoothed_.push_back(path.front());
+    // The leader is at path[index], or between it and the next state.
+    std::size_t index = 1;
+    State leader = path[1];
     for (;;) {
       const State follower = smoothed_.back();
-      while (at + 1 < way.size() && domain.check(follower, way[at + 1])) leader = way[++at];
-      if (at + 1 == way.size()) break;
-      leader = farthest_seen(domain, follower, leader, way[at + 1]);
+      while (index + 1 < path.size() && domain.check(follower, path[index + 1])) leader = path[++index];
+      if (index + 1 == path.size()) break;
+      leader = farthest_visible(domain, follower, leader, path[index + 1]);
       if (!(leader == follower)) smoothed_.push_back(leader);
-      // The next corner is seen from where the follower goes now.
-      leader = way[++at];
+      // The next state is visible from the follower's new position.
+      leader = path[++index];
     }
-    smoothed_.push_back(way.back());
+    smoothed_.push_back(path.back());
   }
 
-  /// Between a state that the follower sees and one that it does not.
-  State farthest_seen(const D& domain, const State& follower, const State& seen, const State& hidden) const {
-    State last = seen;
+  /// The last state visible to the follower between a visible and a hidden one.
+  State farthest_visible(const D& domain, const State& follower, const State& visible, const State& hidden) const {
+    State last = visible;
     double low = 0, high = 1;
     for (std::size_t i = 0; i < settings_.halvings; ++i) {
-      const double middle = (low + high) / 2;
-      const State state = domain.between(seen, hidden, middle);
+      const double fraction = (low + high) / 2;
+      const State state = domain.between(visible, hidden, fraction);
       if (domain.check(follower, state)) {
-        low = middle;
+        low = fraction;
         last = state;
       } else {
-        high = middle;
+        high = fraction;
       }
     }
     return last;
   }
 
   SmoothingSettings settings_;
-  std::vector<State> smoothed_, turned_;
+  std::vector<State> smoothed_, reversed_;
 };
 
 }  // namespace sidestep

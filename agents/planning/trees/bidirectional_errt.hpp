@@ -7,17 +7,21 @@
 namespace sidestep {
 
 struct BidirectionalErrtSettings {
-  double waypoint_probability = 0.4;  ///< while there are way points
+  double waypoint_probability = 0.4;  ///< while the cache is not empty
   std::size_t cache_capacity = 50;    ///< 0: no cache
   CacheReplacement replacement = CacheReplacement::kRandom;
-  std::size_t extensions = 100;  ///< towards one target, by each tree
-  std::size_t bridges = 1;       ///< it goes on until so many join the trees
+  std::size_t growth_extensions = 100;   ///< maximum, of one tree towards its target; 1: RRT-Connect
+  std::size_t connect_extensions = 100;  ///< maximum, of the other tree towards the new node
+  std::size_t bridges = 1;               ///< number of bridges that ends planning
+  /// Try the straight path before the trees grow, and make the goal their first target. RRT-Connect does
+  /// neither.
+  bool tries_straight_line = true;
 };
 
-/// Two trees, from the start and from the goal, that grow in turn: one towards a target, the other towards
-/// where the first came to (Kuffner and LaValle 2000), until several bridges join them; the plan is the
-/// shortest way over both (Bruce 2006, section 4.5). Remembers plans for the next query, and keeps its
-/// memory.
+/// Bidirectional multi-bridge ERRT (Bruce 2006, section 4.3.4). A tree from the start and a tree from the
+/// goal grow in turn: one towards a target, the other towards the node that the first one reached
+/// (RRT-Connect; Kuffner and LaValle 2000). Planning ends once the requested number of bridges join the
+/// trees; the plan is the shortest path over both. Caches plans for the next query, and keeps its memory.
 template <StraightDomain D>
 class BidirectionalErrt {
  public:
@@ -26,9 +30,10 @@ class BidirectionalErrt {
   explicit BidirectionalErrt(const BidirectionalErrtSettings& settings = {})
       : settings_(settings), cache_(settings.cache_capacity, settings.replacement) {}
 
-  /// The result is this planner's, until its next plan.
+  /// The result belongs to this planner and is valid until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
-    plan_and_remember(domain, start, cache_, plan_, rng, [&] { grow(domain, start, budget, rng); });
+    plan_and_remember(domain, start, cache_, plan_, rng, settings_.tries_straight_line,
+                      [&] { grow(domain, start, budget, rng); });
     return plan_;
   }
 
@@ -47,7 +52,8 @@ class BidirectionalErrt {
     std::size_t turn = 0;
     while (bridges_.size() < settings_.bridges &&
            !budget.is_spent(trees_[0].size() + trees_[1].size(), plan_.samples)) {
-      grow_towards(domain, turn, plan_.samples == 0 ? domain.goal(start) : choose(domain, rng));
+      const bool is_goal_first = settings_.tries_straight_line && plan_.samples == 0;
+      grow_towards(domain, turn, is_goal_first ? goal : choose_target(domain, rng));
       ++plan_.samples;
       turn = 1 - turn;
     }
@@ -56,17 +62,18 @@ class BidirectionalErrt {
       plan_.length = bridges_.shortest(trees_[0], trees_[1], plan_.states);
       plan_.reason = PlanReason::kSolved;
     } else {
-      approach(domain, goal);
+      write_nearest_to_goal(domain, goal);
     }
   }
 
   void grow_towards(const D& domain, std::size_t turn, const State& target) {
     SearchTree<D>&mine = trees_[turn], &other = trees_[1 - turn];
     const Node before = static_cast<Node>(mine.size());
-    const Node node = extend(domain, mine, mine.nearest(domain, target), target);
+    const Node node =
+        extend(domain, mine, mine.nearest(domain, target), target, settings_.growth_extensions);
     if (node < before) return;
-    const Node near = other.nearest(domain, mine[node]);
-    const Node across = extend(domain, other, near, mine[node]);
+    const Node nearest = other.nearest(domain, mine[node]);
+    const Node across = extend(domain, other, nearest, mine[node], settings_.connect_extensions);
     if (domain.distance(other[across], mine[node]) > 0) return;
     if (turn == 0) {
       bridges_.add(node, across);
@@ -75,9 +82,9 @@ class BidirectionalErrt {
     }
   }
 
-  /// Extends the tree from the node towards the target, again and again; returns the last node.
-  Node extend(const D& domain, SearchTree<D>& tree, Node node, const State& target) {
-    for (std::size_t i = 0; i < settings_.extensions; ++i) {
+  /// Repeatedly extends the tree from a node towards the target; returns the last node.
+  Node extend(const D& domain, SearchTree<D>& tree, Node node, const State& target, std::size_t max_extensions) {
+    for (std::size_t i = 0; i < max_extensions; ++i) {
       const std::optional<State> reached = domain.extend(tree[node], target);
       if (!reached) return node;
       node = tree.add(domain, *reached, node);
@@ -86,13 +93,13 @@ class BidirectionalErrt {
     return node;
   }
 
-  State choose(const D& domain, Rng& rng) {
-    if (!cache_.is_empty() && rng.chance(settings_.waypoint_probability)) return cache_.draw(rng);
+  State choose_target(const D& domain, Rng& rng) {
+    if (!cache_.is_empty() && rng.chance(settings_.waypoint_probability)) return cache_.sample(rng);
     return domain.sample(rng);
   }
 
-  /// As near to the goal as the first tree came.
-  void approach(const D& domain, const State& goal) {
+  /// Writes the path to the node of the start tree nearest to the goal.
+  void write_nearest_to_goal(const D& domain, const State& goal) {
     const Node best = trees_[0].nearest(domain, goal);
     plan_.states.push_back(trees_[0][0]);
     trees_[0].append_downwards(0, best, plan_.states);

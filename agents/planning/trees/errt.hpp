@@ -8,13 +8,15 @@ namespace sidestep {
 
 struct ErrtSettings {
   double goal_probability = 0.1;
-  double waypoint_probability = 0.4;  ///< while there are way points
+  double waypoint_probability = 0.4;  ///< while the cache is not empty
   std::size_t cache_capacity = 50;    ///< 0: a plain RRT (LaValle 1998)
   CacheReplacement replacement = CacheReplacement::kRandom;
+  bool tries_straight_line = true;  ///< to the goal, before the tree grows; a plain RRT does not
 };
 
-/// A rapidly exploring random tree from the start, that grows towards the goal, towards way points of earlier
-/// plans, or anywhere (Bruce and Veloso 2002). Remembers plans for the next query, and keeps its memory.
+/// Extended rapidly-exploring random tree (Bruce and Veloso 2002): a tree from the start that grows towards
+/// the goal, towards waypoints of earlier plans, or towards random states. Caches plans for the next query,
+/// and keeps its memory.
 template <PlanningDomain D>
 class Errt {
  public:
@@ -23,9 +25,10 @@ class Errt {
   explicit Errt(const ErrtSettings& settings = {})
       : settings_(settings), cache_(settings.cache_capacity, settings.replacement) {}
 
-  /// The result is this planner's, until its next plan.
+  /// The result belongs to this planner and is valid until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
-    plan_and_remember(domain, start, cache_, plan_, rng, [&] { grow(domain, start, budget, rng); });
+    plan_and_remember(domain, start, cache_, plan_, rng, settings_.tries_straight_line,
+                      [&] { grow(domain, start, budget, rng); });
     return plan_;
   }
 
@@ -40,12 +43,12 @@ class Errt {
     Node best = 0;
     double best_distance = domain.distance(start, domain.goal(start));
     while (best_distance > 0 && !budget.is_spent(tree_.size(), plan_.samples)) {
-      const State target = choose(domain, best, rng);
-      const Node near = tree_.nearest(domain, target);
-      const std::optional<State> reached = domain.extend(tree_[near], target);
+      const State target = choose_target(domain, best, rng);
+      const Node nearest = tree_.nearest(domain, target);
+      const std::optional<State> reached = domain.extend(tree_[nearest], target);
       ++plan_.samples;
       if (!reached) continue;
-      const Node node = tree_.add(domain, *reached, near);
+      const Node node = tree_.add(domain, *reached, nearest);
       const double distance = domain.distance(*reached, domain.goal(*reached));
       if (distance >= best_distance) continue;
       best_distance = distance;
@@ -58,11 +61,11 @@ class Errt {
     if (best_distance <= 0) plan_.reason = PlanReason::kSolved;
   }
 
-  State choose(const D& domain, Node best, Rng& rng) {
+  State choose_target(const D& domain, Node best, Rng& rng) {
     const double chance = rng.uniform();
     if (chance < settings_.goal_probability) return domain.goal(tree_[best]);
     if (chance < settings_.goal_probability + settings_.waypoint_probability && !cache_.is_empty())
-      return cache_.draw(rng);
+      return cache_.sample(rng);
     return domain.sample(rng);
   }
 

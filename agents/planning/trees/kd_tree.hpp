@@ -9,9 +9,9 @@
 
 namespace sidestep {
 
-/// The nearest of a growing set of points in N dimensions (Bentley 1975): leaves hold up to kLeaf points,
-/// which are compared side by side, and split at the median of their widest extent when full. Points keep
-/// the order in which they were added as their number; of equally near ones the first is the nearest.
+/// K-D tree for nearest neighbours in a growing set of points in N dimensions (Bentley 1975). Leaves hold up
+/// to kLeafCapacity points, compared in vector lanes; a full leaf is split at the median of its widest
+/// extent. Points are numbered in the order of insertion; among equally near points the lowest index wins.
 template <std::size_t N>
 class KdTree {
  public:
@@ -32,20 +32,20 @@ class KdTree {
     Link* link = &root_;
     while (!link->is_leaf()) {
       Split& split = splits_[link->split()];
-      link = point[split.axis] < split.at ? &split.below : &split.above;
+      link = point[split.axis] < split.threshold ? &split.below : &split.above;
     }
-    const auto number = static_cast<std::uint32_t>(size_++);
+    const auto index = static_cast<std::uint32_t>(size_++);
     std::uint32_t leaf = link->leaf();
-    if (leaves_[leaf].count == kLeaf) {
+    if (leaves_[leaf].count == kLeafCapacity) {
       const Split split = divide(leaf);
-      leaf = point[split.axis] < split.at ? split.below.leaf() : split.above.leaf();
+      leaf = point[split.axis] < split.threshold ? split.below.leaf() : split.above.leaf();
       *link = Link::to_split(splits_.size());
       splits_.push_back(split);
     }
-    put(leaves_[leaf], point, number);
+    append(leaves_[leaf], point, index);
   }
 
-  /// The number of the nearest point; the set is not empty.
+  /// Index of the nearest point. Requires a non-empty set.
   std::uint32_t nearest(const Point& point) const {
     Nearest found;
     if (root_.is_leaf()) {
@@ -53,13 +53,13 @@ class KdTree {
     } else {
       descend(root_, point, Point{}, 0, found);
     }
-    return found.number;
+    return found.index;
   }
 
  private:
-  static constexpr std::size_t kLeaf = 16;
+  static constexpr std::size_t kLeafCapacity = 16;
 
-  /// To a split, or to a leaf where the sign is negative.
+  /// Index of a split, or the bitwise complement of the index of a leaf.
   struct Link {
     std::int32_t value;
     static Link to_leaf(std::size_t i) { return {~static_cast<std::int32_t>(i)}; }
@@ -69,58 +69,58 @@ class KdTree {
     std::uint32_t split() const { return static_cast<std::uint32_t>(value); }
   };
   struct Split {
-    double at;
+    double threshold;
     std::uint32_t axis;
     Link below, above;
   };
   struct alignas(64) Leaf {
-    double coordinate[N][kLeaf];
-    std::uint32_t number[kLeaf];
+    double coordinate[N][kLeafCapacity];
+    std::uint32_t index[kLeafCapacity];
     std::uint32_t count;
   };
   struct Nearest {
     double distance2 = std::numeric_limits<double>::infinity();
-    std::uint32_t number = 0;
+    std::uint32_t index = 0;
   };
 
   Link new_leaf() {
     leaves_.emplace_back();
-    empty(leaves_.back());
+    clear_leaf(leaves_.back());
     return Link::to_leaf(leaves_.size() - 1);
   }
 
-  static void empty(Leaf& leaf) {
+  static void clear_leaf(Leaf& leaf) {
     leaf.count = 0;
-    // Lanes without a point are compared as well.
+    // Empty lanes are compared too, so they are infinitely far.
     for (auto& axis : leaf.coordinate)
       for (double& x : axis) x = std::numeric_limits<double>::infinity();
   }
 
-  static void put(Leaf& leaf, const Point& point, std::uint32_t number) {
+  static void append(Leaf& leaf, const Point& point, std::uint32_t index) {
     for (std::size_t axis = 0; axis < N; ++axis) leaf.coordinate[axis][leaf.count] = point[axis];
-    leaf.number[leaf.count++] = number;
+    leaf.index[leaf.count++] = index;
   }
 
-  /// Divides a full leaf into itself and a new one.
+  /// Moves the upper half of a full leaf to a new leaf.
   Split divide(std::uint32_t full) {
     const Leaf all = leaves_[full];
-    empty(leaves_[full]);
+    clear_leaf(leaves_[full]);
     const auto axis = widest_axis(all);
-    std::array<std::uint8_t, kLeaf> order;
-    for (std::size_t i = 0; i < kLeaf; ++i) {
-      std::size_t at = i;
-      while (at > 0 && all.coordinate[axis][order[at - 1]] > all.coordinate[axis][i]) {
-        order[at] = order[at - 1];
-        --at;
+    std::array<std::uint8_t, kLeafCapacity> order;
+    for (std::size_t i = 0; i < kLeafCapacity; ++i) {
+      std::size_t slot = i;
+      while (slot > 0 && all.coordinate[axis][order[slot - 1]] > all.coordinate[axis][i]) {
+        order[slot] = order[slot - 1];
+        --slot;
       }
-      order[at] = static_cast<std::uint8_t>(i);
+      order[slot] = static_cast<std::uint8_t>(i);
     }
-    const Split split{all.coordinate[axis][order[kLeaf / 2]], axis, Link::to_leaf(full), new_leaf()};
-    for (std::size_t i = 0; i < kLeaf; ++i) {
+    const Split split{all.coordinate[axis][order[kLeafCapacity / 2]], axis, Link::to_leaf(full), new_leaf()};
+    for (std::size_t i = 0; i < kLeafCapacity; ++i) {
       Point point;
       for (std::size_t k = 0; k < N; ++k) point[k] = all.coordinate[k][order[i]];
-      Leaf& half = leaves_[i < kLeaf / 2 ? split.below.leaf() : split.above.leaf()];
-      put(half, point, all.number[order[i]]);
+      Leaf& half = leaves_[i < kLeafCapacity / 2 ? split.below.leaf() : split.above.leaf()];
+      append(half, point, all.index[order[i]]);
     }
     return split;
   }
@@ -143,38 +143,38 @@ class KdTree {
   }
 
   static void scan(const Leaf& leaf, const Point& point, Nearest& found) {
-    double distance2[kLeaf] = {};
+    double distance2[kLeafCapacity] = {};
     for (std::size_t axis = 0; axis < N; ++axis) {
-      for (std::size_t i = 0; i < kLeaf; ++i) {
+      for (std::size_t i = 0; i < kLeafCapacity; ++i) {
         const double d = leaf.coordinate[axis][i] - point[axis];
         distance2[i] += d * d;
       }
     }
-    // The least first, without branches: most leaves hold nothing nearer.
-    double least[4] = {distance2[0], distance2[1], distance2[2], distance2[3]};
-    for (std::size_t i = 4; i < kLeaf; ++i)
-      least[i % 4] = distance2[i] < least[i % 4] ? distance2[i] : least[i % 4];
-    const double low = least[0] < least[1] ? least[0] : least[1];
-    const double high = least[2] < least[3] ? least[2] : least[3];
+    // First the minimum, without branches: most leaves hold no nearer point.
+    double minima[4] = {distance2[0], distance2[1], distance2[2], distance2[3]};
+    for (std::size_t i = 4; i < kLeafCapacity; ++i)
+      minima[i % 4] = distance2[i] < minima[i % 4] ? distance2[i] : minima[i % 4];
+    const double low = minima[0] < minima[1] ? minima[0] : minima[1];
+    const double high = minima[2] < minima[3] ? minima[2] : minima[3];
     const double nearest2 = low < high ? low : high;
     if (nearest2 > found.distance2) return;
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       if (distance2[i] != nearest2) continue;
-      if (nearest2 < found.distance2 || leaf.number[i] < found.number) found = {nearest2, leaf.number[i]};
+      if (nearest2 < found.distance2 || leaf.index[i] < found.index) found = {nearest2, leaf.index[i]};
     }
   }
 
-  /// `beyond`: how far the point lies outside of the link's cell on each axis; `distance2` their square.
-  void descend(Link link, const Point& point, Point beyond, double distance2, Nearest& found) const {
+  /// `offset`: distance of the point from the link's cell along each axis; `distance2`: its squared norm.
+  void descend(Link link, const Point& point, Point offset, double distance2, Nearest& found) const {
     if (link.is_leaf()) return scan(leaves_[link.leaf()], point, found);
     const Split& split = splits_[link.split()];
-    const double over = point[split.axis] - split.at;
-    descend(over < 0 ? split.below : split.above, point, beyond, distance2, found);
-    const double far2 = distance2 - beyond[split.axis] * beyond[split.axis] + over * over;
-    // A little less, so that rounding hides no point that is as near.
+    const double over = point[split.axis] - split.threshold;
+    descend(over < 0 ? split.below : split.above, point, offset, distance2, found);
+    const double far2 = distance2 - offset[split.axis] * offset[split.axis] + over * over;
+    // Reduced slightly, so that rounding does not exclude an equally near point.
     if (far2 * (1 - 1e-12) > found.distance2) return;
-    beyond[split.axis] = over;
-    descend(over < 0 ? split.above : split.below, point, beyond, far2, found);
+    offset[split.axis] = over;
+    descend(over < 0 ? split.above : split.below, point, offset, far2, found);
   }
 
   std::vector<Split> splits_;

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// What KdTree does, by comparing with every point.
+/// Nearest neighbours by linear search, with the interface of KdTree.
 template <std::size_t N>
 class LinearNearest {
  public:
@@ -18,7 +18,7 @@ class LinearNearest {
   std::size_t size() const { return points_.size(); }
   void add(const Point& point) { points_.push_back(point); }
 
-  /// The number of the nearest point; the set is not empty.
+  /// Index of the nearest point. Requires a non-empty set.
   std::uint32_t nearest(const Point& point) const {
     std::uint32_t best = 0;
     double best_distance2 = distance2(points_[0], point);

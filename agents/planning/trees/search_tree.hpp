@@ -11,24 +11,24 @@
 
 namespace sidestep {
 
-/// The states that a planner has reached from one root, each with its parent and the distance along the tree.
+/// The states that a planner has reached from a root, each with its parent and its distance along the tree.
 template <PlanningDomain D>
 class SearchTree {
  public:
   using State = typename D::State;
   using Node = std::uint32_t;
 
-  /// Keeps the memory.
+  /// Starts a new tree, keeping the memory.
   void start(const D& domain, const State& root) {
     states_.clear();
     parents_.clear();
     costs_.clear();
     if constexpr (EuclideanDomain<D>) neighbours_.clear();
-    put(domain, root, 0, 0);
+    append(domain, root, 0, 0);
   }
 
   Node add(const D& domain, const State& state, Node parent) {
-    return put(domain, state, parent, costs_[parent] + domain.distance(states_[parent], state));
+    return append(domain, state, parent, costs_[parent] + domain.distance(states_[parent], state));
   }
 
   Node nearest(const D& domain, const State& state) const {
@@ -49,13 +49,13 @@ class SearchTree {
 
   std::size_t size() const { return states_.size(); }
   const State& operator[](Node node) const { return states_[node]; }
-  /// The root is its own.
+  /// The root is its own parent.
   Node parent(Node node) const { return parents_[node]; }
   double cost(Node node) const { return costs_[node]; }
 
-  /// The last node that is on the ways to both.
+  /// The lowest common ancestor.
   Node common_ancestor(Node a, Node b) const {
-    // Parents are older than their children.
+    // Parents have lower indices than their children.
     while (a != b) (a > b ? a : b) = parents_[std::max(a, b)];
     return a;
   }
@@ -64,7 +64,7 @@ class SearchTree {
   void append_upwards(Node node, Node ancestor, std::vector<State>& states) const {
     for (; node != ancestor; node = parents_[node]) states.push_back(states_[node]);
   }
-  /// Appends the states from below an ancestor down to the node.
+  /// Appends the states from the child of an ancestor down to the node.
   void append_downwards(Node ancestor, Node node, std::vector<State>& states) const {
     const auto first = static_cast<std::ptrdiff_t>(states.size());
     append_upwards(node, ancestor, states);
@@ -72,7 +72,7 @@ class SearchTree {
   }
 
  private:
-  Node put(const D& domain, const State& state, Node parent, double cost) {
+  Node append(const D& domain, const State& state, Node parent, double cost) {
     states_.push_back(state);
     parents_.push_back(parent);
     costs_.push_back(cost);

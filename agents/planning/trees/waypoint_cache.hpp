@@ -12,16 +12,16 @@
 
 namespace sidestep {
 
-/// Which way point makes room when a full cache takes a new one.
+/// Replacement strategy: the waypoint that a full cache drops for a new one.
 enum class CacheReplacement {
-  kRandom,             ///< any (Bruce and Veloso 2002)
-  kOldest,             ///< the one that has been there the longest
-  kLeastRecentlyUsed,  ///< the one that no plan has grown towards for the longest
-  kWholePlan,          ///< all: the cache holds the last plan
+  kRandom,             ///< a random one (Bruce and Veloso 2002)
+  kOldest,             ///< the one stored first
+  kLeastRecentlyUsed,  ///< the one unused as a growth target for the longest
+  kWholePlan,          ///< all of them: the cache holds the last plan
 };
 
-/// States of earlier plans, to grow towards in later ones: what was a good way point a moment ago is likely
-/// to be one still.
+/// States of earlier plans that later plans grow towards, since good waypoints change little between
+/// successive queries.
 template <typename State>
 class WaypointCache {
  public:
@@ -33,17 +33,16 @@ class WaypointCache {
   bool is_empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
   const State& operator[](std::size_t i) const { return entries_[i].state; }
-  void clear() { entries_.clear(); }
 
-  /// A way point drawn at random, for a plan to grow towards; the cache is not empty.
-  const State& draw(Rng& rng) { return use(any(rng)); }
-  /// The same, chosen.
+  /// A random waypoint to grow towards. Requires a non-empty cache.
+  const State& sample(Rng& rng) { return use(random_index(rng)); }
+  /// The waypoint with an index, marked as used.
   const State& use(std::size_t i) {
     entries_[i].used = now_ + 1;
     return entries_[i].state;
   }
 
-  /// A plan was found: remembers the states on it.
+  /// Stores the states of a solved plan.
   void store(const std::vector<State>& plan, Rng& rng) {
     if (capacity_ == 0) return;
     ++now_;
@@ -52,7 +51,7 @@ class WaypointCache {
       if (entries_.size() < capacity_) {
         entries_.push_back({state, now_, now_});
       } else {
-        entries_[replaced(rng)] = {state, now_, now_};
+        entries_[replaced_index(rng)] = {state, now_, now_};
       }
     }
   }
@@ -60,12 +59,12 @@ class WaypointCache {
  private:
   struct Entry {
     State state;
-    std::uint64_t stored, used;  // with which plan
+    std::uint64_t stored, used;  // number of the plan that stored it, and of the last one that used it
   };
 
-  std::size_t any(Rng& rng) const { return static_cast<std::size_t>(rng.below(entries_.size())); }
+  std::size_t random_index(Rng& rng) const { return static_cast<std::size_t>(rng.below(entries_.size())); }
 
-  std::size_t replaced(Rng& rng) const {
+  std::size_t replaced_index(Rng& rng) const {
     const auto oldest = [&](auto age) {
       const auto first = std::min_element(entries_.begin(), entries_.end(),
                                           [&](const Entry& a, const Entry& b) { return age(a) < age(b); });
@@ -75,10 +74,10 @@ class WaypointCache {
       case CacheReplacement::kOldest:
         return oldest([](const Entry& e) { return e.stored; });
       case CacheReplacement::kLeastRecentlyUsed:
-        // One hard plan uses all: then the order of their coming decides.
+        // One hard plan may use all waypoints; then the oldest goes.
         return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
-        return any(rng);
+        return random_index(rng);
     }
   }
 
@@ -88,14 +87,14 @@ class WaypointCache {
   std::uint64_t now_ = 0;
 };
 
-/// The frame of planners that remember: the straight way if it is free, else what `grow` writes into the
-/// plan; the states of plans that arrive are remembered.
+/// The common frame of planners with a cache: tries the straight path if `tries_straight_line`, otherwise
+/// calls `grow`, which writes the plan. The states of plans that arrive are stored in the cache.
 template <PlanningDomain D, typename Grow>
 void plan_and_remember(const D& domain, const typename D::State& start,
                        WaypointCache<typename D::State>& cache, Plan<typename D::State>& plan, Rng& rng,
-                       const Grow& grow) {
+                       bool tries_straight_line, const Grow& grow) {
   begin_plan(domain, start, plan);
-  if (!plan_straight(domain, start, plan)) grow();
+  if (!tries_straight_line || !plan_straight(domain, start, plan)) grow();
   if (plan.arrives()) cache.store(plan.states, rng);
 }
 

@@ -4,43 +4,43 @@
 namespace sidestep {
 namespace {
 
-Box box_of(const Segment& way) { return {way.from_m.cwiseMin(way.to_m), way.from_m.cwiseMax(way.to_m)}; }
+Box box_of(const Segment& motion) { return {motion.from_m.cwiseMin(motion.to_m), motion.from_m.cwiseMax(motion.to_m)}; }
 
 }  // namespace
 
 void KnownObstacles::clear(double radius_m) {
   radius_m_ = radius_m;
   known_.clear();
-  last_ = 0;
+  last_blocking_ = 0;
 }
 
-void KnownObstacles::add(const Shape& shape) { known_.push_back({grown(bounds(shape), radius_m_), &shape}); }
+void KnownObstacles::add(const Shape& shape) { known_.push_back({inflated(bounds(shape), radius_m_), &shape}); }
 
-bool KnownObstacles::stops(const Known& known, const Segment& way, const Box& box) const {
+bool KnownObstacles::blocks_motion(const Known& known, const Segment& motion, const Box& box) const {
   if (!overlap(box, known.box)) return false;
   const auto* circle = std::get_if<Circle>(known.shape);
   const double reach_m = radius_m_ + (circle ? circle->radius_m : 0);
-  return (circle ? squared_distance(circle->centre_m, way) : squared_distance(way, *known.shape)) <=
+  return (circle ? squared_distance(circle->centre_m, motion) : squared_distance(motion, *known.shape)) <=
          reach_m * reach_m;
 }
 
-bool KnownObstacles::stop_again(const Segment& way) const {
-  return last_ < known_.size() && stops(known_[last_], way, box_of(way));
+bool KnownObstacles::last_blocks(const Segment& motion) const {
+  return last_blocking_ < known_.size() && blocks_motion(known_[last_blocking_], motion, box_of(motion));
 }
 
-bool KnownObstacles::stop(const Segment& way) {
-  const Box box = box_of(way);
+bool KnownObstacles::blocks(const Segment& motion) {
+  const Box box = box_of(motion);
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (!stops(known_[i], way, box)) continue;
-    last_ = i;
+    if (!blocks_motion(known_[i], motion, box)) continue;
+    last_blocking_ = i;
     return true;
   }
   return false;
 }
 
-bool KnownObstacles::hold(const Vec2& place, std::size_t first, std::size_t end) const {
+bool KnownObstacles::covers(const Vec2& position, std::size_t first, std::size_t end) const {
   for (std::size_t i = first; i < end; ++i)
-    if (overlap(known_[i].box, {place, place}) && signed_distance(place, *known_[i].shape) < kTouching_m)
+    if (overlap(known_[i].box, {position, position}) && signed_distance(position, *known_[i].shape) < kCoincidence_m)
       return true;
   return false;
 }

@@ -8,37 +8,37 @@
 
 namespace sidestep {
 
-/// Corners nearer than this to what they lie on lie on it: rounding.
-inline constexpr double kTouching_m = 1e-9;
+/// A corner within this distance of a shape counts as lying on it.
+inline constexpr double kCoincidence_m = 1e-9;
 
-/// The obstacles that a search has run into, compared one by one: there are few of them, and what stopped one
-/// way often stops the next.
+/// The obstacles that a search has run into, tested one by one. They are few, and the obstacle that blocked
+/// one motion often blocks the next.
 class KnownObstacles {
  public:
-  /// Forgets all, and keeps the memory. For a disc of the radius.
+  /// Removes all obstacles, keeping the memory, and sets the radius of the disc that moves.
   void clear(double radius_m);
-  /// The shape has to stay.
+  /// The shape has to outlive this set.
   void add(const Shape& shape);
   std::size_t size() const { return known_.size(); }
 
-  /// Whether the one that stopped a motion the last time stops this one; all have to be asked otherwise.
-  bool stop_again(const Segment& way) const;
-  /// Whether any stops the motion.
-  bool stop(const Segment& way);
+  /// Whether the obstacle that blocked the last motion blocks this one. If not, ask blocks().
+  bool last_blocks(const Segment& motion) const;
+  /// Whether any obstacle blocks the motion.
+  bool blocks(const Segment& motion);
 
-  /// Whether a place lies in one of the obstacles from `first` to before `end`, or on its border.
-  bool hold(const Vec2& place, std::size_t first, std::size_t end) const;
+  /// Whether a position lies in, or on the border of, an obstacle with an index in [first, end).
+  bool covers(const Vec2& position, std::size_t first, std::size_t end) const;
 
  private:
   struct Known {
-    Box box;  // with the disc's radius
+    Box box;  // inflated by the disc's radius
     const Shape* shape;
   };
-  bool stops(const Known& known, const Segment& way, const Box& box) const;
+  bool blocks_motion(const Known& known, const Segment& motion, const Box& box) const;
 
   double radius_m_ = 0;
   std::vector<Known> known_;
-  std::size_t last_ = 0;
+  std::size_t last_blocking_ = 0;
 };
 
 }  // namespace sidestep

@@ -3,90 +3,88 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/domain/plan.hpp"
-#include "agents/planning/visibility/bend.hpp"
+#include "agents/planning/visibility/tangent_arc.hpp"
 #include "agents/planning/visibility/known_obstacles.hpp"
 
 namespace sidestep {
 
 struct LazyVisibilitySettings {
-  /// Ways keep so much more from obstacles than they have to, so that rounding is no contact.
-  double stand_off_m = 1e-4;
-  double corner_rad = 0.35;  ///< by which the way turns at most, at one of its corners
+  /// Clearance beyond the disc's radius, so that rounding does not cause contact.
+  double standoff_m = 1e-4;
+  double vertex_turn_rad = 0.35;  ///< maximum turn at a vertex of the path
 };
 
-/// The shortest way of a disc among obstacles: A* over the tangents between bends, where a tangent is only
-/// checked when it is the most promising, and an obstacle counts only when one that promised more ran into
-/// it. Few obstacles matter for a query, however many there are.
+/// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is only
+/// checked when it is the most promising one, and an obstacle is only taken into account once such a tangent
+/// has run into it. Few obstacles matter for a query, whatever their number.
 class LazyVisibility {
  public:
   explicit LazyVisibility(const LazyVisibilitySettings& settings = {}) : settings_(settings) {}
 
-  /// The result is this planner's, until its next plan. Nothing in it is random. Unreachable means that no
-  /// way keeps the stand-off.
+  /// The result belongs to this planner and is valid until its next plan. Deterministic. Unreachable means
+  /// that no path keeps the standoff.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
-  /// The straight parts of all ways that the last plan followed.
-  std::vector<Segment> ways() const;
+  /// The tangents along which the last search reached arcs.
+  std::vector<Segment> explored_tangents() const;
 
  private:
-  /// A way to a bend, that arrives there along `along`.
+  /// A path to an arc, which arrives there in direction `along`.
   struct Arrival {
-    std::uint32_t bend = 0;
+    std::uint32_t arc = 0;
     Side side = Side::kLeft;
     Vec2 along{0, 0};
-    double cost_m = 0;       // up to where it touches the bend
-    double turn_rad = 0;     // at the bend it comes from
-    double corner_rad = 0;   // of corners there, at most; 0: the chord counts as the turn
-    std::uint32_t before;    // the arrival there
-    std::uint32_t previous;  // arrival at this bend and side
+    double cost_m = 0;            // length up to the tangent point
+    double turn_rad = 0;          // turn along the parent's arc
+    double vertex_turn_rad = 0;   // maximum turn at a vertex there; 0: turn_rad is still a lower bound
+    std::uint32_t parent;         // arrival at the previous arc
+    std::uint32_t previous;       // previous arrival at this arc and side
   };
-  /// A way on from an arrival that is not checked yet, and what it costs to the goal, at least.
-  struct Promise {
+  /// A candidate that is not checked yet, and a lower bound of the length of a path through it to the goal.
+  struct OpenEntry {
     double cost_m;
     std::uint32_t candidate;
   };
   struct CostsMore {
-    bool operator()(const Promise& a, const Promise& b) const { return a.cost_m > b.cost_m; }
+    bool operator()(const OpenEntry& a, const OpenEntry& b) const { return a.cost_m > b.cost_m; }
   };
 
   void plan_from(const DiscDomain& domain, const Vec2& start, const Budget& budget);
-  void plan_out(const DiscDomain& domain, const Vec2& start, const Budget& budget);
-  void begin(const DiscDomain& domain, const Vec2& start);
+  void plan_from_blocked(const DiscDomain& domain, const Vec2& start, const Budget& budget);
+  void begin_search(const DiscDomain& domain, const Vec2& start);
   bool search(const DiscDomain& domain, const Budget& budget);
-  void propose_all(const DiscDomain& domain, std::uint32_t arrival, std::uint32_t first_bend);
-  void propose(const DiscDomain& domain, std::uint32_t arrival, const Bend& from, std::uint32_t bend);
-  void put(const Promise& promise);
-  Promise take();
-  /// Arcs instead of their chords; returns by how much the way is longer.
-  double measure(Arrival& next) const;
-  /// Whether who arrived before can go round to where the next would arrive, at no more cost.
-  bool is_served(const DiscDomain& domain, const Arrival& next);
-  /// Chooses the corners.
-  bool is_free_round(const DiscDomain& domain, Arrival& next);
-  /// Looks at the tangent.
-  bool is_free_straight(const DiscDomain& domain, const Arrival& next);
-  bool is_free_round(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
-                     double corner_rad);
+  void expand(const DiscDomain& domain, std::uint32_t arrival, std::uint32_t first_arc);
+  void add_candidates(const DiscDomain& domain, std::uint32_t arrival, const TangentArc& from, std::uint32_t arc);
+  void push(const OpenEntry& entry);
+  OpenEntry pop();
+  /// Replaces the lower bound of the turn by the turn itself; returns the increase of the cost.
+  double refine_cost(Arrival& next) const;
+  /// Whether an earlier arrival can follow the arc to the tangent point of `next` at no more cost.
+  bool is_dominated(const DiscDomain& domain, const Arrival& next);
+  /// Whether the parent's arc is free up to the tangent; sets next.vertex_turn_rad.
+  bool is_arc_free(const DiscDomain& domain, Arrival& next);
+  bool is_tangent_free(const DiscDomain& domain, const Arrival& next);
+  bool is_arc_free(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
+                     double vertex_turn_rad);
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  /// Takes into account what stops a motion that nothing known does.
+  /// Adds the first obstacle that blocks a motion, if it is not known yet.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  /// No way has to bend at a corner that lies in another obstacle, or outside of the field: it bends at that
-  /// one's corners. Hides those of the last obstacle, whose bends are from `first_bend` on, and those that it
-  /// hides.
-  void hide_corners(const Field& field, std::size_t first_bend);
+  /// Hides corners that lie in another obstacle or outside the field, since no shortest path turns at them:
+  /// those of the last obstacle, whose arcs begin at `first_arc`, and those that it covers.
+  void hide_covered_corners(const Field& field, std::size_t first_arc);
   void write_plan(std::uint32_t arrival);
 
   LazyVisibilitySettings settings_;
-  std::vector<Bend> bends_;  // the start, the goal, and those of the obstacles known
+  std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the known obstacles
   KnownObstacles known_;
-  std::vector<std::uint8_t> is_hidden_;  // by bend: ways need not touch it
-  std::vector<Arrival> arrivals_;        // that are reached
-  std::vector<std::uint32_t> last_;      // arrival, by bend and side
+  std::vector<std::uint8_t> is_hidden_;  // by arc: not needed by any shortest path
+  std::vector<Arrival> arrivals_;        // expanded so far
+  std::vector<std::uint32_t> last_;      // last arrival, by arc and side
   std::vector<Arrival> candidates_;
-  std::vector<Promise> queue_;         // a heap
-  std::vector<std::uint32_t> likely_;  // bends
-  std::vector<Vec2> corners_;
-  std::vector<std::uint32_t> way_;
+  std::vector<OpenEntry> queue_;          // a heap
+  std::vector<std::uint32_t> promising_;  // arcs
+  std::vector<Vec2> vertices_;
+  std::vector<std::uint32_t> path_;
   Plan<Vec2> plan_;
 };
 

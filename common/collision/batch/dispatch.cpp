@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/batch/dispatch.hpp"
 
-#include "common/collision/batch/levels.hpp"
+#include "common/collision/batch/kernel_tables.hpp"
 #include "common/processor/instruction_set.hpp"
 
 namespace sidestep::collision {

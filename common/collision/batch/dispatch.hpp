@@ -7,10 +7,10 @@
 
 namespace sidestep::collision {
 
-/// The kernels that this machine can run, the fastest last.
+/// The kernels that this machine supports, fastest last.
 const std::vector<Kernels>& available_kernels();
 
-/// The fastest of them.
+/// The fastest kernels that this machine supports.
 const Kernels& best_kernels();
 
 }  // namespace sidestep::collision

@@ -1,57 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Compiled once for each instruction set: nothing here may be an inline function that linkers merge.
+// Included by sources compiled for different instruction sets: this header must not contain inline functions,
+// because the linker would merge their copies.
 #include <cstddef>
 #include <cstdint>
 
 namespace sidestep::collision {
 
-inline constexpr std::size_t kLanes = 16;     ///< of a block, whatever the machine's vectors hold
-inline constexpr std::size_t kBuckets = 256;  ///< into which an axis is divided for masks
+inline constexpr std::size_t kLanes = 16;     ///< lanes of a block, independent of the machine's vector width
+inline constexpr std::size_t kBuckets = 256;  ///< buckets of an axis for extent masks
 
-/// An obstacle by slot, in metres from the origin: a circle, or, where there is no number for a radius, what
-/// has edges from a block on.
+/// An obstacle, relative to the origin: a circle or, if `radius_m` is NaN, a shape with edges that begin at
+/// the block `edges`.
 struct alignas(16) BodyRecord {
   float x_m, y_m, radius_m;
   std::uint32_t edges;
 };
 
-/// Four edges of a convex shape, which lies to the left of all, one to a lane: where they begin, the way
-/// along them, and that over its squared length. A segment has two, there and back; the last one may fill
-/// more lanes.
+/// Four edges of a convex shape, one per lane: begin of the edge, edge vector, and edge vector over its
+/// squared length. The shape lies to the left of all edges. A segment has two edges, there and back. Unused
+/// lanes repeat the last edge.
 struct alignas(32) EdgeBlock {
-  float x_m[4], y_m[4], via_x_m[4], via_y_m[4], along_x_per_m[4], along_y_per_m[4];
-  std::uint32_t more;  ///< blocks of the same shape that follow
+  float x_m[4], y_m[4], edge_x_m[4], edge_y_m[4], along_x_per_m[4], along_y_per_m[4];
+  std::uint32_t following;  ///< number of further blocks of the same shape
 };
 
-/// Obstacles one by one, and what single precision has to know of all of them.
+/// All obstacles by slot, and the error bounds of single precision for them.
 struct BodiesView {
   double origin_m[2];
-  float limit_m;  ///< places and radii in queries are not decided in single precision beyond
-  float error_m;  ///< more than a distance up to there may be wrong by
-  /// How wrong differences of squared distances may be that come out near 0: a factor for a query's radius,
-  /// and what is added to that.
-  float doubt_per_m, least_doubt_m2;
-  const BodyRecord* records;  ///< by slot; some more may be read
+  float limit_m;  ///< queries with a larger coordinate or radius are left undecided
+  float error_m;  ///< upper bound of the error of a distance up to limit_m
+  /// Bound of the error of a gap (a difference of squared distances) near 0: `gap_error_per_m` times the
+  /// query's radius plus `min_gap_error_m2`.
+  float gap_error_per_m, min_gap_error_m2;
+  const BodyRecord* records;  ///< by slot; kernels may read some entries beyond the last slot
   const EdgeBlock* edges;
-  /// Compares exactly.
+  /// The exact comparison in double precision.
   bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
                   double radius_m);
   const void* bodies;
 };
 
-/// Discs, in metres from the origin.
+/// Circles, relative to the origin.
 struct alignas(64) CircleBlock {
   float x_m[kLanes], y_m[kLanes], radius_m[kLanes];
 };
 
-/// Boxes, in metres from the origin, rounded outwards; not a number where there is none.
+/// Boxes, relative to the origin and rounded outwards; NaN in empty lanes.
 struct alignas(64) BoxBlock {
   float min_x_m[kLanes], min_y_m[kLanes], max_x_m[kLanes], max_y_m[kLanes];
 };
 
-/// Circles, and the boxes of other shapes.
+/// Circles, and the bounding boxes of other shapes.
 struct LinearView {
   const CircleBlock* circles;
   std::size_t circle_blocks;
@@ -60,36 +61,36 @@ struct LinearView {
   const std::uint32_t* box_slots;  ///< by lane
 };
 
-/// Four tables of kBuckets rows of `words` words with a bit for each slot, one after the other: who does not
-/// end before a bucket (in x, in y), and who begins before its end (in x, in y). The bucket of a number v is
-/// (v - zero) * per_m, cut off and to the range. The latter two tables are looked up by the number's
-/// negative, so the signs of their zero and scale are turned.
+/// Extent masks: four consecutive tables of kBuckets rows. A row has `words` words with one bit per slot. The
+/// first two tables (x, y) mark the obstacles that do not end before a bucket, the last two (x, y) those that
+/// begin before the end of a bucket. The bucket of a coordinate v is v * per_m + shift, truncated and
+/// clamped. The last two tables are looked up with -v, so their `per_m` is negative.
 struct MasksView {
   const std::uint64_t* rows;
   std::size_t words;
-  const float *per_m, *shift;  ///< four of each
+  const float *per_m, *shift;  ///< one per table
 };
 
-/// A node of a tree: boxes, and which node or slot each is of. Where there is none, that may be looked up
-/// still.
+/// A node of a box tree: boxes, and the node or slot that each box belongs to. Entries of empty lanes may be
+/// looked up too.
 struct TreeNode {
   BoxBlock boxes;
   std::uint32_t children[kLanes];
-  std::uint32_t parent, lane;  ///< of the parent, and which of its lanes this is
-  std::uint32_t count;         ///< lanes in use, the first ones
+  std::uint32_t parent, lane;  ///< the parent, and the lane of this node in it
+  std::uint32_t count;         ///< number of lanes in use, which come first
   bool is_leaf;
 };
 
-inline constexpr std::size_t kDeepest = 16;  ///< nodes from the root to a leaf
+inline constexpr std::size_t kMaxDepth = 16;  ///< number of nodes from the root to a leaf
 
 struct TreeView {
   const TreeNode* nodes;
   std::uint32_t root;
 };
 
-enum class Answer : unsigned { kClear = 0, kTouches = 1, kInDoubt = 2 };
+enum class Answer : unsigned { kClear = 0, kTouches = 1, kUndecided = 2 };
 
-/// A world's obstacles, and the one of the sets of them that is in use.
+/// The obstacles of a world, and the view of the structure in use; the other views are unset.
 struct WorldView {
   BodiesView bodies;
   LinearView linear;
@@ -97,8 +98,9 @@ struct WorldView {
   TreeView tree;
 };
 
-/// Whether a disc on its way touches an obstacle. In doubt are ways that are not finite or far away, negative
-/// radii, and, with the linear array, circles touched but for rounding: then all has to be compared exactly.
+/// Whether a disc that moves along a segment touches an obstacle. Left undecided are motions that are not
+/// finite or too far away, negative radii and, by the linear kernel, contacts within rounding of a circle:
+/// these need the exact comparison with all obstacles.
 using SweepKernel = Answer (*)(const WorldView& world, const double* from_m, const double* to_m,
                                double radius_m);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Included by sources that are compiled for one instruction set, after they say how many floats its vectors
-// hold. They must not include anything that has inline functions: the linker would keep one copy, perhaps
-// that of an instruction set which the machine does not have. Intrinsics are always inlined.
+// Included by sources compiled for one instruction set, after they define SIDESTEP_VECTOR_WIDTH, the number
+// of floats in a vector. These sources must not include headers with inline functions: the linker would keep
+// one copy, possibly for an instruction set that the machine lacks. Intrinsics are always inlined.
 #include "common/collision/batch/kernels.hpp"
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -27,9 +27,8 @@ inline V all(float value) {
   return value - V{};
 }
 
-// What g++ makes of `a < b ? a : b` is not one instruction for all of these. not_above: bit k is whether
-// a.lane k
-// <= b.lane k.
+// Intrinsics, because g++ does not compile `a < b ? a : b` to one instruction for all of these types.
+// not_above: bit k is set if lane k of a is <= lane k of b.
 #ifdef __AVX2__
 inline FourFloats smaller(const FourFloats& a, const FourFloats& b) { return _mm_min_ps(a, b); }
 inline FourFloats larger(const FourFloats& a, const FourFloats& b) { return _mm_max_ps(a, b); }
@@ -43,7 +42,7 @@ inline unsigned not_above(const Vector& a, const Vector& b) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
 }
 #else
-// g++ 12 warns of the forms without a mask.
+// With masks, because g++ 12 warns about the forms without.
 inline Vector smaller(const Vector& a, const Vector& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 inline Vector larger(const Vector& a, const Vector& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
 inline unsigned not_above(const Vector& a, const Vector& b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
@@ -61,7 +60,7 @@ inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
   const auto is = a <= b;
   unsigned bits = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    // In one expression with the shift, g++ 12 takes a wrong lane under -fsanitize=shift.
+    // Separate from the shift: in one expression, g++ 12 reads the wrong lane under -fsanitize=shift.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
   }
@@ -75,7 +74,7 @@ inline TwoDoubles load_two(const double* lanes) {
   return v;
 }
 
-/// Both in single precision, one after the other.
+/// Both in single precision, concatenated.
 inline FourFloats joined(const TwoDoubles& a, const TwoDoubles& b) {
 #ifdef __SSE2__
   return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));
@@ -85,7 +84,7 @@ inline FourFloats joined(const TwoDoubles& a, const TwoDoubles& b) {
 #endif
 }
 
-/// Which bit is the lowest that is set; 64 where none is.
+/// Index of the lowest set bit; 64 if none is set.
 inline unsigned lowest(std::uint64_t bits) {
 #ifdef __BMI__
   return static_cast<unsigned>(_tzcnt_u64(bits));
@@ -94,7 +93,7 @@ inline unsigned lowest(std::uint64_t bits) {
 #endif
 }
 
-/// As many bits, the first ones, as are set, but four at most.
+/// The lowest n bits, where n is the number of set bits, at most 4.
 inline unsigned lowest_four(std::uint64_t bits) {
   const auto count = static_cast<unsigned>(__builtin_popcountll(bits));
 #ifdef __BMI2__
@@ -104,7 +103,7 @@ inline unsigned lowest_four(std::uint64_t bits) {
 #endif
 }
 
-/// Bit k: whether four comparisons of lane k are all so.
+/// Bit k is set if a <= b, c <= d, e <= f and g <= h in lane k.
 inline unsigned all_not_above(const Vector& a, const Vector& b, const Vector& c, const Vector& d,
                               const Vector& e, const Vector& f, const Vector& g, const Vector& h) {
 #if SIDESTEP_VECTOR_WIDTH == 16

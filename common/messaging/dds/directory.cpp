@@ -18,8 +18,8 @@ Duration to_duration(const eprosima::fastrtps::Duration_t& d) {
 
 /// Works for WriterProxyData and ReaderProxyData.
 template <typename Proxy>
-DdsEndpoint to_endpoint(const Proxy& proxy, bool is_writer) {
-  DdsEndpoint result;
+DiscoveredEndpoint to_endpoint(const Proxy& proxy, bool is_writer) {
+  DiscoveredEndpoint result;
   std::ostringstream guid;
   guid << proxy.guid();
   result.guid = guid.str();
@@ -29,8 +29,8 @@ DdsEndpoint to_endpoint(const Proxy& proxy, bool is_writer) {
   result.is_keyed = proxy.topicKind() == rtps::WITH_KEY;
   result.is_reliable = proxy.m_qos.m_reliability.kind == RELIABLE_RELIABILITY_QOS;
   result.is_exclusive = proxy.m_qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS;
-  result.durability = static_cast<DdsEndpoint::Durability>(proxy.m_qos.m_durability.kind);
-  result.liveliness = static_cast<DdsEndpoint::Liveliness>(proxy.m_qos.m_liveliness.kind);
+  result.durability = static_cast<DiscoveredEndpoint::Durability>(proxy.m_qos.m_durability.kind);
+  result.liveliness = static_cast<DiscoveredEndpoint::Liveliness>(proxy.m_qos.m_liveliness.kind);
   result.lease = to_duration(proxy.m_qos.m_liveliness.lease_duration);
   result.deadline = to_duration(proxy.m_qos.m_deadline.period);
   result.partitions = proxy.m_qos.m_partition.names();
@@ -57,15 +57,15 @@ void DdsDirectory::on_subscriber_discovery(DomainParticipant*, rtps::ReaderDisco
          to_endpoint(info.info, false));
 }
 
-std::vector<DdsEndpoint> DdsDirectory::endpoints() const {
+std::vector<DiscoveredEndpoint> DdsDirectory::endpoints() const {
   const std::lock_guard lock(mutex_);
-  std::vector<DdsEndpoint> result;
+  std::vector<DiscoveredEndpoint> result;
   for (const auto& [guid, endpoint] : endpoints_) {
     result.push_back(endpoint);
     const auto name = names_.find(guid.guidPrefix);
     if (name != names_.end()) result.back().participant = name->second;
   }
-  std::sort(result.begin(), result.end(), [](const DdsEndpoint& a, const DdsEndpoint& b) {
+  std::sort(result.begin(), result.end(), [](const DiscoveredEndpoint& a, const DiscoveredEndpoint& b) {
     return std::tie(a.topic, b.is_writer, a.participant, a.guid) <
            std::tie(b.topic, a.is_writer, b.participant, b.guid);
   });
@@ -78,9 +78,9 @@ std::string DdsDirectory::participant_of(const rtps::GUID_t& guid) const {
   return name == names_.end() ? std::string() : name->second;
 }
 
-void DdsDirectory::update(const rtps::GUID_t& guid, bool is_gone, DdsEndpoint&& endpoint) {
+void DdsDirectory::update(const rtps::GUID_t& guid, bool is_removed, DiscoveredEndpoint&& endpoint) {
   const std::lock_guard lock(mutex_);
-  if (is_gone) {
+  if (is_removed) {
     endpoints_.erase(guid);
   } else {
     endpoints_[guid] = std::move(endpoint);

@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "common/messaging/dds/listen.hpp"
+#include "common/messaging/dds/discovered_endpoint.hpp"
 
 namespace sidestep {
 
-/// What a domain's participants have announced so far: a participant's listener. From any thread.
+/// Participant listener that keeps the endpoints which participants of the domain have announced.
+/// Thread-safe.
 class DdsDirectory : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;
@@ -26,17 +27,17 @@ class DdsDirectory : public eprosima::fastdds::dds::DomainParticipantListener {
   void on_subscriber_discovery(DomainParticipant*,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
 
-  /// Everybody who is known now, sorted by topic.
-  std::vector<DdsEndpoint> endpoints() const;
-  /// The name of the participant that the endpoint with this GUID belongs to; empty when it is not known.
+  /// All endpoints known at present, sorted by topic.
+  std::vector<DiscoveredEndpoint> endpoints() const;
+  /// Name of the participant of the endpoint with this GUID; empty if unknown.
   std::string participant_of(const eprosima::fastrtps::rtps::GUID_t& guid) const;
 
  private:
-  void update(const eprosima::fastrtps::rtps::GUID_t& guid, bool is_gone, DdsEndpoint&& endpoint);
+  void update(const eprosima::fastrtps::rtps::GUID_t& guid, bool is_removed, DiscoveredEndpoint&& endpoint);
 
   mutable std::mutex mutex_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;
-  std::map<eprosima::fastrtps::rtps::GUID_t, DdsEndpoint> endpoints_;
+  std::map<eprosima::fastrtps::rtps::GUID_t, DiscoveredEndpoint> endpoints_;
 };
 
 }  // namespace sidestep

@@ -15,22 +15,23 @@ static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from sig
 
 namespace {
 
-// Never set, and goes on while the host is suspended.
+// Cannot be set, and advances while the host is suspended.
 constexpr clockid_t kSteady = CLOCK_BOOTTIME;
 
-Duration shown_by(clockid_t clock) {
+Duration read_clock(clockid_t clock) {
   timespec t{};
   clock_gettime(clock, &t);
   return Duration{std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec};
 }
 
-/// How far the host's clock is ahead of the steady one. Whoever is interrupted between looking at the one and
-/// at the other is wrong by as much, so it looks often and takes the quickest look.
-Duration host_clock_ahead() {
-  constexpr int kLooks = 20;
+/// Host's clock - steady clock. An interruption between the two readings would be an error of its length, so
+/// this takes several readings and uses the quickest.
+Duration host_clock_offset() {
+  constexpr int kReadings = 20;
   Duration ahead{0}, quickest = Duration::max();
-  for (int i = 0; i < kLooks; ++i) {
-    const Duration before = shown_by(kSteady), host = shown_by(CLOCK_REALTIME), after = shown_by(kSteady);
+  for (int i = 0; i < kReadings; ++i) {
+    const Duration before = read_clock(kSteady), host = read_clock(CLOCK_REALTIME),
+                   after = read_clock(kSteady);
     if (after - before >= quickest) continue;
     quickest = after - before;
     ahead = host - before - quickest / 2;
@@ -49,8 +50,8 @@ EventLoop::EventLoop() : event_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
 EventLoop::~EventLoop() { close(event_fd_); }
 
 Time EventLoop::now() {
-  static const Duration ahead = host_clock_ahead();
-  return Time{} + ahead + shown_by(kSteady);
+  static const Duration ahead = host_clock_offset();
+  return Time{} + ahead + read_clock(kSteady);
 }
 
 void EventLoop::at(Time when, std::function<void()> callback) {
@@ -108,7 +109,7 @@ bool EventLoop::drain_ready() {
 void EventLoop::serve_watched() {
   if (polled_.size() == 1 || stopped() || poll(polled_.data(), polled_.size(), 0) <= 0) return;
   for (std::size_t i = 1; i < polled_.size() && !stopped(); ++i) {
-    // A descriptor that was closed would wake the loop for ever; poll() passes over a negative one.
+    // A closed descriptor would wake the loop for ever; poll() ignores negative ones.
     if (polled_[i].revents & POLLNVAL)
       polled_[i].fd = -1;
     else if (polled_[i].revents)
@@ -128,15 +129,15 @@ void EventLoop::fire_due() {
 }
 
 void EventLoop::sleep_until(Time when) {
-  // The kernel's sleep stands still while the host is suspended, and the clock does not.
-  constexpr Duration kLongestSleep{1'000'000'000};
+  // ppoll() does not count time during which the host is suspended, but now() does.
+  constexpr Duration kMaxSleep{1'000'000'000};
   {
     const std::lock_guard lock(mutex_);
     if (!ready_.empty()) return;
     sleeping_ = true;
   }
   const Time from = now();
-  const Duration sleep = when > from + kLongestSleep ? kLongestSleep : std::max(when - from, Duration{0});
+  const Duration sleep = when > from + kMaxSleep ? kMaxSleep : std::max(when - from, Duration{0});
   const timespec timeout{sleep.count() / 1'000'000'000, sleep.count() % 1'000'000'000};
   if (ppoll(polled_.data(), polled_.size(), &timeout, nullptr) > 0 && polled_[0].revents) {
     std::uint64_t count = 0;

@@ -12,17 +12,16 @@
 
 namespace sidestep {
 
-/// One thread's turn-taking between timers and sources that other threads report as ready. The thread sleeps
-/// in the kernel while there is nothing to do.
+/// Runs timers, and sources that other threads report as ready, in one thread. The thread sleeps in the
+/// kernel while there is nothing to do.
 class EventLoop {
  public:
-  /// Something that becomes ready in another thread and is emptied in the loop's. Must outlive the loop's
-  /// last turn.
+  /// A source of work that becomes ready in another thread and is drained in the loop's thread. Must outlive
+  /// the loop's last iteration.
   class Source {
    public:
     virtual ~Source() = default;
-    /// Hands over what has come, up to a bound so that timers get their turn; true when something may be
-    /// left.
+    /// Processes what has arrived, up to a bound so that timers are not starved. True if more may be left.
     virtual bool drain() = 0;
 
    private:
@@ -30,27 +29,28 @@ class EventLoop {
     std::atomic<bool> ready_{false};
   };
 
-  /// Throws std::system_error when the system has no file descriptor left.
+  /// Throws std::system_error if no file descriptor is available.
   EventLoop();
   ~EventLoop();
   EventLoop(const EventLoop&) = delete;
   EventLoop& operator=(const EventLoop&) = delete;
 
-  /// The process's clock, the same for all its loops: what the host's clock showed when it was first asked,
-  /// and the time that has passed since. Whoever sets the host's clock does not reach it.
+  /// The process's clock, the same for all its loops: the host's clock at the first call, plus the time that
+  /// has passed since. Setting the host's clock does not affect it.
   static Time now();
 
-  /// Calls back once at or after the time; callbacks of one time come in the order of scheduling. In the
-  /// loop's thread, or before it runs.
+  /// Calls back once at or after `when`; callbacks for equal times are made in the order of scheduling. Call
+  /// it in the loop's thread, or before the loop runs.
   void at(Time when, std::function<void()> callback);
-  /// From any thread.
+  /// Reports that the source is ready. Thread-safe.
   void notify(Source& source);
-  /// Calls back in every turn in which the descriptor can be read, until it is closed or broken, which has to
-  /// wait until the loop's last turn. In the loop's thread, or before it runs.
+  /// Calls back in every iteration in which the descriptor is readable. It must stay open until the loop's
+  /// last iteration. Call it in the loop's thread, or before the loop runs.
   void watch(int descriptor, std::function<void()> readable);
-  /// Takes turns until then, or stop(); what is due or ready at the call still gets its turn.
+  /// Runs until `when` or stop(). Timers that are due and sources that are ready at the call are always
+  /// served.
   void run_until(Time when);
-  /// Ends run_until() soon, this one and every later one. From any thread, and from a signal handler.
+  /// Makes the current and all later calls of run_until() return soon. Thread-safe and async-signal-safe.
   void stop();
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
 
@@ -75,11 +75,11 @@ class EventLoop {
   int event_fd_ = -1;
   std::atomic<bool> stopped_{false};
   std::uint64_t order_ = 0;
-  std::vector<pollfd> polled_;                   ///< event_fd_, and what is watched
-  std::vector<std::function<void()>> readable_;  ///< as polled_; none for event_fd_
-  std::vector<Timer> timers_;                    ///< a heap, the earliest first
-  std::vector<Source*> draining_;                ///< of the loop's thread only
-  std::mutex mutex_;                             ///< guards what follows
+  std::vector<pollfd> polled_;                   ///< event_fd_, then the watched descriptors
+  std::vector<std::function<void()>> readable_;  ///< parallel to polled_; empty for event_fd_
+  std::vector<Timer> timers_;                    ///< heap, the earliest first
+  std::vector<Source*> draining_;                ///< used by the loop's thread only
+  std::mutex mutex_;                             ///< guards the members below
   std::vector<Source*> ready_;
   bool sleeping_ = false;
 };

@@ -24,48 +24,48 @@ using eprosima::fastrtps::rtps::Locator_t;
 using eprosima::fastrtps::rtps::octet;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostWaiting = 1 << 16;  ///< datagrams; what comes beyond is lost
-constexpr std::size_t kHeaderBytes = 20;       ///< RTPS 2.2, 9.4.4: protocol, version, vendor, prefix
-constexpr std::size_t kPrefixAt = 8;
+constexpr std::size_t kMaxQueued = 1 << 16;  ///< datagrams; further ones are lost
+constexpr std::size_t kHeaderBytes = 20;     ///< RTPS 2.2, 9.4.4: protocol, version, vendor, GUID prefix
+constexpr std::size_t kPrefixOffset = 8;
 constexpr octet kOperatorMark[] = {'s', 's', 'o', 'p'};
 
-/// Ports are 7400 + 250 domain + 0 and 10 + 2 i for discovery, 1 and 11 + 2 i for messages (RTPS 2.2, 9.6.1).
+/// Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for discovery, 1 and 11 + 2 i for messages (RTPS
+/// 2.2, 9.6.1).
 bool is_discovery(const Locator_t& local) { return local.port % 2 == 0; }
 
-/// One thread that hands datagrams on when their time has come.
-class LateCopies {
+/// Holds delayed datagrams, and passes each one on, in a thread of its own, when its delay is over.
+class DelayedDatagrams {
  public:
-  LateCopies() : thread_([this] { run(); }) {}
-  ~LateCopies() {
+  DelayedDatagrams() : thread_([this] { run(); }) {}
+  ~DelayedDatagrams() {
     {
       const std::lock_guard lock(mutex_);
-      is_over_ = true;
+      is_stopping_ = true;
     }
     changed_.notify_all();
     thread_.join();
   }
-  LateCopies(const LateCopies&) = delete;
-  LateCopies& operator=(const LateCopies&) = delete;
+  DelayedDatagrams(const DelayedDatagrams&) = delete;
+  DelayedDatagrams& operator=(const DelayedDatagrams&) = delete;
 
   void add(Duration delay, fast::TransportReceiverInterface* receiver, const octet* data, std::uint32_t size,
            const Locator_t& local, const Locator_t& remote) {
     {
       const std::lock_guard lock(mutex_);
-      if (waiting_.size() >= kMostWaiting || closed_.count(local.port)) return;
-      waiting_.push_back(
-          {SteadyClock::now() + delay, order_++, receiver, {data, data + size}, local, remote});
-      std::push_heap(waiting_.begin(), waiting_.end());
+      if (queue_.size() >= kMaxQueued || closed_.count(local.port)) return;
+      queue_.push_back({SteadyClock::now() + delay, order_++, receiver, {data, data + size}, local, remote});
+      std::push_heap(queue_.begin(), queue_.end());
     }
     changed_.notify_all();
   }
 
-  /// Nothing that came to this port is handed on any more, and none is being when this returns.
+  /// Drops the port's datagrams. After the return no datagram of this port is passed on or being passed on.
   void close(std::uint32_t port) {
     std::unique_lock lock(mutex_);
     closed_.insert(port);
-    std::erase_if(waiting_, [port](const Datagram& datagram) { return datagram.local.port == port; });
-    std::make_heap(waiting_.begin(), waiting_.end());
-    changed_.wait(lock, [&] { return port_in_hand_ != port; });
+    std::erase_if(queue_, [port](const Datagram& datagram) { return datagram.local.port == port; });
+    std::make_heap(queue_.begin(), queue_.end());
+    changed_.wait(lock, [&] { return delivering_port_ != port; });
   }
 
  private:
@@ -76,7 +76,7 @@ class LateCopies {
     std::vector<octet> bytes;
     Locator_t local, remote;
 
-    /// The earliest on top of a heap.
+    /// Puts the earliest on top of a heap.
     bool operator<(const Datagram& other) const {
       return when != other.when ? when > other.when : order > other.order;
     }
@@ -84,42 +84,42 @@ class LateCopies {
 
   void run() {
     std::unique_lock lock(mutex_);
-    while (!is_over_) {
-      if (waiting_.empty()) {
+    while (!is_stopping_) {
+      if (queue_.empty()) {
         changed_.wait(lock);
         continue;
       }
-      if (const auto when = waiting_.front().when; when > SteadyClock::now()) {
+      if (const auto when = queue_.front().when; when > SteadyClock::now()) {
         changed_.wait_until(lock, when);
         continue;
       }
-      std::pop_heap(waiting_.begin(), waiting_.end());
-      const Datagram next = std::move(waiting_.back());
-      waiting_.pop_back();
-      port_in_hand_ = next.local.port;
+      std::pop_heap(queue_.begin(), queue_.end());
+      const Datagram next = std::move(queue_.back());
+      queue_.pop_back();
+      delivering_port_ = next.local.port;
       lock.unlock();
       next.receiver->OnDataReceived(next.bytes.data(), static_cast<std::uint32_t>(next.bytes.size()),
                                     next.local, next.remote);
       lock.lock();
-      port_in_hand_ = 0;
+      delivering_port_ = 0;
       changed_.notify_all();
     }
   }
 
-  std::mutex mutex_;  ///< guards all but the thread
+  std::mutex mutex_;  ///< guards all other members but the thread
   std::condition_variable changed_;
-  std::vector<Datagram> waiting_;  ///< a heap
+  std::vector<Datagram> queue_;  ///< heap
   std::set<std::uint32_t> closed_;
   std::uint64_t order_ = 0;
-  std::uint32_t port_in_hand_ = 0;
-  bool is_over_ = false;
+  std::uint32_t delivering_port_ = 0;
+  bool is_stopping_ = false;
   std::thread thread_;
 };
 
 struct FaultTransportDescriptor : fast::ChainingTransportDescriptor {
   FaultTransportDescriptor(std::shared_ptr<fast::TransportDescriptorInterface> udp,
-                           std::shared_ptr<Impairment> impairment_of_all)
-      : ChainingTransportDescriptor(std::move(udp)), impairment(std::move(impairment_of_all)) {}
+                           std::shared_ptr<Impairment> impairment_of_process)
+      : ChainingTransportDescriptor(std::move(udp)), impairment(std::move(impairment_of_process)) {}
 
   fast::TransportInterface* create_transport() const override;
 
@@ -147,29 +147,30 @@ class FaultTransport : public fast::ChainingTransport {
       return;
     }
     Impairment::SenderId sender{};
-    if (size >= kHeaderBytes) std::memcpy(sender.data(), data + kPrefixAt, sender.size());
-    const Copies copies = descriptor_.impairment->receive(sender);
+    if (size >= kHeaderBytes) std::memcpy(sender.data(), data + kPrefixOffset, sender.size());
+    const MessageCopies copies = descriptor_.impairment->receive(sender);
     for (std::size_t i = 0; i < copies.count; ++i) {
       if (copies.delays[i] <= Duration::zero()) {
         receiver->OnDataReceived(data, size, local, remote);
       } else {
-        late_copies_.add(copies.delays[i], receiver, data, size, local, remote);
+        delayed_.add(copies.delays[i], receiver, data, size, local, remote);
       }
     }
   }
 
   bool CloseInputChannel(const Locator_t& locator) override {
-    late_copies_.close(locator.port);
+    delayed_.close(locator.port);
     return ChainingTransport::CloseInputChannel(locator);
   }
 
  private:
   static bool is_from_operator(const octet* data, std::uint32_t size) {
-    return size >= kHeaderBytes && std::memcmp(data + kPrefixAt, kOperatorMark, sizeof kOperatorMark) == 0;
+    return size >= kHeaderBytes &&
+           std::memcmp(data + kPrefixOffset, kOperatorMark, sizeof kOperatorMark) == 0;
   }
 
   FaultTransportDescriptor descriptor_;
-  LateCopies late_copies_;
+  DelayedDatagrams delayed_;
 };
 
 fast::TransportInterface* FaultTransportDescriptor::create_transport() const {
@@ -185,10 +186,10 @@ std::shared_ptr<fast::TransportDescriptorInterface> fault_transport(
 
 GuidPrefix_t operator_prefix() {
   GuidPrefix_t prefix;
-  const std::uint64_t life = static_cast<std::uint64_t>(SteadyClock::now().time_since_epoch().count()) ^
-                             (static_cast<std::uint64_t>(getpid()) << 40);
+  const std::uint64_t unique = static_cast<std::uint64_t>(SteadyClock::now().time_since_epoch().count()) ^
+                               (static_cast<std::uint64_t>(getpid()) << 40);
   std::memcpy(prefix.value, kOperatorMark, sizeof kOperatorMark);
-  std::memcpy(prefix.value + sizeof kOperatorMark, &life, sizeof life);
+  std::memcpy(prefix.value + sizeof kOperatorMark, &unique, sizeof unique);
   return prefix;
 }
 

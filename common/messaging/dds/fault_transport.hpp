@@ -9,14 +9,14 @@
 
 namespace sidestep {
 
-/// A transport that does to what arrives over UDP what the impairment says: losing, doubling, delaying and so
-/// reordering datagrams. Not to discovery, or processes would not find each other for seconds, and not to
-/// what an operator sends, or a fault could not be ended.
+/// A UDP transport that impairs arriving datagrams: it loses, duplicates, delays and so reorders them.
+/// Discovery is exempt, or processes would not find each other for seconds; so are an operator's messages, or
+/// a fault could not be ended.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> fault_transport(
     std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,
     std::shared_ptr<Impairment> impairment);
 
-/// How this process is known on the wire when it is an operator's.
+/// GUID prefix that marks this process as an operator's; unique to the process.
 eprosima::fastrtps::rtps::GuidPrefix_t operator_prefix();
 
 }  // namespace sidestep

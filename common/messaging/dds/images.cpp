@@ -16,24 +16,25 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kSilence{1'000'000'000}, kLongestSilence{16'000'000'000};
-constexpr std::uint32_t kImagesBytes = 32 << 20;  ///< of all images that wait for their readers
-constexpr std::uint32_t kReaderBytes = 1 << 18;   ///< who reads images says little
-constexpr std::chrono::seconds kMaking{5};        ///< who is just making some has no lock on it yet
-constexpr Duration kLook{250'000'000};
+constexpr Duration kMinSilenceTimeout{1'000'000'000}, kMaxSilenceTimeout{16'000'000'000};
+constexpr std::uint32_t kImagesBytes = 32 << 20;   ///< for all images that wait for their readers
+constexpr std::uint32_t kReaderBytes = 1 << 18;    ///< a reader of images sends little
+constexpr std::chrono::seconds kCreationGrace{5};  ///< a segment that is being created is not locked yet
+constexpr Duration kCheckPeriod{250'000'000};
 
-std::shared_ptr<DdsParticipant> make(const DdsSettings& settings, std::uint32_t shared_memory_bytes) {
+std::shared_ptr<DdsParticipant> make_participant(const DdsSettings& settings,
+                                                 std::uint32_t shared_memory_bytes) {
   DdsSettings named = settings;
   named.participant += "-images";
   return std::make_shared<DdsParticipant>(named, nullptr, shared_memory_bytes);
 }
 
-std::shared_ptr<DdsParticipant> make_sharing(const DdsSettings& settings, std::uint32_t bytes) {
-  remove_abandoned_memory("/dev/shm", kMaking);
+std::shared_ptr<DdsParticipant> make_sharing_participant(const DdsSettings& settings, std::uint32_t bytes) {
+  remove_stale_segments("/dev/shm", kCreationGrace);
   try {
-    return make(settings, bytes);
+    return make_participant(settings, bytes);
   } catch (const std::runtime_error&) {
-    auto participant = make(settings, 0);
+    auto participant = make_participant(settings, 0);
     log_dds("no shared memory: images go by UDP");
     return participant;
   }
@@ -41,7 +42,7 @@ std::shared_ptr<DdsParticipant> make_sharing(const DdsSettings& settings, std::u
 
 }  // namespace
 
-void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::seconds least_age) {
+void remove_stale_segments(const std::filesystem::path& folder, std::chrono::seconds min_age) {
   constexpr std::string_view kBegin = "fastrtps_", kEnd = "_el";
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
@@ -49,8 +50,8 @@ void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::s
     if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) continue;
     const int lock = open(entry.path().c_str(), O_RDONLY);
     if (lock < 0) continue;
-    struct stat facts {};
-    const bool is_old = fstat(lock, &facts) == 0 && std::time(nullptr) - facts.st_ctime >= least_age.count();
+    struct stat status {};
+    const bool is_old = fstat(lock, &status) == 0 && std::time(nullptr) - status.st_ctime >= min_age.count();
     if (is_old && flock(lock, LOCK_EX | LOCK_NB) == 0) {
       const std::string path = entry.path().string();
       std::filesystem::remove(path.substr(0, path.size() - kEnd.size()), ignored);
@@ -60,45 +61,45 @@ void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::s
   }
 }
 
-std::shared_ptr<DdsParticipant> image_writing_participant(const DdsSettings& settings) {
-  return make_sharing(settings, kImagesBytes);
+std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings) {
+  return make_sharing_participant(settings, kImagesBytes);
 }
 
-DdsImageReader::DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& strangers,
-                               const TopicInfo& topic, const std::string& channel,
-                               std::function<void(const void*)> callback)
+DdsImageReader::DdsImageReader(EventLoop& loop, const DdsSettings& settings,
+                               const TypeMismatchListener& type_mismatches, const TopicInfo& topic,
+                               const std::string& channel, std::function<void(const void*)> callback)
     : loop_(loop),
       settings_(settings),
-      strangers_(strangers),
+      type_mismatches_(type_mismatches),
       channel_(channel),
       opened_at_(EventLoop::now()),
-      heard_at_(opened_at_),
-      patience_(kSilence),
-      reader_(loop, make_sharing(settings, kReaderBytes), topic, channel,
+      last_received_(opened_at_),
+      silence_timeout_(kMinSilenceTimeout),
+      reader_(loop, make_sharing_participant(settings, kReaderBytes), topic, channel,
               [this, callback = std::move(callback)](const void* message) {
-                heard_at_ = EventLoop::now();
-                patience_ = kSilence;
+                last_received_ = EventLoop::now();
+                silence_timeout_ = kMinSilenceTimeout;
                 callback(message);
               }) {
-  loop_.at(opened_at_ + kLook, [this] { look(); });
+  loop_.at(opened_at_ + kCheckPeriod, [this] { check_silence(); });
 }
 
-void DdsImageReader::look() {
+void DdsImageReader::check_silence() {
   const Time now = EventLoop::now();
-  loop_.at(now + kLook, [this] { look(); });
-  const std::optional<Time> writer_since = strangers_.writer_since(channel_);
-  if (!writer_since || heard_at_ > *writer_since) return;
-  if (now - std::max(*writer_since, opened_at_) < patience_) return;
+  loop_.at(now + kCheckPeriod, [this] { check_silence(); });
+  const std::optional<Time> latest_writer_since = type_mismatches_.latest_writer_since(channel_);
+  if (!latest_writer_since || last_received_ > *latest_writer_since) return;
+  if (now - std::max(*latest_writer_since, opened_at_) < silence_timeout_) return;
   shares_memory_ = !shares_memory_;
-  log_dds(fmt::format("topic '{}': nothing comes by {}: listening by {}", channel_,
+  log_dds(fmt::format("topic '{}': nothing received by {}, switching to {}", channel_,
                       shares_memory_ ? "UDP" : "shared memory", shares_memory_ ? "shared memory" : "UDP"));
   try {
-    reader_.move_to(make(settings_, shares_memory_ ? kReaderBytes : 0));
+    reader_.move_to(make_participant(settings_, shares_memory_ ? kReaderBytes : 0));
   } catch (const std::runtime_error& error) {
     log_dds(fmt::format("topic '{}': {}", channel_, error.what()));
   }
   opened_at_ = now;
-  patience_ = std::min(2 * patience_, kLongestSilence);
+  silence_timeout_ = std::min(2 * silence_timeout_, kMaxSilenceTimeout);
 }
 
 }  // namespace sidestep

@@ -8,40 +8,42 @@
 #include <string>
 
 #include "common/messaging/dds/endpoints.hpp"
+#include "common/messaging/dds/type_mismatch_listener.hpp"
 
 namespace sidestep {
 
-/// Removes what killed processes left in a folder of shared memory, whose locks are free, as long as it is so
-/// old.
-void remove_abandoned_memory(const std::filesystem::path& folder, std::chrono::seconds least_age);
+/// Removes the shared-memory segments of killed processes from a folder: those whose lock is free and whose
+/// age is at least `min_age`.
+void remove_stale_segments(const std::filesystem::path& folder, std::chrono::seconds min_age);
 
-/// The participant that writes images: by shared memory to those on this host who listen there, by UDP to all
-/// others. Where there is no shared memory, by UDP alone, which it says on stderr.
-std::shared_ptr<DdsParticipant> image_writing_participant(const DdsSettings& settings);
+/// The participant that writes images: by shared memory to readers on this host that use it, by UDP to all
+/// others. If there is no shared memory it uses UDP only, and logs that.
+std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings);
 
-/// A bus's reader of images. It listens by shared memory; but that may fail without any error, where it is
-/// not the writer's (containers). So when a new writer is known and nothing has come for a second, it listens
-/// by UDP alone, and after two seconds more by shared memory again, and so on until something comes.
+/// A bus's reader of images. It reads by shared memory. That fails without an error if the writer's shared
+/// memory is another one (containers). So if a writer is known and no image arrives for a second, the reader
+/// switches to UDP; after two more seconds back to shared memory, and so on, with the timeout doubled each
+/// time, until an image arrives.
 class DdsImageReader {
  public:
-  /// Throws std::runtime_error as DdsReader does.
-  DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& strangers,
+  /// Throws std::runtime_error as DdsReader.
+  DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& type_mismatches,
                  const TopicInfo& topic, const std::string& channel,
                  std::function<void(const void*)> callback);
 
   const DdsReader& reader() const { return reader_; }
 
  private:
-  void look();
+  void check_silence();
 
   EventLoop& loop_;
   DdsSettings settings_;
-  const TypeMismatchListener& strangers_;
+  const TypeMismatchListener& type_mismatches_;
   std::string channel_;
   bool shares_memory_ = true;
   Time opened_at_;
-  Time heard_at_;
-  Duration patience_;  ///< with silence; grows until something comes
+  Time last_received_;
+  Duration silence_timeout_;  ///< doubles until an image arrives
   DdsReader reader_;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two of Fast DDS's ways to deal with leases that run out, as they should be. The dynamic linker takes a
-// program's definition of a function before the library's, so they stand here under its names. As in Fast DDS
-// 2.9.1.
+// Corrected versions of two Fast DDS functions that handle expired leases. They have the library's names, and
+// the dynamic linker prefers a program's definition over a library's. They correspond to Fast DDS 2.9.1.
 #include "common/messaging/dds/lease.hpp"
 
 #include <atomic>
@@ -23,8 +22,8 @@ std::atomic<std::uint64_t> checks = 0;
 
 using AckedChangesSet = void (*)(ReaderProxy*, const SequenceNumber_t&);
 
-/// The library's own ReaderProxy::acked_changes_set(); nullptr: it has none.
-AckedChangesSet acknowledge() {
+/// The library's ReaderProxy::acked_changes_set(); null if it has none.
+AckedChangesSet library_acked_changes_set() {
   static const auto found = reinterpret_cast<AckedChangesSet>(dlsym(
       RTLD_NEXT, "_ZN8eprosima8fastrtps4rtps11ReaderProxy17acked_changes_setERKNS1_16SequenceNumber_tE"));
   return found;
@@ -34,9 +33,9 @@ AckedChangesSet acknowledge() {
 
 namespace eprosima::fastrtps::rtps {
 
-/// Each remote participant is looked after by a timer. The library's check, when another thread removes the
-/// participant meanwhile, waits for that, then asserts that the participant is still there: the process is
-/// aborted, and a robot loses its agent because a neighbour has left.
+/// The timer callback of each remote participant's lease. If another thread is removing the participant
+/// meanwhile, the library's version waits for that, and then asserts that the participant still exists. The
+/// process aborts, and a robot loses its agent because a neighbour has left.
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote) {
   ++checks;
   std::unique_lock<std::recursive_mutex> lock(*getMutex());
@@ -54,28 +53,29 @@ void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote) {
   remote->lease_duration_event->restart_timer();
 }
 
-/// A reader asks for everything from `base` on, and has everything before. One that took this process for
-/// dead, because it slept or could not be heard, has forgotten what it had, and this process, which did not
-/// take it for dead, has not: it would never send again what was acknowledged once, so its endpoints would
-/// stay unknown there for ever. To the library a reader has forgotten only if it says so by 0, which it
-/// leaves out when a heartbeat comes first.
+/// A reader requests all changes from `base` on, and acknowledges all earlier ones. A reader whose lease on
+/// this process has expired (this process was stopped or cut off) has forgotten the changes that it had
+/// acknowledged, while this process, whose lease on the reader has not expired, still regards them as
+/// delivered. It would never send them again, so its endpoints would stay unknown to the reader for ever. The
+/// library resends them only if the reader requests 0, which it omits when a heartbeat arrives first.
+/// Therefore a request at or below the low mark is treated as one from 0.
 void ReaderProxy::acked_changes_set(const SequenceNumber_t& base) {
-  const SequenceNumber_t nothing;
-  if (base > nothing && base <= changes_low_mark()) acknowledge()(this, nothing);
-  acknowledge()(this, base);
+  const SequenceNumber_t none;
+  if (base > none && base <= changes_low_mark()) library_acked_changes_set()(this, none);
+  library_acked_changes_set()(this, base);
 }
 
 }  // namespace eprosima::fastrtps::rtps
 
 namespace sidestep {
 
-void check_library() {
-  if (!acknowledge())
-    throw std::runtime_error("Fast DDS is not the version that this program was made for, 2.9.1");
+void check_fast_dds_version() {
+  if (!library_acked_changes_set())
+    throw std::runtime_error("the installed Fast DDS is not version 2.9.1, which this program requires");
 }
 
 Duration participant_lease() { return std::chrono::seconds(4); }
 
-std::uint64_t lease_checks() { return checks; }
+std::uint64_t lease_check_count() { return checks; }
 
 }  // namespace sidestep

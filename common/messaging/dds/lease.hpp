@@ -7,14 +7,14 @@
 
 namespace sidestep {
 
-/// Throws std::runtime_error where Fast DDS does not have what is replaced in dds_lease.cpp: before there is
-/// a participant, whose threads could tell nobody.
-void check_library();
+/// Throws std::runtime_error if Fast DDS lacks a function that lease.cpp replaces. Call it before a
+/// participant exists, because its threads could not report the error.
+void check_fast_dds_version();
 
-/// A participant that nothing is heard of for so long is taken for dead.
+/// A participant that has been silent for this long is considered dead.
 Duration participant_lease();
 
-/// How often this process has checked a lease in the place of Fast DDS (see dds_lease.cpp): for tests.
-std::uint64_t lease_checks();
+/// How often this process has run its own lease check (see lease.cpp) instead of Fast DDS's; for tests.
+std::uint64_t lease_check_count();
 
 }  // namespace sidestep

@@ -17,13 +17,13 @@ using namespace eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::GUID_t;
 using eprosima::fastrtps::rtps::iHandle2GUID;
 
-DdsSettings operators(DdsSettings settings) {
+DdsSettings operator_settings(DdsSettings settings) {
   settings.is_operator = true;
   settings.faults = false;
   return settings;
 }
 
-class Takers : public DataWriterListener {
+class MatchedReaders : public DataWriterListener {
  public:
   void on_publication_matched(DataWriter*, const PublicationMatchedStatus& status) override {
     const std::lock_guard lock(mutex_);
@@ -47,19 +47,19 @@ class Takers : public DataWriterListener {
 
 struct OperatorChannel::Impl : RawWriter {
   Impl(const DdsSettings& settings, const TopicInfo& topic)
-      : participant(operators(settings), &directory),
+      : participant(operator_settings(settings), &directory),
         data_writer(participant.create_writer(channel_name(topic, 0),
                                               TypeSupport(make_dds_type(topic.type).release()),
-                                              dds_writer_qos(topic.qos), &takers)) {}
+                                              dds_writer_qos(topic.qos), &subscribers)) {}
   ~Impl() override { participant.delete_writer(data_writer); }
 
   void write(const void* message) override {
     GuardedType::Sample sample{const_cast<void*>(message), true};
-    if (!data_writer->write(&sample)) throw std::runtime_error("DDS refused to send the order");
+    if (!data_writer->write(&sample)) throw std::runtime_error("DDS failed to send the operator's message");
   }
 
   DdsDirectory directory;
-  Takers takers;
+  MatchedReaders subscribers;
   DdsParticipant participant;
   DataWriter* data_writer;
 };
@@ -68,28 +68,28 @@ OperatorChannel::OperatorChannel(const DdsSettings& settings, const TopicInfo& t
     : impl_(std::make_unique<Impl>(settings, topic)) {}
 OperatorChannel::~OperatorChannel() = default;
 
-std::vector<std::string> OperatorChannel::takers() const {
+std::vector<std::string> OperatorChannel::subscribers() const {
   std::vector<std::string> names;
-  for (const GUID_t& guid : impl_->takers.guids()) {
+  for (const GUID_t& guid : impl_->subscribers.guids()) {
     names.push_back(impl_->directory.participant_of(guid));
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
-bool OperatorChannel::is_written(const std::string& channel) const {
+bool OperatorChannel::has_writer(const std::string& channel) const {
   const auto all = impl_->directory.endpoints();
-  return std::any_of(all.begin(), all.end(), [&](const DdsEndpoint& endpoint) {
+  return std::any_of(all.begin(), all.end(), [&](const DiscoveredEndpoint& endpoint) {
     return endpoint.is_writer && endpoint.topic == channel;
   });
 }
 
 RawWriter& OperatorChannel::writer() { return *impl_; }
 
-bool OperatorChannel::wait_until_taken(Duration patience) {
-  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience);
+bool OperatorChannel::wait_until_acknowledged(Duration timeout) {
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(timeout);
   const eprosima::fastrtps::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
-                                            static_cast<std::uint32_t>((patience - whole_s).count()));
+                                            static_cast<std::uint32_t>((timeout - whole_s).count()));
   return impl_->data_writer->wait_for_acknowledgments(wait) == ReturnCode_t::RETCODE_OK;
 }
 

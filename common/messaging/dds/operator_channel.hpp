@@ -6,27 +6,28 @@
 #include <vector>
 
 #include "common/messaging/bus.hpp"
-#include "common/messaging/dds/dds_bus.hpp"
+#include "common/messaging/dds/bus.hpp"
 
 namespace sidestep {
 
-/// An operator's hand in a domain: writes one topic and knows who takes what it writes. No fault holds it up.
+/// An operator's writer of one topic, which knows its subscribers. Its messages are exempt from network
+/// faults.
 class OperatorChannel {
  public:
-  /// Throws std::runtime_error as DdsBus does.
+  /// Throws std::runtime_error as DdsBus.
   OperatorChannel(const DdsSettings& settings, const TopicInfo& topic);
   ~OperatorChannel();
   OperatorChannel(const OperatorChannel&) = delete;
   OperatorChannel& operator=(const OperatorChannel&) = delete;
 
-  /// The names of the participants that take it now, sorted; a name stands there once for each.
-  std::vector<std::string> takers() const;
-  /// Whether somebody writes to a channel, e.g. "feedback/3".
-  bool is_written(const std::string& channel) const;
-  /// What sends messages of the topic's type to all takers.
+  /// Names of the participants that subscribe at present, sorted; one entry per participant.
+  std::vector<std::string> subscribers() const;
+  /// Whether a channel, e.g. "feedback/3", has a writer.
+  bool has_writer(const std::string& channel) const;
+  /// Sends messages of the topic's type to all subscribers.
   RawWriter& writer();
-  /// Waits until every taker has all that was written; false when that takes longer.
-  [[nodiscard]] bool wait_until_taken(Duration patience);
+  /// Waits until every subscriber has acknowledged all messages; false on timeout.
+  [[nodiscard]] bool wait_until_acknowledged(Duration timeout);
 
  private:
   struct Impl;

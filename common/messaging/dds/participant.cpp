@@ -17,8 +17,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/messaging/dds/lease.hpp"
 #include "common/messaging/dds/fault_transport.hpp"
+#include "common/messaging/dds/lease.hpp"
 
 namespace sidestep {
 namespace {
@@ -27,11 +27,11 @@ namespace dds = eprosima::fastdds::dds;
 using namespace eprosima::fastdds::dds;
 using eprosima::fastrtps::Duration_t;
 
-constexpr int kLargestDomain = 99;             ///< port numbers of the domains above overlap with others
-constexpr std::uint32_t kMutationTries = 250;  ///< bounds the number of participants on one host
+constexpr int kMaxDomain = 99;                 ///< port numbers of higher domains overlap with others
+constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
 const Duration_t kAnnouncementPeriod{1, 0};
-constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< of which the system grants what it allows
-constexpr int kLargestInstances = 2048;  ///< keys that one endpoint holds; beyond, idle ones are given up
+constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less
+constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle ones are dropped
 constexpr int kEventDepth = 64;
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
@@ -51,16 +51,16 @@ std::string own_addresses() {
 }
 
 void check(const DdsSettings& settings) {
-  if (settings.domain < 0 || settings.domain > kLargestDomain) {
-    throw std::runtime_error(fmt::format("domain {} is not within 0 .. {}", settings.domain, kLargestDomain));
+  if (settings.domain < 0 || settings.domain > kMaxDomain) {
+    throw std::runtime_error(fmt::format("domain: expected 0..{}, got {}", kMaxDomain, settings.domain));
   }
   if (settings.interface == "all") return;
-  // An address of another machine would leave the participant without any interface, and silent.
+  // With an address of another machine, Fast DDS would have no interface and report no error.
   const std::string own = own_addresses();
   if (settings.interface.empty() ||
       (" " + own + " ").find(" " + settings.interface + " ") == std::string::npos) {
-    throw std::runtime_error(
-        fmt::format("interface '{}' is not an address of this machine: all {}", settings.interface, own));
+    throw std::runtime_error(fmt::format(
+        "interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface));
   }
 }
 
@@ -79,7 +79,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
     memory->segment_size(shared_memory_bytes);
     qos.transport().user_transports.push_back(memory);
   }
-  // Never both: two transports for one kind of locator would each send everything.
+  // Never both: two transports of one locator kind would send every message twice.
   if (impairment)
     qos.transport().user_transports.push_back(fault_transport(udp, impairment));
   else
@@ -99,16 +99,16 @@ void set_common(EndpointQos& qos, Qos kind) {
   qos.durability().kind = VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
   qos.history().depth = depth;
-  qos.resource_limits().max_instances = kLargestInstances;
+  qos.resource_limits().max_instances = kMaxInstances;
   qos.resource_limits().max_samples_per_instance = depth;
-  qos.resource_limits().max_samples = kLargestInstances * depth;
+  qos.resource_limits().max_samples = kMaxInstances * depth;
   qos.resource_limits().allocated_samples = depth;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
 }
 
-std::runtime_error failure(const std::string& what, const std::string& channel) {
-  return std::runtime_error(fmt::format("DDS refuses to create the {} of topic '{}'", what, channel));
+std::runtime_error failure(const std::string& entity, const std::string& channel) {
+  return std::runtime_error(fmt::format("DDS failed to create the {} of topic '{}'", entity, channel));
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ std::runtime_error failure(const std::string& what, const std::string& channel) 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
-  check_library();
+  check_fast_dds_version();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   eprosima::fastrtps::LibrarySettingsAttributes library;
   library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
@@ -125,23 +125,19 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantLis
       static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_, shared_memory_bytes),
       listener, StatusMask::none());
   if (participant_ == nullptr) {
-    throw std::runtime_error(fmt::format("DDS refuses to create a participant in domain {} on interface {}",
+    throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}",
                                          settings.domain, settings.interface));
   }
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);
   if (publisher_ == nullptr || subscriber_ == nullptr)
-    throw std::runtime_error("DDS refuses to create a publisher");
+    throw std::runtime_error("DDS failed to create a publisher or subscriber");
 }
 
 DdsParticipant::~DdsParticipant() {
   participant_->set_listener(nullptr);
   participant_->delete_contained_entities();
   DomainParticipantFactory::get_instance()->delete_participant(participant_);
-}
-
-bool DdsParticipant::has_type(const std::string& name) const {
-  return !participant_->find_type(name).empty();
 }
 
 dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) {
@@ -153,7 +149,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) 
     }
     return static_cast<dds::Topic*>(known);
   }
-  if (!has_type(type_name)) type.register_type(participant_);
+  if (participant_->find_type(type_name).empty()) type.register_type(participant_);
   dds::Topic* created = participant_->create_topic(channel, type_name, TOPIC_QOS_DEFAULT);
   if (created == nullptr) throw failure("topic", channel);
   return created;

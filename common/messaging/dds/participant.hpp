@@ -11,28 +11,27 @@
 #include <memory>
 #include <string>
 
-#include "common/messaging/dds/dds_bus.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/messaging/impairment.hpp"
 
 namespace sidestep {
 
-/// A participant set up as dds.md decides, with one publisher and one subscriber. Destroying it deletes
-/// whatever it has created.
+/// A DDS participant with one publisher and one subscriber, over UDPv4 and optionally shared memory.
+/// Destroying it deletes everything that it has created.
 class DdsParticipant {
  public:
-  /// The listener, if any, must outlive the participant. With shared memory, so many bytes for what it
-  /// writes, participants on one host that have some use it, and nothing goes from one to the other by UDP,
-  /// even if their memory is not the same (containers); no fault reaches it. Throws std::runtime_error,
-  /// saying what is wrong.
+  /// The listener, if any, must outlive the participant. `shared_memory_bytes` > 0 is the size of the segment
+  /// for written messages. Two participants on one host that both have shared memory use it instead of UDP,
+  /// even if their segments are not visible to each other (containers); faults do not affect it. Throws
+  /// std::runtime_error with the reason.
   DdsParticipant(const DdsSettings& settings, eprosima::fastdds::dds::DomainParticipantListener* listener,
                  std::uint32_t shared_memory_bytes = 0);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;
 
-  /// Whether a type of this name was registered by an earlier create call.
-  bool has_type(const std::string& name) const;
-  /// `type` is registered unless another of its name is already. Throws std::runtime_error, naming the topic.
+  /// Registers `type` unless a type of its name is already registered. Throws std::runtime_error that names
+  /// the topic.
   eprosima::fastdds::dds::DataWriter* create_writer(const std::string& channel,
                                                     eprosima::fastdds::dds::TypeSupport type,
                                                     const eprosima::fastdds::dds::DataWriterQos& qos,
@@ -43,7 +42,7 @@ class DdsParticipant {
                                                     eprosima::fastdds::dds::DataReaderListener* listener);
   void delete_writer(eprosima::fastdds::dds::DataWriter* writer);
   void delete_reader(eprosima::fastdds::dds::DataReader* reader);
-  /// As DdsBus::impair.
+  /// As DdsBus::impair().
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
 
  private:
@@ -57,11 +56,11 @@ class DdsParticipant {
 
 eprosima::fastdds::dds::DataWriterQos dds_writer_qos(Qos qos);
 eprosima::fastdds::dds::DataReaderQos dds_reader_qos(Qos qos);
-/// The addresses that the reader really listens on.
+/// The addresses on which the reader listens.
 std::string dds_locators(const eprosima::fastdds::dds::DataReader& reader);
-/// In words, e.g. "reliability".
+/// The policy's name, e.g. "reliability".
 std::string dds_policy_name(eprosima::fastdds::dds::QosPolicyId_t policy);
-/// The one place that DDS trouble is reported at; from any thread.
+/// Logs a DDS problem. Thread-safe.
 void log_dds(const std::string& message);
 
 }  // namespace sidestep

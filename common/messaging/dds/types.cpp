@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "idl/disturbancePubSubTypes.h"
@@ -21,8 +22,8 @@ using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 constexpr std::size_t kEncapsulationSize = 4;
 
-GuardedType::Sample& sample_of(void* data) { return *static_cast<GuardedType::Sample*>(data); }
-std::vector<std::uint8_t>& bytes_of(void* data) { return *static_cast<std::vector<std::uint8_t>*>(data); }
+GuardedType::Sample& to_sample(void* data) { return *static_cast<GuardedType::Sample*>(data); }
+std::vector<std::uint8_t>& to_bytes(void* data) { return *static_cast<std::vector<std::uint8_t>*>(data); }
 
 std::uint32_t read_uint32(const std::uint8_t* bytes, bool is_little_endian) {
   std::uint32_t value = 0;
@@ -68,54 +69,54 @@ GuardedType::GuardedType(std::unique_ptr<TopicDataType> generated, std::size_t m
   auto_fill_type_object(false);
   auto_fill_type_information(false);
   void* empty = generated_->createData();
-  smallest_size_ = generated_->getSerializedSizeProvider(empty)();
+  min_size_ = generated_->getSerializedSizeProvider(empty)();
   generated_->deleteData(empty);
-  // The pools start with payloads of this size and let them grow; the type's bound is often a hundred times
-  // as much.
-  m_typeSize = static_cast<std::uint32_t>(smallest_size_);
+  // Initial size of the payloads in Fast DDS's pools, which grow on demand. The type's upper bound is often a
+  // hundred times as large.
+  m_typeSize = static_cast<std::uint32_t>(min_size_);
 }
 
 GuardedType::~GuardedType() = default;
 
 bool GuardedType::serialize(void* data, Payload* payload) {
-  return generated_->serialize(sample_of(data).message, payload);
+  return generated_->serialize(to_sample(data).message, payload);
 }
 
 bool GuardedType::deserialize(Payload* payload, void* data) {
-  Sample& sample = sample_of(data);
+  Sample& sample = to_sample(data);
   sample.is_valid = false;
   try {
     sample.is_valid = is_acceptable(*payload) && generated_->deserialize(payload, sample.message);
   } catch (const std::exception&) {
-    // A payload that the generated code cannot read is refused like one that is too short.
+    // The generated code cannot read the payload: is_valid stays false.
   }
   return true;
 }
 
 bool GuardedType::is_acceptable(const Payload& payload) const {
-  if (payload.data == nullptr || payload.length < smallest_size_) return false;
+  if (payload.data == nullptr || payload.length < min_size_) return false;
   const bool is_plain_cdr = payload.data[0] == 0 && payload.data[1] <= 1;
   if (!is_plain_cdr) return false;
   if (max_elements_ == 0) return true;
-  // The sequence is the last member, so its count is the end of an empty message.
-  const std::uint8_t* count = payload.data + smallest_size_ - sizeof(std::uint32_t);
+  // The sequence is the last member, so an empty message ends with its count.
+  const std::uint8_t* count = payload.data + min_size_ - sizeof(std::uint32_t);
   return read_uint32(count, payload.data[1] == 1) <= max_elements_;
 }
 
 std::function<std::uint32_t()> GuardedType::getSerializedSizeProvider(void* data) {
-  return generated_->getSerializedSizeProvider(sample_of(data).message);
+  return generated_->getSerializedSizeProvider(to_sample(data).message);
 }
 
 void* GuardedType::createData() { return new Sample{generated_->createData(), true}; }
 
 void GuardedType::deleteData(void* data) {
-  generated_->deleteData(sample_of(data).message);
+  generated_->deleteData(to_sample(data).message);
   delete static_cast<Sample*>(data);
 }
 
 bool GuardedType::getKey(void* data, InstanceHandle_t* handle, bool force_md5) {
   const std::lock_guard lock(key_mutex_);
-  return generated_->getKey(sample_of(data).message, handle, force_md5);
+  return generated_->getKey(to_sample(data).message, handle, force_md5);
 }
 
 RawType::RawType(const std::string& name, bool is_keyed) {
@@ -127,7 +128,7 @@ RawType::RawType(const std::string& name, bool is_keyed) {
 }
 
 bool RawType::serialize(void* data, SerializedPayload_t* payload) {
-  const std::vector<std::uint8_t>& bytes = bytes_of(data);
+  const std::vector<std::uint8_t>& bytes = to_bytes(data);
   if (bytes.size() > payload->max_size) return false;
   if (!bytes.empty()) std::memcpy(payload->data, bytes.data(), bytes.size());
   payload->length = static_cast<std::uint32_t>(bytes.size());
@@ -136,12 +137,12 @@ bool RawType::serialize(void* data, SerializedPayload_t* payload) {
 }
 
 bool RawType::deserialize(SerializedPayload_t* payload, void* data) {
-  bytes_of(data).assign(payload->data, payload->data + payload->length);
+  to_bytes(data).assign(payload->data, payload->data + payload->length);
   return true;
 }
 
 std::function<std::uint32_t()> RawType::getSerializedSizeProvider(void* data) {
-  return [data] { return static_cast<std::uint32_t>(bytes_of(data).size()); };
+  return [data] { return static_cast<std::uint32_t>(to_bytes(data).size()); };
 }
 
 void* RawType::createData() { return new std::vector<std::uint8_t>; }
@@ -149,8 +150,8 @@ void* RawType::createData() { return new std::vector<std::uint8_t>; }
 void RawType::deleteData(void* data) { delete static_cast<std::vector<std::uint8_t>*>(data); }
 
 bool RawType::getKey(void*, InstanceHandle_t* handle, bool) {
-  // Where the key lies in the bytes is unknown: where the writer does not send it along, all samples share
-  // one.
+  // The position of the key in the bytes is unknown. Unless the writer sends the key's hash, all samples
+  // share one.
   *handle = InstanceHandle_t();
   handle->value[0] = 1;
   return true;
@@ -158,7 +159,7 @@ bool RawType::getKey(void*, InstanceHandle_t* handle, bool) {
 
 std::unique_ptr<GuardedType> make_dds_type(const MessageType& type) {
   for (const GeneratedType& generated : kGeneratedTypes) {
-    if (std::strcmp(generated.name, type.name) == 0) {
+    if (std::string_view(generated.name) == type.name) {
       return std::make_unique<GuardedType>(generated.make(), type.max_elements);
     }
   }

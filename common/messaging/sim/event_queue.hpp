@@ -11,18 +11,18 @@
 
 namespace sidestep {
 
-/// One round of a timing wheel: places for consecutive numbers, found again by the number.
+/// One revolution of a timing wheel: kCount slots for consecutive slot numbers, addressed modulo kCount.
 template <typename Entry, std::int64_t kCount>
 class Wheel {
  public:
-  void put(std::int64_t number, const Entry& entry) {
-    const std::size_t index = index_of(number);
-    places_[index].push_back(entry);
+  void add(std::int64_t slot, const Entry& entry) {
+    const std::size_t index = index_of(slot);
+    slots_[index].push_back(entry);
     used_[index / 64] |= std::uint64_t{1} << (index % 64);
   }
-  /// The first number from `from` on, and before `to`, that has something; `to` when none has. At most a
-  /// round is looked at.
-  std::int64_t next(std::int64_t from, std::int64_t to) const {
+  /// The first slot in [from, to) that has entries, or `to` if all are empty. Precondition: at most kCount
+  /// slots.
+  std::int64_t next_used(std::int64_t from, std::int64_t to) const {
     while (from < to) {
       const std::size_t index = index_of(from);
       const std::uint64_t word = used_[index / 64] >> (index % 64);
@@ -31,58 +31,60 @@ class Wheel {
     }
     return to;
   }
-  /// What the number has is swapped for what `entries` holds, nothing.
-  void take(std::int64_t number, std::vector<Entry>& entries) {
-    const std::size_t index = index_of(number);
-    std::swap(entries, places_[index]);
+  /// Moves the slot's entries into `entries`. Precondition: `entries` is empty; its memory is kept for the
+  /// slot.
+  void take(std::int64_t slot, std::vector<Entry>& entries) {
+    const std::size_t index = index_of(slot);
+    std::swap(entries, slots_[index]);
     used_[index / 64] &= ~(std::uint64_t{1} << (index % 64));
   }
 
  private:
-  static std::size_t index_of(std::int64_t number) { return static_cast<std::size_t>(number & (kCount - 1)); }
+  static std::size_t index_of(std::int64_t slot) { return static_cast<std::size_t>(slot & (kCount - 1)); }
 
-  std::vector<std::vector<Entry>> places_ = std::vector<std::vector<Entry>>(kCount);
+  std::vector<std::vector<Entry>> slots_ = std::vector<std::vector<Entry>>(kCount);
   std::vector<std::uint64_t> used_ = std::vector<std::uint64_t>(kCount / 64, 0);
 };
 
-/// What is to happen when, in the order of (time, order of being put in). Timing wheels (Varghese, Lauck
-/// 1987): one has a slot for each microsecond or so of the turn of two milliseconds that it is, put in order
-/// when its time comes; another one has the turns that follow; what is farther ahead waits in a heap. Costs
-/// hardly depend on how many events are waiting, and nothing is allocated once warm.
+/// Queue of events ordered by (time, order of insertion), on hierarchical timing wheels (Varghese, Lauck
+/// 1987). The first wheel covers 2 ms in 1 µs slots; a slot is sorted when its time comes. Each slot of the
+/// second wheel covers one revolution of the first. Later events wait in a heap. The cost hardly depends on
+/// the number of events, and nothing is allocated once warm.
 template <typename Payload>
 class EventQueue {
  public:
   bool is_empty() const { return count_ == 0; }
 
-  void put(Time when, const Payload& payload) {
+  void push(Time when, const Payload& payload) {
     ++count_;
-    put(Entry{to_ns(when), order_++, payload});
+    add(Entry{to_ns(when), order_++, payload});
   }
 
   /// The time of the next event. Precondition: not empty.
   Time next_time() {
-    find_due();
+    load_due();
     return time_from_ns(due_.back().when_ns);
   }
 
-  /// Takes the next event. Precondition: not empty.
-  Payload take() {
-    find_due();
+  /// Removes the next event. Precondition: not empty.
+  Payload pop() {
+    load_due();
     const Payload payload = due_.back().payload;
     due_.pop_back();
     --count_;
     return payload;
   }
 
-  /// What comes so many events after the next one, if that is soon: for fetching what it needs.
-  const Payload* ahead(std::size_t events) const {
-    return due_.size() > events ? &due_[due_.size() - 1 - events].payload : nullptr;
+  /// The event `distance` places behind the next one if it is in the same slot, otherwise null. For
+  /// prefetching.
+  const Payload* peek(std::size_t distance) const {
+    return due_.size() > distance ? &due_[due_.size() - 1 - distance].payload : nullptr;
   }
 
  private:
-  static constexpr int kSlotBits = 10;  // of a time in ns, which make up a slot
-  static constexpr int kTurnBits = 11;  // of a slot's number, which make up a turn
-  static constexpr std::int64_t kTurns = 256;
+  static constexpr int kSlotBits = 10;        // log2 of a slot's length in ns
+  static constexpr int kRevolutionBits = 11;  // log2 of the number of slots in a revolution
+  static constexpr std::int64_t kRevolutions = 256;
 
   struct Entry {
     std::int64_t when_ns;
@@ -97,59 +99,59 @@ class EventQueue {
 
   static std::int64_t slot_of(const Entry& entry) { return entry.when_ns >> kSlotBits; }
 
-  void put(const Entry& entry) {
-    const std::int64_t slot = slot_of(entry), turn = slot >> kTurnBits;
+  void add(const Entry& entry) {
+    const std::int64_t slot = slot_of(entry), revolution = slot >> kRevolutionBits;
     if (slot <= slot_) {
       due_.insert(std::ranges::upper_bound(due_, entry, Later{}), entry);
-    } else if (turn == turn_) {
-      slots_.put(slot, entry);
-    } else if (turn < turn_ + kTurns) {
-      turns_.put(turn, entry);
+    } else if (revolution == revolution_) {
+      slots_.add(slot, entry);
+    } else if (revolution < revolution_ + kRevolutions) {
+      revolutions_.add(revolution, entry);
     } else {
-      far_.push_back(entry);
-      std::ranges::push_heap(far_, Later{});
+      later_.push_back(entry);
+      std::ranges::push_heap(later_, Later{});
     }
   }
 
-  /// Goes on to the next slot that has something, and takes that over.
-  void find_due() {
+  /// If no event is due, advances to the next slot that has events and loads them.
+  void load_due() {
     if (!due_.empty()) return;
-    if (next_slot() > last_slot()) begin_next_turn();
+    if (next_slot() > last_slot()) begin_next_revolution();
     slot_ = next_slot();
     slots_.take(slot_, due_);
     if (due_.size() > 1) std::ranges::sort(due_, Later{});
   }
 
-  std::int64_t last_slot() const { return ((turn_ + 1) << kTurnBits) - 1; }
-  /// The next slot of this turn that has something; beyond the last one when none has.
-  std::int64_t next_slot() const { return slots_.next(slot_ + 1, last_slot() + 1); }
+  std::int64_t last_slot() const { return ((revolution_ + 1) << kRevolutionBits) - 1; }
+  /// The next slot of this revolution that has events; last_slot() + 1 if there is none.
+  std::int64_t next_slot() const { return slots_.next_used(slot_ + 1, last_slot() + 1); }
 
-  /// Goes on to just before the next turn that has something, and takes over that and what has come near from
-  /// the heap.
-  void begin_next_turn() {
-    const std::int64_t far = far_.empty() ? INT64_MAX : slot_of(far_.front()) >> kTurnBits;
-    const std::int64_t end = turn_ + kTurns, near = turns_.next(turn_ + 1, end);
-    turn_ = near < end ? std::min(near, far) : far;
-    slot_ = (turn_ << kTurnBits) - 1;
-    turns_.take(turn_, arriving_);
-    for (const Entry& entry : arriving_) slots_.put(slot_of(entry), entry);
+  /// Advances to the next revolution that has events, spreads its events over the first wheel, and moves
+  /// events that have come within reach from the heap to the wheels.
+  void begin_next_revolution() {
+    const std::int64_t far = later_.empty() ? INT64_MAX : slot_of(later_.front()) >> kRevolutionBits;
+    const std::int64_t end = revolution_ + kRevolutions, near = revolutions_.next_used(revolution_ + 1, end);
+    revolution_ = near < end ? std::min(near, far) : far;
+    slot_ = (revolution_ << kRevolutionBits) - 1;
+    revolutions_.take(revolution_, arriving_);
+    for (const Entry& entry : arriving_) slots_.add(slot_of(entry), entry);
     arriving_.clear();
-    while (!far_.empty() && slot_of(far_.front()) >> kTurnBits < turn_ + kTurns) {
-      std::ranges::pop_heap(far_, Later{});
-      put(far_.back());
-      far_.pop_back();
+    while (!later_.empty() && slot_of(later_.front()) >> kRevolutionBits < revolution_ + kRevolutions) {
+      std::ranges::pop_heap(later_, Later{});
+      add(later_.back());
+      later_.pop_back();
     }
   }
 
   std::size_t count_ = 0;
   std::uint64_t order_ = 0;
-  std::int64_t turn_ = INT64_MIN >> (kSlotBits + kTurnBits);
-  std::int64_t slot_ = turn_ << kTurnBits;            // of what is due
-  std::vector<Entry> due_;                            // the next at the end
-  Wheel<Entry, std::int64_t{1} << kTurnBits> slots_;  // of this turn
-  Wheel<Entry, kTurns> turns_;                        // that follow
-  std::vector<Entry> arriving_;                       // of the turn that begins
-  std::vector<Entry> far_;                            // a heap
+  std::int64_t revolution_ = INT64_MIN >> (kSlotBits + kRevolutionBits);
+  std::int64_t slot_ = revolution_ << kRevolutionBits;      // the slot of due_
+  std::vector<Entry> due_;                                  // latest first
+  Wheel<Entry, std::int64_t{1} << kRevolutionBits> slots_;  // of this revolution
+  Wheel<Entry, kRevolutions> revolutions_;                  // the following ones
+  std::vector<Entry> arriving_;                             // scratch of begin_next_revolution()
+  std::vector<Entry> later_;                                // heap
 };
 
 }  // namespace sidestep

@@ -7,26 +7,26 @@
 
 namespace sidestep {
 
-/// Values that come and go, by number; places are used again, the last one left first.
+/// Values addressed by index. The index freed last is reused first; nothing is allocated while indices are
+/// free.
 template <typename Value>
 class Pool {
  public:
-  std::uint32_t put(Value value) {
+  std::uint32_t add(Value value) {
     if (free_.empty()) {
       values_.push_back(std::move(value));
       return static_cast<std::uint32_t>(values_.size() - 1);
     }
-    const std::uint32_t place = free_.back();
+    const std::uint32_t index = free_.back();
     free_.pop_back();
-    values_[place] = std::move(value);
-    return place;
+    values_[index] = std::move(value);
+    return index;
   }
-  Value take(std::uint32_t place) {
-    free_.push_back(place);
-    return std::move(values_[place]);
+  Value remove(std::uint32_t index) {
+    free_.push_back(index);
+    return std::move(values_[index]);
   }
-  Value& operator[](std::uint32_t place) { return values_[place]; }
-  const Value& operator[](std::uint32_t place) const { return values_[place]; }
+  Value& operator[](std::uint32_t index) { return values_[index]; }
 
  private:
   std::vector<Value> values_;

@@ -3,15 +3,13 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `frame`, which renders what a scenario's camera sees at the beginning. When it is parsed, `action`
-/// becomes what is to be run; it returns the exit code, and may throw ScenarioError for a file or
-/// std::runtime_error saying what fails.
-void add_frame_command(CLI::App& root, std::function<int()>& action);
+/// Adds `frame`, which renders a camera's view of a scenario at the start. Parsing it sets `action` to the
+/// command, which returns the exit code, and may throw ConfigError for a file or std::runtime_error for any
+/// other failure.
+void add_frame_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -5,20 +5,18 @@
 #include <string>
 
 #include "common/marking/layout.hpp"
-
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// What a layout can tell: how many patterns its dots could show with two to six colours and with those it
-/// uses, how alike its patterns are, and the error of a pose when each dot's position has an error of this
-/// standard deviation per axis.
-std::string describe_layout(const MarkingLayout& layout, double dot_sd_m);
+/// Evaluates a layout, as in the comparison of patterns by Bruce (CMU-CS-06-181, appendix A.2.3): the number
+/// of patterns that its dots can show with two to six colours and with the colours it uses, the minimum
+/// distance of its patterns, and the pose error when each dot's position has this standard deviation per
+/// axis.
+[[nodiscard]] std::string describe_layout(const MarkerLayout& layout, double dot_sd_m);
 
-/// Adds `pattern`, which prints that. When it is parsed, `action` becomes what is to be run; it returns the
-/// exit code, and may throw ScenarioError for a layout's file.
-void add_pattern_command(CLI::App& root, std::function<int()>& action);
+/// Adds `pattern`, which prints the evaluation of a layout. Parsing it sets `action` to the command, which
+/// returns the exit code, and may throw ConfigError for the layout's file.
+void add_pattern_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

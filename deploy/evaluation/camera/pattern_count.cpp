@@ -9,7 +9,8 @@
 namespace sidestep {
 namespace {
 
-/// The Moebius function: 0 with a square factor, else 1 or -1 as the number of prime factors is even or odd.
+/// The Möbius function: 0 for a number with a square factor, otherwise 1 or -1 for an even or odd number of
+/// prime factors.
 int mu(std::size_t n) {
   int sign = 1;
   for (std::size_t p = 2; p <= n; ++p) {
@@ -29,33 +30,33 @@ std::int64_t power(std::uint64_t base, std::size_t exponent) {
 
 }  // namespace
 
-std::uint64_t countable_patterns(const MarkingLayout& layout, std::uint64_t colours) {
-  const std::size_t turns = turns_of(layout).size(), dots = layout.dots.size();
-  if (turns == 0) return 0;
+std::uint64_t countable_patterns(const MarkerLayout& layout, std::uint64_t colours) {
+  const std::size_t symmetries = rotational_symmetries(layout).size(), dots = layout.dots.size();
+  if (symmetries == 0) return 0;
   std::int64_t sum = 0;
-  for (std::size_t d = 1; d <= turns; ++d)
-    if (turns % d == 0) sum += mu(d) * power(colours, dots / d);
-  return static_cast<std::uint64_t>(sum) / turns;
+  for (std::size_t d = 1; d <= symmetries; ++d)
+    if (symmetries % d == 0) sum += mu(d) * power(colours, dots / d);
+  return static_cast<std::uint64_t>(sum) / symmetries;
 }
 
-std::uint64_t used_colours(const MarkingLayout& layout) {
+std::uint64_t used_colour_count(const MarkerLayout& layout) {
   std::set<Colour> used;
-  for (const MarkingPattern& pattern : layout.patterns)
+  for (const MarkerPattern& pattern : layout.patterns)
     used.insert(pattern.colours.begin(), pattern.colours.end());
   return used.size();
 }
 
-std::size_t smallest_difference(const MarkingLayout& layout) {
-  std::size_t smallest = layout.dots.size();
-  const std::vector<DotTurn> turns = turns_of(layout);
+std::size_t min_pattern_distance(const MarkerLayout& layout) {
+  std::size_t min_distance = layout.dots.size();
+  const std::vector<RotationalSymmetry> symmetries = rotational_symmetries(layout);
   for (std::size_t i = 0; i < layout.patterns.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      for (std::size_t t = i == j ? 1 : 0; t < turns.size(); ++t)
-        smallest =
-            std::min(smallest, differences(layout.patterns[i].colours, layout.patterns[j].colours, turns[t]));
+      for (std::size_t t = i == j ? 1 : 0; t < symmetries.size(); ++t)
+        min_distance = std::min(min_distance, hamming_distance(layout.patterns[i].colours,
+                                                               layout.patterns[j].colours, symmetries[t]));
     }
   }
-  return smallest;
+  return min_distance;
 }
 
 }  // namespace sidestep

@@ -7,17 +7,17 @@
 
 namespace sidestep {
 
-/// How many patterns of so many colours a layout's dots can show such that each tells id and heading. All c^n
-/// where no turn puts the dots on each other. Where m turns do, patterns that look the same when turned count
-/// once, and those that look like themselves not at all: sum over d | m of mu(d) c^(n/d), over m (for dots on
-/// a regular polygon, the aperiodic necklaces; Moreau 1872). Precondition: c^n is below 2^63.
-std::uint64_t countable_patterns(const MarkingLayout& layout, std::uint64_t colours);
+/// The number of patterns of c colours on a layout's n dots that identify both robot and heading. Without
+/// rotational symmetry, all c^n. With m symmetries, patterns equal up to a rotation count once, and patterns
+/// that are themselves symmetric do not count: sum over d | m of mu(d) c^(n/d), divided by m (for dots on a
+/// regular polygon, the aperiodic necklaces; Moreau 1872). Precondition: c^n is below 2^63.
+[[nodiscard]] std::uint64_t countable_patterns(const MarkerLayout& layout, std::uint64_t colours);
 
-/// How many colours a layout's patterns use, the teams' aside.
-std::uint64_t used_colours(const MarkingLayout& layout);
+/// The number of colours in a layout's patterns, without the team colours.
+[[nodiscard]] std::uint64_t used_colour_count(const MarkerLayout& layout);
 
-/// In how many dots the two most alike patterns differ, whatever the headings, and a pattern from itself when
-/// turned. With 1, a hidden dot may leave the id open.
-std::size_t smallest_difference(const MarkingLayout& layout);
+/// The number of dots in which the two most similar patterns differ at any headings, or a pattern from itself
+/// after a rotation. With 1, a hidden dot may leave the identity ambiguous.
+[[nodiscard]] std::size_t min_pattern_distance(const MarkerLayout& layout);
 
 }  // namespace sidestep

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/named_planner.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
-#include <map>
 #include <memory>
 #include <stdexcept>
 
 #include "agents/planning/anytime.hpp"
 #include "agents/planning/grids/grid_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
-#include "agents/planning/grids/trapezoids.hpp"
+#include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/roadmaps/prm.hpp"
 #include "agents/planning/robust.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 using Trees = BidirectionalErrt<DiscDomain>;
 
-/// Builds its graph when the world is another than the last time.
+/// Builds its graph anew when the world differs from that of the last plan.
 class FullVisibility {
  public:
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {
@@ -67,74 +67,157 @@ PlanDrawing drawing_of(Prm<DiscDomain>& planner) {
 PlanDrawing drawing_of(FullVisibility& planner) {
   return {planner.graph() ? planner.graph()->tangents() : std::vector<Segment>{}, {}, {}, {}};
 }
-PlanDrawing drawing_of(LazyVisibility& planner) { return {planner.ways(), {}, {}, {}}; }
+PlanDrawing drawing_of(LazyVisibility& planner) { return {planner.explored_tangents(), {}, {}, {}}; }
 PlanDrawing drawing_of(GridPlanner& planner) { return {planner.steps(), {}, {}, {}}; }
 PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cells, {}}; }
-PlanDrawing drawing_of(Trapezoids& planner) { return {{}, {}, planner.cells().cells, {}}; }
+PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
+
+/// What the agents use.
+DiscDomainSettings shipped_domain(const PlanWorld&) { return {}; }
+/// What OMPL does: its range, uniform samples.
+DiscDomainSettings namesake_domain(const PlanWorld& world) {
+  return {.step_m = namesake_range_m(world), .contact_probability = 0};
+}
+DiscDomainSettings border_sampling_domain(const PlanWorld& world) {
+  DiscDomainSettings settings = namesake_domain(world);
+  settings.contact_probability = DiscDomainSettings{}.contact_probability;
+  return settings;
+}
+
+using DomainSettings = DiscDomainSettings (*)(const PlanWorld&);
+using Factory = std::function<NamedPlanner()>;
 
 template <typename Planner, typename... Arguments>
-std::function<NamedPlanner()> maker(Arguments... arguments) {
+Factory factory(DomainSettings domain_settings, Arguments... arguments) {
   return [=] {
     const auto planner = std::make_shared<Planner>(arguments...);
-    return NamedPlanner{{},
-                        PlannerKind::kForAnyWorld,
-                        [planner](const DiscDomain& domain, const Vec2& start, const Budget& budget,
-                                  Rng& rng) -> const Plan<Vec2>& {
-                          return plan_robustly(*planner, domain, start, budget, rng);
-                        },
-                        [planner] { return drawing_of(*planner); }};
+    NamedPlanner named;
+    named.plan = [planner](const DiscDomain& domain, const Vec2& start, const Budget& budget,
+                           Rng& rng) -> const Plan<Vec2>& {
+      return plan_robustly(*planner, domain, start, budget, rng);
+    };
+    named.draw = [planner] { return drawing_of(*planner); };
+    named.domain_settings = domain_settings;
+    return named;
   };
 }
 
-struct Maker {
+template <typename Planner, typename... Arguments>
+Factory shipped(Arguments... arguments) {
+  return factory<Planner>(shipped_domain, arguments...);
+}
+
+/// RRT as OMPL has it.
+constexpr ErrtSettings kRrt{.goal_probability = kNamesakeGoalBias,
+                            .cache_capacity = 0,
+                            .tries_straight_line = false};
+ErrtSettings rrt_with(void (*change)(ErrtSettings&)) {
+  ErrtSettings settings = kRrt;
+  change(settings);
+  return settings;
+}
+
+/// RRTConnect as OMPL has it: one extension towards the sample, then as many as it takes towards the new node.
+constexpr BidirectionalErrtSettings kRrtConnect{
+    .cache_capacity = 0, .growth_extensions = 1, .tries_straight_line = false};
+BidirectionalErrtSettings rrt_connect_with(void (*change)(BidirectionalErrtSettings&)) {
+  BidirectionalErrtSettings settings = kRrtConnect;
+  change(settings);
+  return settings;
+}
+
+struct Entry {
   std::string name;
-  std::function<NamedPlanner()> make;
+  Factory make;
+  std::string baseline{};
   PlannerKind kind = PlannerKind::kForAnyWorld;
 };
 
-const std::vector<Maker>& makers() {
-  static const std::vector<Maker> all{
-      {"lazy-visibility", maker<LazyVisibility>()},
-      {"visibility", maker<FullVisibility>(), PlannerKind::kForOneWorld},
-      {"rrt", maker<Errt<DiscDomain>>(ErrtSettings{.cache_capacity = 0})},
-      {"errt", maker<Errt<DiscDomain>>()},
-      {"rrt-connect", maker<Trees>(BidirectionalErrtSettings{.cache_capacity = 0})},
-      {"bi-errt", maker<Trees>()},
-      {"bi-errt-4", maker<Trees>(BidirectionalErrtSettings{.bridges = 4})},
-      {"anytime", maker<Anytime<DiscDomain, Trees>>(Trees(BidirectionalErrtSettings{.cache_capacity = 0})),
-       PlannerKind::kAnytime},
-      {"prm", maker<Prm<DiscDomain>>(), PlannerKind::kForOneWorld},
-      {"one-shot-prm", maker<Prm<DiscDomain>>(one_shot_prm())},
-      {"dynamic-prm", maker<Prm<DiscDomain>>(dynamic_prm())},
-      {"grid-bfs", maker<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst})},
-      {"grid-dfs", maker<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst})},
-      {"grid-a-star", maker<GridPlanner>()},
-      {"quad-tree", maker<QuadTree>()},
-      {"trapezoids", maker<Trapezoids>()}};
+std::vector<Entry> one_tree_planners() {
+  using Tree = Errt<DiscDomain>;
+  return {{"rrt", factory<Tree>(namesake_domain, kRrt)},
+          {"rrt+straight-line",
+           factory<Tree>(namesake_domain, rrt_with([](auto& s) { s.tries_straight_line = true; })), "rrt"},
+          {"rrt+border-samples", factory<Tree>(border_sampling_domain, kRrt), "rrt"},
+          {"rrt+cache",
+           factory<Tree>(namesake_domain,
+                         rrt_with([](auto& s) { s.cache_capacity = ErrtSettings{}.cache_capacity; })),
+           "rrt"},
+          {"errt", shipped<Tree>(), "rrt"}};
+}
+
+std::vector<Entry> two_tree_planners() {
+  using Settings = BidirectionalErrtSettings;
+  const auto two_trees = [](void (*change)(Settings&)) {
+    return factory<Trees>(namesake_domain, rrt_connect_with(change));
+  };
+  return {
+      {"rrt-connect", factory<Trees>(namesake_domain, kRrtConnect)},
+      {"rrt-connect+straight-line", two_trees([](Settings& s) { s.tries_straight_line = true; }),
+       "rrt-connect"},
+      {"rrt-connect+border-samples", factory<Trees>(border_sampling_domain, kRrtConnect), "rrt-connect"},
+      {"rrt-connect+cache", two_trees([](Settings& s) { s.cache_capacity = Settings{}.cache_capacity; }),
+       "rrt-connect"},
+      {"rrt-connect+extend-both",
+       two_trees([](Settings& s) { s.growth_extensions = Settings{}.growth_extensions; }), "rrt-connect"},
+      {"bi-errt", shipped<Trees>(), "rrt-connect"},
+      {"bi-errt-no-cache", shipped<Trees>(Settings{.cache_capacity = 0}), "rrt-connect"},
+      {"bi-errt-4-bridges", shipped<Trees>(Settings{.bridges = 4}), "rrt-connect"},
+      {"anytime", shipped<Anytime<DiscDomain, Trees>>(Trees(Settings{.cache_capacity = 0})), "rrt-connect",
+       PlannerKind::kAnytime}};
+}
+
+std::vector<Entry> other_planners() {
+  using Roadmaps = Prm<DiscDomain>;
+  return {
+      {"prm", shipped<Roadmaps>(), "", PlannerKind::kForOneWorld},
+      {"one-shot-prm", shipped<Roadmaps>(one_shot_prm()), "prm"},
+      {"dynamic-prm", shipped<Roadmaps>(dynamic_prm()), "prm"},
+      {"lazy-visibility", shipped<LazyVisibility>(), "visibility"},
+      {"visibility", shipped<FullVisibility>(), "", PlannerKind::kForOneWorld},
+      {"grid-bfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst}), "grid-a-star"},
+      {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
+      {"grid-a-star", shipped<GridPlanner>()},
+      {"quad-tree", shipped<QuadTree>()},
+      {"trapezoids", shipped<TrapezoidalDecomposition>()}};
+}
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = [] {
+    std::vector<Entry> entries;
+    for (const auto& group : {one_tree_planners(), two_tree_planners(), other_planners()})
+      entries.insert(entries.end(), group.begin(), group.end());
+    return entries;
+  }();
   return all;
 }
 
 }  // namespace
 
+double namesake_range_m(const PlanWorld& world) {
+  return 0.2 * std::hypot(world.field.length_m - 2 * world.radius_m, world.field.width_m - 2 * world.radius_m);
+}
+
 const std::vector<std::string>& planner_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Maker& maker : makers()) all.push_back(maker.name);
+    for (const Entry& entry : entries()) all.push_back(entry.name);
     return all;
   }();
   return names;
 }
 
 NamedPlanner make_planner(const std::string& name) {
-  for (const Maker& maker : makers()) {
-    if (maker.name != name) continue;
-    NamedPlanner planner = maker.make();
+  for (const Entry& entry : entries()) {
+    if (entry.name != name) continue;
+    NamedPlanner planner = entry.make();
     planner.name = name;
-    planner.kind = maker.kind;
+    planner.kind = entry.kind;
+    planner.baseline = entry.baseline;
     return planner;
   }
   throw std::invalid_argument(
-      fmt::format("no planner is called \"{}\": expected one of {}", name, fmt::join(planner_names(), ", ")));
+      fmt::format("planner: expected one of {}, got \"{}\"", fmt::join(planner_names(), ", "), name));
 }
 
 }  // namespace sidestep

@@ -7,36 +7,47 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/domain/plan.hpp"
+#include "deploy/evaluation/planning/worlds.hpp"
 
 namespace sidestep {
 
-/// What a planner looked at, to be drawn.
+/// What a planner explored, for pictures.
 struct PlanDrawing {
-  std::vector<Segment> tree;    ///< or roadmap, or tangents
-  std::vector<Segment> others;  ///< the tree from the goal
+  std::vector<Segment> tree;  ///< or roadmap, or tangents
+  std::vector<Segment> goal_tree;
   std::vector<ConvexPolygon> cells;
   std::vector<Vec2> cache;
 };
 
 enum class PlannerKind {
   kForAnyWorld,
-  kForOneWorld,  ///< keeps what it knows of a world, which must not change
+  kForOneWorld,  ///< keeps a roadmap or graph of the world, which must not change
   kAnytime,      ///< uses up its budget
 };
 
-/// A planner that was chosen by its name, with its defaults.
+/// A planner of agents/planning, chosen by name, and the domain settings that belong to it.
 struct NamedPlanner {
   std::string name;
   PlannerKind kind = PlannerKind::kForAnyWorld;
-  /// The result is the planner's, until its next plan.
+  /// The planner that this one adds one thing to, or is a variant of; empty where there is none.
+  std::string baseline;
+  /// Valid until the planner's next plan.
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
   std::function<PlanDrawing()> draw;
+  std::function<DiscDomainSettings(const PlanWorld&)> domain_settings;
 };
+
+/// Settings of the planners that are namesakes of OMPL's RRT and RRTConnect: both sides of a comparison use
+/// them.
+inline constexpr double kNamesakeGoalBias = 0.05;
+/// A fifth of the diagonal of the positions that the robot may take: OMPL's default range
+/// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
+[[nodiscard]] double namesake_range_m(const PlanWorld& world);
 
 /// The names that make_planner knows, in the order of the benchmark's table.
 const std::vector<std::string>& planner_names();
 
 /// Throws std::invalid_argument for another name.
-NamedPlanner make_planner(const std::string& name);
+[[nodiscard]] NamedPlanner make_planner(const std::string& name);
 
 }  // namespace sidestep

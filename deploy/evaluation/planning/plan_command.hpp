@@ -3,15 +3,12 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `plan` and `bench planning` to a program. When one of them is parsed, `action` becomes what is to be
-/// run; it returns the exit code, and may throw ScenarioError for a world file or std::runtime_error saying
-/// what fails.
-void add_plan_commands(CLI::App& root, std::function<int()>& action);
+/// Adds `plan` to a program. When it is parsed, `action` becomes what to run; that returns the exit code, and
+/// may throw ConfigError for a world file, or std::runtime_error that says what failed.
+void add_plan_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

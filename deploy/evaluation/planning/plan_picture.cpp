@@ -12,9 +12,9 @@ double x_of(const Vec2& p) { return kPixelsPerMetre * p.x(); }
 /// SVG's y axis points down.
 double y_of(const Vec2& p) { return -kPixelsPerMetre * p.y(); }
 
-std::string points_of(const std::vector<Vec2>& way) {
+std::string points_of(const std::vector<Vec2>& path) {
   std::string points;
-  for (const Vec2& p : way) points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(p));
+  for (const Vec2& p : path) points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(p));
   return points;
 }
 
@@ -49,14 +49,14 @@ std::string picture_of(const Segment& segment) {
   return fmt::format("<path d='{}' stroke='#57606a' stroke-width='4'/>\n", line(segment));
 }
 
-std::string polyline(const std::vector<Vec2>& way, const char* style) {
-  return fmt::format("<polyline points='{}' fill='none' {}/>\n", points_of(way), style);
+std::string polyline(const std::vector<Vec2>& path, const char* style) {
+  return fmt::format("<polyline points='{}' fill='none' {}/>\n", points_of(path), style);
 }
 
 }  // namespace
 
 std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
-                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smooth_way_m) {
+                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smoothed_m) {
   const double width = kPixelsPerMetre * world.field.length_m, height = kPixelsPerMetre * world.field.width_m;
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}'>\n<rect x='{:.1f}' "
@@ -67,10 +67,10 @@ std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const P
                        points_of(cell.corners_m));
   for (const Shape& shape : world.obstacles)
     svg += std::visit([](const auto& s) { return picture_of(s); }, shape);
-  svg += lines(drawing.tree, "#1f6feb") + lines(drawing.others, "#bf8700");
+  svg += lines(drawing.tree, "#1f6feb") + lines(drawing.goal_tree, "#bf8700");
   for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
   svg += polyline(path_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
-  svg += polyline(smooth_way_m, "stroke='#cf222e' stroke-width='4'");
+  svg += polyline(smoothed_m, "stroke='#cf222e' stroke-width='4'");
   svg += disc(query.start_m, world.radius_m, "fill='#2da44e'");
   svg += disc(query.goal_m, world.radius_m, "fill='none' stroke='#cf222e' stroke-width='3'");
   return svg + "</svg>\n";

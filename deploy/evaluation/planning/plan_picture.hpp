@@ -8,8 +8,9 @@
 
 namespace sidestep {
 
-/// The world, what the planner looked at, and the way it found, before and after smoothing, as SVG.
-std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
-                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smooth_way_m);
+/// The world, what the planner explored, and its path before and after smoothing, as SVG.
+[[nodiscard]] std::string plan_picture(const PlanWorld& world, const PlanQuery& query,
+                                       const PlanDrawing& drawing, const std::vector<Vec2>& path_m,
+                                       const std::vector<Vec2>& smoothed_m);
 
 }  // namespace sidestep

@@ -8,16 +8,16 @@
 namespace sidestep {
 namespace {
 
-constexpr double kCloseEnough_m = 0.1;
+constexpr double kGoalTolerance_m = 0.1;
 
-/// Where one is after so much of a way.
-Vec2 place_on(const std::vector<Vec2>& way, double length_m) {
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double leg_m = (way[i] - way[i - 1]).norm();
-    if (leg_m >= length_m && leg_m > 0) return way[i - 1] + length_m / leg_m * (way[i] - way[i - 1]);
+/// The position after `length_m` of a path; its end if it is shorter.
+Vec2 position_on(const std::vector<Vec2>& path, double length_m) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double leg_m = (path[i] - path[i - 1]).norm();
+    if (leg_m >= length_m && leg_m > 0) return path[i - 1] + length_m / leg_m * (path[i] - path[i - 1]);
     length_m -= leg_m;
   }
-  return way.back();
+  return path.back();
 }
 
 }  // namespace
@@ -25,32 +25,32 @@ Vec2 place_on(const std::vector<Vec2>& way, double length_m) {
 ReplanCourse::ReplanCourse(std::size_t cycles, std::uint64_t seed)
     : world_(make_world("circles", cycles, seed)),
       obstacles_(world_.obstacles),
-      at_m_(world_.queries[0].start_m) {
+      position_m_(world_.queries[0].start_m) {
   Rng rng(seed);
   for (std::size_t i = 0; i < world_.obstacles.size(); ++i)
     velocities_mps_.push_back(rotated({kObstacleSpeed_mps, 0}, rng.uniform(0, 6.283185307179586)));
-  way_.states = {at_m_};
-  way_.reason = PlanReason::kSolved;
+  path_.states = {position_m_};
+  path_.reason = PlanReason::kSolved;
 }
 
 void ReplanCourse::step() {
-  at_m_ = place_on(way_.states, kSpeed_mps * kCycle_s);
-  if (!way_.arrives()) goal_ = (goal_ + 1) % world_.queries.size();
+  position_m_ = position_on(path_.states, kSpeed_mps * kCycle_s);
+  if (!path_.arrives()) goal_ = (goal_ + 1) % world_.queries.size();
   move_circles();
-  if ((world_.queries[goal_].goal_m - at_m_).norm() < kCloseEnough_m)
+  if ((world_.queries[goal_].goal_m - position_m_).norm() < kGoalTolerance_m)
     goal_ = (goal_ + 1) % world_.queries.size();
-  Rng rng(0);  // the driver draws nothing
-  way_ = plan_robustly(driver_, domain(), at_m_, {}, rng);
+  Rng rng(0);  // the driver does not use it
+  path_ = plan_robustly(driver_, domain(), position_m_, {}, rng);
 }
 
-DiscDomain ReplanCourse::domain() const {
-  return {obstacles_, world_.field, world_.radius_m, at_m_, world_.queries[goal_].goal_m};
+DiscDomain ReplanCourse::domain(const DiscDomainSettings& settings) const {
+  return {obstacles_, world_.field, world_.radius_m, position_m_, world_.queries[goal_].goal_m, settings};
 }
 
 bool ReplanCourse::is_valid(const std::vector<Vec2>& path_m) const {
   PlanWorld now = world_;
   for (std::uint32_t i = 0; i < now.obstacles.size(); ++i) now.obstacles[i] = obstacles_.shape(ObstacleId{i});
-  return !is_free(now, path_m.front()) || is_valid_way(now, path_m, 0.02, 1e-9);
+  return !is_free(now, path_m.front()) || is_valid_path(now, path_m, 1e-9);
 }
 
 void ReplanCourse::move_circles() {

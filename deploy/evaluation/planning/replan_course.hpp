@@ -6,29 +6,29 @@
 
 namespace sidestep {
 
-/// What a plan may cost in a cycle, in whatever time.
+/// What one plan of a course may spend. Counts, not time, so that a seed gives the same plans everywhere.
 inline const Budget kReplanBudget{.nodes = 2000, .samples = 20'000};
 
-/// What planners are asked when everything moves: the benchmark's 64 circles go straight to and fro, and a
-/// robot drives the shortest way among them, from goal to goal. Whatever planner is measured, a seed's
-/// questions are the same.
+/// A sequence of queries in a moving world: the benchmark's 64 circles move straight to and fro, and a robot
+/// drives along the shortest path among them, from goal to goal. The queries depend on the seed alone, not on
+/// the planner that is measured.
 class ReplanCourse {
  public:
   static constexpr double kCycle_s = 1.0 / 60, kSpeed_mps = 2, kObstacleSpeed_mps = 0.5;
 
-  /// `cycles`: how many steps will be made, at most.
+  /// `cycles`: the largest number of steps that will be made.
   ReplanCourse(std::size_t cycles, std::uint64_t seed);
 
-  /// Moves everything on by a cycle; comes before the first question.
+  /// Advances the world by one cycle; precedes the first query.
   void step();
 
-  /// This cycle's question; until the next step.
-  DiscDomain domain() const;
-  const Vec2& start_m() const { return at_m_; }
-  /// The shortest way, if there is one.
-  const Plan<Vec2>& shortest() const { return way_; }
-  /// By distances, as is_valid_way does, but for a way that begins in an obstacle.
-  bool is_valid(const std::vector<Vec2>& path_m) const;
+  /// This cycle's query; valid until the next step.
+  DiscDomain domain(const DiscDomainSettings& settings = {}) const;
+  const Vec2& start_m() const { return position_m_; }
+  /// The shortest path, if there is one.
+  const Plan<Vec2>& shortest() const { return path_; }
+  /// As is_valid_path; a path that begins in an obstacle counts as valid.
+  [[nodiscard]] bool is_valid(const std::vector<Vec2>& path_m) const;
 
  private:
   void move_circles();
@@ -37,8 +37,8 @@ class ReplanCourse {
   ObstacleWorld obstacles_;
   std::vector<Vec2> velocities_mps_;
   LazyVisibility driver_;
-  Plan<Vec2> way_;
-  Vec2 at_m_;
+  Plan<Vec2> path_;
+  Vec2 position_m_;
   std::size_t goal_ = 0;
 };
 

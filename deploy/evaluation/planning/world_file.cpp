@@ -13,13 +13,13 @@ namespace sidestep {
 namespace {
 
 constexpr const char* kExpected = "a world";
-constexpr Range kPlace_m{-1000, 1000}, kSize_m{0.001, 1000};
+constexpr Range kCoordinate_m{-1000, 1000}, kSize_m{0.001, 1000};
 constexpr std::size_t kMaxObstacles = 100'000, kMaxCorners = 1000, kMaxQueries = 100'000;
 
 Vec2 point(YamlMap& map, const std::string& key) {
   Vec2 value(0, 0);
   map.require(key);
-  map.read(key, kPlace_m, value);
+  map.read(key, kCoordinate_m, value);
   return value;
 }
 
@@ -32,9 +32,9 @@ Circle read_circle(YamlMap& map) {
 
 ConvexPolygon read_polygon(YamlMap& map) {
   ConvexPolygon polygon;
-  const YamlPlace place = map.place_of("corners_m");
-  for (const YAML::Node& corner : list_from(map.require("corners_m"), place, kMaxCorners)) {
-    const auto numbers = numbers_from(corner, place.of(corner, place.what), 2, 2, kPlace_m);
+  const YamlLocation location = map.location_of("corners_m");
+  for (const YAML::Node& corner : list_from(map.require("corners_m"), location, kMaxCorners)) {
+    const auto numbers = numbers_from(corner, location.of(corner, location.what), 2, 2, kCoordinate_m);
     polygon.corners_m.emplace_back(numbers[0], numbers[1]);
   }
   return polygon;
@@ -51,11 +51,11 @@ Shape read_shape(YamlMap& map) {
     shape = Segment{point(inner, "from_m"), point(inner, "to_m")};
   });
   map.finish();
-  if (!shape) map.place().refuse("expected one of circle, box, polygon, segment");
+  if (!shape) map.location().fail("expected one of circle, box, polygon, segment");
   try {
     check(*shape);
   } catch (const std::invalid_argument& wrong) {
-    map.place().refuse(wrong.what());
+    map.location().fail(wrong.what());
   }
   return *shape;
 }
@@ -63,21 +63,21 @@ Shape read_shape(YamlMap& map) {
 void read_obstacles(YamlMap& map, PlanWorld& world) {
   const YAML::Node node = map.find("obstacles");
   if (!node.IsDefined()) return;
-  const YamlPlace place = map.place_of("obstacles");
-  for (const YAML::Node& element : list_from(node, place, kMaxObstacles)) {
-    YamlMap inner(element, place.of(element, fmt::format("obstacles[{}]", world.obstacles.size())));
+  const YamlLocation location = map.location_of("obstacles");
+  for (const YAML::Node& element : list_from(node, location, kMaxObstacles)) {
+    YamlMap inner(element, location.of(element, fmt::format("obstacles[{}]", world.obstacles.size())));
     world.obstacles.push_back(read_shape(inner));
   }
 }
 
 void read_queries(YamlMap& map, PlanWorld& world) {
-  const YamlPlace place = map.place_of("queries");
-  for (const YAML::Node& element : list_from(map.require("queries"), place, kMaxQueries)) {
-    YamlMap inner(element, place.of(element, fmt::format("queries[{}]", world.queries.size())));
+  const YamlLocation location = map.location_of("queries");
+  for (const YAML::Node& element : list_from(map.require("queries"), location, kMaxQueries)) {
+    YamlMap inner(element, location.of(element, fmt::format("queries[{}]", world.queries.size())));
     world.queries.push_back({point(inner, "start_m"), point(inner, "goal_m")});
     inner.finish();
   }
-  if (world.queries.empty()) place.refuse("expected at least one query");
+  if (world.queries.empty()) location.fail("expected at least one query");
 }
 
 std::string text_of(const Vec2& p) { return fmt::format("[{}, {}]", p.x(), p.y()); }
@@ -106,7 +106,7 @@ PlanWorld parse_plan_world(const std::string& text, const std::string& file_name
   YamlMap map(parse_yaml(text, file_name, kExpected), {file_name, 1, ""});
   PlanWorld world;
   const YAML::Node name = map.find("name");
-  world.name = name.IsDefined() ? text_from(name, map.place_of("name"))
+  world.name = name.IsDefined() ? text_from(name, map.location_of("name"))
                                 : std::filesystem::path(file_name).stem().string();
   read_section(map, "field", [&](YamlMap& field) {
     field.read("length_m", {0.5, 1000}, world.field.length_m);

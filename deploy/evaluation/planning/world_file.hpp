@@ -7,14 +7,14 @@
 
 namespace sidestep {
 
-/// Reads and checks a world file (deploy/evaluation/planning/README.md); throws ScenarioError for anything that is
-/// wrong.
-PlanWorld load_plan_world(const std::string& path);
+/// Reads and checks a world file, see deploy/evaluation/planning/README.md. Throws ConfigError with file and line
+/// for the first error.
+[[nodiscard]] PlanWorld load_plan_world(const std::string& path);
 
-/// The same from text; `file_name` stands in messages, and its stem is the world's default name.
-PlanWorld parse_plan_world(const std::string& text, const std::string& file_name);
+/// The same from text. `file_name` appears in messages, and its stem is the world's default name.
+[[nodiscard]] PlanWorld parse_plan_world(const std::string& text, const std::string& file_name);
 
-/// The file's text for a world.
-std::string plan_world_text(const PlanWorld& world);
+/// The text of a world file for a world.
+[[nodiscard]] std::string plan_world_text(const PlanWorld& world);
 
 }  // namespace sidestep

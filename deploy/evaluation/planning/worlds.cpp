@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/worlds.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "agents/planning/visibility/lazy_visibility.hpp"
+#include "deploy/evaluation/planning/free_space.hpp"
 
 namespace sidestep {
 namespace {
@@ -12,42 +14,45 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kCircles = 64;
 
-Vec2 random_place(const PlanWorld& world, Rng& rng) {
+Vec2 sample_position(const PlanWorld& world, Rng& rng) {
   const double x = world.field.length_m / 2, y = world.field.width_m / 2;
   return {rng.uniform(-x, x), rng.uniform(-y, y)};
 }
 
-Vec2 free_place(const PlanWorld& world, Rng& rng) {
+Vec2 sample_free_position(const PlanWorld& world, Rng& rng) {
   for (;;) {
-    const Vec2 place = random_place(world, rng);
-    if (is_free(world, place)) return place;
+    const Vec2 position = sample_position(world, rng);
+    if (is_free(world, position)) return position;
   }
 }
 
-Vec2 free_place(const PlanWorld& world, const Box& within, Rng& rng) {
+Vec2 sample_free_position(const PlanWorld& world, const Box& within, Rng& rng) {
   for (;;) {
-    const Vec2 place(rng.uniform(within.min_m.x(), within.max_m.x()),
-                     rng.uniform(within.min_m.y(), within.max_m.y()));
-    if (is_free(world, place)) return place;
+    const Vec2 position(rng.uniform(within.min_m.x(), within.max_m.x()),
+                        rng.uniform(within.min_m.y(), within.max_m.y()));
+    if (is_free(world, position)) return position;
   }
 }
 
-/// From one part of the field to another.
-void ask_between(PlanWorld& world, const Box& from, const Box& to, std::size_t queries, Rng& rng) {
-  while (world.queries.size() < queries)
-    world.queries.push_back({free_place(world, from, rng), free_place(world, to, rng)});
+/// Adds solvable queries from one part of the field to another until there are `queries`.
+void add_queries_between(PlanWorld& world, const Box& from, const Box& to, std::size_t queries, Rng& rng) {
+  const FreeSpace free_space(world);
+  while (world.queries.size() < queries) {
+    const Vec2 start = sample_free_position(world, from, rng), goal = sample_free_position(world, to, rng);
+    if (free_space.connects(start, goal)) world.queries.push_back({start, goal});
+  }
 }
 
-void put_circles(PlanWorld& world, std::size_t count, Rng& rng) {
+void add_circles(PlanWorld& world, std::size_t count, Rng& rng) {
   for (std::size_t i = 0; i < count; ++i)
-    world.obstacles.push_back(Circle{random_place(world, rng), rng.uniform(0.2, 0.6)});
+    world.obstacles.push_back(Circle{sample_position(world, rng), rng.uniform(0.2, 0.6)});
 }
 
 ConvexPolygon random_polygon(const Vec2& centre, Rng& rng) {
   const auto corners = 3 + rng.below(4);
   const double radius = rng.uniform(0.25, 0.7), turn = rng.uniform(0, 2 * kPi);
   ConvexPolygon polygon;
-  // Corners on a circle, one in each of its sectors.
+  // Corners on a circle, one in each sector: convex and counter-clockwise.
   for (std::uint64_t i = 0; i < corners; ++i) {
     const double angle = turn + 2 * kPi * (static_cast<double>(i) + rng.uniform(0, 0.7)) / double(corners);
     polygon.corners_m.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
@@ -55,51 +60,52 @@ ConvexPolygon random_polygon(const Vec2& centre, Rng& rng) {
   return polygon;
 }
 
-void put_mixed(PlanWorld& world, std::size_t of_each, Rng& rng) {
-  put_circles(world, of_each, rng);
-  for (std::size_t i = 0; i < of_each; ++i) {
-    const Vec2 centre = random_place(world, rng), half(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6));
+void add_mixed_shapes(PlanWorld& world, std::size_t count_each, Rng& rng) {
+  add_circles(world, count_each, rng);
+  for (std::size_t i = 0; i < count_each; ++i) {
+    const Vec2 centre = sample_position(world, rng), half(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6));
     world.obstacles.push_back(Box{centre - half, centre + half});
-    world.obstacles.push_back(random_polygon(random_place(world, rng), rng));
-    const Vec2 end = random_place(world, rng);
+    world.obstacles.push_back(random_polygon(sample_position(world, rng), rng));
+    const Vec2 end = sample_position(world, rng);
     world.obstacles.push_back(Segment{end, end + rotated({rng.uniform(0.5, 2), 0}, rng.uniform(0, 2 * kPi))});
   }
 }
 
-/// A perfect maze: between any two cells there is one way (depth-first, from the first cell).
+/// A perfect maze: one route joins any two cells (depth-first, from the first cell).
 class Maze {
  public:
   Maze(std::size_t cells, Rng& rng)
       : cells_(cells), visited_(cells * cells), right_(cells * cells, true), up_(right_) {
-    std::vector<std::size_t> way{0};
+    std::vector<std::size_t> route{0};
     visited_[0] = true;
-    while (!way.empty()) {
-      const auto neighbours = unvisited_neighbours(way.back());
+    while (!route.empty()) {
+      const auto neighbours = unvisited_neighbours(route.back());
       if (neighbours.empty()) {
-        way.pop_back();
+        route.pop_back();
         continue;
       }
       const std::size_t next = neighbours[rng.below(neighbours.size())];
-      open(way.back(), next);
+      open(route.back(), next);
       visited_[next] = true;
-      way.push_back(next);
+      route.push_back(next);
     }
   }
 
-  /// Walls between cells, joined to the longest straight ones; the field's border is one anyway.
+  /// The walls between cells, merged into maximal straight segments. The border of the field is not among
+  /// them.
   std::vector<Segment> walls(double length_m) const {
     const double cell = length_m / static_cast<double>(cells_);
     std::vector<Segment> walls;
-    for (const bool upright : {true, false}) {
+    for (const bool vertical : {true, false}) {
       for (std::size_t line = 0; line + 1 < cells_; ++line) {
         for (std::size_t i = 0, end = 0; i < cells_; i = end + 1) {
-          for (end = i; end < cells_ && is_wall(upright, line, end);) ++end;
+          for (end = i; end < cells_ && is_wall(vertical, line, end);) ++end;
           if (end == i) continue;
-          const double across = static_cast<double>(line + 1) * cell - length_m / 2;
+          const double position = static_cast<double>(line + 1) * cell - length_m / 2;
           const double from = static_cast<double>(i) * cell - length_m / 2;
           const double to = static_cast<double>(end) * cell - length_m / 2;
-          walls.push_back(upright ? Segment{{across, from}, {across, to}}
-                                  : Segment{{from, across}, {to, across}});
+          walls.push_back(vertical ? Segment{{position, from}, {position, to}}
+                                  : Segment{{from, position}, {to, position}});
         }
       }
     }
@@ -107,8 +113,8 @@ class Maze {
   }
 
  private:
-  bool is_wall(bool upright, std::size_t line, std::size_t i) const {
-    return upright ? right_[i * cells_ + line] : up_[line * cells_ + i];
+  bool is_wall(bool vertical, std::size_t line, std::size_t i) const {
+    return vertical ? right_[i * cells_ + line] : up_[line * cells_ + i];
   }
   std::vector<std::size_t> unvisited_neighbours(std::size_t cell) const {
     std::vector<std::size_t> found;
@@ -129,27 +135,27 @@ class Maze {
 
 void make_maze(PlanWorld& world, std::size_t queries, Rng& rng) {
   for (const Segment& wall : Maze(7, rng).walls(world.field.length_m)) world.obstacles.push_back(wall);
-  ask_across(world, queries, rng);
+  add_queries_across(world, queries, rng);
 }
 
-/// A wall, and a gap in it that is a fifth wider than the robot.
+/// A wall with a gap a fifth wider than the robot.
 void make_gap(PlanWorld& world, std::size_t queries, Rng& rng) {
   const double half = world.radius_m * 1.2, middle = 1;
   world.obstacles = {Box{{-0.2, -5}, {0.2, middle - half}}, Box{{-0.2, middle + half}, {0.2, 5}}};
-  ask_between(world, {{-5, -5}, {-0.2, 5}}, {{0.2, -5}, {5, 5}}, queries, rng);
+  add_queries_between(world, {{-5, -5}, {-0.2, 5}}, {{0.2, -5}, {5, 5}}, queries, rng);
 }
 
-/// A chamber whose opening is a funnel that points inwards: whoever follows the walls stays in.
+/// A chamber whose opening is a funnel that points inwards: following the walls does not lead out.
 void make_trap(PlanWorld& world, std::size_t queries, Rng& rng) {
   world.obstacles = {Box{{-3, 2.8}, {3, 3}}, Box{{-3, -3}, {3, -2.8}}, Box{{-3, -2.8}, {-2.8, 2.8}},
                      ConvexPolygon{{{2.8, 2.8}, {0.5, 0.3}, {0.6, 0.12}, {3, 2.8}}},
                      ConvexPolygon{{{2.8, -2.8}, {3, -2.8}, {0.6, -0.12}, {0.5, -0.3}}}};
-  ask_between(world, {{-2.8, -2.8}, {0, 2.8}}, {{3.1, -5}, {5, 5}}, queries, rng);
+  add_queries_between(world, {{-2.8, -2.8}, {0, 2.8}}, {{3.1, -5}, {5, 5}}, queries, rng);
 }
 
 void make_u(PlanWorld& world, std::size_t queries, Rng& rng) {
   world.obstacles = {Box{{-2, 2}, {2, 2.3}}, Box{{-2, -2.3}, {2, -2}}, Box{{2, -2.3}, {2.3, 2.3}}};
-  ask_between(world, {{-1, -1.9}, {1.9, 1.9}}, {{2.4, -2}, {5, 2}}, queries, rng);
+  add_queries_between(world, {{-1, -1.9}, {1.9, 1.9}}, {{2.4, -2}, {5, 2}}, queries, rng);
 }
 
 }  // namespace
@@ -164,12 +170,12 @@ PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t
   PlanWorld world;
   world.name = name;
   if (name == "empty") {
-    ask_across(world, queries, rng);
+    add_queries_across(world, queries, rng);
   } else if (name == "circles") {
     return make_circles(kCircles, queries, seed);
   } else if (name == "mixed") {
-    put_mixed(world, 12, rng);
-    ask_across(world, queries, rng);
+    add_mixed_shapes(world, 12, rng);
+    add_queries_across(world, queries, rng);
   } else if (name == "maze") {
     make_maze(world, queries, rng);
   } else if (name == "gap") {
@@ -180,7 +186,7 @@ PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t
     make_u(world, queries, rng);
   } else {
     throw std::invalid_argument(
-        fmt::format("no world is called \"{}\": expected one of {}", name, fmt::join(world_names(), ", ")));
+        fmt::format("world: expected one of {}, got \"{}\"", fmt::join(world_names(), ", "), name));
   }
   return world;
 }
@@ -191,37 +197,33 @@ PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t s
   world.name = "circles";
   const double scale = std::sqrt(static_cast<double>(circles) / kCircles);
   world.field = {scale * world.field.length_m, scale * world.field.width_m};
-  put_circles(world, circles, rng);
-  ask_across(world, queries, rng);
+  add_circles(world, circles, rng);
+  add_queries_across(world, queries, rng);
   return world;
 }
 
-void ask_across(PlanWorld& world, std::size_t queries, Rng& rng) {
-  const ObstacleWorld obstacles(world.obstacles);
-  LazyVisibility planner;
+void add_queries_across(PlanWorld& world, std::size_t queries, Rng& rng) {
+  const FreeSpace free_space(world);
   while (world.queries.size() < queries) {
-    const Vec2 start = free_place(world, rng), goal = free_place(world, rng);
+    const Vec2 start = sample_free_position(world, rng), goal = sample_free_position(world, rng);
     if ((start - goal).norm() < world.field.length_m / 2) continue;
-    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
-    if (planner.plan(domain, start, {}, rng).arrives()) world.queries.push_back({start, goal});
+    if (free_space.connects(start, goal)) world.queries.push_back({start, goal});
   }
 }
 
-bool is_free(const PlanWorld& world, const Vec2& place_m) { return is_valid_way(world, {place_m}, 1, 0); }
+bool is_free(const PlanWorld& world, const Vec2& position_m) { return is_valid_path(world, {position_m}, 0); }
 
-bool is_valid_way(const PlanWorld& world, const std::vector<Vec2>& path_m, double step_m, double slack_m) {
-  const double radius = world.radius_m - slack_m;
-  const auto is_clear = [&](const Vec2& place) {
-    if (!world.field.contains(place, radius)) return false;
-    for (const Shape& shape : world.obstacles)
-      if (signed_distance(place, shape) <= radius) return false;
-    return true;
-  };
-  for (std::size_t i = 0; i < path_m.size(); ++i) {
-    const Vec2 from = path_m[i > 0 ? i - 1 : 0], to = path_m[i];
-    const auto steps = static_cast<int>(std::ceil((to - from).norm() / step_m)) + 1;
-    for (int k = 1; k <= steps; ++k)
-      if (!is_clear(from + double(k) / steps * (to - from))) return false;
+bool is_valid_path(const PlanWorld& world, const std::vector<Vec2>& path_m, double slack_m) {
+  if (path_m.empty()) return false;
+  const double radius_m = world.radius_m - slack_m;
+  const auto is_in_field = [&](const Vec2& p) { return world.field.contains(p, radius_m); };
+  if (!std::all_of(path_m.begin(), path_m.end(), is_in_field)) return false;
+  for (const Shape& shape : world.obstacles) {
+    const RoundedShape obstacle = rounded(shape);
+    for (std::size_t i = 0; i < path_m.size(); ++i) {
+      const Vec2 leg[2] = {path_m[i > 0 ? i - 1 : 0], path_m[i]};
+      if (closest_points(leg, obstacle.corners_m).distance_m - obstacle.radius_m <= radius_m) return false;
+    }
   }
   return true;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/study_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <memory>
 
+#include "common/process/command_line.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 #include "deploy/evaluation/study/vision/vision_study.hpp"
@@ -12,51 +12,46 @@
 namespace sidestep {
 namespace {
 
-/// In place of the library's own: that takes -1 for a large number.
-std::string whole_number(const std::string& text) {
+/// Replaces CLI11's own check, which reads -1 as a large number.
+std::string seed_number(const std::string& text) {
   std::uint64_t number = 0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, number);
   return error == std::errc() && rest == end
              ? ""
-             : "expected a whole number from 0 to 18446744073709551615, got \"" + text + "\"";
+             : "expected an integer in 0..18446744073709551615, got \"" + text + "\"";
 }
 
 std::string not_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
 
-CLI::App* add_study(CLI::App& study, const std::string& name, const std::string& description,
-                    StudyOptions& options) {
-  CLI::App* command = study.add_subcommand(name, description);
-  command->add_option("--out", options.folder, "folder for the tables and plots")
-      ->required()
-      ->check(not_empty);
-  command->add_option("--seed", options.seed, "of everything that is random")
-      ->check(whole_number)
-      ->capture_default_str();
-  command->add_flag("--quick", options.is_quick, "little of everything");
+Command add_study(const Command& study, const std::string& name, const std::string& description,
+                  StudyOptions& options) {
+  const Command command = study.add_subcommand(name, description);
+  command.add_option("--out", options.folder, "folder for the tables and plots").required().check(not_empty);
+  command.add_option("--seed", options.seed, "seed of everything random").check(seed_number).show_default();
+  command.add_flag("--quick", options.is_quick, "a small version of every experiment");
   return command;
 }
 
 }  // namespace
 
-void add_study_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* study = root.add_subcommand("study", "Measures what the system is good for, see deploy/evaluation/study");
-  study->require_subcommand(1);
+void add_study_command(const Command& root, std::function<int()>& action) {
+  const Command study =
+      root.add_subcommand("study", "Experiments on the system, see deploy/evaluation/study");
+  study.require_subcommand();
   const auto options = std::make_shared<StudyOptions>();
-  CLI::App* safety = add_study(
-      *study, "safety", "The safety search: with and without it, margins against noise, time", *options);
-  safety->add_option("--jobs", options->jobs, "processes at work")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  safety->callback([&action, options] { action = [options] { return study_safety(*options); }; });
-  CLI::App* planning = add_study(
-      *study, "planning",
-      "Planners and collision structures: caches, trees, graphs, roadmaps, from 4 to 16,384 obstacles",
-      *options);
-  planning->callback([&action, options] { action = [options] { return study_planning(*options); }; });
-  CLI::App* vision =
-      add_study(*study, "vision", "Vision in rendered frames: who is found, errors of poses, time", *options);
-  vision->callback([&action, options] { action = [options] { return study_vision(*options); }; });
+  const Command safety =
+      add_study(study, "safety",
+                "The safety search: traversals with and without it, margins against noise, time", *options);
+  safety.add_option("--jobs", options->jobs, "number of parallel processes").check(positive()).show_default();
+  safety.on_parsed([&action, options] { action = [options] { return study_safety(*options); }; });
+  const Command planning = add_study(
+      study, "planning",
+      "Planners and collision structures: caches, trees, graphs, roadmaps, obstacles, terrain", *options);
+  planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
+  const Command vision =
+      add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
+  vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });
 }
 
 }  // namespace sidestep

@@ -3,14 +3,12 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `study ...` to a program. When one of its commands is parsed, `action` becomes what is to be run; it
-/// returns the exit code, and may throw std::runtime_error saying what fails.
-void add_study_command(CLI::App& root, std::function<int()>& action);
+/// Adds `study ...` to a program. When one of its commands is parsed, `action` becomes what to run; that
+/// returns the exit code, and may throw std::runtime_error that says what failed.
+void add_study_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

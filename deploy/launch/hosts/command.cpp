@@ -21,7 +21,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File temporary_file() {
   File file(std::tmpfile(), &std::fclose);
-  if (!file) throw std::runtime_error(fmt::format("no temporary file: {}", std::strerror(errno)));
+  if (!file) throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
   return file;
 }
 
@@ -42,11 +42,11 @@ std::string find_program(const std::string& name) {
     const std::string candidate = folder + "/" + name;
     if (!folder.empty() && access(candidate.c_str(), X_OK) == 0) return candidate;
   }
-  throw std::runtime_error("there is no program " + name + " on this machine");
+  throw std::runtime_error("cannot find the program " + name + " on this machine");
 }
 
 std::string run_command(std::vector<std::string> argv, const std::string& input) {
-  const std::string shown = fmt::format("{}", fmt::join(argv, " "));
+  const std::string command_line = fmt::format("{}", fmt::join(argv, " "));
   argv[0] = find_program(argv[0]);
   const File in = temporary_file(), out = temporary_file();
   std::fwrite(input.data(), 1, input.size(), in.get());
@@ -63,14 +63,14 @@ std::string run_command(std::vector<std::string> argv, const std::string& input)
   pid_t pid = -1;
   const int error = posix_spawn(&pid, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error(fmt::format("{}: {}", shown, std::strerror(error)));
+  if (error != 0) throw std::runtime_error(fmt::format("{}: {}", command_line, std::strerror(error)));
 
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
   const std::string output = content_of(out.get());
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return output;
-  throw std::runtime_error(fmt::format("{} failed: {}", shown, output.substr(0, output.find('\n'))));
+  throw std::runtime_error(fmt::format("{} failed: {}", command_line, output.substr(0, output.find('\n'))));
 }
 
 }  // namespace sidestep

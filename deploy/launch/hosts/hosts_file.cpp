@@ -16,128 +16,128 @@ namespace {
 
 constexpr const char* kExpected = "a hosts file";
 constexpr std::size_t kMaxHosts = 100;
-constexpr std::size_t kMaxName = 24;
+constexpr std::size_t kMaxNameLength = 24;
 constexpr std::uint32_t kMaxNumber = kMaxRobots - 1;
 
-std::string word_from(const YAML::Node& node, const YamlPlace& place, const std::string& more_letters) {
-  const std::string text = text_from(node, place);
+std::string identifier_from(const YAML::Node& node, const YamlLocation& location, const std::string& extra_characters) {
+  const std::string text = text_from(node, location);
   const auto is_plain = [&](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           more_letters.find(c) != std::string::npos;
+           extra_characters.find(c) != std::string::npos;
   };
   if (text.empty() || text[0] == '-' || text[0] == '.' || !std::all_of(text.begin(), text.end(), is_plain)) {
-    place.refuse(fmt::format("expected letters, digits and any of \"{}\", got \"{}\"", more_letters,
+    location.fail(fmt::format("expected letters, digits and any of \"{}\", got \"{}\"", extra_characters,
                              text.substr(0, 40)));
   }
   return text;
 }
 
-std::string name_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string name = word_from(node, place, "-_");
-  if (name.size() > kMaxName) place.refuse(fmt::format("expected at most {} letters", kMaxName));
+std::string name_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string name = identifier_from(node, location, "-_");
+  if (name.size() > kMaxNameLength) location.fail(fmt::format("expected at most {} characters", kMaxNameLength));
   return name;
 }
 
-std::string address_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string text = text_from(node, place);
+std::string address_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string text = text_from(node, location);
   in_addr parsed{};
   if (inet_pton(AF_INET, text.c_str(), &parsed) != 1) {
-    place.refuse(fmt::format("expected an IPv4 address, got \"{}\"", text.substr(0, 40)));
+    location.fail(fmt::format("expected an IPv4 address, got \"{}\"", text.substr(0, 40)));
   }
   return text;
 }
 
-bool flag_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string text = text_from(node, place);
-  if (text != "true" && text != "false") place.refuse("expected true or false");
+bool flag_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string text = text_from(node, location);
+  if (text != "true" && text != "false") location.fail("expected true or false");
   return text == "true";
 }
 
 /// "3" or "5-9"
-NumberedShare::Range range_from(const YAML::Node& node, const YamlPlace& place) {
-  const std::string text = text_from(node, place);
+NumberedShare::Range range_from(const YAML::Node& node, const YamlLocation& location) {
+  const std::string text = text_from(node, location);
   const auto dash = text.find('-');
   const auto number = [&](const std::string& digits) {
     const bool is_number =
         !digits.empty() && digits.size() <= 4 && digits.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || std::stoul(digits) > kMaxNumber) {
-      place.refuse(fmt::format("expected numbers of 0 to {} such as 3 or 5-9, got \"{}\"", kMaxNumber,
+      location.fail(fmt::format("expected a number from 0 to {} or a range such as 5-9, got \"{}\"", kMaxNumber,
                                text.substr(0, 40)));
     }
     return static_cast<std::uint32_t>(std::stoul(digits));
   };
-  NumberedShare::Range range{0, 0, place.line};
+  NumberedShare::Range range{0, 0, location.line};
   range.first = number(text.substr(0, dash));
   range.last = dash == std::string::npos ? range.first : number(text.substr(dash + 1));
-  if (range.last < range.first) place.refuse("expected the lower number first, got " + text);
+  if (range.last < range.first) location.fail("expected the lower number first, got " + text);
   return range;
 }
 
 void read_share(YamlMap& map, const std::string& key, NumberedShare& share) {
   const YAML::Node node = map.find(key);
   if (!node.IsDefined()) return;
-  const YamlPlace place = map.place_of(key);
+  const YamlLocation location = map.location_of(key);
   if (node.IsScalar()) {
     if (node.Scalar() == "rest") {
       share.rest = true;
     } else {
-      share.ranges.push_back(range_from(node, place));
+      share.ranges.push_back(range_from(node, location));
     }
     return;
   }
-  for (const YAML::Node& element : list_from(node, place, kMaxRobots)) {
-    share.ranges.push_back(range_from(element, place.of(element, place.what)));
+  for (const YAML::Node& element : list_from(node, location, kMaxRobots)) {
+    share.ranges.push_back(range_from(element, location.of(element, location.what)));
   }
 }
 
 void read_transport(YamlMap& map, HostSpec& host) {
   const YAML::Node node = map.require("transport");
-  const YamlPlace place = map.place_of("transport");
+  const YamlLocation location = map.location_of("transport");
   if (node.IsScalar()) {
-    if (node.Scalar() != "local") place.refuse("expected local, {namespace: NAME} or {ssh: USER@HOST}");
+    if (node.Scalar() != "local") location.fail("expected local, {namespace: NAME} or {ssh: USER@HOST}");
     return;
   }
-  YamlMap inner(node, place);
+  YamlMap inner(node, location);
   const YAML::Node name = inner.find("namespace"), remote = inner.find("ssh");
   inner.finish();
-  if (name.IsDefined() == remote.IsDefined()) place.refuse("expected one of the keys namespace and ssh");
+  if (name.IsDefined() == remote.IsDefined()) location.fail("expected one of the keys namespace and ssh");
   if (name.IsDefined()) {
     host.transport = HostTransport::kNamespace;
-    host.target = name_from(name, inner.place_of("namespace"));
+    host.target = name_from(name, inner.location_of("namespace"));
   } else {
     host.transport = HostTransport::kSsh;
-    host.target = word_from(remote, inner.place_of("ssh"), "-_.@");
+    host.target = identifier_from(remote, inner.location_of("ssh"), "-_.@");
   }
 }
 
 void read_processes(YamlMap& map, HostSpec& host) {
   const YAML::Node node = map.find("processes");
   if (!node.IsDefined()) return;
-  const YamlPlace place = map.place_of("processes");
-  for (const YAML::Node& element : list_from(node, place, 16)) {
-    const YamlPlace here = place.of(element, place.what);
-    const std::string process = text_from(element, here);
+  const YamlLocation location = map.location_of("processes");
+  for (const YAML::Node& element : list_from(node, location, 16)) {
+    const YamlLocation element_location = location.of(element, location.what);
+    const std::string process = text_from(element, element_location);
     bool* const flag = process == "simulator"     ? &host.simulator
                        : process == "vision"      ? &host.vision
                        : process == "coordinator" ? &host.coordinator
                                                   : nullptr;
     if (!flag)
-      here.refuse("expected simulator, vision or coordinator, got \"" + process.substr(0, 40) + "\"");
+      element_location.fail("expected simulator, vision or coordinator, got \"" + process.substr(0, 40) + "\"");
     *flag = true;
   }
 }
 
-HostSpec read_host(const YAML::Node& node, const YamlPlace& place) {
-  YamlMap map(node, place);
+HostSpec read_host(const YAML::Node& node, const YamlLocation& location) {
+  YamlMap map(node, location);
   HostSpec host;
-  host.line = place.line;
-  host.name = name_from(map.require("name"), map.place_of("name"));
+  host.line = location.line;
+  host.name = name_from(map.require("name"), map.location_of("name"));
   read_transport(map, host);
-  host.interface = address_from(map.require("interface"), map.place_of("interface"));
+  host.interface = address_from(map.require("interface"), map.location_of("interface"));
   if (const YAML::Node folder = map.find("programs"); folder.IsDefined()) {
-    host.programs = text_from(folder, map.place_of("programs"));
+    host.programs = text_from(folder, map.location_of("programs"));
     if (host.programs.empty() || host.programs[0] != '/')
-      map.place_of("programs").refuse("expected a folder that begins with /");
+      map.location_of("programs").fail("expected an absolute path");
   }
   read_processes(map, host);
   read_share(map, "standbys", host.standbys);
@@ -146,19 +146,19 @@ HostSpec read_host(const YAML::Node& node, const YamlPlace& place) {
   return host;
 }
 
-void check_differences(const Hosts& hosts) {
+void check_unique(const Hosts& hosts) {
   std::set<std::string> names, addresses, targets;
   if (hosts.create) addresses.insert(hosts.interface);
   for (const HostSpec& host : hosts.hosts) {
-    const YamlPlace place{hosts.file, host.line, "host " + host.name};
-    if (!names.insert(host.name).second) place.refuse("another host has this name");
+    const YamlLocation location{hosts.file, host.line, "host " + host.name};
+    if (!names.insert(host.name).second) location.fail("another host has this name");
     if (!hosts.create) continue;
     if (host.transport != HostTransport::kNamespace)
-      place.refuse("create: true is for namespaces only, expected transport {namespace: NAME}");
+      location.fail("create: true requires transport {namespace: NAME}");
     if (!addresses.insert(host.interface).second)
-      place.refuse("its interface " + host.interface + " is already somebody else's");
-    if (host.target == kHubName) place.refuse("this namespace is the launcher's own, expected another name");
-    if (!targets.insert(host.target).second) place.refuse("another host has this namespace");
+      location.fail("the interface " + host.interface + " is already in use");
+    if (host.target == kBridgeLabel) location.fail("this namespace is reserved for the launcher, expected another name");
+    if (!targets.insert(host.target).second) location.fail("another host has this namespace");
   }
 }
 
@@ -166,38 +166,38 @@ void check_differences(const Hosts& hosts) {
 
 Hosts parse_hosts(const std::string& text, const std::string& file_name) {
   const YAML::Node root = parse_yaml(text, file_name, kExpected);
-  const YamlPlace whole{file_name, 1, ""};
-  YamlMap map(root, whole.of(root, ""));
+  const YamlLocation root_location{file_name, 1, ""};
+  YamlMap map(root, root_location.of(root, ""));
   Hosts result;
   result.file = file_name;
   if (const YAML::Node create = map.find("create"); create.IsDefined())
-    result.create = flag_from(create, map.place_of("create"));
-  YamlMap launcher(map.require("launcher"), map.place_of("launcher"));
-  result.interface = address_from(launcher.require("interface"), launcher.place_of("interface"));
+    result.create = flag_from(create, map.location_of("create"));
+  YamlMap launcher(map.require("launcher"), map.location_of("launcher"));
+  result.interface = address_from(launcher.require("interface"), launcher.location_of("interface"));
   launcher.finish();
   map.read("prefix_length", {8, 30}, result.prefix_length);
-  const YamlPlace place = map.place_of("hosts");
-  for (const YAML::Node& element : list_from(map.require("hosts"), place, kMaxHosts)) {
+  const YamlLocation location = map.location_of("hosts");
+  for (const YAML::Node& element : list_from(map.require("hosts"), location, kMaxHosts)) {
     result.hosts.push_back(
-        read_host(element, place.of(element, fmt::format("hosts[{}]", result.hosts.size()))));
+        read_host(element, location.of(element, fmt::format("hosts[{}]", result.hosts.size()))));
   }
   map.finish();
-  if (result.hosts.empty()) place.refuse("expected at least one host");
-  check_differences(result);
+  if (result.hosts.empty()) location.fail("expected at least one host");
+  check_unique(result);
   return result;
 }
 
 Hosts load_hosts(const std::string& path) { return parse_hosts(read_yaml_file(path, kExpected), path); }
 
 Hosts local_hosts(const std::string& interface) {
-  HostSpec here;
-  here.name = "here";
-  here.interface = interface;
-  here.simulator = here.vision = here.coordinator = true;
-  here.standbys.rest = here.agents.rest = true;
+  HostSpec local;
+  local.name = "local";
+  local.interface = interface;
+  local.simulator = local.vision = local.coordinator = true;
+  local.standbys.rest = local.agents.rest = true;
   Hosts result;
   result.interface = interface;
-  result.hosts.push_back(here);
+  result.hosts.push_back(local);
   return result;
 }
 

@@ -9,42 +9,42 @@ namespace sidestep {
 
 enum class HostTransport { kLocal, kNamespace, kSsh };
 
-/// Which of several processes of one kind run on a host.
+/// Which of the numbered processes of one kind run on a host.
 struct NumberedShare {
   struct Range {
     std::uint32_t first, last;
     int line;  ///< of the hosts file
   };
   std::vector<Range> ranges;
-  bool rest = false;  ///< its share of those that no host names
+  bool rest = false;  ///< an even share of the processes that no host names
 };
 
-/// A machine, or what stands for one, and the processes that run there.
+/// A host (a machine or a network namespace) and the processes that run there.
 struct HostSpec {
   std::string name;
   int line = 0;  ///< of the hosts file
   HostTransport transport = HostTransport::kLocal;
-  std::string target;     ///< of the transport: the namespace, or user@host
-  std::string interface;  ///< its address in the network that connects the hosts
-  std::string programs;   ///< folder that holds our programs there; empty: the launcher's own
+  std::string target;     ///< the namespace, or user@host for ssh
+  std::string interface;  ///< its address in the network of the hosts
+  std::string programs;   ///< folder of the Sidestep programs there; empty: the launcher's folder
   bool simulator = false, vision = false, coordinator = false;
   NumberedShare standbys, agents;
 };
 
-/// Where the processes of a run go (deploy/launch/hosts/README.md).
+/// The content of a hosts file (deploy/launch/README.md).
 struct Hosts {
   std::string file;
-  bool create = false;     ///< the launcher makes the namespaces and their network, and removes them
-  std::string interface;   ///< the launcher's own address in that network
-  int prefix_length = 24;  ///< of all addresses, where the launcher makes the network
+  bool create = false;     ///< the launcher creates and removes the namespaces and their network
+  std::string interface;   ///< the launcher's address in that network
+  int prefix_length = 24;  ///< of all addresses, if the launcher creates the network
   std::vector<HostSpec> hosts;
 };
 
-/// Reads and checks a hosts file; throws ScenarioError ("FILE:LINE: ...") for anything that is wrong.
-Hosts load_hosts(const std::string& path);
-/// The same from text; `file_name` stands in messages.
-Hosts parse_hosts(const std::string& text, const std::string& file_name);
-/// This machine alone.
+/// Reads and checks a hosts file; throws ConfigError ("FILE:LINE: ...") for any error.
+[[nodiscard]] Hosts load_hosts(const std::string& path);
+/// The same from text; `file_name` appears in error messages.
+[[nodiscard]] Hosts parse_hosts(const std::string& text, const std::string& file_name);
+/// All processes on this machine.
 Hosts local_hosts(const std::string& interface);
 
 }  // namespace sidestep

@@ -20,8 +20,8 @@ namespace {
 constexpr const char* kFolder = "/run/netns";
 const std::string kPrefix = "sidestep-";
 
-std::string full_name(pid_t launcher, const std::string& called) {
-  return fmt::format("{}{}-{}", kPrefix, launcher, called);
+std::string namespace_name(pid_t launcher, const std::string& label) {
+  return fmt::format("{}{}-{}", kPrefix, launcher, label);
 }
 
 void ip(std::vector<std::string> arguments) {
@@ -29,30 +29,30 @@ void ip(std::vector<std::string> arguments) {
   run_command(arguments);
 }
 
-bool lives(pid_t pid) { return kill(pid, 0) == 0 || errno != ESRCH; }
+bool is_alive(pid_t pid) { return kill(pid, 0) == 0 || errno != ESRCH; }
 
 }  // namespace
 
-NamespaceVisit::NamespaceVisit(const std::string& name) {
-  before_ = open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC);
-  const int there = open((std::string(kFolder) + "/" + name).c_str(), O_RDONLY | O_CLOEXEC);
-  const bool is_in = there >= 0 && setns(there, CLONE_NEWNET) == 0;
+ScopedNamespace::ScopedNamespace(const std::string& name) {
+  previous_ = open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC);
+  const int target = open((std::string(kFolder) + "/" + name).c_str(), O_RDONLY | O_CLOEXEC);
+  const bool has_entered = target >= 0 && setns(target, CLONE_NEWNET) == 0;
   const int error = errno;
-  if (there >= 0) close(there);
-  if (is_in) return;
-  close(before_);
+  if (target >= 0) close(target);
+  if (has_entered) return;
+  close(previous_);
   throw std::runtime_error(fmt::format("cannot enter network namespace {}: {}", name, std::strerror(error)));
 }
 
-NamespaceVisit::~NamespaceVisit() {
-  (void)setns(before_, CLONE_NEWNET);
-  close(before_);
+ScopedNamespace::~ScopedNamespace() {
+  (void)setns(previous_, CLONE_NEWNET);
+  close(previous_);
 }
 
 NamespaceNetwork::NamespaceNetwork(const Hosts& hosts) {
-  if (geteuid() != 0) throw std::runtime_error(hosts.file + ": making network namespaces needs root");
+  if (geteuid() != 0) throw std::runtime_error(hosts.file + ": creating network namespaces needs root");
   try {
-    make(hosts);
+    create(hosts);
   } catch (...) {
     remove();
     throw;
@@ -61,38 +61,40 @@ NamespaceNetwork::NamespaceNetwork(const Hosts& hosts) {
 
 NamespaceNetwork::~NamespaceNetwork() { remove(); }
 
-std::string NamespaceNetwork::hub() const { return name_of(kHubName); }
+std::string NamespaceNetwork::bridge() const { return full_name(kBridgeLabel); }
 
-std::string NamespaceNetwork::name_of(const std::string& name) const { return full_name(getpid(), name); }
+std::string NamespaceNetwork::full_name(const std::string& label) const {
+  return namespace_name(getpid(), label);
+}
 
-void NamespaceNetwork::make(const Hosts& hosts) {
+void NamespaceNetwork::create(const Hosts& hosts) {
   const auto add = [this](const std::string& name) {
-    made_.push_back(name);
+    created_.push_back(name);
     ip({"netns", "add", name});
     ip({"-n", name, "link", "set", "lo", "up"});
   };
-  add(hub());
-  // Without a querier, a bridge that snoops soon forgets who listens to the multicast of discovery.
-  ip({"-n", hub(), "link", "add", "bridge0", "type", "bridge", "mcast_snooping", "0"});
-  ip({"-n", hub(), "addr", "add", fmt::format("{}/{}", hosts.interface, hosts.prefix_length), "dev",
+  add(bridge());
+  // With snooping but no querier, the bridge would soon stop forwarding the multicast of discovery.
+  ip({"-n", bridge(), "link", "add", "bridge0", "type", "bridge", "mcast_snooping", "0"});
+  ip({"-n", bridge(), "addr", "add", fmt::format("{}/{}", hosts.interface, hosts.prefix_length), "dev",
       "bridge0"});
-  ip({"-n", hub(), "link", "set", "bridge0", "up"});
+  ip({"-n", bridge(), "link", "set", "bridge0", "up"});
   for (const HostSpec& host : hosts.hosts) {
-    add(name_of(host.target));
-    connect(host, fmt::format("cable{}", made_.size()), hosts.prefix_length);
+    add(full_name(host.target));
+    connect(host, fmt::format("cable{}", created_.size()), hosts.prefix_length);
   }
 }
 
 void NamespaceNetwork::connect(const HostSpec& host, const std::string& cable, int prefix_length) {
-  const std::string name = name_of(host.target);
-  ip({"link", "add", "eth0", "netns", name, "type", "veth", "peer", "name", cable, "netns", hub()});
-  ip({"-n", hub(), "link", "set", cable, "master", "bridge0", "up"});
+  const std::string name = full_name(host.target);
+  ip({"link", "add", "eth0", "netns", name, "type", "veth", "peer", "name", cable, "netns", bridge()});
+  ip({"-n", bridge(), "link", "set", cable, "master", "bridge0", "up"});
   ip({"-n", name, "addr", "add", fmt::format("{}/{}", host.interface, prefix_length), "dev", "eth0"});
   ip({"-n", name, "link", "set", "eth0", "up"});
 }
 
 void NamespaceNetwork::remove() {
-  for (const std::string& name : made_) {
+  for (const std::string& name : created_) {
     if (!std::filesystem::exists(std::string(kFolder) + "/" + name)) continue;
     try {
       ip({"netns", "del", name});
@@ -100,7 +102,7 @@ void NamespaceNetwork::remove() {
       fmt::print(stderr, "sidestep: {}\n", error.what());
     }
   }
-  made_.clear();
+  created_.clear();
 }
 
 std::vector<RunNamespace> run_namespaces() {
@@ -114,7 +116,7 @@ std::vector<RunNamespace> run_namespaces() {
     const char* const end = found.name.data() + found.name.size();
     const auto [stop, error] = std::from_chars(begin, end, found.launcher);
     if (error != std::errc{} || found.launcher <= 0 || stop == end || *stop != '-') continue;
-    found.called.assign(stop + 1, end);
+    found.label.assign(stop + 1, end);
     result.push_back(found);
   }
   return result;
@@ -122,11 +124,11 @@ std::vector<RunNamespace> run_namespaces() {
 
 void remove_abandoned_namespaces() {
   for (const RunNamespace& found : run_namespaces()) {
-    if (lives(found.launcher)) continue;
+    if (is_alive(found.launcher)) continue;
     try {
       ip({"netns", "del", found.name});
     } catch (const std::exception&) {
-      // Another launcher that starts just now has been faster.
+      // Another launcher that is starting may have removed it.
     }
   }
 }

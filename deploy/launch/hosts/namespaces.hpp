@@ -10,58 +10,57 @@
 
 namespace sidestep {
 
-/// Makes this thread, and what it starts from then on, use another network namespace while it lives; then the
-/// one from before.
-class NamespaceVisit {
+/// Moves this thread, and the processes it starts, to another network namespace until destruction.
+class ScopedNamespace {
  public:
-  /// Throws std::runtime_error when there is no such namespace or the right to enter it is missing.
-  explicit NamespaceVisit(const std::string& name);
-  ~NamespaceVisit();
-  NamespaceVisit(const NamespaceVisit&) = delete;
-  NamespaceVisit& operator=(const NamespaceVisit&) = delete;
+  /// Throws std::runtime_error when the namespace does not exist or permission to enter it is missing.
+  explicit ScopedNamespace(const std::string& name);
+  ~ScopedNamespace();
+  ScopedNamespace(const ScopedNamespace&) = delete;
+  ScopedNamespace& operator=(const ScopedNamespace&) = delete;
 
  private:
-  int before_ = -1;
+  int previous_ = -1;
 };
 
-/// Hosts that this machine plays: a network namespace each, and one more with the bridge that connects them
-/// and the launcher's address, so that nothing of it shows outside and several runs never meet. All names
-/// carry the process's pid.
+/// Emulated hosts on this machine: one network namespace per host, and one more with the launcher's address and the
+/// bridge that connects them. The network is isolated from the machine and from other runs. All names contain the
+/// process's pid.
 class NamespaceNetwork {
  public:
-  /// `hosts.create` must hold. Throws std::runtime_error, leaving nothing behind.
+  /// Precondition: hosts.create. Throws std::runtime_error after removing everything that it created.
   explicit NamespaceNetwork(const Hosts& hosts);
   ~NamespaceNetwork();
   NamespaceNetwork(const NamespaceNetwork&) = delete;
   NamespaceNetwork& operator=(const NamespaceNetwork&) = delete;
 
-  /// The namespace with the bridge: where to go to take part.
-  std::string hub() const;
-  /// The namespace that the hosts file calls `name`.
-  std::string name_of(const std::string& name) const;
+  /// The namespace with the bridge, where the launcher and observers run.
+  std::string bridge() const;
+  /// The full name of a namespace of the hosts file.
+  std::string full_name(const std::string& label) const;
 
  private:
-  void make(const Hosts& hosts);
+  void create(const Hosts& hosts);
   void connect(const HostSpec& host, const std::string& cable, int prefix_length);
   void remove();
 
-  std::vector<std::string> made_;
+  std::vector<std::string> created_;
 };
 
-/// What the namespace with the bridge is called.
-inline constexpr const char* kHubName = "hub";
+/// The label of the namespace with the bridge.
+inline constexpr const char* kBridgeLabel = "bridge";
 
-/// A namespace that some launcher has made.
+/// A namespace that a launcher created.
 struct RunNamespace {
-  std::string name;  ///< as `ip netns` knows it
+  std::string name;  ///< in `ip netns`
   pid_t launcher = 0;
-  std::string called;  ///< in the hosts file, or kHubName
+  std::string label;  ///< its name in the hosts file, or kBridgeLabel
 };
 
-/// All of them on this machine.
-std::vector<RunNamespace> run_namespaces();
+/// The namespaces of all runs on this machine.
+[[nodiscard]] std::vector<RunNamespace> run_namespaces();
 
-/// Removes the namespaces of launchers that live no longer: those that were killed could not.
+/// Removes the namespaces of launchers that were killed.
 void remove_abandoned_namespaces();
 
 }  // namespace sidestep

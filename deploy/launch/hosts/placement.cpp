@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/monitor/metrics/run_metrics.hpp"
+#include "deploy/monitor/process_names.hpp"
 
 namespace sidestep {
 
@@ -22,41 +22,41 @@ Placement::Placement(const Hosts& hosts, const Scenario& scenario) : hosts_(host
 }
 
 void Placement::place(const std::string& process, const HostSpec& host, int line) {
-  const auto [at, is_new] = hosts_of_.emplace(process, &host);
+  const auto [entry, is_new] = host_by_process_.emplace(process, &host);
   if (is_new) return;
-  throw ScenarioError(
+  throw ConfigError(
       hosts_.file, line,
-      fmt::format("host {} runs the {}, but {} does already", host.name, process, at->second->name));
+      fmt::format("host {} runs {}, but host {} runs it already", host.name, process, entry->second->name));
 }
 
 void Placement::place_single(const std::string& process, bool HostSpec::*flag) {
   for (const HostSpec& host : hosts_.hosts) {
     if (host.*flag) place(process, host, host.line);
   }
-  if (!hosts_of_.count(process))
-    throw ScenarioError(hosts_.file, 1, "no host runs the " + process + ", expected one");
+  if (!host_by_process_.count(process))
+    throw ConfigError(hosts_.file, 1, "no host runs " + process);
 }
 
 void Placement::place_numbered(const std::map<std::uint32_t, std::string>& names,
                                NumberedShare HostSpec::*share, const std::string& key) {
-  std::vector<const HostSpec*> takers;
+  std::vector<const HostSpec*> sharing_hosts;
   for (const HostSpec& host : hosts_.hosts) {
     for (const NumberedShare::Range& range : (host.*share).ranges) {
       const auto first = names.lower_bound(range.first), last = names.upper_bound(range.last);
       if (first == last) {
-        throw ScenarioError(hosts_.file, range.line,
-                            fmt::format("host {} runs {} {}-{}, of which the scenario has none", host.name,
+        throw ConfigError(hosts_.file, range.line,
+                            fmt::format("host {} runs {} {}-{}, but the scenario has none of them", host.name,
                                         key, range.first, range.last));
       }
       for (auto i = first; i != last; ++i) place(i->second, host, range.line);
     }
-    if ((host.*share).rest) takers.push_back(&host);
+    if ((host.*share).rest) sharing_hosts.push_back(&host);
   }
-  std::size_t turn = 0;
+  std::size_t next = 0;
   for (const auto& [number, name] : names) {
-    if (hosts_of_.count(name)) continue;
-    if (takers.empty()) throw ScenarioError(hosts_.file, 1, "no host runs " + name + ", expected one");
-    hosts_of_[name] = takers[turn++ % takers.size()];
+    if (host_by_process_.count(name)) continue;
+    if (sharing_hosts.empty()) throw ConfigError(hosts_.file, 1, "no host runs " + name);
+    host_by_process_[name] = sharing_hosts[next++ % sharing_hosts.size()];
   }
 }
 

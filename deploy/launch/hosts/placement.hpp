@@ -9,25 +9,25 @@
 
 namespace sidestep {
 
-/// Which host each process of a scenario runs on.
+/// The host of each process of a scenario.
 class Placement {
  public:
-  /// Throws ScenarioError with the hosts file's line when a process has no host or two, or a host names
-  /// robots that there are not. The hosts must outlive the placement.
+  /// Throws ConfigError with the line of the hosts file when a process has no host or two, or a host names
+  /// processes that the scenario does not have. The hosts must outlive the placement.
   Placement(const Hosts& hosts, const Scenario& scenario);
 
-  /// `process` by the name that everybody knows it by: "simulator", "agent 3".
-  const HostSpec& host_of(const std::string& process) const { return *hosts_of_.at(process); }
+  /// `process`: "simulator", "agent 3" etc. (deploy/monitor/process_names.hpp)
+  const HostSpec& host_of(const std::string& process) const { return *host_by_process_.at(process); }
 
  private:
   void place(const std::string& process, const HostSpec& host, int line);
   void place_single(const std::string& process, bool HostSpec::*flag);
-  /// `names` by number: those that the hosts may name.
+  /// `names`: the scenario's processes of this kind, by number.
   void place_numbered(const std::map<std::uint32_t, std::string>& names, NumberedShare HostSpec::*share,
                       const std::string& key);
 
   const Hosts& hosts_;
-  std::map<std::string, const HostSpec*> hosts_of_;
+  std::map<std::string, const HostSpec*> host_by_process_;
 };
 
 }  // namespace sidestep

@@ -2,21 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
-#include "deploy/monitor/audit/audit_rules.hpp"
-
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `sidestep audit` and `sidestep record`; parsing one of them sets the action, which returns the exit
-/// code.
-void add_audit_commands(CLI::App& root, std::function<int()>& action);
-
-/// What an audit found, in a few lines for people.
-std::string audit_summary(const AuditTotals& totals);
+/// Adds `sidestep audit`. Parsing it sets `action`, which returns the exit code: 0 if messages were received
+/// and no rule was broken. The action may throw std::runtime_error.
+void add_audit_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

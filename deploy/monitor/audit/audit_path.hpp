@@ -9,15 +9,15 @@
 
 namespace sidestep {
 
-/// Whether everything in it is a number that a robot could mean, and the phase count fits.
-bool is_sane(const msg::Version& version);
+/// Whether all numbers of the version are finite and physically plausible and its phase count fits the array.
+[[nodiscard]] bool is_sane(const msg::Version& version);
 
-/// Where a version says that its robot is, for the auditor only: plain arithmetic of its own that shares
-/// nothing with common/motion, so that a mistake there does not hide itself.
+/// The reference path of a version, for the auditor only. The arithmetic is deliberately independent of
+/// common/motion, so that an error there cannot hide itself.
 class AuditPath {
  public:
   struct Node {
-    double after_s = 0;  ///< the path's start
+    double elapsed_s = 0;  ///< since the path's start
     double x = 0, y = 0, vx = 0, vy = 0, ax = 0, ay = 0;
   };
 
@@ -26,40 +26,41 @@ class AuditPath {
   explicit AuditPath(const msg::Version& version);
 
   std::int64_t start_ns() const { return start_ns_; }
-  double duration_s() const { return nodes_[static_cast<std::size_t>(count_)].after_s; }
-  /// Position, velocity and acceleration so long after the path's start; at the start before it, at rest
-  /// after the end.
-  Node at_s(double after_s) const;
+  double duration_s() const { return nodes_[static_cast<std::size_t>(count_)].elapsed_s; }
+  /// Position, velocity and acceleration `elapsed_s` after the start. Earlier times give the start, later
+  /// times the end at rest.
+  Node at_s(double elapsed_s) const;
   Node at_ns(std::int64_t t_ns) const { return at_s(static_cast<double>(t_ns - start_ns_) * 1e-9); }
   const Node& first() const { return nodes_[0]; }
-  /// Where the last phase ends, and how fast it still is then.
+  /// The end of the last phase, with the speed that remains there.
   const Node& last() const { return nodes_[static_cast<std::size_t>(count_)]; }
   int phase_count() const { return count_; }
   /// The state at the beginning of a phase.
   const Node& phase(int index) const { return nodes_[static_cast<std::size_t>(index)]; }
-  /// No point of the path is farther from its first than this.
+  /// Upper bound of the distance between any point of the path and its first point.
   double reach_m() const { return reach_m_; }
-  double fastest_mps() const { return fastest_mps_; }
+  double max_speed_mps() const { return max_speed_mps_; }
 
  private:
   std::int64_t start_ns_ = 0;
   int count_ = 0;
-  std::array<Node, msg::MAX_PHASES + 1> nodes_{};  ///< the beginnings of the phases, and the end of the last
+  std::array<Node, msg::MAX_PHASES + 1> nodes_{};  ///< the beginning of each phase, and the end of the last one
   double reach_m_ = 0;
-  double fastest_mps_ = 0;
+  double max_speed_mps_ = 0;
 };
 
-/// How near two paths come, and when, from the later start on, and not before a time.
-struct Approach {
+/// The smallest distance between two paths, and its time.
+struct ClosestApproach {
   double distance_m = std::numeric_limits<double>::infinity();
   std::int64_t at_ns = 0;
 };
 
-/// Looks from point to point as far apart as the relative speed allows without missing anything nearer than
-/// `enough_m`, at most 0.25 ms apart where they are that near. Exact to micrometres below `enough_m`; above
-/// it only a bound.
-Approach nearest(const AuditPath& a, const AuditPath& b, double enough_m, std::int64_t from_ns = 0);
-/// The same for a point that stays where it is.
-Approach nearest(const AuditPath& path, double x_m, double y_m, double enough_m);
+/// Closest approach from the later of the two starts and `from_ns` on. Steps are as long as the relative speed
+/// allows without missing a distance below `cutoff_m`, and at most 0.25 ms where the paths are that close.
+/// Exact to micrometres below `cutoff_m`; above it, the result is only a bound.
+[[nodiscard]] ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m,
+                                               std::int64_t from_ns = 0);
+/// The same for a path and a fixed point.
+[[nodiscard]] ClosestApproach closest_approach(const AuditPath& path, double x_m, double y_m, double cutoff_m);
 
 }  // namespace sidestep

@@ -12,35 +12,35 @@
 
 namespace sidestep {
 
-/// What the auditor judges by; audit_rule() says what each one demands, and where the protocol says so.
+/// The rules that the auditor checks. audit_rule() gives each rule's name, requirement and reference.
 enum class AuditRule : std::uint8_t {
   kClearance,
-  kOneMeaning,
+  kUniqueVersion,
   kBase,
   kContinuity,
   kLimits,
   kRest,
-  kFloor,
+  kField,
   kObstacle,
   kInflation,
-  kNumbers,
+  kVersionOrder,
   kProposed,
   kAllRegistered,
-  kOneCoordinator,
+  kSingleCoordinator,
   kLedgerPage,
   kRegistration,
   kAcknowledged,
   kForwarded,
-  kEpochBack,
+  kEpochRegression,
   kSent,
   kSwitch,
-  kLate,
-  kFenced,
-  kOldEpoch,
+  kLateSwitch,
+  kStaleIncarnation,
+  kStaleEpoch,
   kFacts,
   kOffReference,
   kTracking,
-  kPlace,
+  kPosition,
   kContact,
   kCrash,
   kFirmwareMonitor,
@@ -48,9 +48,9 @@ enum class AuditRule : std::uint8_t {
 inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kFirmwareMonitor) + 1;
 
 struct AuditRuleInfo {
-  const char* name;       ///< e.g. "clearance"
-  const char* reference;  ///< of the rule in coordinator/PROTOCOL.md
-  const char* demand;     ///< in words
+  const char* name;         ///< e.g. "clearance"
+  const char* reference;    ///< the rule's place in coordinator/PROTOCOL.md
+  const char* requirement;  ///< one sentence
 };
 
 const AuditRuleInfo& audit_rule(AuditRule rule);
@@ -58,36 +58,36 @@ const AuditRuleInfo& audit_rule(AuditRule rule);
 /// One breach of one rule.
 struct Violation {
   AuditRule rule = AuditRule::kClearance;
-  Time heard{};  ///< when the auditor had the evidence together, by its own clock
+  Time detected{};  ///< when the evidence was complete, by the auditor's clock
   RobotId robot = 0;
   std::optional<RobotId> other;
   VersionNumber version = 0;
   VersionNumber other_version = 0;
   Epoch epoch = 0;
-  std::string what;  ///< the numbers, in words
+  std::string detail;  ///< the measured and the required values
 };
 
-/// One line for people.
+/// One line of text.
 std::string to_line(const Violation& violation);
 /// One line of JSON.
 std::string to_json_line(const Violation& violation);
 
-/// What came of an audit so far.
+/// The findings of an audit so far.
 struct AuditTotals {
-  static constexpr std::size_t kMostKept = 20;
+  static constexpr std::size_t kMaxKept = 20;
 
   std::uint64_t violations = 0;
   std::array<std::uint64_t, kAuditRules> by_rule{};
-  std::vector<Violation> first;  ///< the first kMostKept of them
-  std::uint64_t heard = 0;       ///< messages
-  std::uint64_t missed = 0;      ///< messages, as far as gaps in their numbers show
-  std::uint64_t invalid = 0;     ///< messages that made no sense and were dropped
-  std::uint64_t pairs = 0;       ///< pairs of versions that were compared
-  double farthest_m = 0;         ///< that a robot on its reference really was from it
-  std::uint64_t beyond = 0;      ///< how often that was more than the tracking bound, unnoticed by the robot
-  std::uint64_t contacts_by_hand = 0;  ///< contacts of robots that somebody had just disturbed,
-  std::uint64_t places_by_hand = 0;    ///< and how often those were not where they ought to be
-  std::uint64_t unjudged = 0;  ///< pairs too near to each other, for which what would excuse it was not heard
+  std::vector<Violation> first;               ///< the first kMaxKept violations
+  std::uint64_t received = 0;                 ///< messages
+  std::uint64_t missed = 0;                   ///< messages, estimated from gaps in their numbers
+  std::uint64_t invalid = 0;                  ///< malformed messages, dropped
+  std::uint64_t compared_pairs = 0;           ///< pairs of versions whose clearance was checked
+  double max_position_error_m = 0;            ///< largest true distance of an on-reference robot from its reference
+  std::uint64_t beyond_tracking_bound = 0;    ///< times that this distance exceeded the tracking bound
+  std::uint64_t excused_contacts = 0;         ///< contacts of robots that were disturbed from outside
+  std::uint64_t excused_displacements = 0;    ///< position errors of robots that were disturbed from outside
+  std::uint64_t undecided_pairs = 0;  ///< pairs closer than required whose possible excuse was not received
 };
 
 }  // namespace sidestep

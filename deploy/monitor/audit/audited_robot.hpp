@@ -19,61 +19,62 @@ namespace sidestep {
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
 
-/// Why a fact says that a version will never be executed again.
-enum class Excluded : std::uint8_t { kNo, kOlder, kLate, kFenced, kLifted };
+/// Why a fact rules out that a version is executed from then on.
+enum class Exclusion : std::uint8_t { kNone, kOlder, kLate, kFenced, kLifted };
 
-/// The epochs in which something was registered: the highest of them, bounded in number.
+/// The highest epochs in which something was registered; bounded in number.
 class EpochMemory {
  public:
   void add(Epoch epoch);
   bool holds(Epoch epoch) const;
-  /// Whether it may have been one of them: it is, or it has been given up.
-  bool may_have_held(Epoch epoch) const { return holds(epoch) || (epoch != 0 && epoch <= given_up_); }
+  /// Whether the epoch is held or may have been evicted.
+  bool may_have_held(Epoch epoch) const { return holds(epoch) || (epoch != 0 && epoch <= max_evicted_); }
 
  private:
   std::array<Epoch, 16> epochs_{};  ///< descending; 0: none
-  Epoch given_up_ = 0;              ///< the highest that is no longer held
+  Epoch max_evicted_ = 0;
 };
 
-/// What is known of one version. Times of sending are by the auditor's clock.
-struct Known {
-  // What is asked of most versions first, side by side in memory.
+/// What is known of one version. Sending times are by the auditor's clock.
+struct KnownVersion {
+  // The members that are read for most versions come first, adjacent in memory.
   VersionNumber number = 0;
   bool has_content = false;
-  bool is_own = false;  ///< the firmware made it, off reference
+  bool is_own_stop = false;  ///< made by the firmware when it lost its reference
   bool was_executed = false;
-  Excluded excluded = Excluded::kNo;
-  Epoch granted_in = 0;                      ///< or, for the firmware's own, whose ledger was seen to hold it
-  std::int64_t granted_by_ns = kNever;       ///< the verdict, or that page, was not sent after
-  std::int64_t executed_until_ns = kAlways;  ///< by the robot's clock, at least
-  std::int64_t alive_until_ns = kAlways;     ///< until then, at least, no fact excluded it
+  Exclusion exclusion = Exclusion::kNone;
+  Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page held it
+  std::int64_t granted_by_ns = kNever;       ///< latest sending time of the verdict, or of that page
+  std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
+  std::int64_t alive_until_ns = kAlways;     ///< lower bound of the time of the first fact that excludes it
   std::int64_t excluded_ns = kNever;
   AuditPath path;
   EpochMemory registered_in;
-  std::int64_t sent_ns = kNever;    ///< the first command with it
-  Epoch sent_epoch = 0;             ///< the highest that one came with
-  bool is_granted_by_page = false;  ///< its verdict was not heard, but a page that holds it was
-  bool is_reported_unsent = false;  ///< so that one breach is told once
+  std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that carries it
+  Epoch sent_epoch = 0;             ///< the highest epoch of those commands
+  bool is_granted_by_page = false;  ///< inferred from a ledger page, because the verdict was missed
+  bool is_reported_unsent = false;  ///< so that a breach is reported once
   msg::Version version;
 
+  /// Whether it was granted or registered in the epoch.
   bool is_in(Epoch epoch) const;
-  /// The same as far as is known: a coordinator may wake up after more epochs than are remembered.
+  /// Whether it is or may be in the epoch. A coordinator may resume after more epochs than are remembered.
   bool may_be_in(Epoch epoch) const;
 };
 
-/// A proposal that was heard, and what is known of its verdict.
-struct HeardProposal {
+/// A received proposal and what is known of its verdict.
+struct ProposalRecord {
   std::uint64_t number = 0;
   Epoch epoch = 0;
   std::size_t count = 0;
   std::array<msg::Version, msg::MAX_CANDIDATES> candidates;
-  bool is_ruled = false;  ///< a verdict that cannot change any more
+  bool is_decided = false;  ///< by a final verdict
   VersionNumber granted = 0;
 
   const msg::Version* find(VersionNumber version) const;
 };
 
-/// A verdict that cannot change any more, and whose proposal was not heard before it.
+/// A final verdict that arrived before its proposal.
 struct EarlyVerdict {
   std::uint64_t proposal = 0;
   Epoch epoch = 0;
@@ -83,90 +84,90 @@ struct EarlyVerdict {
 /// What the auditor knows of one robot of the roster; bounded in size.
 class AuditedRobot {
  public:
-  static constexpr std::size_t kMostVersions = 64;
-  static constexpr std::size_t kMostProposals = 16;
+  static constexpr std::size_t kMaxVersions = 64;
+  static constexpr std::size_t kMaxProposals = 16;
 
   RobotId id = 0;
-  std::deque<Known> versions;  ///< ascending by number; most come at the end and go at the beginning
-  std::array<HeardProposal, kMostProposals> proposals;
+  std::deque<KnownVersion> versions;  ///< ascending by number; mostly appended at the end, removed at the front
+  std::array<ProposalRecord, kMaxProposals> proposals;
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
   std::size_t early_verdict_count = 0;
-  std::uint64_t given_up_proposal = 0;  ///< proposals up to this number may have been given up
-  VersionNumber given_up_version = 0;   ///< and versions up to this one
-  std::size_t first_recent = 0;         ///< versions before this index were excluded a while ago, so all that
-                                        ///< facts do not exclude are from it on
+  std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
+  VersionNumber max_evicted_version = 0;   ///< versions up to this number may have been evicted
+  std::size_t first_recent = 0;  ///< versions before this index were excluded long ago; all others follow it
 
   /// The latest fact.
   struct Fact {
-    std::uint64_t life = 0;  ///< of the simulator
+    std::uint64_t life = 0;  ///< incarnation of the simulator
     std::int64_t at_ns = 0;
-    std::int64_t earliest_ns = kAlways, latest_ns = kAlways;
+    std::int64_t earliest_ns = kAlways, latest_ns = kAlways;  ///< bounds of its sending time
     VersionNumber executing = 0;
-    Incarnation obeyed = 0;
-    Epoch epoch = 0;
-    std::int64_t epoch_since_ns = kNever;  ///< it was reported by then
+    Incarnation obeyed_incarnation = 0;
+    Epoch obeyed_epoch = 0;
+    std::int64_t epoch_since_ns = kNever;  ///< latest time of the first fact with this epoch
     bool is_off_reference = false;
     bool is_lifted = false;
   };
   std::optional<Fact> fact;
-  std::int64_t beyond_since_ns = kNever;  ///< all facts since then say that it is beyond the tracking bound
+  std::int64_t beyond_bound_since_ns = kNever;  ///< all facts since then report an error beyond the bound
 
   /// The latest registration.
   struct Registered {
     Epoch epoch = 0;
     Incarnation incarnation = 0;
-    std::int64_t earliest_ns = 0, latest_ns = 0;
+    std::int64_t earliest_ns = 0, latest_ns = 0;  ///< bounds of its sending time
     std::vector<VersionNumber> versions;
     bool is_absent = false;
-    bool is_reported = false;
+    bool is_reported = false;  ///< so that a breach is reported once
   };
   std::optional<Registered> registered;
   EpochMemory registered_in;
   Epoch newest_granted_in = 0;
   VersionNumber newest_granted = 0;
 
-  Known* find(VersionNumber number);
-  const Known* find(VersionNumber number) const;
-  /// The same for one that was at this index not long ago.
-  const Known* find_near(std::size_t index, VersionNumber number) const;
-  /// Whether nothing is known of the version because what was has been given up, as it may have been.
-  bool has_given_up(VersionNumber number) const { return number <= given_up_version && !find(number); }
-  /// The version's record, made if it was not there; makes room by giving up what can matter least.
-  Known& note(VersionNumber number);
-  HeardProposal* proposal(std::uint64_t number, VersionNumber candidate);
-  /// Gives up what was excluded before then.
+  KnownVersion* find(VersionNumber number);
+  const KnownVersion* find(VersionNumber number) const;
+  /// The same for a version that recently was at this index.
+  const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
+  /// Whether the version is unknown and may have been evicted.
+  bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
+  /// The version's record, inserted if it is new. When full, evicts the least relevant record.
+  KnownVersion& find_or_insert(VersionNumber number);
+  /// The proposal with this number, or, for number 0, the newest one with this candidate.
+  ProposalRecord* find_proposal(std::uint64_t number, VersionNumber candidate);
+  /// Removes versions that were excluded before then.
   void forget(std::int64_t before_ns);
-  /// Sets first_recent: what was excluded before then is no longer compared with others'.
-  void age(std::int64_t since_ns);
-  /// More is known of this version: it is compared again.
+  /// Advances first_recent past versions excluded before then; they are compared with others' no more.
+  void advance_recent(std::int64_t since_ns);
+  /// Compares this version again, because more is known of it.
   void make_recent(VersionNumber number);
-  /// A place for one more proposal.
-  HeardProposal& new_proposal();
-  /// A new floor: nothing that was known holds for it.
-  void start_again();
+  /// Slot for one more proposal; evicts the oldest one when full.
+  ProposalRecord& add_proposal();
+  /// Forgets everything but the id: a new simulator starts with a new floor.
+  void reset();
 };
 
-/// Whether the fact says that the version is never executed from now on, and why.
-Excluded excluded_by(const AuditedRobot::Fact& fact, const Known& version);
+/// Whether and why the fact rules out that the version is executed from then on.
+[[nodiscard]] Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version);
 
-/// What decides whether a version has to be compared with another robot's, close together in memory.
-struct Live {
+/// The part of a version that decides whether it must be compared with another robot's; compact in memory.
+struct LiveVersion {
   double x = 0, y = 0, reach_m = 0;
   std::int64_t start_ns = 0, executed_until_ns = kAlways,
-               granted_by_ns = kAlways;  ///< kAlways: was not granted
-  std::uint32_t index = 0;               ///< in AuditedRobot::versions, when it was looked at
+               granted_by_ns = kAlways;  ///< kAlways: not granted
+  std::uint32_t index = 0;               ///< in AuditedRobot::versions, at the time of collection
   VersionNumber number = 0;
 };
 
-/// A disc that holds some versions of a robot.
-struct Whereabouts {
-  double x = 0, y = 0, reach_m = -1;  ///< below 0: there are none
+/// A disc that contains the paths of some versions of a robot.
+struct BoundingDisc {
+  double x = 0, y = 0, reach_m = -1;  ///< negative reach: empty
 
-  void add(const Live& version);
+  void add(const LiveVersion& version);
 };
 
-/// Fills `live` with a robot's recent versions, and says where they lie.
-Whereabouts look_at(const AuditedRobot& robot, std::vector<Live>& live);
+/// Fills `live` with a robot's recent versions and returns their bounding disc.
+BoundingDisc collect_live_versions(const AuditedRobot& robot, std::vector<LiveVersion>& live);
 
 }  // namespace sidestep

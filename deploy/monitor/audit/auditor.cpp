@@ -7,85 +7,85 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMostEpochs = 64;
-constexpr RobotId kMostRobots = 1024;
+constexpr std::size_t kMaxEpochs = 64;
 
 }  // namespace
 
-Auditor::Auditor(const Scenario& scenario, const AuditTrace& hearing)
+Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
     : scenario_(scenario),
-      how_(hearing),
+      input_(input),
       tracking_bound_m_(scenario.tracking_bound_m),
       clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),
-      hearing_(hearing.is_complete ? Duration{0} : hearing.fastest),
-      places_m_(scenario.robots.size()),
-      hands_(scenario.robots.size(), hearing.is_complete),
-      index_(kMostRobots, scenario.robots.size()) {
+      trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
+      positions_m_(scenario.robots.size()),
+      disturbances_(scenario.robots.size(), input.is_complete),
+      index_(kMaxRobots, scenario.robots.size()) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
     robots_.emplace_back().id = spec.id;
   }
-  whereabouts_.resize(robots_.size());
-  live_.resize(robots_.size());
-  sights_.resize(robots_.size());
+  bounds_.resize(robots_.size());
+  live_versions_.resize(robots_.size());
+  observations_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
 }
 
 AuditTotals Auditor::totals() const {
   AuditTotals totals = totals_;
-  totals.heard = hearing_.heard();
-  totals.missed = hearing_.missed();
+  totals.received = trace_.received();
+  totals.missed = trace_.missed();
   return totals;
 }
 
-void Auditor::report(AuditRule rule, RobotId robot, const Known* known, Epoch epoch, std::string what) {
+void Auditor::report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch,
+                     std::string detail) {
   Violation violation;
   violation.rule = rule;
   violation.robot = robot;
   violation.version = known ? known->number : 0;
   violation.epoch = epoch;
-  violation.what = std::move(what);
+  violation.detail = std::move(detail);
   report(std::move(violation));
 }
 
 void Auditor::report(Violation violation) {
-  violation.heard = now_;
+  violation.detected = now_;
   ++totals_.violations;
   ++totals_.by_rule[static_cast<std::size_t>(violation.rule)];
-  if (totals_.first.size() < AuditTotals::kMostKept) totals_.first.push_back(violation);
+  if (totals_.first.size() < AuditTotals::kMaxKept) totals_.first.push_back(violation);
   if (on_violation_) on_violation_(violation);
 }
 
-AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& head) {
-  if (robot < kMostRobots && index_[robot] < robots_.size() && head.sender() == robot)
+AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& header) {
+  if (robot < kMaxRobots && index_[robot] < robots_.size() && header.sender() == robot)
     return &robots_[index_[robot]];
   ++totals_.invalid;
   return nullptr;
 }
 
-Heard Auditor::note(Kind kind, std::uint32_t key, const msg::Header& head) {
-  return hearing_.note(static_cast<std::uint64_t>(kind) << 32 | key, head, now_);
+Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
+  return trace_.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
 }
 
-Known* Auditor::learn(AuditedRobot& robot, const msg::Version& version) {
+KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
   if (version.robot() != robot.id || !is_sane(version)) {
     ++totals_.invalid;
     return nullptr;
   }
-  Known& known = robot.note(version.version_number());
+  KnownVersion& known = robot.find_or_insert(version.version_number());
   if (!known.has_content) {
     known.has_content = true;
     known.version = version;
     known.path = AuditPath(version);
     max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
-    // A fact may have excluded it before it was heard of.
-    if (robot.fact) known.excluded = excluded_by(*robot.fact, known);
-    known.excluded_ns = known.excluded == Excluded::kNo ? kNever : to_ns(now_);
+    // An earlier fact may exclude the version.
+    if (robot.fact) known.exclusion = exclusion_by(*robot.fact, known);
+    known.excluded_ns = known.exclusion == Exclusion::kNone ? kNever : to_ns(now_);
     robot.make_recent(known.number);
   } else if (!(known.version == version)) {
     report(
-        AuditRule::kOneMeaning, robot.id, &known, 0,
-        fmt::format("starts at {} ns from ({:.6f}, {:.6f}) m, and elsewhere at {} ns from ({:.6f}, {:.6f}) m",
+        AuditRule::kUniqueVersion, robot.id, &known, 0,
+        fmt::format("one message has a start at {} ns and ({:.6f}, {:.6f}) m, another one at {} ns and ({:.6f}, {:.6f}) m",
                     known.version.start_ns(), known.version.x_m(), known.version.y_m(), version.start_ns(),
                     version.x_m(), version.y_m()));
   }
@@ -93,46 +93,47 @@ Known* Auditor::learn(AuditedRobot& robot, const msg::Version& version) {
 }
 
 Auditor::EpochRecord& Auditor::epoch_record(Epoch epoch) {
-  const auto at = epochs_.try_emplace(epoch).first;
-  if (epochs_.size() > kMostEpochs) epochs_.erase(at == epochs_.begin() ? std::next(at) : epochs_.begin());
-  return at->second;
+  const auto entry = epochs_.try_emplace(epoch).first;
+  if (epochs_.size() > kMaxEpochs)
+    epochs_.erase(entry == epochs_.begin() ? std::next(entry) : epochs_.begin());
+  return entry->second;
 }
 
 void Auditor::on_proposal(const msg::Proposal& proposal, Time now) {
   now_ = now;
-  AuditedRobot* robot = robot_of(proposal.robot(), proposal.head());
+  AuditedRobot* robot = robot_of(proposal.robot(), proposal.header());
   if (!robot) return;
-  (void)note(kProposalKind, proposal.robot(), proposal.head());
+  (void)trace(kProposalKind, proposal.robot(), proposal.header());
   if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES) {
     ++totals_.invalid;
     return;
   }
   const std::uint64_t number = proposal.candidates().front().version_number();
-  if (robot->proposal(number, 0)) return;
-  HeardProposal& heard = robot->new_proposal();
-  heard.number = number;
-  heard.epoch = proposal.epoch();
-  heard.count = proposal.candidate_count();
-  for (std::size_t i = 0; i < heard.count; ++i) {
-    heard.candidates[i] = proposal.candidates()[i];
-    // Its verdict may have overtaken it.
-    Known* known = robot->find(heard.candidates[i].version_number());
+  if (robot->find_proposal(number, 0)) return;
+  ProposalRecord& record = robot->add_proposal();
+  record.number = number;
+  record.epoch = proposal.epoch();
+  record.count = proposal.candidate_count();
+  for (std::size_t i = 0; i < record.count; ++i) {
+    record.candidates[i] = proposal.candidates()[i];
+    // The verdict may have overtaken the proposal.
+    KnownVersion* known = robot->find(record.candidates[i].version_number());
     if (!known || known->has_content || known->granted_in == 0) continue;
-    if (Known* learnt = learn(*robot, heard.candidates[i])) {
-      judge_content(*robot, *learnt);
-      judge_new_pairs_of(*robot, *learnt);
+    if (KnownVersion* stored = store(*robot, record.candidates[i])) {
+      check_content(*robot, *stored);
+      check_new_pairs(*robot, *stored);
     }
   }
   for (const EarlyVerdict& verdict : robot->early_verdicts) {
-    if (verdict.proposal == number) rule(*robot, heard, verdict.epoch, verdict.granted);
+    if (verdict.proposal == number) decide(*robot, record, verdict.epoch, verdict.granted);
   }
 }
 
 void Auditor::on_registration(const msg::Registration& registration, Time now) {
   now_ = now;
-  AuditedRobot* robot = robot_of(registration.robot(), registration.head());
+  AuditedRobot* robot = robot_of(registration.robot(), registration.header());
   if (!robot) return;
-  const Heard heard = note(kRegistrationKind, registration.robot(), registration.head());
+  const Reception reception = trace(kRegistrationKind, registration.robot(), registration.header());
   const Epoch epoch = registration.epoch();
   if (registration.version_count() > msg::MAX_REGISTERED_VERSIONS || epoch == 0) {
     ++totals_.invalid;
@@ -140,12 +141,12 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
   }
   AuditedRobot::Registered registered;
   registered.epoch = epoch;
-  registered.incarnation = registration.head().incarnation();
-  registered.earliest_ns = heard.earliest_ns;
-  registered.latest_ns = heard.latest_ns;
+  registered.incarnation = registration.header().incarnation();
+  registered.earliest_ns = reception.earliest_ns;
+  registered.latest_ns = reception.latest_ns;
   registered.is_absent = registration.is_absent();
   for (std::size_t i = 0; i < registration.version_count(); ++i) {
-    Known* known = learn(*robot, registration.versions()[i]);
+    KnownVersion* known = store(*robot, registration.versions()[i]);
     if (!known) return;
     registered.versions.push_back(known->number);
     known->registered_in.add(epoch);
@@ -156,73 +157,73 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
 
 void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   now_ = now;
-  const Heard heard = note(kCoordinatorKind, 0, state.head());
+  const Reception reception = trace(kCoordinatorKind, 0, state.header());
   const auto known = epochs_.find(state.epoch());
   if (known == epochs_.end() || known->second.is_reported || state.missing().empty()) return;
-  if (known->second.granter_life != state.head().incarnation() ||
-      heard.earliest_ns <= known->second.first_grant_ns)
+  if (known->second.granter_life != state.header().incarnation() ||
+      reception.earliest_ns <= known->second.first_grant_ns)
     return;
   known->second.is_reported = true;
   report(AuditRule::kAllRegistered, state.missing().front(), nullptr, state.epoch(),
-         fmt::format("the coordinator misses {} robots' registrations after it has granted",
+         fmt::format("{} robots' registrations are missing, although the coordinator has granted",
                      state.missing().size()));
 }
 
 void Auditor::on_command(const msg::Command& command, Time now) {
   now_ = now;
-  AuditedRobot* robot = robot_of(command.robot(), command.head());
+  AuditedRobot* robot = robot_of(command.robot(), command.header());
   if (!robot) return;
-  const Heard heard = note(kCommandKind, command.robot(), command.head());
+  const Reception reception = trace(kCommandKind, command.robot(), command.header());
   auto& streams = agent_epochs_[robot->id];
-  auto stream = std::ranges::find(streams, command.head().incarnation(), &AgentStream::incarnation);
+  auto stream = std::ranges::find(streams, command.header().incarnation(), &AgentStream::incarnation);
   if (stream == streams.end()) {
     if (streams.size() >= 8) streams.erase(streams.begin());
-    stream = streams.insert(streams.end(), {command.head().incarnation(), command.epoch()});
+    stream = streams.insert(streams.end(), {command.header().incarnation(), command.epoch()});
   }
-  if (heard.is_newest && command.epoch() < stream->epoch) {
-    report(AuditRule::kEpochBack, robot->id, nullptr, command.epoch(),
-           fmt::format("after commands under epoch {}", stream->epoch));
+  if (reception.is_newest && command.epoch() < stream->epoch) {
+    report(AuditRule::kEpochRegression, robot->id, nullptr, command.epoch(),
+           fmt::format("follows commands under epoch {}", stream->epoch));
   }
-  if (heard.is_newest) stream->epoch = std::max(stream->epoch, command.epoch());
+  if (reception.is_newest) stream->epoch = std::max(stream->epoch, command.epoch());
   if (!command.has_version()) return;
 
-  Known* known = learn(*robot, command.granted());
+  KnownVersion* known = store(*robot, command.version());
   if (!known) return;
-  known->sent_ns = std::min(known->sent_ns, heard.earliest_ns);
+  known->sent_ns = std::min(known->sent_ns, reception.earliest_ns);
   known->sent_epoch = std::max(known->sent_epoch, command.epoch());
-  judge_forwarded(*robot, known->number);
+  check_forwarded(*robot, known->number);
 }
 
-void Auditor::judge_forwarded(AuditedRobot& robot, VersionNumber number) {
-  Known* known = robot.find(number);
+void Auditor::check_forwarded(AuditedRobot& robot, VersionNumber number) {
+  KnownVersion* known = robot.find(number);
   if (!known || known->sent_ns == kNever || known->is_reported_unsent) return;
-  const HeardProposal* proposal = robot.proposal(0, number);
-  const bool was_denied = proposal && proposal->is_ruled && proposal->granted != number;
+  const ProposalRecord* proposal = robot.find_proposal(0, number);
+  const bool was_denied = proposal && proposal->is_decided && proposal->granted != number;
   const bool was_never_granted =
-      how_.is_complete && known->granted_in == 0 && known->number > robot.given_up_version;
+      input_.is_complete && known->granted_in == 0 && known->number > robot.max_evicted_version;
   if (!was_denied && !was_never_granted) return;
   known->is_reported_unsent = true;
   report(AuditRule::kForwarded, robot.id, known, known->sent_epoch,
          was_denied
-             ? fmt::format("the verdict on proposal {} granted {}", proposal->number, proposal->granted)
+             ? fmt::format("the verdict on proposal {} granted version {}", proposal->number, proposal->granted)
              : "no verdict has granted it");
 }
 
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
-  const auto hear = [&]<typename Message>(const Topic<Message>& topic, RobotId robot,
-                                          void (Auditor::*on)(const Message&, Time)) {
+  const auto subscribe = [&]<typename Message>(const Topic<Message>& topic, RobotId robot,
+                                               void (Auditor::*on)(const Message&, Time)) {
     bus.subscribe<Message>(
         topic, robot, [&bus, &auditor, on](const Message& message) { (auditor.*on)(message, bus.now()); });
   };
-  hear(topics::kProposal, 0, &Auditor::on_proposal);
-  hear(topics::kRegistration, 0, &Auditor::on_registration);
-  hear(topics::kCoordinator, 0, &Auditor::on_coordinator);
-  hear(topics::kLedger, 0, &Auditor::on_ledger);
-  hear(topics::kTruth, 0, &Auditor::on_truth);
+  subscribe(topics::kProposal, 0, &Auditor::on_proposal);
+  subscribe(topics::kRegistration, 0, &Auditor::on_registration);
+  subscribe(topics::kCoordinator, 0, &Auditor::on_coordinator);
+  subscribe(topics::kLedger, 0, &Auditor::on_ledger);
+  subscribe(topics::kTruth, 0, &Auditor::on_truth);
   for (const RobotSpec& robot : scenario.robots) {
-    hear(topics::kVerdict, robot.id, &Auditor::on_verdict);
-    hear(topics::kCommand, robot.id, &Auditor::on_command);
-    hear(topics::kFeedback, robot.id, &Auditor::on_feedback);
+    subscribe(topics::kVerdict, robot.id, &Auditor::on_verdict);
+    subscribe(topics::kCommand, robot.id, &Auditor::on_command);
+    subscribe(topics::kFeedback, robot.id, &Auditor::on_feedback);
   }
 }
 

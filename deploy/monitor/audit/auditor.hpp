@@ -15,22 +15,21 @@
 
 namespace sidestep {
 
-/// How the auditor hears.
-struct AuditTrace {
-  /// Every message from the start on, at the moment when it is sent; only then is what was never heard
-  /// evidence.
+/// What the auditor receives.
+struct AuditInput {
+  /// Every message from the start on, at the moment it is sent. Only then is the absence of a message evidence.
   bool is_complete = false;
-  /// The fastest of a sender's messages take less than this to the auditor. Not used if is_complete.
-  Duration fastest{5'000'000};
+  /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete.
+  Duration min_latency_bound{5'000'000};
 };
 
-/// Listens to everything that is said and tells who broke which rule of the safety protocol when. It shares
-/// no code with what it judges. It may come late, and miss messages or hear them in another order: then it
-/// judges only by what was said and cannot have been said had all rules been kept, and says less, but nothing
-/// wrong. Memory is bounded by the roster.
+/// Checks all messages of a run against the rules of the safety protocol and reports each violation with the
+/// robots and versions involved. Shares no code with the components under audit. The auditor may join late, miss
+/// messages and receive them out of order. It then relies only on contradictions between received messages: it
+/// finds less, but never raises a false alarm. Memory is bounded by the roster.
 class Auditor {
  public:
-  Auditor(const Scenario& scenario, const AuditTrace& hearing);
+  Auditor(const Scenario& scenario, const AuditInput& input);
 
   void on_proposal(const msg::Proposal& proposal, Time now);
   void on_verdict(const msg::Verdict& verdict, Time now);
@@ -39,12 +38,12 @@ class Auditor {
   void on_ledger(const msg::LedgerPage& page, Time now);
   void on_command(const msg::Command& command, Time now);
   void on_feedback(const msg::Feedback& feedback, Time now);
-  /// Whoever was moved by a hand may touch others, and be where it ought not to be, until it is seen in its
-  /// place again.
+  /// Contacts and position errors of a robot are excused from an operator's disturbance until the robot is
+  /// observed on its reference again.
   void on_truth(const msg::GroundTruth& truth, Time now);
 
   AuditTotals totals() const;
-  /// Calls back for each violation as it is found.
+  /// Calls back for each violation when it is found.
   void on_violation(std::function<void(const Violation&)> callback) { on_violation_ = std::move(callback); }
 
  private:
@@ -52,26 +51,28 @@ class Auditor {
   struct EpochRecord {
     std::uint32_t granter = 0;
     Incarnation granter_life = 0;
-    std::int64_t first_grant_ns = kNever;  ///< not after this
+    std::int64_t first_grant_ns = kNever;  ///< upper bound
     bool is_reported = false;
   };
-  struct Before {  ///< what was proven of a version before the message that is being looked at
+  /// What had been proven of a version before the current message.
+  struct Evidence {
     std::int64_t alive_until_ns, executed_until_ns;
     bool was_executed;
-    bool operator==(const Before&) const = default;
+    bool operator==(const Evidence&) const = default;
   };
-  struct Sight {  ///< of one robot in ground truth
+  /// The latest ground truth of one robot that has not been compared with feedback yet.
+  struct Observation {
     std::int64_t at_ns = kNever;
     double x = 0, y = 0;
   };
 
-  void report(AuditRule rule, RobotId robot, const Known* known, Epoch epoch, std::string what);
+  void report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch, std::string detail);
   void report(Violation violation);
-  AuditedRobot* robot_of(std::uint32_t robot, const msg::Header& head);
+  AuditedRobot* robot_of(std::uint32_t robot, const msg::Header& header);
   std::size_t index_of(const AuditedRobot& robot) const {
     return static_cast<std::size_t>(&robot - robots_.data());
   }
-  /// Topics whose messages one sender counts separately.
+  /// Topics whose messages a sender numbers separately.
   enum Kind : std::uint8_t {
     kProposalKind,
     kVerdictKind,
@@ -82,91 +83,91 @@ class Auditor {
     kFeedbackKind,
     kTruthKind
   };
-  Heard note(Kind kind, std::uint32_t key, const msg::Header& head);
-  /// The version's record with its content; nullptr if that makes no sense.
-  Known* learn(AuditedRobot& robot, const msg::Version& version);
+  Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
+  /// Stores the version's content and returns its record; nullptr if the content is invalid.
+  KnownVersion* store(AuditedRobot& robot, const msg::Version& version);
   EpochRecord& epoch_record(Epoch epoch);
 
   // Grants.
-  void rule(AuditedRobot& robot, HeardProposal& proposal, Epoch epoch, VersionNumber granted);
-  void judge_grant(AuditedRobot& robot, Known& known, const msg::Verdict& verdict);
-  void judge_content(const AuditedRobot& robot, const Known& known);
-  void judge_limits(const AuditedRobot& robot, const Known& known);
-  void judge_floor(const AuditedRobot& robot, const Known& known);
-  void judge_base(const AuditedRobot& robot, const Known& known);
-  void judge_epoch(const AuditedRobot& robot, const Known& known, const msg::Verdict& verdict);
-  void judge_forwarded(AuditedRobot& robot, VersionNumber number);
-  void judge_page(const msg::LedgerPage& page);
+  void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
+  void check_grant(AuditedRobot& robot, KnownVersion& known, const msg::Verdict& verdict);
+  void check_content(const AuditedRobot& robot, const KnownVersion& known);
+  void check_limits(const AuditedRobot& robot, const KnownVersion& known);
+  void check_field(const AuditedRobot& robot, const KnownVersion& known);
+  void check_obstacles(const AuditedRobot& robot, const KnownVersion& known);
+  void check_base(const AuditedRobot& robot, const KnownVersion& known);
+  void check_granting_epoch(const AuditedRobot& robot, const KnownVersion& known, const msg::Verdict& verdict);
+  void check_forwarded(AuditedRobot& robot, VersionNumber number);
+  void check_ledger_page(const msg::LedgerPage& page);
 
   // Facts.
-  void judge_order(const AuditedRobot& robot, const msg::Feedback& feedback);
-  void judge_switch(const AuditedRobot& robot, const Known& to, const msg::Feedback& feedback);
-  void judge_origin(AuditedRobot& robot, Known& executing);
-  void judge_tracking(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
-                      const Heard& heard);
-  void judge_own(const AuditedRobot& robot, const Known& own);
-  void judge_epochs(AuditedRobot& robot, const Known& executing, const msg::Feedback& feedback,
-                    const Heard& heard);
-  void judge_place(AuditedRobot& robot, const msg::Feedback& feedback, const Heard& heard);
-  /// `before`: contacts that were told of before.
-  void judge_contacts(const msg::GroundTruth& truth, std::uint64_t before);
-  /// Where everybody is.
-  void see(const msg::GroundTruth& truth);
-  /// In the roster; nothing for who is not in it.
-  std::optional<std::size_t> place_of(RobotId robot) const;
-  static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Heard& heard,
+  void check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback);
+  void check_switch(const AuditedRobot& robot, const KnownVersion& to, const msg::Feedback& feedback);
+  void check_sent(AuditedRobot& robot, KnownVersion& executing);
+  void check_tracking(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
+                      const Reception& reception);
+  void check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop);
+  void check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
+                           const Reception& reception);
+  void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
+  /// `reported`: number of contacts in the ground truth before.
+  void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
+  void record_positions(const msg::GroundTruth& truth);
+  /// nullopt: not on the roster.
+  std::optional<std::size_t> roster_index(RobotId robot) const;
+  static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Reception& reception,
                       std::int64_t now_ns);
-  bool clock_is_sound(const msg::Feedback& feedback, const Heard& heard) const;
+  bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
 
   // Pairs.
-  /// `before`: of its recent versions, before the fact that is being looked at.
-  void judge_pairs_of(const AuditedRobot& robot, const std::vector<Before>& before);
-  void judge_new_pairs_of(AuditedRobot& robot, const Known& known);
-  /// Whether, and in which epoch's ledger (0: at once, by facts), both were held at one time; nullopt: not
-  /// proven.
-  std::optional<Epoch> held_together(const Known& a, const Before& a_state, const Known& b,
-                                     const Before& b_state) const;
-  void judge_pair(const AuditedRobot& ra, const Known& a, const AuditedRobot& rb, const Known& b,
-                  Epoch epoch);
-  /// nullopt: its base was not heard.
-  std::optional<bool> is_excused(const AuditedRobot& robot, const Known& later, const Known& other,
-                                 double distance_m) const;
-  /// Whether what has just become known of `mine` can be the last that was missing to prove that both were
-  /// held at one time, and they lie near enough to each other.
-  bool may_matter(const Live& mine, const Before& before, const Live& theirs) const;
-  double min_separation_m(const Known& a, const Known& b) const;
-  static Before state_of(const Known& known);
+  /// `before`: the evidence for the robot's recent versions before the current fact.
+  void check_pairs(const AuditedRobot& robot, const std::vector<Evidence>& before);
+  void check_new_pairs(AuditedRobot& robot, const KnownVersion& known);
+  /// The epoch whose ledger provably held both versions at one time; 0 if both were provably executed at one
+  /// time; nullopt if neither is proven.
+  std::optional<Epoch> common_epoch(const KnownVersion& a, const Evidence& a_evidence, const KnownVersion& b,
+                                    const Evidence& b_evidence) const;
+  void check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
+                  const KnownVersion& b, Epoch epoch);
+  /// nullopt: the version's base was not received.
+  std::optional<bool> is_excused(const AuditedRobot& robot, const KnownVersion& later,
+                                 const KnownVersion& other, double distance_m) const;
+  /// Cheap necessary condition: the new evidence for `mine` can complete the proof that both were held at one
+  /// time, and the two are close enough to conflict.
+  bool may_conflict(const LiveVersion& mine, const Evidence& before, const LiveVersion& theirs) const;
+  double min_separation_m(const KnownVersion& a, const KnownVersion& b) const;
+  static Evidence evidence_of(const KnownVersion& known);
 
   Scenario scenario_;
-  AuditTrace how_;
+  AuditInput input_;
   double tracking_bound_m_;
   std::int64_t clock_bound_ns_;
-  MessageTrace hearing_;
+  MessageTrace trace_;
   Time now_{};
-  std::vector<AuditedRobot> robots_;      ///< ascending by id
-  std::vector<Whereabouts> whereabouts_;  ///< as robots_
-  std::vector<std::vector<Live>> live_;   ///< as robots_
-  double max_inflation_m_ = 0;               ///< that was heard of
+  std::vector<AuditedRobot> robots_;                     ///< ascending by id
+  std::vector<BoundingDisc> bounds_;                     ///< parallel to robots_
+  std::vector<std::vector<LiveVersion>> live_versions_;  ///< parallel to robots_
+  double max_inflation_m_ = 0;                           ///< of all versions received so far
   std::vector<bool> has_sound_clock_;
-  std::vector<Sight> sights_;
-  std::vector<std::optional<Vec2>> places_m_;  ///< in the last truth, as robots_
-  Hands hands_;                                ///< only who hears everything judges places
-  std::vector<std::size_t> index_;             ///< by id; robots_.size(): not on the roster
+  std::vector<Observation> observations_;
+  std::vector<std::optional<Vec2>> positions_m_;  ///< in the latest ground truth, parallel to robots_
+  Disturbances disturbances_;
+  std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {
     Incarnation incarnation = 0;
     Epoch epoch = 0;
   };
   std::map<std::uint32_t, std::vector<AgentStream>> agent_epochs_;
-  std::map<std::uint64_t, msg::GroundTruth> truths_;  ///< last counters of each simulator's life
-  std::vector<Before> before_;
-  std::vector<Live> changed_;
+  std::map<std::uint64_t, msg::GroundTruth> truths_;  ///< the latest counters of each simulator incarnation
+  std::vector<Evidence> earlier_evidence_;
+  std::vector<LiveVersion> changed_;
   std::vector<VersionNumber> page_numbers_;
   AuditTotals totals_;
   std::function<void(const Violation&)> on_violation_;
 };
 
-/// Lets the auditor hear a bus from now on; it must outlive the bus's last callback.
+/// Subscribes the auditor to a bus; the auditor must outlive the bus's last callback.
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor);
 
 }  // namespace sidestep

@@ -6,54 +6,57 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kLongest{60'000'000'000};
-// So long after it was let go it may still look as if it were in place.
-constexpr Duration kSettles{1'000'000'000};
+constexpr Duration kMaxDuration{60'000'000'000};
+// A displaced robot may pass through its place by chance for this long after the disturbance.
+constexpr Duration kSettlingTime{1'000'000'000};
 
 }  // namespace
 
-Hands::Hands(std::size_t robots, bool sees_places) : sees_places_(sees_places), held_(robots) {}
+Disturbances::Disturbances(std::size_t robots, bool has_position_checks)
+    : has_position_checks_(has_position_checks), states_(robots) {}
 
-void Hands::hold(std::size_t robot, Time let_go) {
-  std::optional<Time>& until = held_[robot].until;
-  until = std::max(until.value_or(Time::min()), let_go + kSettles);
+void Disturbances::extend(std::size_t robot, Time end_time) {
+  std::optional<Time>& until = states_[robot].until;
+  until = std::max(until.value_or(Time::min()), end_time + kSettlingTime);
 }
 
-void Hands::move(std::size_t robot, Time let_go, Time now) {
-  if (held_[robot].let_go == let_go) return;
-  held_[robot].let_go = let_go;
-  hold(robot, std::min(let_go, now + kLongest));
+void Disturbances::disturb(std::size_t robot, Time end_time, Time now) {
+  if (states_[robot].reported_end == end_time) return;
+  states_[robot].reported_end = end_time;
+  extend(robot, std::min(end_time, now + kMaxDuration));
 }
 
-void Hands::step(Time now, const std::vector<std::optional<Vec2>>& places_m, double touching_m) {
+void Disturbances::update(Time now, const std::vector<std::optional<Vec2>>& positions_m,
+                          double contact_distance_m) {
   now_ = now;
-  for (Held& held : held_) {
-    if (!held.until) continue;
-    held.until = std::min(*held.until, now + kLongest + kSettles);  // its clock may have been set back
-    // Only who sees that it is back in its place knows.
-    if (*held.until <= now && !sees_places_) held.until.reset();
+  for (State& state : states_) {
+    if (!state.until) continue;
+    // The simulator's clock may have been set back.
+    state.until = std::min(*state.until, now + kMaxDuration + kSettlingTime);
+    if (*state.until <= now && !has_position_checks_) state.until.reset();
   }
   std::erase_if(pushes_, [&](const Push& push) {
-    const auto &by = places_m[push.by], &of = places_m[push.of];
-    return !by || !of || (*by - *of).norm() > touching_m;
+    const auto &pushing = positions_m[push.pushing], &pushed = positions_m[push.pushed];
+    return !pushing || !pushed || (*pushing - *pushed).norm() > contact_distance_m;
   });
   for (const Push& push : pushes_) {
-    if (are_on(push.by)) hold(push.of, now);
+    if (is_disturbed(push.pushing)) extend(push.pushed, now);
   }
 }
 
-bool Hands::touch(std::optional<std::size_t> first, std::optional<std::size_t> second) {
-  const bool by_first = first && are_on(*first), by_second = second && are_on(*second);
-  if (first && second && by_first != by_second) {
-    const Push push = by_first ? Push{*first, *second} : Push{*second, *first};
-    hold(push.of, now_);
+bool Disturbances::on_contact(std::optional<std::size_t> first, std::optional<std::size_t> second) {
+  const bool is_first_disturbed = first && is_disturbed(*first);
+  const bool is_second_disturbed = second && is_disturbed(*second);
+  if (first && second && is_first_disturbed != is_second_disturbed) {
+    const Push push = is_first_disturbed ? Push{*first, *second} : Push{*second, *first};
+    extend(push.pushed, now_);
     pushes_.push_back(push);
   }
-  return by_first || by_second;
+  return is_first_disturbed || is_second_disturbed;
 }
 
-void Hands::see_in_place(std::size_t robot) {
-  std::optional<Time>& until = held_[robot].until;
+void Disturbances::confirm_in_place(std::size_t robot) {
+  std::optional<Time>& until = states_[robot].until;
   if (until && *until <= now_) until.reset();
 }
 

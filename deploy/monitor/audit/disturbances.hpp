@@ -11,40 +11,39 @@
 
 namespace sidestep {
 
-/// Whom somebody has moved, and whom those push who were moved: what they touch, and where they are, is not
-/// the protocol's doing. Robots by their places in the roster; times are the simulator's.
-class Hands {
+/// Robots displaced by an operator, and robots those push in turn. Their contacts and positions say nothing
+/// about the protocol. Robots are given by their index in the roster; times are the simulator's.
+class Disturbances {
  public:
-  /// Who does not see whether robots are back in their places takes them to be after a while.
-  Hands(std::size_t robots, bool sees_places);
+  /// Without position checks, a robot is assumed to be back in place after a timeout.
+  Disturbances(std::size_t robots, bool has_position_checks);
 
-  /// A ground truth of now says that somebody has moved a robot, and lets go of it then. Said again and
-  /// again, it counts once.
-  void move(std::size_t robot, Time let_go, Time now);
-  /// Another ground truth: where robots are; nothing for a robot that is not in it. Those that touch are not
-  /// farther apart than `touching_m`.
-  void step(Time now, const std::vector<std::optional<Vec2>>& places_m, double touching_m);
-  /// Two robots began to touch; nothing: what is no robot. Whether one of them was moved: then it pushes the
-  /// other one, for as long as they touch.
-  bool touch(std::optional<std::size_t> first, std::optional<std::size_t> second);
-  /// A robot is where it ought to be.
-  void see_in_place(std::size_t robot);
+  /// Ground truth reports that an operator disturbed the robot until `end_time`. Repetitions count once.
+  void disturb(std::size_t robot, Time end_time, Time now);
+  /// New ground truth: the positions of the robots that it contains. Robots farther apart than
+  /// `contact_distance_m` do not touch.
+  void update(Time now, const std::vector<std::optional<Vec2>>& positions_m, double contact_distance_m);
+  /// A contact began; nullopt stands for anything but a robot. Returns whether a disturbed robot is involved.
+  /// If only one of two robots is, the other one counts as disturbed for as long as they touch.
+  bool on_contact(std::optional<std::size_t> first, std::optional<std::size_t> second);
+  /// The robot was observed within its tracking bound.
+  void confirm_in_place(std::size_t robot);
 
-  bool are_on(std::size_t robot) const { return held_[robot].until.has_value(); }
+  bool is_disturbed(std::size_t robot) const { return states_[robot].until.has_value(); }
 
  private:
-  struct Held {
-    std::optional<Time> let_go;  ///< as told last
-    std::optional<Time> until;   ///< before it nobody can say that the robot is back in its place
+  struct State {
+    std::optional<Time> reported_end;  ///< as last reported
+    std::optional<Time> until;         ///< earliest time at which the robot can count as back in place
   };
   struct Push {
-    std::size_t by, of;
+    std::size_t pushing, pushed;
   };
-  void hold(std::size_t robot, Time let_go);
+  void extend(std::size_t robot, Time end_time);
 
-  bool sees_places_;
+  bool has_position_checks_;
   Time now_{};
-  std::vector<Held> held_;
+  std::vector<State> states_;
   std::vector<Push> pushes_;
 };
 

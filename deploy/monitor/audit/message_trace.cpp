@@ -3,34 +3,35 @@
 
 #include <algorithm>
 
+#include "deploy/monitor/time_range.hpp"
+
 namespace sidestep {
 namespace {
 
 constexpr std::int64_t kWindow = 64;
-// How fast two hosts' clocks may part, in nanoseconds a second.
-constexpr std::int64_t kDrift_nsps = 200'000;
-constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
+// Maximum relative drift of two hosts' clocks, in nanoseconds per second.
+constexpr std::int64_t kMaxDrift_nsps = 200'000;
 
 }  // namespace
 
-Heard MessageTrace::note(std::uint64_t channel, const msg::Header& head, Time now) {
-  ++heard_;
-  if (streams_.size() >= kMostStreams) streams_.clear();
-  auto [at, is_new] = streams_.try_emplace({channel, head.incarnation(), head.sender()});
-  Stream& stream = at->second;
-  const std::uint64_t number = head.message_number();
+Reception MessageTrace::record(std::uint64_t channel, const msg::Header& header, Time now) {
+  ++received_;
+  if (streams_.size() >= kMaxStreams) streams_.clear();
+  auto [entry, is_new] = streams_.try_emplace({channel, header.incarnation(), header.sender()});
+  Stream& stream = entry->second;
+  const std::uint64_t number = header.message_number();
   const std::int64_t now_ns = to_ns(now);
-  const std::int64_t stamp_ns = std::clamp<std::int64_t>(head.stamp_ns(), 0, kLatest_ns);
+  const std::int64_t stamp_ns = std::clamp<std::int64_t>(header.stamp_ns(), 0, kMaxTime_ns);
 
-  Heard heard;
+  Reception reception;
   if (is_new) {
     stream = {number, 1, now_ns - stamp_ns, now_ns, 0};
-    heard.is_newest = true;
-    heard.is_next = number == 1;
+    reception.is_newest = true;
+    reception.is_next = number == 1;
   } else if (number > stream.newest) {
     const std::uint64_t ahead = number - stream.newest;
-    heard.is_newest = true;
-    heard.is_next = ahead == 1;
+    reception.is_newest = true;
+    reception.is_next = ahead == 1;
     missed_ += ahead - 1;
     stream.window = ahead < kWindow ? stream.window << ahead | 1 : 1;
     stream.newest = number;
@@ -39,24 +40,27 @@ Heard MessageTrace::note(std::uint64_t channel, const msg::Header& head, Time no
     if (!(stream.window & bit) && missed_ > 0) --missed_;
     stream.window |= bit;
   }
-  bound(stream, stamp_ns, now_ns, heard);
-  return heard;
+  bound(stream, stamp_ns, now_ns, reception);
+  return reception;
 }
 
-void MessageTrace::bound(Stream& stream, std::int64_t stamp_ns, std::int64_t now_ns, Heard& heard) const {
-  if (fastest_ns_ == 0) {
-    heard.earliest_ns = heard.latest_ns = now_ns;
+void MessageTrace::bound(Stream& stream, std::int64_t stamp_ns, std::int64_t now_ns,
+                         Reception& reception) const {
+  if (min_latency_bound_ns_ == 0) {
+    reception.earliest_ns = reception.latest_ns = now_ns;
     return;
   }
-  const std::int64_t passed_ms = std::clamp<std::int64_t>((now_ns - stream.at_ns) / 1'000'000, 0, 1 << 20);
-  stream.least_ahead_ns = std::min(stream.least_ahead_ns + passed_ms * kDrift_nsps / 1000, now_ns - stamp_ns);
-  stream.at_ns = now_ns;
-  // heard - stamp = clocks' difference + the way; its least is the difference + the fastest way.
-  heard.latest_ns = stamp_ns + stream.least_ahead_ns;
-  if (stream.count < kEnough) {
+  const std::int64_t passed_ms =
+      std::clamp<std::int64_t>((now_ns - stream.updated_ns) / 1'000'000, 0, 1 << 20);
+  stream.min_difference_ns =
+      std::min(stream.min_difference_ns + passed_ms * kMaxDrift_nsps / 1000, now_ns - stamp_ns);
+  stream.updated_ns = now_ns;
+  // received - stamp = clock offset + latency, so its minimum is the clock offset + the minimum latency.
+  reception.latest_ns = stamp_ns + stream.min_difference_ns;
+  if (stream.count < kMinSamples) {
     ++stream.count;
   } else {
-    heard.earliest_ns = heard.latest_ns - fastest_ns_;
+    reception.earliest_ns = reception.latest_ns - min_latency_bound_ns_;
   }
 }
 

@@ -10,31 +10,32 @@
 
 namespace sidestep {
 
-/// What the auditor can say of one message's way to it. Times are by the auditor's clock.
-struct Heard {
-  std::int64_t earliest_ns = 0;  ///< not sent before
-  std::int64_t latest_ns = 0;    ///< not sent after
-  bool is_next = false;          ///< follows directly the one heard before from that sender
-  bool is_newest = false;        ///< no later one, nor this one, has been heard from that sender
+/// When a received message was sent, and where it stands in its sender's sequence. Times are by the auditor's
+/// clock.
+struct Reception {
+  std::int64_t earliest_ns = 0;  ///< lower bound of the sending time
+  std::int64_t latest_ns = 0;    ///< upper bound of the sending time
+  bool is_next = false;          ///< directly follows the newest message received from that sender before
+  bool is_newest = false;        ///< neither this nor a later message of that sender was received before
 };
 
-/// Counts what the auditor missed, and bounds when messages were sent, from their heads alone.
+/// Counts missed messages and bounds sending times, from message headers alone.
 class MessageTrace {
  public:
-  /// A message of a channel takes at most `fastest` on its fastest way to the auditor; zero: every message is
-  /// heard at the moment it is sent.
-  explicit MessageTrace(Duration fastest) : fastest_ns_(fastest.count()) {}
+  /// `min_latency_bound`: the fastest messages of a channel take at most this long to the auditor. Zero: every
+  /// message is received at the moment it is sent.
+  explicit MessageTrace(Duration min_latency_bound) : min_latency_bound_ns_(min_latency_bound.count()) {}
 
-  /// `channel` tells apart what one sender counts separately.
-  Heard note(std::uint64_t channel, const msg::Header& head, Time now);
+  /// `channel` tells apart the streams that one sender numbers separately.
+  [[nodiscard]] Reception record(std::uint64_t channel, const msg::Header& header, Time now);
 
-  std::uint64_t heard() const { return heard_; }
+  std::uint64_t received() const { return received_; }
   std::uint64_t missed() const { return missed_; }
 
  private:
-  static constexpr std::size_t kMostStreams = 1 << 15;
-  /// Of so many messages one came the fastest way.
-  static constexpr int kEnough = 64;
+  static constexpr std::size_t kMaxStreams = 1 << 15;
+  /// Among this many messages, at least one is assumed to have had the minimum latency.
+  static constexpr int kMinSamples = 64;
 
   struct Key {
     std::uint64_t channel, incarnation;
@@ -49,17 +50,16 @@ class MessageTrace {
   };
   struct Stream {
     std::uint64_t newest = 0;
-    std::uint64_t window = 0;  ///< bit i: number newest - i was heard
-    std::int64_t least_ahead_ns =
-        0;                   ///< least of (heard - stamp): the clocks' difference and the fastest way
-    std::int64_t at_ns = 0;  ///< when that was brought up to date
-    int count = 0;           ///< messages that it rests on, up to kEnough
+    std::uint64_t window = 0;           ///< bit i: message newest - i was received
+    std::int64_t min_difference_ns = 0;  ///< minimum of (received - stamp): clock offset + minimum latency
+    std::int64_t updated_ns = 0;         ///< when min_difference_ns was updated
+    int count = 0;                       ///< messages behind that minimum, up to kMinSamples
   };
-  void bound(Stream& stream, std::int64_t stamp_ns, std::int64_t now_ns, Heard& heard) const;
+  void bound(Stream& stream, std::int64_t stamp_ns, std::int64_t now_ns, Reception& reception) const;
 
-  std::int64_t fastest_ns_;
+  std::int64_t min_latency_bound_ns_;
   std::unordered_map<Key, Stream, Hash> streams_;
-  std::uint64_t heard_ = 0, missed_ = 0;
+  std::uint64_t received_ = 0, missed_ = 0;
 };
 
 }  // namespace sidestep

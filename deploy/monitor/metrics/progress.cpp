@@ -10,14 +10,14 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kRedraw = std::chrono::milliseconds(200);
-constexpr Duration kPlainLine = std::chrono::seconds(1);
-constexpr int kUsualTerminalRows = 24;
+constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
+constexpr Duration kLinePeriod = std::chrono::seconds(1);
+constexpr int kDefaultTerminalRows = 24;
 
-const char* name_of(const RobotProgress& row) {
+const char* state_name(const RobotProgress& row) {
   if (row.arrived) return "arrived";
-  if (!row.phase) return "silent";
-  switch (*row.phase) {
+  if (!row.agent_state) return "silent";
+  switch (*row.agent_state) {
     case msg::AgentState::AGENT_FENCING:
       return "fencing";
     case msg::AgentState::AGENT_REGISTERING:
@@ -28,17 +28,17 @@ const char* name_of(const RobotProgress& row) {
       return "driving";
     case msg::AgentState::AGENT_ARRIVED:
       return "settling";
-    case msg::AgentState::AGENT_OFF_CLOCK:
-      return "off clock";
+    case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
+      return "clock off";
     case msg::AgentState::AGENT_ABSENT:
       return "absent";
   }
   return "?";
 }
 
-std::string clocks_of(const Report& report) {
-  if (!report.clock_offset_max_s) return "";
-  return fmt::format("  clocks {:.2f} +- {:.2f} ms", *report.clock_offset_max_s * 1e3,
+std::string clock_text(const Report& report) {
+  if (!report.max_clock_offset_s) return "";
+  return fmt::format("  clocks {:.2f} +- {:.2f} ms", *report.max_clock_offset_s * 1e3,
                      report.clock_uncertainty_s.value_or(0) * 1e3);
 }
 
@@ -46,14 +46,14 @@ double milliseconds(Duration duration) { return to_seconds(duration) * 1e3; }
 
 int terminal_rows() {
   winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : kUsualTerminalRows;
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : kDefaultTerminalRows;
 }
 
 }  // namespace
 
-std::string progress_line(const RunMetrics& judge, Time now) {
-  const Report report = judge.report();
-  const auto since = judge.granting_since();
+std::string progress_line(const RunMetrics& metrics, Time now) {
+  const Report report = metrics.report();
+  const auto since = metrics.granting_since();
   const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
                                                 static_cast<double>(report.cycles)
                                           : 0;
@@ -61,21 +61,21 @@ std::string progress_line(const RunMetrics& judge, Time now) {
       "{}  {} of {} arrived  {} contacts{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
       "negotiation {:.2f} / {:.2f} ms{}",
       since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
-      report.contacts, judge.conflicts() > 0 ? fmt::format("  {} in conflict", judge.conflicts()) : "",
+      report.contacts, metrics.conflicts() > 0 ? fmt::format("  {} in conflict", metrics.conflicts()) : "",
       report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
       report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
-      milliseconds(report.negotiation.quantile(0.99)), clocks_of(report));
+      milliseconds(report.negotiation.quantile(0.99)), clock_text(report));
 }
 
-std::string progress_table(const RunMetrics& judge, Time now, int max_rows) {
-  std::string text = progress_line(judge, now) + "\n";
+std::string progress_table(const RunMetrics& metrics, Time now, int max_rows) {
+  std::string text = progress_line(metrics, now) + "\n";
   text += "robot  team    state          to go      speed   grants  denials  negotiation p50 / p99\n";
-  const auto rows = judge.progress();
+  const auto rows = metrics.progress();
   const auto shown = std::min<std::size_t>(rows.size(), static_cast<std::size_t>(std::max(max_rows, 1)));
   for (std::size_t i = 0; i < shown; ++i) {
     const RobotProgress& row = rows[i];
     text += fmt::format("{:5}  {:6}  {:11}  {:6.2f} m  {:5.2f} m/s  {:7}  {:7}  {:11.2f} / {:.2f} ms\n",
-                        row.robot, row.team == Team::kBlue ? "blue" : "yellow", name_of(row),
+                        row.robot, row.team == Team::kBlue ? "blue" : "yellow", state_name(row),
                         row.distance_to_go_m, row.speed_mps, row.grants, row.denials,
                         milliseconds(row.negotiation_p50), milliseconds(row.negotiation_p99));
   }
@@ -90,24 +90,24 @@ void ProgressDisplay::erase_table() {
   drawn_lines_ = 0;
 }
 
-void ProgressDisplay::say(const std::string& line) {
+void ProgressDisplay::print(const std::string& line) {
   erase_table();
   fmt::print("{}\n", line);
   std::fflush(stdout);
   if (is_terminal_) next_ = Time{};
 }
 
-void ProgressDisplay::update(const RunMetrics& judge, Time now) {
+void ProgressDisplay::update(const RunMetrics& metrics, Time now) {
   if (now < next_) return;
   if (is_terminal_) {
-    next_ = now + kRedraw;
+    next_ = now + kTablePeriod;
     erase_table();
-    const std::string table = progress_table(judge, now, terminal_rows() - 4);
+    const std::string table = progress_table(metrics, now, terminal_rows() - 4);
     drawn_lines_ = static_cast<int>(std::count(table.begin(), table.end(), '\n'));
     fmt::print("{}", table);
   } else {
-    next_ = now + kPlainLine;
-    fmt::print("{}\n", progress_line(judge, now));
+    next_ = now + kLinePeriod;
+    fmt::print("{}\n", progress_line(metrics, now));
   }
   std::fflush(stdout);
 }

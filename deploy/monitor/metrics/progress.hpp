@@ -7,19 +7,20 @@
 
 namespace sidestep {
 
-/// One line about the whole run.
-std::string progress_line(const RunMetrics& judge, Time now);
-/// That line, and a line for each robot, at most `max_rows` of them.
-std::string progress_table(const RunMetrics& judge, Time now, int max_rows);
+/// One line on the whole run.
+std::string progress_line(const RunMetrics& metrics, Time now);
+/// That line, followed by at most `max_rows` lines with one robot each.
+std::string progress_table(const RunMetrics& metrics, Time now, int max_rows);
 
-/// Shows a run while it lasts: a table that is redrawn in a terminal, plain lines, one a second, elsewhere.
+/// Shows the progress of a run on stdout: in a terminal a table that is redrawn in place, elsewhere one line per
+/// second.
 class ProgressDisplay {
  public:
   ProgressDisplay();
-  /// Prints a line that stays.
-  void say(const std::string& line);
-  /// Shows where the run stands, when it is time for it again.
-  void update(const RunMetrics& judge, Time now);
+  /// Prints a permanent line above the table.
+  void print(const std::string& line);
+  /// Refreshes the display if its period has passed.
+  void update(const RunMetrics& metrics, Time now);
 
  private:
   void erase_table();

@@ -2,23 +2,20 @@
 #include "deploy/monitor/metrics/report.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "common/file/write_file.hpp"
 
 namespace sidestep {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// To the micrometre or microsecond, so that reports stay readable.
+/// Rounds to micrometres or microseconds, for readable reports.
 Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   return std::round(value * 1e6) / 1e6;
@@ -27,11 +24,11 @@ Json rounded(const std::optional<double>& value) { return value ? rounded(*value
 
 Json microseconds(Duration duration) { return std::round(to_seconds(duration) * 1e7) / 10; }
 
-Json quantiles(const DurationHistogram& histogram, bool with_largest) {
+Json quantiles(const DurationHistogram& histogram, bool with_max) {
   Json json;
   json["p50"] = microseconds(histogram.quantile(0.5));
   json["p99"] = microseconds(histogram.quantile(0.99));
-  if (with_largest) json["max"] = microseconds(histogram.largest());
+  if (with_max) json["max"] = microseconds(histogram.max());
   return json;
 }
 
@@ -45,42 +42,43 @@ Json audit_json(const AuditTotals& audit) {
   json["first"] = Json::array();
   for (const Violation& violation : audit.first)
     json["first"].push_back(Json::parse(to_json_line(violation)));
-  json["heard"] = audit.heard;
+  json["received"] = audit.received;
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
-  json["contacts_by_hand"] = audit.contacts_by_hand;
-  json["places_by_hand"] = audit.places_by_hand;
-  json["pairs"] = audit.pairs;
-  json["unjudged"] = audit.unjudged;
-  json["farthest_from_reference_m"] = rounded(audit.farthest_m);
-  json["beyond_tracking_bound"] = audit.beyond;
+  json["excused_contacts"] = audit.excused_contacts;
+  json["excused_displacements"] = audit.excused_displacements;
+  json["compared_pairs"] = audit.compared_pairs;
+  json["undecided_pairs"] = audit.undecided_pairs;
+  json["max_position_error_m"] = rounded(audit.max_position_error_m);
+  json["beyond_tracking_bound"] = audit.beyond_tracking_bound;
   return json;
 }
 
-std::string shown(const std::optional<double>& value, const char* unit) {
+std::string to_text(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
 
 }  // namespace
 
-std::uint64_t Report::contacts_of_its_own() const {
-  const std::uint64_t by_hand = audit ? audit->contacts_by_hand : 0;
-  return contacts > by_hand ? contacts - by_hand : 0;
+std::uint64_t Report::unexcused_contacts() const {
+  const std::uint64_t excused = audit ? audit->excused_contacts : 0;
+  return contacts > excused ? contacts - excused : 0;
 }
 
-std::string Report::verdict() const {
-  std::string why;
-  const auto add = [&why](const std::string& part) { why += (why.empty() ? "" : ", ") + part; };
-  if (!failure.empty()) add(failure);
-  if (const auto touched = contacts_of_its_own(); touched > 0) add(fmt::format("{} contacts", touched));
-  if (moving_crashes > 0) add(fmt::format("{} crashes of moving robots", moving_crashes));
+std::string Report::failure_reason() const {
+  std::string reason;
+  const auto add = [&reason](const std::string& part) { reason += (reason.empty() ? "" : ", ") + part; };
+  if (!abort_reason.empty()) add(abort_reason);
+  if (const auto unexcused = unexcused_contacts(); unexcused > 0)
+    add(fmt::format("{} contacts", unexcused));
+  if (crashes_while_moving > 0) add(fmt::format("{} crashes of moving robots", crashes_while_moving));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {
-    add(fmt::format("{} violations found by the audit, first of {}", audit->violations,
+    add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
                     audit_rule(audit->first.front().rule).name));
   }
   if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
-  return why;
+  return reason;
 }
 
 std::string to_json(const Report& r) {
@@ -88,20 +86,20 @@ std::string to_json(const Report& r) {
   json["program"] = r.program;
   json["scenario"] = r.scenario;
   json["seed"] = r.seed ? Json(*r.seed) : Json(nullptr);
-  json["passed"] = r.verdict().empty();
-  json["failure"] = r.verdict().empty() ? Json(nullptr) : Json(r.verdict());
+  json["passed"] = r.failure_reason().empty();
+  json["failure"] = r.failure_reason().empty() ? Json(nullptr) : Json(r.failure_reason());
   json["robots"] = r.robots;
   json["arrived"] = r.arrived;
   json["contacts"] = r.contacts;
   json["penetration_m_s"] = rounded(r.penetration_m_s);
   json["min_clearance_m"] = rounded(r.min_clearance_m);
   json["crashes"] = r.crashes;
-  json["moving_crashes"] = r.moving_crashes;
-  json["crash_speed_mps"] = rounded(r.crash_speed_mps);
-  json["robot_crash_speed_mps"] = rounded(r.robot_crash_speed_mps);
+  json["crashes_while_moving"] = r.crashes_while_moving;
+  json["max_crash_speed_mps"] = rounded(r.max_crash_speed_mps);
+  json["max_robot_crash_speed_mps"] = rounded(r.max_robot_crash_speed_mps);
   json["makespan_s"] = rounded(r.makespan_s);
   json["mean_arrival_s"] = rounded(r.mean_arrival_s);
-  json["arrival_over_straight"] = rounded(r.arrival_over_straight);
+  json["straight_line_time_ratio"] = rounded(r.straight_line_time_ratio);
   json["arrival_s"] = Json::object();
   for (const auto& [robot, arrival_s] : r.arrival_s)
     json["arrival_s"][std::to_string(robot)] = rounded(arrival_s);
@@ -110,13 +108,13 @@ std::string to_json(const Report& r) {
   json["denials"] = r.denials;
   json["cycles"] = r.cycles;
   json["missed_cycles"] = r.missed_cycles;
-  json["plan_changes"] = r.plan_changes;
-  json["plan_changes_per_s"] = rounded(r.plan_changes_per_s);
+  json["route_changes"] = r.route_changes;
+  json["route_changes_per_s"] = rounded(r.route_changes_per_s);
   json["invalid_messages"] = r.invalid_messages;
   json["firmware_violations"] = r.firmware_violations;
   json["conflicts"] = r.conflicts;
   json["max_reference_error_m"] = rounded(r.max_reference_error_m);
-  json["clock_offset_max_s"] = rounded(r.clock_offset_max_s);
+  json["max_clock_offset_s"] = rounded(r.max_clock_offset_s);
   json["clock_uncertainty_s"] = rounded(r.clock_uncertainty_s);
   json["negotiation_us"] = quantiles(r.negotiation, true);
   json["robot_time_s"] = rounded(r.robot_time_s);
@@ -141,28 +139,28 @@ std::string summary(const Report& r) {
   const double missed =
       r.cycles > 0 ? 100.0 * static_cast<double>(r.missed_cycles) / static_cast<double>(r.cycles) : 0;
   std::string text = fmt::format(
-      "{} of {} arrived, {} contacts, least clearance {}\n"
-      "makespan {}, mean arrival {} ({} times the straight line alone), {} changes of plan a second\n"
-      "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; firmware violations {}\n"
-      "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; search p50 {:.0f} "
-      "us, p99 {:.0f} "
-      "us\n",
-      r.arrived, r.robots, r.contacts, shown(r.min_clearance_m, "m"), shown(r.makespan_s, "s"),
-      shown(r.mean_arrival_s, "s"),
-      r.arrival_over_straight ? fmt::format("{:.2f}", *r.arrival_over_straight) : "?",
-      r.plan_changes_per_s ? fmt::format("{:.1f}", *r.plan_changes_per_s) : "?", r.proposals, r.grants,
+      "{} of {} robots arrived, {} contacts, minimum clearance {}\n"
+      "makespan {}, mean arrival {} ({} times the straight-line time), {} route changes per second\n"
+      "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; {} firmware violations\n"
+      "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; safety search p50 "
+      "{:.0f} us, p99 {:.0f} us\n",
+      r.arrived, r.robots, r.contacts, to_text(r.min_clearance_m, "m"), to_text(r.makespan_s, "s"),
+      to_text(r.mean_arrival_s, "s"),
+      r.straight_line_time_ratio ? fmt::format("{:.2f}", *r.straight_line_time_ratio) : "?",
+      r.route_changes_per_s ? fmt::format("{:.1f}", *r.route_changes_per_s) : "?", r.proposals, r.grants,
       r.denials, missed, r.firmware_violations, us(r.negotiation, 0.5), us(r.negotiation, 0.99),
       us(r.plan, 0.5), us(r.plan, 0.99), us(r.search, 0.5), us(r.search, 0.99));
   if (r.crashes > 0) {
     text += fmt::format(
-        "{} crashes with opponents, {} of them moving; fastest {:.2f} m/s, of which the robot {:.2f} m/s\n",
-        r.crashes, r.moving_crashes, r.crash_speed_mps, r.robot_crash_speed_mps);
+        "{} crashes with opponents, {} of them while the robot moved; maximum closing speed {:.2f} m/s, maximum "
+        "robot share {:.2f} m/s\n",
+        r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
   for (const auto& [first, second] : r.conflicts)
-    text += fmt::format("robots {} and {} were brought too near to each other\n", first, second);
+    text += fmt::format("a cause outside the protocol brought robots {} and {} into conflict\n", first, second);
   if (r.audit) {
-    text += fmt::format("audit: {} violations in {} messages, {} missed; {} pairs of versions compared\n",
-                        r.audit->violations, r.audit->heard, r.audit->missed, r.audit->pairs);
+    text += fmt::format("audit: {} violations; {} messages received, {} missed; {} pairs of versions compared\n",
+                        r.audit->violations, r.audit->received, r.audit->missed, r.audit->compared_pairs);
     for (std::size_t i = 0; i < std::min<std::size_t>(r.audit->first.size(), 5); ++i)
       text += "  " + to_line(r.audit->first[i]) + "\n";
   }
@@ -170,20 +168,11 @@ std::string summary(const Report& r) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");
   }
-  const std::string why = r.verdict();
-  return text + (why.empty() ? "passed\n" : "failed: " + why + "\n");
+  const std::string reason = r.failure_reason();
+  return text + (reason.empty() ? "passed\n" : "failed: " + reason + "\n");
 }
 
 void write_report(const Report& report, const std::string& path) { write_file(path, to_json(report)); }
-
-void write_file(const std::string& path, const std::string& text) {
-  const auto folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  std::ofstream file(path);
-  file << text << std::flush;
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
-}
 
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed) {
   if (seed) return fmt::format("reports/{}-{}.json", scenario, *seed);

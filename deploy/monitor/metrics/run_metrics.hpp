@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/messaging/bus.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "idl/monitor.h"
@@ -15,11 +16,11 @@
 
 namespace sidestep {
 
-/// One robot's line of the progress table.
+/// One robot's row of the progress table.
 struct RobotProgress {
   RobotId robot = 0;
   Team team = Team::kBlue;
-  std::optional<msg::AgentState> phase;  ///< none: no status seen yet
+  std::optional<msg::AgentState> agent_state;  ///< none: no status received yet
   bool arrived = false;
   double distance_to_go_m = 0;  ///< to the last goal, in ground truth
   double speed_mps = 0;
@@ -29,12 +30,12 @@ struct RobotProgress {
   Duration negotiation_p99{0};
 };
 
-/// Watches one run from outside and says how it went. A robot has arrived when ground truth has it at its
-/// last goal, nearly at rest, and its agent says so. Times count from the first moment on which a coordinator
-/// said that it grants. Counters of processes that were restarted are summed over their lives.
+/// Collects the metrics of one run from its messages. A robot has arrived when its agent reports arrival and
+/// ground truth shows it at its last goal and nearly at rest. Times count from the first message in which a
+/// coordinator reports that it grants. Counters are summed over all incarnations of a process.
 class RunMetrics {
  public:
-  /// The scenario outlives the judge.
+  /// The scenario must outlive this object.
   explicit RunMetrics(const Scenario& scenario);
 
   void on_truth(const msg::GroundTruth& truth);
@@ -42,77 +43,79 @@ class RunMetrics {
   void on_coordinator(const msg::CoordinatorState& state);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
 
-  /// Puts what the auditor finds into the report; it outlives the judge's last report.
-  void include(const Auditor& auditor) { auditor_ = &auditor; }
+  /// Includes the auditor's findings in reports; the auditor must outlive the last report.
+  void set_auditor(const Auditor& auditor) { auditor_ = &auditor; }
 
   bool all_arrived() const;
   int arrived() const;
   /// Whether no robot moves in the latest ground truth.
   bool all_at_rest() const;
-  /// Robots whose agents have not been heard.
+  /// Robots whose agents have not sent a status.
   std::vector<RobotId> silent_agents() const;
-  bool truth_seen() const { return truth_at_.has_value(); }
-  bool coordinator_seen() const { return active_.has_value(); }
-  /// Pairs of robots that may come too near to each other, as the coordinator last said.
+  bool has_truth() const { return truth_at_.has_value(); }
+  bool has_coordinator_state() const { return active_.has_value(); }
+  /// Number of robot pairs in conflict, as last reported by the coordinator.
   std::uint32_t conflicts() const { return active_ ? active_->conflicts() : 0; }
-  /// Robots that the coordinator misses, as it last said.
-  std::vector<RobotId> unregistered() const;
-  /// When a coordinator first granted.
+  /// Robots whose registrations are missing, as last reported by the coordinator.
+  std::vector<RobotId> unregistered_robots() const;
+  /// When a coordinator first reported that it grants.
   std::optional<Time> granting_since() const { return granting_since_; }
   /// The latest ground truth's time.
   std::optional<Time> truth_at() const { return truth_at_; }
-  /// Messages that made no sense and were dropped here.
-  std::uint64_t dropped() const { return dropped_; }
+  /// Number of invalid or outdated messages that were ignored here.
+  std::uint64_t dropped_messages() const { return dropped_messages_; }
 
   std::vector<RobotProgress> progress() const;
-  /// All of the report but what only the caller knows: seed, wall-clock times, and why the run ended.
+  /// The report, except for what only the caller knows: program, seed, wall-clock times, and why the run ended.
   Report report() const;
 
  private:
-  struct Watched {
+  struct RobotRecord {
     const RobotSpec* spec;
     Vec2 position_m{0, 0};
     double speed_mps = 0;
-    std::optional<Time> settled_since;    ///< at the last goal and slow, without a break
-    std::vector<msg::AgentStatus> lives;  ///< the last status of each life of its agent, in order
-    Incarnation speaker = 0;              ///< the incarnation of the one of them that speaks for the robot
-    int others = 0;                       ///< statuses since then of others that are but fencing
+    std::optional<Time> settled_since;    ///< since when it has been at the last goal and nearly at rest
+    std::vector<msg::AgentStatus> lives;  ///< the last status of each incarnation of its agent, in order
+    Incarnation authoritative = 0;        ///< the incarnation whose status counts
+    int fencing_statuses = 0;             ///< from other incarnations since its last status
 
-    /// What the robot's agent says, nullptr: nothing yet. Of several lives it is the one that was heard last,
-    /// of those that are but fencing only while no other speaks. Not the highest incarnation: that may have
-    /// died before its robot obeyed it, and on a host whose clock was ahead.
-    const msg::AgentStatus* speaks() const;
+    /// The status that counts; nullptr: none yet. It is the most recently received one, but an incarnation
+    /// that is still fencing counts only if no other one reports. The highest incarnation would be wrong: it
+    /// may have started on a host whose clock was ahead, and died before its robot obeyed it.
+    const msg::AgentStatus* status() const;
   };
 
-  Watched* find(RobotId robot);
-  bool has_arrived(const Watched& robot) const;
-  double to_go_m(const Watched& robot) const;
+  RobotRecord* find(RobotId robot);
+  bool has_arrived(const RobotRecord& robot) const;
+  double distance_to_go_m(const RobotRecord& robot) const;
+  void add_ground_truth(Report& report) const;
+  void add_arrivals(Report& report) const;
+  void add_agents(Report& report) const;
+  void add_clocks(Report& report) const;
 
   const Scenario& scenario_;
   const Auditor* auditor_ = nullptr;
-  std::vector<Watched> robots_;               ///< ascending by id
-  std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each life, without robots
+  std::vector<RobotRecord> robots_;               ///< ascending by id
+  std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
   struct CoordinatorLife {
     std::uint64_t message_number = 0;
     std::uint64_t invalid = 0;
   };
-  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife> coordinators_;  ///< by number and life
+  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife> coordinators_;  ///< by number and incarnation
   std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::optional<Time> granting_since_;
   std::optional<Time> truth_at_;
   double max_reference_error_m_ = 0;
-  std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_messages_ = 0;
   std::vector<Death> deaths_;
 };
 
-/// The names under which everybody who starts and watches processes knows a robot's agent, and a coordinator:
-/// "agent 3", "coordinator", "coordinator 1".
-std::string agent_process(RobotId robot);
-std::string coordinator_process(int number);
+/// Subscribes the metrics to a bus; they must outlive the bus's last callback.
+void listen(Bus& bus, RunMetrics& metrics);
 
-/// The shortest time from the start over all goals for a robot alone: straight lines, at rest at each goal,
-/// acceleration F, deceleration D, at most v_max.
-double straight_time_s(const RobotSpec& robot, const MotionLimits& limits);
+/// Lower bound of the time from the start via all goals: straight lines, at rest at each goal, acceleration F,
+/// deceleration D, at most v_max, no other robots.
+[[nodiscard]] double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits);
 
 }  // namespace sidestep

@@ -11,25 +11,26 @@
 #include <stdexcept>
 
 #include "common/messaging/cdr.hpp"
+#include "deploy/monitor/time_range.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr char kMagic[] = "SIDEREC1";  // the last is the version of the format
+constexpr char kMagic[] = "SIDEREC1";  // the last character is the format version
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
-constexpr std::size_t kLongestBlock = 4 << 20;
-constexpr std::size_t kMostChannels = 1 << 16;
-enum BlockKind : std::uint8_t { kHeadBlock = 1, kChannelBlock = 2, kMessageBlock = 3 };
+constexpr std::size_t kMaxBlockSize = 4 << 20;
+constexpr std::size_t kMaxChannels = 1 << 16;
+enum BlockKind : std::uint8_t { kHeaderBlock = 1, kChannelBlock = 2, kMessageBlock = 3 };
 
-/// CRC-32 as in zip and Ethernet.
-std::uint32_t check_sum(std::span<const std::uint8_t> bytes) {
+/// CRC-32 as in ZIP and Ethernet.
+std::uint32_t checksum(std::span<const std::uint8_t> bytes) {
   static const auto table = [] {
-    std::array<std::uint32_t, 256> made{};
+    std::array<std::uint32_t, 256> values{};
     for (std::uint32_t i = 0; i < 256; ++i) {
-      made[i] = i;
-      for (int bit = 0; bit < 8; ++bit) made[i] = made[i] >> 1 ^ (made[i] & 1 ? 0xedb88320u : 0);
+      values[i] = i;
+      for (int bit = 0; bit < 8; ++bit) values[i] = values[i] >> 1 ^ (values[i] & 1 ? 0xedb88320u : 0);
     }
-    return made;
+    return values;
   }();
   std::uint32_t sum = ~0u;
   for (const std::uint8_t byte : bytes) sum = table[(sum ^ byte) & 0xff] ^ sum >> 8;
@@ -47,9 +48,9 @@ void put(std::vector<std::uint8_t>& bytes, const std::string& text) {
   bytes.insert(bytes.end(), text.begin(), text.end());
 }
 
-/// Takes numbers and texts from a block's front; once something does not fit, everything is empty and `ok`
-/// false.
-struct Taker {
+/// Reads numbers and strings from the front of a block. After the first read beyond its end, `ok` is false and
+/// all results are zero or empty.
+struct ByteReader {
   std::span<const std::uint8_t> left;
   bool ok = true;
 
@@ -72,44 +73,44 @@ struct Taker {
   }
 };
 
-/// So that nobody gets a message of another type than they subscribed to, whatever a file calls its channels.
+/// Contains the type, so a subscriber never gets a message of another type, even from a corrupt file.
 std::string reader_key(const TopicInfo& topic, const std::string& channel) {
   return std::string(topic.type.name) + ' ' + channel;
 }
 
 }  // namespace
 
-RecordingHead recording_head(const std::string& scenario, const std::string& scenario_file) {
+RecordingHeader recording_header(const std::string& scenario_name, const std::string& scenario_file) {
   std::ifstream file(scenario_file);
-  RecordingHead head{scenario, {std::istreambuf_iterator<char>(file), {}}, false};
+  RecordingHeader header{scenario_name, {std::istreambuf_iterator<char>(file), {}}, false};
   if (!file) throw std::runtime_error(scenario_file + ": cannot be read");
-  return head;
+  return header;
 }
 
-RecordingWriter::RecordingWriter(const std::string& path, const RecordingHead& head)
+RecordingWriter::RecordingWriter(const std::string& path, const RecordingHeader& header)
     : path_(path), file_(std::fopen(path.c_str(), "wb")) {
   if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
   has_failed_ = std::fwrite(kMagic, 1, kMagicSize, file_.get()) != kMagicSize;
-  std::vector<std::uint8_t> block{kHeadBlock};
-  put(block, static_cast<std::uint8_t>(head.is_complete));
-  put(block, head.scenario);
-  put(block, head.text);
-  if (block.size() > kLongestBlock)
-    throw std::runtime_error(path + ": the scenario is too long to be recorded");
+  std::vector<std::uint8_t> block{kHeaderBlock};
+  put(block, static_cast<std::uint8_t>(header.is_complete));
+  put(block, header.scenario_name);
+  put(block, header.scenario_text);
+  if (block.size() > kMaxBlockSize)
+    throw std::runtime_error(path + ": the scenario file is too large to be recorded");
   write_block(block);
 }
 
 void RecordingWriter::write_block(const std::vector<std::uint8_t>& block) {
   std::vector<std::uint8_t> frame;
   put(frame, static_cast<std::uint32_t>(block.size()));
-  put(frame, check_sum(block));
+  put(frame, checksum(block));
   has_failed_ = has_failed_ || std::fwrite(frame.data(), 1, frame.size(), file_.get()) != frame.size() ||
                 std::fwrite(block.data(), 1, block.size(), file_.get()) != block.size();
 }
 
-void RecordingWriter::add(Time heard, const TopicInfo& topic, const std::string& channel,
+void RecordingWriter::add(Time received, const TopicInfo& topic, const std::string& channel,
                           const void* message) {
-  const auto [at, is_new] = channels_.try_emplace(channel, static_cast<std::uint32_t>(channels_.size()));
+  const auto [entry, is_new] = channels_.try_emplace(channel, static_cast<std::uint32_t>(channels_.size()));
   if (is_new) {
     std::vector<std::uint8_t> block{kChannelBlock};
     put(block, std::string(topic.name));
@@ -117,8 +118,8 @@ void RecordingWriter::add(Time heard, const TopicInfo& topic, const std::string&
     write_block(block);
   }
   block_.assign(1, kMessageBlock);
-  put(block_, at->second);
-  put(block_, to_ns(heard));
+  put(block_, entry->second);
+  put(block_, to_ns(received));
   append_cdr(topic, message, block_);
   write_block(block_);
   ++messages_;
@@ -126,11 +127,11 @@ void RecordingWriter::add(Time heard, const TopicInfo& topic, const std::string&
 
 void RecordingWriter::close() {
   has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
-  if (has_failed_) throw std::runtime_error(path_ + ": not everything could be written");
+  if (has_failed_) throw std::runtime_error(path_ + ": some writes failed");
 }
 
 void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
-  const auto listen = [&]<typename Message>(const Topic<Message>& topic) {
+  const auto subscribe = [&]<typename Message>(const Topic<Message>& topic) {
     std::vector<RobotId> robots{0};
     if (topic.per_robot) {
       robots.clear();
@@ -143,19 +144,19 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
           });
     }
   };
-  listen(topics::kDetections);
-  listen(topics::kWorld);
-  listen(topics::kCommand);
-  listen(topics::kFeedback);
-  listen(topics::kRegistration);
-  listen(topics::kProposal);
-  listen(topics::kVerdict);
-  listen(topics::kLedger);
-  listen(topics::kCoordinator);
-  listen(topics::kStatus);
-  listen(topics::kDisturbance);
-  listen(topics::kNetworkFault);
-  listen(topics::kTruth);
+  subscribe(topics::kDetections);
+  subscribe(topics::kWorld);
+  subscribe(topics::kCommand);
+  subscribe(topics::kFeedback);
+  subscribe(topics::kRegistration);
+  subscribe(topics::kProposal);
+  subscribe(topics::kVerdict);
+  subscribe(topics::kLedger);
+  subscribe(topics::kCoordinator);
+  subscribe(topics::kStatus);
+  subscribe(topics::kDisturbance);
+  subscribe(topics::kNetworkFault);
+  subscribe(topics::kTruth);
 }
 
 PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {
@@ -163,82 +164,81 @@ PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(
   char magic[kMagicSize];
   const bool has_magic = std::fread(magic, 1, kMagicSize, file_.get()) == kMagicSize &&
                          std::memcmp(magic, kMagic, kMagicSize) == 0;
-  if (!has_magic) throw std::runtime_error(path + ": is no recording (or one of another version)");
+  if (!has_magic) throw std::runtime_error(path + ": is not a recording, or one of another format version");
   std::string damage;
-  Taker taker{{}};
-  if (read_block(damage)) taker.left = block_;
-  if (taker.number(1) != kHeadBlock) damage = "its head is missing";
-  head_.is_complete = taker.number(1) == 1;
-  head_.scenario = taker.text();
-  head_.text = taker.text();
-  if (!damage.empty() || !taker.ok)
-    throw std::runtime_error(fmt::format("{}: {}", path, damage.empty() ? "its head is damaged" : damage));
+  ByteReader reader{{}};
+  if (read_block(damage)) reader.left = block_;
+  if (reader.number(1) != kHeaderBlock) damage = "the header is missing";
+  header_.is_complete = reader.number(1) == 1;
+  header_.scenario_name = reader.text();
+  header_.scenario_text = reader.text();
+  if (!damage.empty() || !reader.ok)
+    throw std::runtime_error(fmt::format("{}: {}", path, damage.empty() ? "the header is damaged" : damage));
 }
 
 bool PlaybackBus::read_block(std::string& damage) {
   std::array<std::uint8_t, 8> frame;
   const std::size_t got = std::fread(frame.data(), 1, frame.size(), file_.get());
   if (got == 0) return false;
-  Taker taker{frame};
-  const auto size = static_cast<std::size_t>(taker.number(4));
-  const auto sum = static_cast<std::uint32_t>(taker.number(4));
-  if (got == frame.size() && size > kLongestBlock) {
-    damage = fmt::format("a block claims to be {} bytes long", size);
+  ByteReader reader{frame};
+  const auto size = static_cast<std::size_t>(reader.number(4));
+  const auto sum = static_cast<std::uint32_t>(reader.number(4));
+  if (got == frame.size() && size > kMaxBlockSize) {
+    damage = fmt::format("a block claims a size of {} bytes", size);
     return false;
   }
   block_.resize(got == frame.size() ? size : 0);
   if (got < frame.size() || std::fread(block_.data(), 1, size, file_.get()) != size) {
-    damage = "it ends in the middle of a block";
-  } else if (check_sum(block_) != sum) {
-    damage = "a block's check sum is wrong";
+    damage = "the file ends in the middle of a block";
+  } else if (checksum(block_) != sum) {
+    damage = "a block has a wrong checksum";
   }
   return damage.empty();
 }
 
-bool PlaybackBus::hear_block(RecordingEnd& end) {
-  Taker taker{block_};
-  const auto kind = taker.number(1);
+bool PlaybackBus::deliver_block(PlaybackResult& result) {
+  ByteReader reader{block_};
+  const auto kind = reader.number(1);
   if (kind == kChannelBlock) {
-    const std::string topic = taker.text(), name = taker.text();
+    const std::string topic = reader.text(), name = reader.text();
     for (const TopicInfo& known : all_topics()) {
-      if (taker.ok && topic == known.name && channels_.size() < kMostChannels) {
+      if (reader.ok && topic == known.name && channels_.size() < kMaxChannels) {
         channels_.push_back({known, name});
         return true;
       }
     }
-    end.damage = "a channel is of an unknown topic";
+    result.damage = "a channel belongs to an unknown topic";
     return false;
   }
-  const auto id = static_cast<std::size_t>(taker.number(4));
-  const auto heard_ns = static_cast<std::int64_t>(taker.number(8));
-  const bool is_time = heard_ns >= 0 && heard_ns < std::int64_t{1} << 62;
-  if (kind != kMessageBlock || !taker.ok || id >= channels_.size() || !is_time) {
-    end.damage = "a block is of an unknown kind, channel or time";
+  const auto id = static_cast<std::size_t>(reader.number(4));
+  const auto received_ns = static_cast<std::int64_t>(reader.number(8));
+  if (kind != kMessageBlock || !reader.ok || id >= channels_.size() || !is_valid_time(received_ns)) {
+    result.damage = "a block has an unknown kind, channel or time";
     return false;
   }
-  now_ = time_from_ns(heard_ns);
-  ++end.messages;
+  now_ = time_from_ns(received_ns);
+  ++result.messages;
   const auto readers = readers_.find(reader_key(channels_[id].topic, channels_[id].name));
-  const bool was_read = read_cdr(channels_[id].topic, taker.left, [&](const void* message) {
+  const bool was_read = read_cdr(channels_[id].topic, reader.left, [&](const void* message) {
     if (readers == readers_.end()) return;
     for (const auto& callback : readers->second) callback(message);
   });
-  if (!was_read) ++end.unreadable;
+  if (!was_read) ++result.unreadable;
   return true;
 }
 
-RecordingEnd PlaybackBus::play() {
-  RecordingEnd end;
-  while (read_block(end.damage) && hear_block(end)) {
+PlaybackResult PlaybackBus::play() {
+  PlaybackResult result;
+  while (read_block(result.damage) && deliver_block(result)) {
   }
-  return end;
+  return result;
 }
 
 std::unique_ptr<RawWriter> PlaybackBus::make_writer(const TopicInfo&, const std::string&) {
-  struct Nowhere : RawWriter {
+  struct NullWriter : RawWriter {
     void write(const void*) override {}
   };
-  return std::make_unique<Nowhere>();
+  return std::make_unique<NullWriter>();
 }
 
 void PlaybackBus::make_reader(const TopicInfo& topic, const std::string& channel,

@@ -15,27 +15,28 @@
 
 namespace sidestep {
 
-/// What a recording says of itself.
-struct RecordingHead {
-  std::string scenario;      ///< its name
-  std::string text;          ///< the scenario file
-  bool is_complete = false;  ///< every message from the start on, each at the moment when it was sent
+/// The first block of a recording.
+struct RecordingHeader {
+  std::string scenario_name;
+  std::string scenario_text;  ///< the scenario file
+  bool is_complete = false;   ///< holds every message from the start on, with its time of sending
 };
 
-/// Of a recording that is not complete. Throws std::runtime_error when the scenario file cannot be read.
-RecordingHead recording_head(const std::string& scenario, const std::string& scenario_file);
+/// Header of an incomplete recording. Throws std::runtime_error when the scenario file cannot be read.
+[[nodiscard]] RecordingHeader recording_header(const std::string& scenario_name,
+                                               const std::string& scenario_file);
 
-/// Writes messages with the time they were heard at into a file. After the magic number come blocks, each
-/// with its length and a check sum, so that a file that ends anywhere is good up to there. All numbers are
-/// little-endian.
+/// Writes messages with their time of reception to a file. The file is a magic number and a sequence of blocks,
+/// each with its length and a checksum, so a truncated file is readable up to its last whole block. All numbers
+/// are little-endian.
 class RecordingWriter {
  public:
-  /// Throws std::runtime_error, saying why the file cannot be written.
-  RecordingWriter(const std::string& path, const RecordingHead& head);
+  /// Throws std::runtime_error with the reason when the file cannot be written.
+  RecordingWriter(const std::string& path, const RecordingHeader& header);
 
-  void add(Time heard, const TopicInfo& topic, const std::string& channel, const void* message);
+  void add(Time received, const TopicInfo& topic, const std::string& channel, const void* message);
   std::uint64_t messages() const { return messages_; }
-  /// Writes out what is still in memory; throws std::runtime_error when not all of it could be written.
+  /// Flushes the file; throws std::runtime_error when any write has failed.
   void close();
 
  private:
@@ -52,34 +53,34 @@ class RecordingWriter {
   bool has_failed_ = false;
 };
 
-/// Subscribes to every topic but images, which are a hundred megabytes a second, with every robot's channels,
-/// and writes what comes until the bus has stopped.
+/// Subscribes to all channels of all topics except camera images (about 100 MB/s), and records their messages
+/// until the bus stops.
 void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer);
 
-/// What came of reading a recording.
-struct RecordingEnd {
+/// The result of playing a recording.
+struct PlaybackResult {
   std::uint64_t messages = 0;
-  std::uint64_t unreadable = 0;  ///< messages whose bytes were not of their topic's type
-  std::string damage;            ///< why reading ended before the file's end; empty: it did not
+  std::uint64_t unreadable = 0;  ///< messages that could not be decoded as their topic's type
+  std::string damage;            ///< why playback stopped before the end of the file; empty: it did not
 };
 
-/// A bus on which a recording is heard again: subscribe, then play. Whatever is in the file, nothing worse
-/// happens than that the reading ends.
+/// A bus that plays a recording: subscribe, then play. Arbitrary file contents are handled safely; the worst
+/// outcome is that playback ends early.
 class PlaybackBus : public Bus {
  public:
-  /// Throws std::runtime_error when the file cannot be read or is no recording.
+  /// Throws std::runtime_error when the file cannot be read or is not a recording.
   explicit PlaybackBus(const std::string& path);
 
-  const RecordingHead& head() const { return head_; }
-  /// The time at which the message that is being heard was heard.
+  const RecordingHeader& header() const { return header_; }
+  /// The time of reception of the current message.
   Time now() const override { return now_; }
-  /// There are no timers in the past: never calls back.
+  /// Timers never fire during playback.
   void at(Time, std::function<void()>) override {}
-  /// All messages in the file's order.
-  RecordingEnd play();
+  /// Delivers all messages in the file's order.
+  [[nodiscard]] PlaybackResult play();
 
  protected:
-  /// What is written is not heard by anybody.
+  /// Discards everything that is written.
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
   void make_reader(const TopicInfo& topic, const std::string& channel,
                    std::function<void(const void*)> callback) override;
@@ -92,12 +93,12 @@ class PlaybackBus : public Bus {
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  /// False at the file's end, or with `damage` set.
+  /// False at the end of the file, or on damage, which is then described in `damage`.
   bool read_block(std::string& damage);
-  bool hear_block(RecordingEnd& end);
+  bool deliver_block(PlaybackResult& result);
 
   std::unique_ptr<std::FILE, Closer> file_;
-  RecordingHead head_;
+  RecordingHeader header_;
   Time now_{};
   std::vector<std::uint8_t> block_;
   std::vector<Channel> channels_;

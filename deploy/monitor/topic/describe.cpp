@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/time/histogram.hpp"
+#include "common/messaging/histogram_codec.hpp"
 
 namespace sidestep {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The enumerator's word; over the network any number may come.
+/// The enumerator in words. The network may deliver any number.
 template <typename Enum, std::size_t kCount>
 Json word(Enum value, const char* const (&words)[kCount]) {
   const auto number = static_cast<std::uint32_t>(value);
@@ -22,12 +22,12 @@ Json word(Enum value, const char* const (&words)[kCount]) {
 }
 
 constexpr const char* kReasons[] = {
-    "granted",     "not tried",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
+    "granted",     "not evaluated",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
     "old version", "base unknown", "not continuous", "beyond limits", "not at rest",        "outside field",
     "obstacle",    "conflict",     "ledger full",    "absent"};
 constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
 constexpr const char* kAgentStates[] = {"fencing", "registering", "waiting", "driving",
-                                        "arrived", "off clock",   "absent"};
+                                        "arrived", "clock out of bound",   "absent"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
 constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
 
@@ -44,7 +44,7 @@ Json list(const Range& range, Describe describe_one) {
   return list(range, range.size(), describe_one);
 }
 
-Json head(const msg::Header& m) {
+Json header(const msg::Header& m) {
   return {{"sender", m.sender()},
           {"incarnation", m.incarnation()},
           {"message_number", m.message_number()},
@@ -56,7 +56,7 @@ Json phase(const msg::MotionPhase& m) {
 }
 
 Json intent(const msg::Intent& m) {
-  return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"hold_s", m.hold_s()},
+  return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"velocity_duration_s", m.velocity_duration_s()},
           {"via_x_m", m.via_x_m()},  {"via_y_m", m.via_y_m()}, {"goal_x_m", m.goal_x_m()},
           {"goal_y_m", m.goal_y_m()}};
 }
@@ -73,25 +73,25 @@ Json version(const msg::Version& m) {
           {"vy_mps", m.vy_mps()},
           {"inflation_m", m.inflation_m()},
           {"has_intent", m.has_intent()},
-          {"intended", intent(m.intended())},
+          {"intent", intent(m.intent())},
           {"phase_count", m.phase_count()},
           {"phases", list(m.phases(), m.phase_count(), phase)}};
 }
 
 Json quantiles(const msg::DurationCounts& m) {
-  const DurationHistogram histogram = DurationHistogram::from_message(m);
+  const DurationHistogram histogram = decode(m);
   const auto us = [](Duration d) { return static_cast<double>(d.count()) * 1e-3; };
   return {{"count", histogram.count()},
           {"p50_us", us(histogram.quantile(0.5))},
           {"p99_us", us(histogram.quantile(0.99))},
-          {"largest_us", us(histogram.largest())}};
+          {"max_us", us(histogram.max())}};
 }
 
 }  // namespace
 
 Json describe(const msg::CameraImage& m) {
   return {{"camera", m.camera()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"captured_at_ns", m.captured_at_ns()},
           {"image_format", word(m.image_format(), kImageFormats)},
           {"width_px", m.width_px()},
@@ -114,7 +114,7 @@ Json describe(const msg::DetectionFrame& m) {
     return {{"x_m", o.x_m()}, {"y_m", o.y_m()}, {"radius_m", o.radius_m()}};
   };
   return {{"camera", m.camera()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"captured_at_ns", m.captured_at_ns()},
           {"ball_count", m.ball_count()},
           {"balls", list(m.balls(), m.ball_count(), ball)},
@@ -134,13 +134,13 @@ Json describe(const msg::WorldState& m) {
             {"angular_radps", r.angular_radps()},
             {"position_variance_m2", r.position_variance_m2()},
             {"velocity_variance_m2ps2", r.velocity_variance_m2ps2()},
-            {"seen_at_ns", r.seen_at_ns()},
-            {"seen_x_m", r.seen_x_m()},
-            {"seen_y_m", r.seen_y_m()},
-            {"seen_heading_rad", r.seen_heading_rad()}};
+            {"observed_at_ns", r.observed_at_ns()},
+            {"observed_x_m", r.observed_x_m()},
+            {"observed_y_m", r.observed_y_m()},
+            {"observed_heading_rad", r.observed_heading_rad()}};
   };
   const auto obstacle = [](const msg::TrackedObstacle& o) -> Json {
-    return {{"obstacle", o.obstacle()}, {"seen_at_ns", o.seen_at_ns()},
+    return {{"obstacle", o.obstacle()}, {"observed_at_ns", o.observed_at_ns()},
             {"x_m", o.x_m()},           {"y_m", o.y_m()},
             {"vx_mps", o.vx_mps()},     {"vy_mps", o.vy_mps()},
             {"radius_m", o.radius_m()}, {"position_variance_m2", o.position_variance_m2()}};
@@ -152,7 +152,7 @@ Json describe(const msg::WorldState& m) {
                      {"vx_mps", b.vx_mps()},
                      {"vy_mps", b.vy_mps()}};
   return {{"vision", m.vision()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"valid_at_ns", m.valid_at_ns()},
           {"frames", m.frames()},
           {"rejected", m.rejected()},
@@ -169,35 +169,35 @@ Json describe(const msg::Command& m) {
                     {"y_m", f.y_m()},
                     {"heading_rad", f.heading_rad()}};
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"has_version", m.has_version()},
-          {"granted", version(m.granted())},
+          {"version", version(m.version())},
           {"has_fix", m.has_fix()},
           {"fix", fix},
-          {"heading_rad", m.heading_rad()}};
+          {"desired_heading_rad", m.desired_heading_rad()}};
 }
 
 Json describe(const msg::Feedback& m) {
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"obeyed_incarnation", m.obeyed_incarnation()},
           {"obeyed_epoch", m.obeyed_epoch()},
-          {"at_ns", m.at_ns()},
+          {"valid_at_ns", m.valid_at_ns()},
           {"executing", version(m.executing())},
           {"is_off_reference", m.is_off_reference()},
           {"is_lifted", m.is_lifted()},
-          {"heard_stamp_ns", m.heard_stamp_ns()},
-          {"heard_at_ns", m.heard_at_ns()},
+          {"command_stamp_ns", m.command_stamp_ns()},
+          {"command_received_at_ns", m.command_received_at_ns()},
           {"x_m", m.x_m()},
           {"y_m", m.y_m()},
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
           {"heading_rad", m.heading_rad()},
           {"tracking_error_m", m.tracking_error_m()},
-          {"deviation_m", m.deviation_m()},
-          {"scale_deviation", m.scale_deviation()},
-          {"taken", m.taken()},
+          {"position_error_rms_m", m.position_error_rms_m()},
+          {"odometry_scale_stddev", m.odometry_scale_stddev()},
+          {"activated", m.activated()},
           {"refused_late", m.refused_late()},
           {"refused_base", m.refused_base()},
           {"refused_fenced", m.refused_fenced()},
@@ -206,7 +206,7 @@ Json describe(const msg::Feedback& m) {
 
 Json describe(const msg::Registration& m) {
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"is_absent", m.is_absent()},
           {"version_count", m.version_count()},
@@ -215,7 +215,7 @@ Json describe(const msg::Registration& m) {
 
 Json describe(const msg::Proposal& m) {
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"candidate_count", m.candidate_count()},
           {"candidates", list(m.candidates(), m.candidate_count(), version)}};
@@ -225,25 +225,25 @@ Json describe(const msg::Verdict& m) {
   const auto reason = [](msg::Reason r) { return word(r, kReasons); };
   const auto robot = [](std::uint32_t id) { return Json(id); };
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"proposal_number", m.proposal_number()},
-          {"asked_stamp_ns", m.asked_stamp_ns()},
-          {"granted", m.granted()},
+          {"request_stamp_ns", m.request_stamp_ns()},
+          {"granted_version", m.granted_version()},
           {"reasons", list(m.reasons(), reason)},
           {"blockers", list(m.blockers(), robot)}};
 }
 
 Json describe(const msg::LedgerPage& m) {
   return {
-      {"page_index", m.page_index()}, {"head", head(m.head())},   {"epoch", m.epoch()},
-      {"page_count", m.page_count()}, {"low_x_m", m.low_x_m()},   {"low_y_m", m.low_y_m()},
-      {"high_x_m", m.high_x_m()},     {"high_y_m", m.high_y_m()}, {"versions", list(m.versions(), version)}};
+      {"page_index", m.page_index()}, {"header", header(m.header())},   {"epoch", m.epoch()},
+      {"page_count", m.page_count()}, {"min_x_m", m.min_x_m()},   {"min_y_m", m.min_y_m()},
+      {"max_x_m", m.max_x_m()},     {"max_y_m", m.max_y_m()}, {"versions", list(m.versions(), version)}};
 }
 
 Json describe(const msg::CoordinatorState& m) {
   return {{"coordinator", m.coordinator()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"coordinator_mode", word(m.coordinator_mode(), kCoordinatorModes)},
           {"proposals", m.proposals()},
@@ -259,7 +259,7 @@ Json describe(const msg::CoordinatorState& m) {
 
 Json describe(const msg::AgentStatus& m) {
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"agent_state", word(m.agent_state(), kAgentStates)},
           {"goal_index", m.goal_index()},
           {"distance_to_go_m", m.distance_to_go_m()},
@@ -273,15 +273,15 @@ Json describe(const msg::AgentStatus& m) {
           {"invalid", m.invalid()},
           {"clock_offset_s", m.clock_offset_s()},
           {"clock_uncertainty_s", m.clock_uncertainty_s()},
-          {"off_reference", m.off_reference()},
-          {"plan_changes", m.plan_changes()},
+          {"reference_losses", m.reference_losses()},
+          {"route_changes", m.route_changes()},
           {"negotiation", quantiles(m.negotiation())},
           {"plan", quantiles(m.plan())},
           {"search", quantiles(m.search())}};
 }
 
 Json describe(const msg::GroundTruth& m) {
-  const auto robot = [](const msg::TruthRobot& r) -> Json {
+  const auto robot = [](const msg::TrueRobotState& r) -> Json {
     return {{"robot", r.robot()},
             {"x_m", r.x_m()},
             {"y_m", r.y_m()},
@@ -291,21 +291,21 @@ Json describe(const msg::GroundTruth& m) {
             {"reference_error_m", r.reference_error_m()},
             {"disturbance_end_ns", r.disturbance_end_ns()}};
   };
-  const auto touch = [](const msg::Touch& t) -> Json {
-    return {{"first", t.first()}, {"second", t.second()}};
+  const auto contact = [](const msg::ContactPair& c) -> Json {
+    return {{"first", c.first()}, {"second", c.second()}};
   };
   return {{"simulator", m.simulator()},
-          {"head", head(m.head())},
-          {"at_ns", m.at_ns()},
+          {"header", header(m.header())},
+          {"valid_at_ns", m.valid_at_ns()},
           {"contacts", m.contacts()},
-          {"touches", list(m.touches(), touch)},
+          {"recent_contacts", list(m.recent_contacts(), contact)},
           {"penetration_m_s", m.penetration_m_s()},
           {"min_clearance_m", m.min_clearance_m()},
           {"firmware_violations", m.firmware_violations()},
           {"crashes", m.crashes()},
-          {"moving_crashes", m.moving_crashes()},
-          {"crash_speed_mps", m.crash_speed_mps()},
-          {"robot_crash_speed_mps", m.robot_crash_speed_mps()},
+          {"crashes_while_moving", m.crashes_while_moving()},
+          {"max_crash_speed_mps", m.max_crash_speed_mps()},
+          {"max_robot_crash_speed_mps", m.max_robot_crash_speed_mps()},
           {"ball_x_m", m.ball_x_m()},
           {"ball_y_m", m.ball_y_m()},
           {"robots", list(m.robots(), robot)}};
@@ -313,7 +313,7 @@ Json describe(const msg::GroundTruth& m) {
 
 Json describe(const msg::Disturbance& m) {
   return {{"robot", m.robot()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"disturbance_kind", word(m.disturbance_kind(), kDisturbances)},
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
@@ -327,7 +327,7 @@ Json describe(const msg::Disturbance& m) {
 
 Json describe(const msg::NetworkFault& m) {
   return {{"target", m.target()},
-          {"head", head(m.head())},
+          {"header", header(m.header())},
           {"seed", m.seed()},
           {"loss", m.loss()},
           {"mean_burst", m.mean_burst()},

@@ -11,21 +11,21 @@
 
 namespace sidestep {
 
-/// A message for people's eyes: its members by their IDL names and in their order, enumerators as words,
-/// arrays that come with a count only as far as it goes, histograms as quantiles, pixels as their number.
-nlohmann::ordered_json describe(const msg::CameraImage& m);
-nlohmann::ordered_json describe(const msg::DetectionFrame& m);
-nlohmann::ordered_json describe(const msg::WorldState& m);
-nlohmann::ordered_json describe(const msg::Command& m);
-nlohmann::ordered_json describe(const msg::Feedback& m);
-nlohmann::ordered_json describe(const msg::Registration& m);
-nlohmann::ordered_json describe(const msg::Proposal& m);
-nlohmann::ordered_json describe(const msg::Verdict& m);
-nlohmann::ordered_json describe(const msg::LedgerPage& m);
-nlohmann::ordered_json describe(const msg::CoordinatorState& m);
-nlohmann::ordered_json describe(const msg::AgentStatus& m);
-nlohmann::ordered_json describe(const msg::GroundTruth& m);
-nlohmann::ordered_json describe(const msg::Disturbance& m);
-nlohmann::ordered_json describe(const msg::NetworkFault& m);
+/// A readable form of a message: members by their IDL names and in IDL order, enumerators in words, arrays cut to
+/// their count, histograms as quantiles, and pixels as a byte count.
+[[nodiscard]] nlohmann::ordered_json describe(const msg::CameraImage& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::DetectionFrame& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::WorldState& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Command& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Feedback& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Registration& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Proposal& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Verdict& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::LedgerPage& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::CoordinatorState& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::AgentStatus& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Disturbance& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::NetworkFault& m);
 
 }  // namespace sidestep

@@ -9,36 +9,36 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/topic/describe.hpp"
-#include "deploy/monitor/topic/listen.hpp"
+#include "deploy/monitor/topic/topic_tools.hpp"
 
 namespace sidestep {
 namespace {
 
-/// The robot's number in "<name>/<robot>" of a topic that every robot has one of, 0 for another topic that is
-/// asked for by its name; none when the topic is not the one asked for.
-std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& asked) {
-  if (!topic.per_robot) return asked == topic.name ? std::optional<std::uint32_t>(0) : std::nullopt;
+/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the channel
+/// does not belong to the topic.
+std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel) {
+  if (!topic.per_robot) return channel == topic.name ? std::optional<std::uint32_t>(0) : std::nullopt;
   const std::string prefix = std::string(topic.name) + "/";
-  if (!asked.starts_with(prefix)) return std::nullopt;
-  const std::string_view digits = std::string_view(asked).substr(prefix.size());
+  if (!channel.starts_with(prefix)) return std::nullopt;
+  const std::string_view digits = std::string_view(channel).substr(prefix.size());
   std::uint32_t robot = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), robot);
   if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
   return robot;
 }
 
-/// Prints what comes on a channel.
+/// Prints the messages of a channel.
 class Echo {
  public:
   Echo(DdsBus& bus, std::uint64_t count) : bus_(bus), count_(count) {}
 
-  /// False when the topic is not the one asked for.
+  /// Returns whether the channel belongs to the topic.
   template <typename Message>
-  bool subscribe(const Topic<Message>& topic, const std::string& asked) {
-    const std::optional<std::uint32_t> robot = channel_robot(topic, asked);
+  bool subscribe(const Topic<Message>& topic, const std::string& channel) {
+    const std::optional<std::uint32_t> robot = channel_robot(topic, channel);
     if (!robot) return false;
     bus_.subscribe<Message>(topic, *robot, [this](const Message& message) {
-      // Strings of ours only, but the dump must not throw whatever comes.
+      // The dump must not throw on invalid UTF-8.
       fmt::print("{}\n",
                  describe(message).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       std::fflush(stdout);
@@ -63,23 +63,23 @@ std::string known_topics() {
 
 }  // namespace
 
-int echo_topic(const ListenOptions& options) {
+int echo_topic(const TopicOptions& options) {
   DdsSettings settings = options.dds;
   settings.participant = "sidestep-topic";
   DdsBus bus(settings);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   Echo echo(bus, options.count);
-  const std::string& asked = options.topic;
+  const std::string& channel = options.topic;
   const bool is_known =
-      echo.subscribe(topics::kImages, asked) || echo.subscribe(topics::kDetections, asked) ||
-      echo.subscribe(topics::kWorld, asked) || echo.subscribe(topics::kCommand, asked) ||
-      echo.subscribe(topics::kFeedback, asked) || echo.subscribe(topics::kRegistration, asked) ||
-      echo.subscribe(topics::kProposal, asked) || echo.subscribe(topics::kVerdict, asked) ||
-      echo.subscribe(topics::kLedger, asked) || echo.subscribe(topics::kCoordinator, asked) ||
-      echo.subscribe(topics::kStatus, asked) || echo.subscribe(topics::kTruth, asked) ||
-      echo.subscribe(topics::kDisturbance, asked) || echo.subscribe(topics::kNetworkFault, asked);
+      echo.subscribe(topics::kImages, channel) || echo.subscribe(topics::kDetections, channel) ||
+      echo.subscribe(topics::kWorld, channel) || echo.subscribe(topics::kCommand, channel) ||
+      echo.subscribe(topics::kFeedback, channel) || echo.subscribe(topics::kRegistration, channel) ||
+      echo.subscribe(topics::kProposal, channel) || echo.subscribe(topics::kVerdict, channel) ||
+      echo.subscribe(topics::kLedger, channel) || echo.subscribe(topics::kCoordinator, channel) ||
+      echo.subscribe(topics::kStatus, channel) || echo.subscribe(topics::kTruth, channel) ||
+      echo.subscribe(topics::kDisturbance, channel) || echo.subscribe(topics::kNetworkFault, channel);
   if (!is_known) {
-    fmt::print(stderr, "'{}' is none of our topics: {}\n", asked, known_topics());
+    fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known_topics());
     return kExitFailure;
   }
   bus.run();

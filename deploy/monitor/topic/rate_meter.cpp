@@ -9,8 +9,8 @@ void RateMeter::Span::add(Time received, std::size_t size) {
   ++samples;
   if (has_last) {
     const Duration gap = received - last;
-    shortest = std::min(shortest, gap);
-    longest = std::max(longest, gap);
+    min_gap = std::min(min_gap, gap);
+    max_gap = std::max(max_gap, gap);
     ++gaps;
     bytes += size;
   } else {
@@ -24,8 +24,8 @@ Rate RateMeter::Span::rate() const {
   Rate result;
   result.samples = samples;
   if (gaps == 0) return result;
-  result.shortest_gap = shortest;
-  result.longest_gap = longest;
+  result.min_gap = min_gap;
+  result.max_gap = max_gap;
   const double seconds = to_seconds(last - first);
   if (seconds > 0) {
     result.rate_hz = static_cast<double>(gaps) / seconds;

@@ -9,21 +9,21 @@
 
 namespace sidestep {
 
-/// What a RateMeter has seen over some span.
+/// Statistics of the samples in a span of time.
 struct Rate {
   std::uint64_t samples = 0;
-  double rate_hz = 0;  ///< gaps per second between the first and the last sample; 0 below two
-  std::optional<Duration> shortest_gap;  ///< none below two samples
-  std::optional<Duration> longest_gap;
-  double bytes_per_second = 0;  ///< of payload: sizes of all but the first sample over the span
+  double rate_hz = 0;                ///< gaps per second from the first to the last sample; 0 for less than two
+  std::optional<Duration> min_gap;   ///< none for less than two samples
+  std::optional<Duration> max_gap;
+  double bytes_per_second = 0;  ///< payload of all samples but the first, per second
 };
 
-/// Rate, gaps and bandwidth of a stream of samples, since the start and since the last look.
+/// Rate, gaps and bandwidth of a stream of samples, since the start and since the last call.
 class RateMeter {
  public:
   void add(Time received, std::size_t bytes);
   Rate total() const { return total_.rate(); }
-  /// Since the last call; the gap that spans two looks counts for the later one.
+  /// Since the last call. A gap that spans two calls counts for the later one.
   Rate take_recent();
 
  private:
@@ -34,10 +34,10 @@ class RateMeter {
     std::uint64_t samples = 0;
     Time first{};
     Time last{};
-    bool has_last = false;  ///< `last` is a sample of this span or of the one before
+    bool has_last = false;  ///< `last` is a sample of this span or of the previous one
     std::uint64_t gaps = 0;
-    Duration shortest = Duration::max();
-    Duration longest{0};
+    Duration min_gap = Duration::max();
+    Duration max_gap{0};
     std::uint64_t bytes = 0;  ///< since `first`
   };
 

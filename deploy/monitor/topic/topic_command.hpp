@@ -3,14 +3,12 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "common/process/command_line.hpp"
 
 namespace sidestep {
 
-/// Adds `topic list|hz|echo` to a program. When one of them is parsed, `action` becomes what is to be run; it
-/// returns the exit code, and may throw std::runtime_error.
-CLI::App* add_topic_command(CLI::App& root, std::function<int()>& action);
+/// Adds `sidestep topic list|hz|echo`. Parsing one of them sets `action`, which returns the exit code and may
+/// throw std::runtime_error.
+void add_topic_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

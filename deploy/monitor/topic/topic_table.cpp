@@ -10,15 +10,15 @@
 namespace sidestep {
 namespace {
 
-using Group = std::vector<const DdsEndpoint*>;
+using Group = std::vector<const DiscoveredEndpoint*>;
 
-std::map<std::string, Group> by_topic(const std::vector<DdsEndpoint>& endpoints) {
+std::map<std::string, Group> by_topic(const std::vector<DiscoveredEndpoint>& endpoints) {
   std::map<std::string, Group> result;
-  for (const DdsEndpoint& endpoint : endpoints) result[endpoint.topic].push_back(&endpoint);
+  for (const DiscoveredEndpoint& endpoint : endpoints) result[endpoint.topic].push_back(&endpoint);
   return result;
 }
 
-std::string name_of(const DdsEndpoint& endpoint) {
+std::string name_of(const DiscoveredEndpoint& endpoint) {
   return endpoint.participant.empty() ? endpoint.guid : endpoint.participant;
 }
 
@@ -29,17 +29,17 @@ std::string join(const Container& words, const char* separator) {
   return result;
 }
 
-/// As "23: agent-0, agent-1, agent-10, ...", so that a fleet fits in a line.
+/// E.g. "23: agent-0, agent-1, agent-10, ...": a large fleet fits on one line.
 std::string names(const Group& group, bool is_writer) {
-  constexpr std::size_t kMostNames = 3;
+  constexpr std::size_t kMaxNames = 3;
   std::vector<std::string> all;
-  for (const DdsEndpoint* endpoint : group) {
+  for (const DiscoveredEndpoint* endpoint : group) {
     if (endpoint->is_writer == is_writer) all.push_back(name_of(*endpoint));
   }
   if (all.empty()) return "-";
   const std::size_t count = all.size();
-  if (count > kMostNames) {
-    all.resize(kMostNames);
+  if (count > kMaxNames) {
+    all.resize(kMaxNames);
     all.emplace_back("...");
   }
   return fmt::format("{}: {}", count, join(all, ", "));
@@ -47,41 +47,41 @@ std::string names(const Group& group, bool is_writer) {
 
 std::string types(const Group& group) {
   std::set<std::string> all;
-  for (const DdsEndpoint* endpoint : group) all.insert(endpoint->type);
+  for (const DiscoveredEndpoint* endpoint : group) all.insert(endpoint->type);
   return join(all, " | ");
 }
 
 std::string qos(const Group& group) {
   std::set<std::string> all;
-  for (const DdsEndpoint* endpoint : group) {
+  for (const DiscoveredEndpoint* endpoint : group) {
     std::string words = endpoint->is_reliable ? "reliable" : "best effort";
-    if (endpoint->durability != DdsEndpoint::Durability::kVolatile) words += ", durable";
+    if (endpoint->durability != DiscoveredEndpoint::Durability::kVolatile) words += ", durable";
     if (endpoint->is_keyed) words += ", keyed";
     all.insert(words);
   }
   return join(all, " | ");
 }
 
-/// One line for each reason, with the pairs that it keeps apart.
+/// One line per reason, with the pairs of endpoints that it keeps from communicating.
 std::string mismatches(const Group& group) {
   std::map<std::string, std::set<std::string>> pairs;
-  for (const DdsEndpoint* writer : group) {
-    for (const DdsEndpoint* reader : group) {
+  for (const DiscoveredEndpoint* writer : group) {
+    for (const DiscoveredEndpoint* reader : group) {
       if (!writer->is_writer || reader->is_writer) continue;
-      for (const std::string& reason : dds_mismatches(*writer, *reader)) {
+      for (const std::string& reason : qos_mismatches(*writer, *reader)) {
         pairs[reason].insert(name_of(*writer) + " -> " + name_of(*reader));
       }
     }
   }
   std::string result;
-  for (const auto& [reason, who] : pairs)
-    result += fmt::format("  MISMATCH {} ({})\n", reason, join(who, ", "));
+  for (const auto& [reason, endpoints] : pairs)
+    result += fmt::format("  MISMATCH {} ({})\n", reason, join(endpoints, ", "));
   return result;
 }
 
 }  // namespace
 
-std::string topic_table(const std::vector<DdsEndpoint>& endpoints) {
+std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints) {
   using Row = std::array<std::string, 5>;
   const Row title = {"TOPIC", "TYPE", "WRITERS", "READERS", "QOS"};
   std::vector<Row> rows{title};
@@ -103,7 +103,7 @@ std::string topic_table(const std::vector<DdsEndpoint>& endpoints) {
   return result;
 }
 
-std::string topic_names(const std::vector<DdsEndpoint>& endpoints) {
+std::string topic_names(const std::vector<DiscoveredEndpoint>& endpoints) {
   std::vector<std::string> names;
   for (const auto& [topic, group] : by_topic(endpoints)) names.push_back(topic);
   return join(names, " ");

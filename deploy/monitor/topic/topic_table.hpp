@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "common/messaging/dds/listen.hpp"
+#include "common/messaging/dds/listener.hpp"
 
 namespace sidestep {
 
-/// What `sidestep topic list` prints: a line for each topic with its type, who writes and reads it and its
-/// QoS, and below it a line for each mismatch, grouped by its reason.
-std::string topic_table(const std::vector<DdsEndpoint>& endpoints);
+/// The output of `sidestep topic list`: one line per topic with its type, writers, readers and QoS, followed by one
+/// line per reason for a mismatch.
+[[nodiscard]] std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints);
 
-/// The names of the topics, separated by spaces.
-std::string topic_names(const std::vector<DdsEndpoint>& endpoints);
+/// The topic names, separated by spaces.
+[[nodiscard]] std::string topic_names(const std::vector<DiscoveredEndpoint>& endpoints);
 
 }  // namespace sidestep

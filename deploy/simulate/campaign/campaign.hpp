@@ -8,18 +8,18 @@
 
 namespace sidestep {
 
-struct SearchOptions {
-  std::string scenario_file;  ///< empty: the floor is drawn, too
+struct CampaignOptions {
+  std::string scenario_file;  ///< empty: the scene is random, too
   std::string report_file;    ///< JSON; empty: none
-  std::string results_file;   ///< where a search that was stopped goes on; empty: it does not
+  std::string results_file;   ///< an interrupted campaign resumes from this file; empty: none
   std::uint64_t first_seed = 1, last_seed = 1;
-  Duration duration = std::chrono::seconds(60);  ///< of virtual time, for each seed
-  int jobs = 0;                                  ///< processes at work; 0: as many as there are cores
+  Duration duration = std::chrono::seconds(60);  ///< virtual time per seed
+  int jobs = 0;                                  ///< number of worker processes; 0: number of cores
 };
 
-/// Runs one trial for each seed and prints what fails and how to run it again, and a summary. The exit code:
-/// 0 when nothing has failed. Throws as simulate() does,
-/// and std::runtime_error when the results' file is another search's.
-int search_seeds(const SearchOptions& options);
+/// Runs one trial per seed. Prints every failure with the command that repeats it, and a summary. Returns the exit
+/// code: 0 if no trial failed. Throws as simulate() does, and std::runtime_error when the results file belongs to
+/// another campaign.
+int run_campaign(const CampaignOptions& options);
 
 }  // namespace sidestep

@@ -5,16 +5,12 @@
 #include <map>
 #include <string>
 
-#include "deploy/simulate/campaign/trial.hpp"
+#include "deploy/simulate/campaign/trial_result.hpp"
 
 namespace sidestep {
 
-/// One line of JSON, and back.
-std::string to_line(const TrialResult& result);
-TrialResult result_from(const std::string& line);
-
-/// Adds up what trials say; the order in which they come does not matter.
-class SearchSummary {
+/// The summary of a campaign; independent of the order in which results are added.
+class CampaignSummary {
  public:
   void add(const TrialResult& result) { results_[result.seed] = result; }
 
@@ -23,21 +19,21 @@ class SearchSummary {
   std::uint64_t contacts() const { return sum(&TrialResult::contacts); }
   double robot_hours() const;
 
-  /// Some lines for people.
+  /// A few lines of text.
   std::string text() const;
   std::string json() const;
 
  private:
   std::uint64_t sum(std::uint64_t TrialResult::*count) const;
-  /// Seeds with the largest or smallest values, "seed 5 (0.3), seed 9 (0.2)".
+  /// The seeds with the largest or smallest values: "seed 5 (0.3), seed 9 (0.2)".
   template <typename Value>
   std::string extremes(Value value, bool are_largest) const;
 
   std::map<std::uint64_t, TrialResult> results_;
 };
 
-/// The rate above which so few events would be seen with a probability of less than 5 % (Poisson); 3/time for
-/// none.
-double upper_bound_95(std::uint64_t events, double time);
+/// Upper 95 % confidence bound of the rate of a Poisson process with this many events in this time; about 3/time for
+/// no events.
+[[nodiscard]] double upper_bound_95(std::uint64_t events, double time);
 
 }  // namespace sidestep

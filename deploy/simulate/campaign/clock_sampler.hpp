@@ -7,11 +7,11 @@
 
 namespace sidestep {
 
-/// Robots' clocks that are wrong by more than this are noticed whatever the network and pauses do.
-inline constexpr Duration kSurelyNoticed = std::chrono::seconds(6);
+/// Clock offsets of robots above this are detected regardless of network faults and pauses.
+inline constexpr Duration kCertainlyDetectedOffset = std::chrono::seconds(6);
 
-/// Draws the clocks of all processes that have a host, and of the robots. Robots' clocks differ from
-/// coordinators' by less than the scenario's bound; in one of ten draws some, or all, by far more.
+/// Samples the clock offsets of all processes on hosts, and of the robots. Robots' clocks differ from coordinators'
+/// by less than the scenario's bound, except that in one of ten samples some or all differ by far more.
 void sample_clocks(Scenario& scenario, FaultPlan& plan, Rng& rng);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/geometry/vec2.hpp"
-#include "common/messaging/sim/sim_links.hpp"
+#include "common/messaging/sim/links.hpp"
 #include "common/motion/version.hpp"
 #include "idl/disturbance.h"
 
@@ -16,12 +16,12 @@ namespace sidestep {
 
 using ProcessNames = std::vector<std::string>;
 
-/// From now on messages between different hosts, from these to those processes, fare like this.
-struct WeatherChange {
+/// Sets the quality of the links between these processes, as far as they are on different hosts.
+struct LinkChange {
   ProcessNames from, to;
   LinkQuality quality;
 };
-/// For a while nothing that these send gets to those.
+/// Loses all messages between these processes for a while.
 struct Partition {
   ProcessNames from, to;
   Duration duration{0};
@@ -30,44 +30,43 @@ struct Partition {
 struct Pause {
   ProcessNames processes;
   Duration duration{0};
-  std::size_t most_waiting = 0;  ///< messages for each; the others are lost
+  std::size_t max_queued = 0;  ///< messages per process; further ones are lost
 };
 struct Kill {
   std::string process;
 };
-/// Of a process that is dead, or of a robot's second agent.
+/// Starts a dead process, or a robot's second agent.
 struct Start {
   std::string process;
 };
 
-/// Somebody's hand on a robot.
-struct Hand {
+/// A disturbance of a robot by an operator.
+struct RobotDisturbance {
   RobotId robot = 0;
   msg::DisturbanceKind kind = msg::DISTURBANCE_PUSH;
   Vec2 push_mps{0, 0};
-  double grip = 1;         ///< of a robot that slips
-  double heading_rad = 0;  ///< of the wheel that is blocked
+  double grip = 1;         ///< while slipping
+  double heading_rad = 0;  ///< of the blocked wheel
   Duration duration{0};
 };
 
-using Fault = std::variant<WeatherChange, Partition, Pause, Kill, Start, Hand>;
+using Fault = std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance>;
 
 struct TimedFault {
-  Duration at{0};  ///< from the begin of the run
+  Duration at{0};  ///< since the start of the run
   Fault fault;
 };
 
-/// What goes wrong in one run, drawn up front. From `healed_at` on nothing does: the network is perfect,
-/// nobody is stopped or dies any more.
+/// All faults of one run. None occurs or persists after `healed_at`.
 struct FaultPlan {
-  std::vector<ProcessNames> hosts;         ///< within a host messages are fast and are not lost
-  std::map<std::string, Duration> clocks;  ///< ahead of true time, by process
-  std::vector<RobotId> off_clock;          ///< robots whose clocks are so wrong that they must not move
-  std::vector<TimedFault> faults;          ///< by time
+  std::vector<ProcessNames> hosts;         ///< messages within a host are fast and never lost
+  std::map<std::string, Duration> clocks;  ///< offsets from true time, by process
+  std::vector<RobotId> robots_out_of_clock_bound;          ///< robots that must not move because of their clocks
+  std::vector<TimedFault> faults;          ///< sorted by time
   Duration healed_at{0};
 };
 
-/// One line for each host, clock and fault.
-std::vector<std::string> in_words(const FaultPlan& plan);
+/// A description with one line per host, clock and fault.
+std::vector<std::string> to_lines(const FaultPlan& plan);
 
 }  // namespace sidestep

@@ -16,11 +16,11 @@ LinkQuality between_hosts() {
 }  // namespace
 
 FaultPlayer::FaultPlayer(SimSystem& system, const FaultPlan& plan) : system_(system), plan_(plan) {
-  for (const ProcessNames& here : plan.hosts) {
-    for (const ProcessNames& there : plan.hosts) {
-      for (const std::string& from : here) {
-        for (const std::string& to : there) {
-          Link link{from, to, between_hosts(), &here == &there, 0};
+  for (const ProcessNames& from_host : plan.hosts) {
+    for (const ProcessNames& to_host : plan.hosts) {
+      for (const std::string& from : from_host) {
+        for (const std::string& to : to_host) {
+          Link link{from, to, between_hosts(), &from_host == &to_host, 0};
           set(links_[from][to] = link);
         }
       }
@@ -40,13 +40,13 @@ void FaultPlayer::for_each_link(const ProcessNames& from, const ProcessNames& to
 }
 
 void FaultPlayer::set(const Link& link) {
-  LinkQuality quality = link.is_within_host ? within_host() : link.weather;
+  LinkQuality quality = link.is_within_host ? within_host() : link.quality;
   quality.is_cut = link.cuts > 0;
   system_.set_link(link.from, link.to, quality);
 }
 
-void FaultPlayer::operator()(const WeatherChange& change) {
-  for_each_link(change.from, change.to, [&](Link& link) { link.weather = change.quality; });
+void FaultPlayer::operator()(const LinkChange& change) {
+  for_each_link(change.from, change.to, [&](Link& link) { link.quality = change.quality; });
 }
 
 void FaultPlayer::operator()(const Partition& partition) {
@@ -56,19 +56,19 @@ void FaultPlayer::operator()(const Partition& partition) {
 
 void FaultPlayer::operator()(const Pause& pause) {
   for (const std::string& process : pause.processes) {
-    system_.pause(process, pause.duration, pause.most_waiting);
+    system_.pause(process, pause.duration, pause.max_queued);
   }
 }
 
-void FaultPlayer::operator()(const Hand& hand) {
+void FaultPlayer::operator()(const RobotDisturbance& fault) {
   msg::Disturbance disturbance;
-  disturbance.robot(hand.robot);
-  disturbance.disturbance_kind(hand.kind);
-  disturbance.vx_mps(hand.push_mps.x());
-  disturbance.vy_mps(hand.push_mps.y());
-  disturbance.grip(hand.grip);
-  disturbance.heading_rad(hand.heading_rad);
-  disturbance.duration_ns(hand.duration.count());
+  disturbance.robot(fault.robot);
+  disturbance.disturbance_kind(fault.kind);
+  disturbance.vx_mps(fault.push_mps.x());
+  disturbance.vy_mps(fault.push_mps.y());
+  disturbance.grip(fault.grip);
+  disturbance.heading_rad(fault.heading_rad);
+  disturbance.duration_ns(fault.duration.count());
   system_.disturb(disturbance);
 }
 
@@ -89,7 +89,7 @@ void FaultPlayer::heal() {
   ends_.clear();
   for (auto& [sender, row] : links_) {
     for (auto& [receiver, link] : row) {
-      link.weather = between_hosts();
+      link.quality = between_hosts();
       link.cuts = 0;
       set(link);
     }

@@ -10,28 +10,28 @@
 
 namespace sidestep {
 
-/// Runs a system and does to it what a plan says.
+/// Runs a system and applies the faults of a plan.
 class FaultPlayer {
  public:
-  /// Both outlive the player. Begins with the links as good as they are between healthy hosts.
+  /// Both arguments must outlive the player. Links start with the quality of healthy hosts.
   FaultPlayer(SimSystem& system, const FaultPlan& plan);
 
-  /// Runs until a time after the begin, faults included.
+  /// Runs until this time after the start, and applies all faults until then.
   void run_until(Duration after_begin);
 
-  void operator()(const WeatherChange& change);
+  void operator()(const LinkChange& change);
   void operator()(const Partition& partition);
   void operator()(const Pause& pause);
   void operator()(const Kill& kill) { system_.kill(kill.process); }
   void operator()(const Start& start) { system_.restart(start.process); }
-  void operator()(const Hand& hand);
+  void operator()(const RobotDisturbance& fault);
 
  private:
   struct Link {
     std::string from, to;
-    LinkQuality weather;
+    LinkQuality quality;
     bool is_within_host = false;
-    int cuts = 0;  // partitions overlap
+    int cuts = 0;  // partitions may overlap
   };
   struct End {
     Duration at;

@@ -8,39 +8,37 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "deploy/simulate/campaign/campaign_summary.hpp"
-
 namespace sidestep {
 
-ResultsFile::ResultsFile(const std::string& path, const std::string& of_what) : path_(path) {
+ResultsFile::ResultsFile(const std::string& path, const std::string& campaign) : path_(path) {
   const bool is_new = !std::filesystem::exists(path) || std::filesystem::file_size(path) == 0;
-  if (!is_new) read(of_what);
+  if (!is_new) read(campaign);
   file_.reset(std::fopen(path.c_str(), "a"));
   if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-  if (is_new) write(of_what);
+  if (is_new) write(campaign);
 }
 
-void ResultsFile::read(const std::string& of_what) {
+void ResultsFile::read(const std::string& campaign) {
   std::ifstream in(path_);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path_, std::strerror(errno)));
-  std::uintmax_t whole = 0;  // bytes in lines that end
+  std::uintmax_t complete = 0;  // bytes in complete lines
   std::string line;
   for (int number = 1; std::getline(in, line) && !in.eof(); ++number) {
-    whole += line.size() + 1;
-    if (number == 1 && line != of_what) {
+    complete += line.size() + 1;
+    if (number == 1 && line != campaign) {
       throw std::runtime_error(
-          fmt::format("{}: holds results of another search: {}; this one is: {}", path_, line, of_what));
+          fmt::format("{}: contains results of another campaign: {}; expected: {}", path_, line, campaign));
     }
     if (number == 1) continue;
     try {
-      found_.push_back(result_from(line));
+      found_.push_back(parse_trial_result(line));
     } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("{}:{}: is no result: {}", path_, number, error.what()));
+      throw std::runtime_error(fmt::format("{}:{}: not a result: {}", path_, number, error.what()));
     }
   }
-  if (whole == 0) throw std::runtime_error(fmt::format("{}: holds no results of a search", path_));
+  if (complete == 0) throw std::runtime_error(fmt::format("{}: not a results file", path_));
   in.close();
-  std::filesystem::resize_file(path_, whole);
+  std::filesystem::resize_file(path_, complete);
 }
 
 void ResultsFile::write(const std::string& line) {

@@ -6,32 +6,32 @@
 #include <string>
 #include <vector>
 
-#include "deploy/simulate/campaign/trial.hpp"
+#include "deploy/simulate/campaign/trial_result.hpp"
 
 namespace sidestep {
 
-/// The results of a search on disk, a line each, so that a search that was stopped goes on where it was. The
-/// first line says what they are results of.
+/// The results of a campaign on disk, one per line, so that an interrupted campaign can resume. The first line
+/// identifies the campaign.
 class ResultsFile {
  public:
-  /// Opens the file, or makes it. A line that was not written to its end is dropped. Throws
-  /// std::runtime_error when the file is of another search, makes no sense, or cannot be written.
-  ResultsFile(const std::string& path, const std::string& of_what);
+  /// Opens or creates the file. An incomplete last line is removed. Throws std::runtime_error when the file belongs
+  /// to another campaign, is malformed, or cannot be written.
+  ResultsFile(const std::string& path, const std::string& campaign);
 
-  /// What the file held when it was opened.
+  /// The results in the file when it was opened.
   const std::vector<TrialResult>& found() const { return found_; }
   /// Throws std::runtime_error when it cannot be written.
   void add(const TrialResult& result);
 
  private:
-  struct Close {
+  struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   void write(const std::string& line);
-  void read(const std::string& of_what);
+  void read(const std::string& campaign);
 
   std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<std::FILE, Closer> file_;
   std::vector<TrialResult> found_;
 };
 

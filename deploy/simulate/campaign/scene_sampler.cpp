@@ -12,27 +12,27 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kGoals = 150;
-constexpr int kTries = 200;
+constexpr int kMaxAttempts = 200;
 
-/// Draws places that keep clear of walls, obstacles and, where asked for, of each other.
-class Places {
+/// Samples positions clear of walls, of obstacles and, on request, of other positions.
+class PositionSampler {
  public:
-  Places(const Scenario& scenario, Rng& rng) : scenario_(scenario), rng_(rng) {}
+  PositionSampler(const Scenario& scenario, Rng& rng) : scenario_(scenario), rng_(rng) {}
 
   bool is_free(const Vec2& p) const {
-    const double room = scenario_.radius_m + scenario_.margin_m + 0.01;
-    return scenario_.field.contains(p, room) &&
+    const double clearance_m = scenario_.radius_m + scenario_.margin_m + 0.01;
+    return scenario_.field.contains(p, clearance_m) &&
            std::ranges::none_of(scenario_.obstacles,
-                                [&](const Circle& o) { return (p - o.centre_m).norm() < o.radius_m + room; });
+                                [&](const Circle& o) { return (p - o.centre_m).norm() < o.radius_m + clearance_m; });
   }
   bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const {
-    const double keep = 2 * scenario_.radius_m + scenario_.margin_m + 0.01;
-    return std::ranges::none_of(others, [&](const Vec2& other) { return (p - other).norm() < keep; });
+    const double separation_m = 2 * scenario_.radius_m + scenario_.margin_m + 0.01;
+    return std::ranges::none_of(others, [&](const Vec2& other) { return (p - other).norm() < separation_m; });
   }
-  /// Within the middle `share` of the field, if there is a place.
-  Vec2 draw(double share = 1) {
+  /// Within the central `share` of the field if a free position is found there, else anywhere.
+  Vec2 sample(double share = 1) {
     for (int i = 0;; ++i) {
-      const double part = i < kTries ? share / 2 : 0.5;
+      const double part = i < kMaxAttempts ? share / 2 : 0.5;
       const Vec2 p(rng_.uniform(-part, part) * scenario_.field.length_m,
                    rng_.uniform(-part, part) * scenario_.field.width_m);
       if (is_free(p)) return p;
@@ -40,13 +40,13 @@ class Places {
   }
   Vec2 sample_apart(const std::vector<Vec2>& others) {
     for (;;) {
-      const Vec2 p = draw();
+      const Vec2 p = sample();
       if (is_apart(p, others)) return p;
     }
   }
-  /// The nearest to a wished place that is found free and apart.
-  Vec2 near(const Vec2& desired, const std::vector<Vec2>& others) {
-    for (int i = 0; i < kTries; ++i) {
+  /// A free position near the desired one, apart from the others.
+  Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others) {
+    for (int i = 0; i < kMaxAttempts; ++i) {
       const double spread = 0.005 * i;
       const Vec2 p = desired + Vec2(rng_.uniform(-spread, spread), rng_.uniform(-spread, spread));
       if (is_free(p) && is_apart(p, others)) return p;
@@ -64,25 +64,25 @@ void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
   const double aspect = rng.uniform(1, 2);
   scenario.field = {std::sqrt(area_m2 * aspect), std::sqrt(area_m2 / aspect)};
   for (std::uint64_t left = rng.chance(0.5) ? rng.below(6) : 0; left > 0; --left) {
-    const double most_m = std::min(0.4, scenario.field.width_m / 6);
+    const double max_radius_m = std::min(0.4, scenario.field.width_m / 6);
     scenario.obstacles.push_back(
         {{rng.uniform(-0.4, 0.4) * scenario.field.length_m, rng.uniform(-0.4, 0.4) * scenario.field.width_m},
-         rng.uniform(0.05, most_m)});
+         rng.uniform(0.05, max_radius_m)});
   }
 }
 
 void sample_sensors(Scenario& scenario, Rng& rng) {
   if (rng.chance(0.3)) scenario.command_loss = rng.uniform(0, 0.3);
-  if (rng.chance(0.3)) scenario.vision.missed = rng.uniform(0, 0.3);
+  if (rng.chance(0.3)) scenario.vision.miss_probability = rng.uniform(0, 0.3);
   if (rng.chance(0.3)) scenario.vision.delay = from_seconds(rng.uniform(0.002, 0.04));
   if (rng.chance(0.3)) scenario.limits.speed_mps = rng.uniform(0.8, scenario.limits.speed_mps);
 }
 
-/// Starts, and ways that go on and on.
+/// Samples starts and long sequences of goals.
 void sample_paths(Scenario& scenario, Rng& rng) {
   enum Pattern { kAnywhere, kThroughTheMiddle, kCircle, kSides, kPatterns };
   const auto pattern = static_cast<Pattern>(rng.below(kPatterns));
-  Places places(scenario, rng);
+  PositionSampler positions(scenario, rng);
   const double spread = rng.uniform(0.5, 0.9);
   const double circle_m = 0.42 * scenario.field.width_m;
   const auto count = static_cast<double>(scenario.robots.size());
@@ -91,23 +91,23 @@ void sample_paths(Scenario& scenario, Rng& rng) {
     const auto i = static_cast<double>(robot.id);
     const Vec2 arm = rotated(Vec2(circle_m, 0), 2 * std::numbers::pi * i / count);
     const double side = robot.id % 2 == 0 ? 1 : -1;
-    const Vec2 beside(side * 0.42 * scenario.field.length_m,
+    const Vec2 at_side(side * 0.42 * scenario.field.length_m,
                       rng.uniform(-0.45, 0.45) * scenario.field.width_m);
-    robot.start_m = pattern == kCircle  ? places.near(arm, starts)
-                    : pattern == kSides ? places.near(beside, starts)
-                                        : places.sample_apart(starts);
+    robot.start_m = pattern == kCircle  ? positions.sample_near(arm, starts)
+                    : pattern == kSides ? positions.sample_near(at_side, starts)
+                                        : positions.sample_apart(starts);
     starts.push_back(robot.start_m);
     robot.start_heading_rad = rng.uniform(-3, 3);
     while (robot.goals.size() + 1 < kGoals) {
-      const double turn = robot.goals.size() % 2 == 0 ? -1 : 1;
-      const Vec2 across(turn * beside.x(), rng.uniform(-0.45, 0.45) * scenario.field.width_m);
-      robot.goals.push_back({pattern == kCircle             ? places.near(turn * arm, {})
-                             : pattern == kSides            ? places.near(across, {})
-                             : pattern == kThroughTheMiddle ? places.draw(spread)
-                                                            : places.draw(),
+      const double direction = robot.goals.size() % 2 == 0 ? -1 : 1;
+      const Vec2 across(direction * at_side.x(), rng.uniform(-0.45, 0.45) * scenario.field.width_m);
+      robot.goals.push_back({pattern == kCircle             ? positions.sample_near(direction * arm, {})
+                             : pattern == kSides            ? positions.sample_near(across, {})
+                             : pattern == kThroughTheMiddle ? positions.sample(spread)
+                                                            : positions.sample(),
                              std::nullopt});
     }
-    lasts.push_back(places.sample_apart(lasts));
+    lasts.push_back(positions.sample_apart(lasts));
     robot.goals.push_back({lasts.back(), std::nullopt});
   }
 }
@@ -116,7 +116,7 @@ void sample_paths(Scenario& scenario, Rng& rng) {
 
 Scenario sample_scene(Rng& rng) {
   Scenario scenario;
-  scenario.name = "drawn";
+  scenario.name = "random";
   const std::size_t robots = 5 + rng.below(26);
   sample_floor(scenario, robots, rng);
   sample_sensors(scenario, rng);
@@ -134,15 +134,13 @@ Scenario sample_scene(Rng& rng) {
   return scenario;
 }
 
-std::string floor_in_words(const Scenario& scenario) {
+std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; commands lost "
-      "{:.1f} %, vision "
-      "{:.1f} ms late, "
-      "robots missed {:.1f} %",
+      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; command loss {:.1f} %, "
+      "vision delay {:.1f} ms, missed detections {:.1f} %",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
       scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
-      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.missed);
+      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.miss_probability);
 }
 
 }  // namespace sidestep

@@ -8,11 +8,11 @@
 
 namespace sidestep {
 
-/// A floor with 5 to 30 robots, so dense that they meet (0.5 to 3 m² each), a few obstacles, and so many
-/// goals for each that it never comes to the last one within a few minutes.
+/// A scene with 5 to 30 robots, dense enough that they interact (0.5 to 3 m² each), up to five obstacles, and so many
+/// goals per robot that none reaches its last goal within a few minutes.
 Scenario sample_scene(Rng& rng);
 
-/// In one line.
-std::string floor_in_words(const Scenario& scenario);
+/// A description in one line.
+std::string scene_summary(const Scenario& scenario);
 
 }  // namespace sidestep

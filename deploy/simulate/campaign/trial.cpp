@@ -7,121 +7,133 @@
 #include <fmt/ranges.h>
 
 #include "deploy/simulate/campaign/clock_sampler.hpp"
-#include "deploy/simulate/campaign/fault_sampler.hpp"
+#include "deploy/simulate/campaign/distance_meter.hpp"
 #include "deploy/simulate/campaign/fault_player.hpp"
-#include "deploy/simulate/campaign/motion_meter.hpp"
+#include "deploy/simulate/campaign/fault_sampler.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr Duration kCalm = std::chrono::seconds(12);
-// After so long without faults everybody has to be up again.
-constexpr Duration kRecovery = std::chrono::seconds(2);
-constexpr double kStill_m = 0.05;
+constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
+// This long after the last fault, all processes must work again.
+constexpr Duration kRecoveryTime = std::chrono::seconds(2);
+constexpr double kStationaryDistance_m = 0.05;
 
 std::string list(const std::vector<RobotId>& robots) { return fmt::format("{}", fmt::join(robots, ", ")); }
 
-/// Robots whose agents are not in the state in which they should be, although nothing has been wrong for
-/// long.
-struct Astray {
-  std::vector<RobotId> not_driving, not_off_clock, driven_off_clock;
+/// Robots whose agents are in a wrong state at the end, long after the last fault.
+struct UnexpectedStates {
+  std::vector<RobotId> not_driving;
+  std::vector<RobotId> undetected_clock;  ///< the clock is out of bound, but the agent does not report it
+  std::vector<RobotId> driven;            ///< the clock is out of bound, but versions were granted
 };
 
-Astray find_astray(const SimSystem& system, const FaultPlan& plan) {
-  Astray astray;
-  for (const RobotProgress& row : system.judge().progress()) {
-    const bool drives = row.phase == msg::AGENT_DRIVING || row.phase == msg::AGENT_ARRIVED;
-    if (std::ranges::find(plan.off_clock, row.robot) == plan.off_clock.end()) {
-      if (!drives) astray.not_driving.push_back(row.robot);
+UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan& plan) {
+  UnexpectedStates unexpected;
+  for (const RobotProgress& row : system.metrics().progress()) {
+    const bool is_driving =
+        row.agent_state == msg::AGENT_DRIVING || row.agent_state == msg::AGENT_ARRIVED;
+    if (std::ranges::find(plan.robots_out_of_clock_bound, row.robot) ==
+        plan.robots_out_of_clock_bound.end()) {
+      if (!is_driving) unexpected.not_driving.push_back(row.robot);
       continue;
     }
-    if (row.phase != msg::AGENT_OFF_CLOCK) astray.not_off_clock.push_back(row.robot);
-    if (row.grants > 0) astray.driven_off_clock.push_back(row.robot);
+    if (row.agent_state != msg::AGENT_CLOCK_OUT_OF_BOUND) unexpected.undetected_clock.push_back(row.robot);
+    if (row.grants > 0) unexpected.driven.push_back(row.robot);
   }
-  return astray;
+  return unexpected;
 }
 
-/// Whether clocks were so far off that nothing may have been granted to their robots at all.
-bool is_surely_noticed(const Trial& trial) {
-  const auto is_far = [](Duration offset) { return std::chrono::abs(offset) > kSurelyNoticed; };
-  return std::ranges::all_of(trial.plan.off_clock, [&](RobotId robot) {
+/// Whether the clocks of these robots were so wrong that no version may have been granted to them at all.
+bool is_detection_certain(const Trial& trial) {
+  const auto is_large = [](Duration offset) { return std::chrono::abs(offset) > kCertainlyDetectedOffset; };
+  return std::ranges::all_of(trial.plan.robots_out_of_clock_bound, [&](RobotId robot) {
     const auto coordinator = trial.plan.clocks.find("coordinator");
     const Duration reference = coordinator == trial.plan.clocks.end() ? Duration{0} : coordinator->second;
-    return is_far(find_robot(trial.scenario, robot)->clock_offset - reference);
+    return is_large(find_robot(trial.scenario, robot)->clock_offset - reference);
   });
 }
 
-void judge(const Trial& trial, const SimSystem& system, const MotionMeter& meter, TrialResult& result) {
-  const Report report = system.judge().report();
-  const auto fail = [&](const std::string& what) { result.failures.push_back(what); };
-  result.contacts = report.contacts_of_its_own();
-  result.contacts_by_hand = report.contacts - result.contacts;
-  result.promise_violations = report.audit->violations;
+void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult& result) {
+  result.contacts = report.unexcused_contacts();
+  result.excused_contacts = report.contacts - result.contacts;
+  result.audit_violations = report.audit->violations;
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
   result.grants = report.grants;
   result.denials = report.denials;
   result.min_clearance_m = report.min_clearance_m.value_or(result.min_clearance_m);
-  result.moved_m = meter.total_m();
-  result.calm_moved_m = meter.total_since_m();
-  result.idle = static_cast<int>(meter.still(kStill_m).size());
+  result.distance_m = meter.total_m();
+  result.distance_after_recovery_m = meter.total_since_m();
+  result.stationary = static_cast<int>(meter.stationary_robots(kStationaryDistance_m).size());
+}
+
+void add_failures(const Trial& trial, const SimSystem& system, const Report& report, TrialResult& result) {
+  const auto fail = [&](const std::string& failure) { result.failures.push_back(failure); };
   if (result.contacts > 0)
-    fail(fmt::format("{} contacts, {:.6f} m s deep", result.contacts, report.penetration_m_s));
+    fail(fmt::format("{} contacts, {:.6f} m s of penetration", result.contacts, report.penetration_m_s));
   if (report.audit->violations > 0) {
-    fail(fmt::format("{} violations found by the audit; {}", report.audit->violations,
+    fail(fmt::format("{} audit violations, the first: {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
-  const bool may_move = static_cast<int>(trial.plan.off_clock.size()) < result.robots;
-  if (may_move && report.grants == 0) fail("no coordinator has ever granted");
-  const Astray astray = find_astray(system, trial.plan);
-  if (!astray.not_driving.empty())
-    fail(fmt::format("stuck: robots {} do not drive, long after the last fault", list(astray.not_driving)));
-  if (!astray.not_off_clock.empty())
-    fail(fmt::format("robots {} do not know that their clocks are wrong", list(astray.not_off_clock)));
-  if (!astray.driven_off_clock.empty() && is_surely_noticed(trial))
-    fail(fmt::format("robots {} were driven although their clocks are wrong", list(astray.driven_off_clock)));
-  // Where some have to stand they may stand where others want to go.
-  if (trial.plan.off_clock.empty() && result.idle == result.robots && !system.judge().all_arrived())
-    fail("stuck: nobody moves, long after the last fault");
+  const std::vector<RobotId>& out_of_bound = trial.plan.robots_out_of_clock_bound;
+  const bool may_move = static_cast<int>(out_of_bound.size()) < result.robots;
+  if (may_move && report.grants == 0) fail("no coordinator ever granted");
+  const UnexpectedStates unexpected = find_unexpected_states(system, trial.plan);
+  if (!unexpected.not_driving.empty()) {
+    fail(fmt::format("stuck: robots {} do not drive, long after the last fault",
+                     list(unexpected.not_driving)));
+  }
+  if (!unexpected.undetected_clock.empty()) {
+    fail(fmt::format("the agents of robots {} do not detect that their clocks are out of bound",
+                     list(unexpected.undetected_clock)));
+  }
+  if (!unexpected.driven.empty() && is_detection_certain(trial)) {
+    fail(fmt::format("robots {} were driven although their clocks are out of bound",
+                     list(unexpected.driven)));
+  }
+  // Robots that must not move may stand at the goals of others.
+  if (out_of_bound.empty() && result.stationary == result.robots && !system.metrics().all_arrived())
+    fail("stuck: no robot moves, long after the last fault");
 }
 
 }  // namespace
 
 Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario) {
   Rng rng(seed);
-  Rng for_scene = rng.fork(), for_faults = rng.fork(), for_clocks = rng.fork();
-  Trial trial{seed, scenario ? *scenario : sample_scene(for_scene), {}, duration};
-  const Duration calm = std::min(kCalm, duration / 2);
-  trial.plan =
-      sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration, calm, for_faults);
-  sample_clocks(trial.scenario, trial.plan, for_clocks);
+  Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork();
+  Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
+  const Duration fault_free_end = std::min(kFaultFreeEnd, duration / 2);
+  trial.plan = sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration,
+                             fault_free_end, fault_rng);
+  sample_clocks(trial.scenario, trial.plan, clock_rng);
   return trial;
 }
 
-TrialResult run_trial(const Trial& trial, Report* report,
-                      const std::function<void(const msg::GroundTruth&)>& on_truth,
-                      const std::function<void(SimSystem&)>& before, const std::function<void()>& after) {
+TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hooks) {
   const auto begin = std::chrono::steady_clock::now();
   TrialResult result;
   result.seed = trial.seed;
   result.robots = static_cast<int>(trial.scenario.robots.size());
   result.robot_s = result.robots * to_seconds(trial.duration);
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks);
-  MotionMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecovery, trial.duration));
+  DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
   system.on_truth([&](const msg::GroundTruth& truth) {
     meter.add(truth);
-    if (on_truth) on_truth(truth);
+    if (hooks.on_truth) hooks.on_truth(truth);
   });
-  if (before) before(system);
+  if (hooks.on_start) hooks.on_start(system);
   FaultPlayer(system, trial.plan).run_until(trial.duration);
-  if (after) after();
-  judge(trial, system, meter, result);
+  if (hooks.on_end) hooks.on_end();
+  const Report final_report = system.metrics().report();
+  copy_metrics(final_report, meter, result);
+  add_failures(trial, system, final_report, result);
   if (report) {
-    *report = system.judge().report();
+    *report = final_report;
     report->must_arrive = false;
-    report->failure = fmt::format("{}", fmt::join(result.failures, "; "));
+    report->abort_reason = fmt::format("{}", fmt::join(result.failures, "; "));
   }
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -15,7 +15,7 @@
 namespace sidestep {
 namespace {
 
-[[noreturn]] void refuse(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+[[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 bool read_all(int fd, void* data, std::size_t size) {
   auto* at = static_cast<char*>(data);
@@ -41,7 +41,7 @@ bool write_all(int fd, const void* data, std::size_t size) {
   return true;
 }
 
-[[noreturn]] void serve(int jobs, int lines, const WorkerPool::Work& work) {
+[[noreturn]] void run_worker(int jobs, int lines, const WorkerPool::Work& work) {
   std::uint64_t job = 0;
   try {
     while (read_all(jobs, &job, sizeof job)) {
@@ -69,19 +69,19 @@ WorkerPool::~WorkerPool() {
 
 void WorkerPool::start(Worker& worker) {
   int jobs[2], lines[2];
-  if (pipe(jobs) != 0 || pipe(lines) != 0) refuse("cannot make a pipe to a worker");
+  if (pipe(jobs) != 0 || pipe(lines) != 0) fail("cannot make a pipe to a worker");
   std::fflush(nullptr);
   const pid_t pid = fork();
-  if (pid < 0) refuse("cannot start a worker");
+  if (pid < 0) fail("cannot start a worker");
   if (pid == 0) {
-    // The others' ends: a worker sees that no more jobs come when nobody holds the other end any more.
+    // Close inherited pipe ends: a worker sees the end of its jobs only when no process holds the write end.
     for (const Worker& other : workers_) {
       if (other.jobs >= 0) close(other.jobs);
       if (other.lines >= 0) close(other.lines);
     }
     close(jobs[1]);
     close(lines[0]);
-    serve(jobs[0], lines[1], work_);
+    run_worker(jobs[0], lines[1], work_);
   }
   close(jobs[0]);
   close(lines[1]);
@@ -101,22 +101,22 @@ std::string WorkerPool::stop(Worker& worker) {
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
-void WorkerPool::give(Worker& worker, std::uint64_t job) {
+void WorkerPool::assign(Worker& worker, std::uint64_t job) {
   worker.job = job;
   worker.is_busy = true;
-  // Where this fails the worker is dead, and hear() finds that.
+  // If this fails, the worker is dead, which receive() detects.
   (void)write_all(worker.jobs, &job, sizeof job);
 }
 
-void WorkerPool::hear(Worker& worker) {
+void WorkerPool::receive(Worker& worker) {
   char buffer[4096];
   const ssize_t got = read(worker.lines, buffer, sizeof buffer);
   if (got < 0 && errno == EINTR) return;
   if (got <= 0) {
     const std::uint64_t job = worker.job;
-    const std::string why = stop(worker);
+    const std::string death_reason = stop(worker);
     start(worker);
-    done_(job, "", why);
+    done_(job, "", death_reason);
     return;
   }
   worker.text.append(buffer, static_cast<std::size_t>(got));
@@ -131,14 +131,14 @@ void WorkerPool::run(const std::vector<std::uint64_t>& jobs) {
   for (;;) {
     std::vector<pollfd> waiting;
     for (Worker& worker : workers_) {
-      if (!worker.is_busy && next != jobs.end()) give(worker, *next++);
+      if (!worker.is_busy && next != jobs.end()) assign(worker, *next++);
       waiting.push_back({worker.is_busy ? worker.lines : -1, POLLIN, 0});
     }
-    const bool is_any = std::ranges::any_of(workers_, &Worker::is_busy);
-    if (!is_any) return;
-    if (poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) refuse("cannot wait for workers");
+    const bool is_any_busy = std::ranges::any_of(workers_, &Worker::is_busy);
+    if (!is_any_busy) return;
+    if (poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) fail("cannot wait for workers");
     for (std::size_t i = 0; i < workers_.size(); ++i) {
-      if (waiting[i].revents != 0) hear(workers_[i]);
+      if (waiting[i].revents != 0) receive(workers_[i]);
     }
   }
 }

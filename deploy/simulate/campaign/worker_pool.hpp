@@ -9,17 +9,18 @@
 
 namespace sidestep {
 
-/// Does numbered jobs in child processes, one at a time in each, so that a job that crashes takes nothing
-/// with it. To be used before this process has threads.
+/// Runs numbered jobs in child processes, one job per process at a time, so that a crash affects only its own job.
+/// Must be created before this process has threads.
 class WorkerPool {
  public:
-  /// Runs in the children; what it returns is one line of text.
+  /// Runs in a child; returns one line of text.
   using Work = std::function<std::string(std::uint64_t job)>;
-  /// Runs here, as each job is done, in any order. `died` says why a worker has died of its job, then there
-  /// is no line; empty: it has not.
-  using Done = std::function<void(std::uint64_t job, const std::string& line, const std::string& died)>;
+  /// Runs in this process after each job, in any order. If the worker died, `death_reason` is not empty and there is
+  /// no line.
+  using Done =
+      std::function<void(std::uint64_t job, const std::string& line, const std::string& death_reason)>;
 
-  /// `workers` > 0. Throws std::system_error when there can be no workers.
+  /// Precondition: workers > 0. Throws std::system_error when a worker cannot be started.
   WorkerPool(int workers, Work work, Done done);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -34,13 +35,13 @@ class WorkerPool {
     int jobs = -1, lines = -1;  // ends of pipes
     std::uint64_t job = 0;
     bool is_busy = false;
-    std::string text;  // of a line that has not ended
+    std::string text;  // of an incomplete line
   };
   void start(Worker& worker);
-  /// Waits for the process; why it died.
+  /// Waits for the end of the process and returns the reason.
   std::string stop(Worker& worker);
-  void give(Worker& worker, std::uint64_t job);
-  void hear(Worker& worker);
+  void assign(Worker& worker, std::uint64_t job);
+  void receive(Worker& worker);
 
   Work work_;
   Done done_;

@@ -15,10 +15,10 @@ namespace sidestep {
 namespace {
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
-constexpr Duration kLook = std::chrono::milliseconds(10);
-constexpr Duration kSettle = std::chrono::milliseconds(500);
+constexpr Duration kStep = std::chrono::milliseconds(10);
+constexpr Duration kSettlingTime = std::chrono::milliseconds(500);
 
-/// As the processes' mains do, who have options.
+/// The nodes of sidestep-simulator.
 struct SimulatorProcess {
   SimulatorProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed)
       : node(bus, scenario, incarnation, seed) {
@@ -28,6 +28,7 @@ struct SimulatorProcess {
   std::optional<ImageOutput> images;
 };
 
+/// The nodes of sidestep-vision.
 struct VisionProcess {
   VisionProcess(Bus& bus, const Scenario& scenario, Incarnation incarnation)
       : node(bus, scenario, incarnation, scenario.vision.images ? FrameSource::kCaller : FrameSource::kBus) {
@@ -39,9 +40,9 @@ struct VisionProcess {
 
 }  // namespace
 
-/// Members go in reverse order: the node before its bus, so that nothing calls back into a node that is gone.
+/// Members are destroyed in reverse order: the node before its bus, so the bus never calls a destroyed node.
 struct SimSystem::Process {
-  Process(SimNetwork& network, const SimPlace& place) : bus(network, place) {}
+  Process(SimNetwork& network, const SimProcessSpec& spec) : bus(network, spec) {}
   SimBus bus;
   std::shared_ptr<void> node;
 };
@@ -54,23 +55,23 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       rng_(seed),
       clocks_(std::move(clocks)),
       begin_(kBegin),
-      bench_(std::make_shared<PlanningScratch>(scenario_)),
+      scratch_(std::make_shared<PlanningScratch>(scenario_)),
       network_(seed, kBegin, scenario.network),
-      judge_(scenario_),
+      metrics_(scenario_),
       auditor_(scenario_, {true, {}}),
-      judge_bus_(network_),
-      hand_(judge_bus_.advertise(topics::kDisturbance)) {
-  judge_bus_.listen_aside();
-  judge_.include(auditor_);
-  listen(judge_bus_, scenario_, auditor_);
-  judge_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
-    judge_.on_truth(truth);
-    if (truth_watcher_) truth_watcher_(truth);
+      observer_bus_(network_),
+      disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)) {
+  observer_bus_.become_observer();
+  metrics_.set_auditor(auditor_);
+  listen(observer_bus_, scenario_, auditor_);
+  observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
+    metrics_.on_truth(truth);
+    if (on_truth_) on_truth_(truth);
   });
-  judge_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
-                                         [this](const auto& status) { judge_.on_status(status); });
-  judge_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
-                                              [this](const auto& state) { judge_.on_coordinator(state); });
+  observer_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
+                                         [this](const auto& status) { metrics_.on_status(status); });
+  observer_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
+                                              [this](const auto& state) { metrics_.on_coordinator(state); });
   for (const RobotSpec& robot : scenario_.robots)
     robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
   for (const std::string& process : process_names(scenario_)) start(process);
@@ -85,7 +86,7 @@ std::vector<std::string> SimSystem::process_names(const Scenario& scenario) {
   return names;
 }
 
-SimPlace SimSystem::place_of(const std::string& process) {
+SimProcessSpec SimSystem::spec_of(const std::string& process) {
   const auto known = ids_.find(process);
   const ProcessId id = known != ids_.end() ? known->second : network_.new_process();
   ids_[process] = id;
@@ -94,10 +95,10 @@ SimPlace SimSystem::place_of(const std::string& process) {
 }
 
 void SimSystem::start(const std::string& name) {
-  auto process = std::make_unique<Process>(network_, place_of(name));
+  auto process = std::make_unique<Process>(network_, spec_of(name));
   SimBus& bus = process->bus;
-  // As over DDS the time by the process's clock; and its randomness comes from it, so it has to come from the
-  // seed.
+  // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it must
+  // depend on the seed.
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
   if (name == "simulator")
@@ -110,22 +111,22 @@ void SimSystem::start(const std::string& name) {
     process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
   }
   if (const auto agent = robot_of_.find(name); agent != robot_of_.end())
-    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation, bench_);
+    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation, scratch_);
   if (!process->node) throw std::invalid_argument("the system has no process \"" + name + "\"");
   processes_[name] = std::move(process);
 }
 
 void SimSystem::kill(const std::string& process) {
-  if (processes_.erase(process) > 0) judge_.on_death(process, "signal 9 (SIGKILL)", now(), false);
+  if (processes_.erase(process) > 0) metrics_.on_death(process, "signal 9 (SIGKILL)", now(), false);
 }
 
-void SimSystem::pause(const std::string& process, Duration duration, std::size_t most_waiting) {
+void SimSystem::pause(const std::string& process, Duration duration, std::size_t max_queued) {
   const auto found = processes_.find(process);
-  if (found != processes_.end()) found->second->bus.pause(now() + duration, most_waiting);
+  if (found != processes_.end()) found->second->bus.pause(now() + duration, max_queued);
 }
 
 void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {
-  network_.set_link(place_of(from).process, place_of(to).process, quality);
+  network_.set_link(spec_of(from).process, spec_of(to).process, quality);
 }
 
 void SimSystem::restart(const std::string& process) {
@@ -134,12 +135,12 @@ void SimSystem::restart(const std::string& process) {
 
 bool SimSystem::run_until_arrived(Time limit) {
   while (now() < limit) {
-    run_for(std::min(kLook, limit - now()));
-    if (!judge_.all_arrived())
+    run_for(std::min(kStep, limit - now()));
+    if (!metrics_.all_arrived())
       arrived_since_.reset();
     else if (!arrived_since_)
       arrived_since_ = now();
-    if (arrived_since_ && now() - *arrived_since_ >= kSettle) return true;
+    if (arrived_since_ && now() - *arrived_since_ >= kSettlingTime) return true;
   }
   return false;
 }

@@ -14,7 +14,7 @@ constexpr Epoch kEpoch = 100;
 
 struct Floor {
   Coordinator coordinator{floor_for_tests(), {1, 2}, kEpoch};
-  Version a = standing(1, {0, 0}), b = standing(2, {1, 0});
+  Version a = rest_version(1, {0, 0}), b = rest_version(2, {1, 0});
 
   void register_both() {
     coordinator.on_registration(registration_of(a, kEpoch));
@@ -38,67 +38,67 @@ TEST_CASE("nothing is granted until every robot of the roster has registered") {
   CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
   CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
   floor.coordinator.on_registration(registration_of(floor.b, kEpoch));
-  CHECK(floor.ask(proposal).granted() == 10);
+  CHECK(floor.ask(proposal).granted_version() == 10);
 }
 
-TEST_CASE("the first clear candidate is granted and the reasons of the others are given") {
+TEST_CASE("the first clear candidate is granted, and the verdict gives the reasons for the others") {
   Floor floor;
   floor.register_both();
   const auto verdict =
       floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6), continued(floor.a, 11, 1, {0, 3}),
                              continued(floor.a, 12, 1, {0, -3})},
                             kEpoch));
-  CHECK(verdict.granted() == 11);
+  CHECK(verdict.granted_version() == 11);
   CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
   CHECK(verdict.blockers()[0] == 2);
   CHECK(verdict.reasons()[1] == msg::REASON_GRANTED);
-  CHECK(verdict.reasons()[2] == msg::REASON_NOT_TRIED);
+  CHECK(verdict.reasons()[2] == msg::REASON_NOT_EVALUATED);
 }
 
-TEST_CASE("a repeated proposal is answered with the verdict that it got") {
+TEST_CASE("a repeated proposal gets the same verdict again") {
   Floor floor;
   floor.register_both();
   const auto first = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   const auto second = proposal_of({continued(floor.a, 11, 1, {0, -3})}, kEpoch);
-  CHECK(floor.ask(first).granted() == 10);
-  CHECK(floor.ask(second).granted() == 11);
-  CHECK(floor.ask(first).granted() == 10);
+  CHECK(floor.ask(first).granted_version() == 10);
+  CHECK(floor.ask(second).granted_version() == 11);
+  CHECK(floor.ask(first).granted_version() == 10);
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
 }
 
-TEST_CASE("versions have to be proposed in increasing order") {
+TEST_CASE("versions must be proposed in increasing order") {
   Floor floor;
   floor.register_both();
-  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted() == 10);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version() == 10);
   CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons()[0] ==
         msg::REASON_OLD_VERSION);
 }
 
-TEST_CASE("another epoch's proposal and an older agent's are refused") {
+TEST_CASE("proposals for another epoch or from an older agent are refused") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
   CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons()[0] == msg::REASON_WRONG_EPOCH);
   CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons()[0] == msg::REASON_OLD_INCARNATION);
-  // A new agent has to register before it is heard.
+  // A new agent must register before it may propose.
   Version q = p;
   q.incarnation = 2;
   CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
   floor.coordinator.on_registration(registration_of(floor.a, kEpoch, 2));
   CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons()[0] == msg::REASON_OLD_INCARNATION);
-  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted() == 10);
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted_version() == 10);
 }
 
-TEST_CASE("a new agent's registration cannot bring in versions that were never granted") {
+TEST_CASE("a new agent's registration cannot add versions that were never granted") {
   Floor floor;
   floor.register_both();
-  floor.coordinator.on_registration(registration_of(standing(1, {0.9, 0}, 77), kEpoch, 2));
+  floor.coordinator.on_registration(registration_of(rest_version(1, {0.9, 0}, 77), kEpoch, 2));
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 0);
   CHECK(floor.coordinator.state().invalid() == 1);
 }
 
-TEST_CASE("a coordinator that stands by answers nobody, and begins with nothing in an epoch of its own") {
+TEST_CASE("a standby answers no messages, and begins its own epoch with an empty ledger") {
   Floor floor;
   floor.register_both();
   floor.coordinator.begin_epoch(0);
@@ -117,17 +117,17 @@ TEST_CASE("a coordinator that stands by answers nobody, and begins with nothing 
   CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_WRONG_EPOCH);
 }
 
-TEST_CASE("every registration of a robot's agent is answered, with an echo of when it was sent") {
+TEST_CASE("every registration is answered, and the answer echoes its time stamp") {
   Floor floor;
   const auto answer = [&](msg::Registration registration) {
-    registration.head().stamp_ns(4711);
+    registration.header().stamp_ns(4711);
     const auto verdict = floor.coordinator.on_registration(registration);
     REQUIRE(verdict);
     CHECK(verdict->robot() == registration.robot());
     CHECK(verdict->epoch() == kEpoch);
     CHECK(verdict->proposal_number() == 0);
-    CHECK(verdict->granted() == 0);
-    CHECK(verdict->asked_stamp_ns() == 4711);
+    CHECK(verdict->granted_version() == 0);
+    CHECK(verdict->request_stamp_ns() == 4711);
     return verdict->reasons()[0];
   };
   CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::REASON_WRONG_EPOCH);
@@ -139,46 +139,46 @@ TEST_CASE("every registration of a robot's agent is answered, with an echo of wh
   auto malformed = registration_of(floor.b, kEpoch);
   malformed.version_count(0);
   CHECK(answer(malformed) == msg::REASON_MALFORMED);
-  CHECK_FALSE(floor.coordinator.on_registration(registration_of(standing(3, {0, 0}), kEpoch)));
-  malformed.head().sender(1);
+  CHECK_FALSE(floor.coordinator.on_registration(registration_of(rest_version(3, {0, 0}), kEpoch)));
+  malformed.header().sender(1);
   CHECK_FALSE(floor.coordinator.on_registration(malformed));
   CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
 }
 
-TEST_CASE("a verdict echoes when the proposal that it answers was sent, a repeated one's too") {
+TEST_CASE("a verdict echoes the time stamp of its proposal, also of a repeated one") {
   Floor floor;
   floor.register_both();
   auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
-  proposal.head().stamp_ns(100);
-  CHECK(floor.ask(proposal).asked_stamp_ns() == 100);
-  proposal.head().stamp_ns(200);
-  CHECK(floor.ask(proposal).asked_stamp_ns() == 200);
-  CHECK(floor.ask(proposal).granted() == 10);
+  proposal.header().stamp_ns(100);
+  CHECK(floor.ask(proposal).request_stamp_ns() == 100);
+  proposal.header().stamp_ns(200);
+  CHECK(floor.ask(proposal).request_stamp_ns() == 200);
+  CHECK(floor.ask(proposal).granted_version() == 10);
   proposal.epoch(kEpoch - 1);
-  CHECK(floor.ask(proposal).asked_stamp_ns() == 200);
+  CHECK(floor.ask(proposal).request_stamp_ns() == 200);
 }
 
-TEST_CASE("a registration that names one version twice is refused") {
+TEST_CASE("a registration that lists a version twice is refused") {
   Floor floor;
   auto registration = registration_of(floor.a, kEpoch);
   registration.version_count(2);
-  registration.versions()[1] = encode(standing(1, {1, 1}));
+  registration.versions()[1] = encode(rest_version(1, {1, 1}));
   floor.coordinator.on_registration(registration);
   CHECK(floor.coordinator.state().missing().size() == 2);
   CHECK(floor.coordinator.state().invalid() == 1);
 }
 
-TEST_CASE("a fact from a robot frees the places that it has left") {
+TEST_CASE("a fact from a robot removes the versions that it has left") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
-  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted() == 10);
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version() == 10);
   floor.coordinator.on_feedback(fact(p, 1.5));
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 10);
 }
 
-TEST_CASE("hostile proposals get a verdict with a reason, or none, and change nothing") {
+TEST_CASE("hostile proposals get a refusal or no answer, and change nothing") {
   Floor floor;
   floor.register_both();
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
@@ -206,7 +206,7 @@ TEST_CASE("hostile proposals get a verdict with a reason, or none, and change no
   CHECK(spoil([&](auto& p) { p.candidate_count(255); }) == malformed);
   for (const auto change :
        {+[](msg::Proposal& p) { p.robot(3); }, +[](msg::Proposal& p) { p.robot(4'000'000'000); },
-        +[](msg::Proposal& p) { p.head().sender(2); }}) {
+        +[](msg::Proposal& p) { p.header().sender(2); }}) {
     auto proposal = good;
     change(proposal);
     CHECK_FALSE(floor.coordinator.on_proposal(proposal));
@@ -215,7 +215,7 @@ TEST_CASE("hostile proposals get a verdict with a reason, or none, and change no
   CHECK(floor.coordinator.ledger().versions(2).size() == 1);
 }
 
-TEST_CASE("random messages of every kind never break the coordinator") {
+TEST_CASE("random messages of every kind leave the coordinator consistent") {
   int contradictions = 0;
   const std::uint64_t seed = 7;
   CAPTURE(seed);
@@ -260,7 +260,7 @@ TEST_CASE("random messages of every kind never break the coordinator") {
     floor.coordinator.on_registration(registration);
     auto feedback = fact(floor.a, 1);
     noise(feedback.executing());
-    feedback.at_ns(static_cast<std::int64_t>(rng.bits()));
+    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits()));
     feedback.is_off_reference(rng.chance(0.5));
     floor.coordinator.on_feedback(feedback);
     contradictions += floor.coordinator.is_contradicted();
@@ -276,27 +276,27 @@ TEST_CASE("random messages of every kind never break the coordinator") {
 }
 
 TEST_CASE(
-    "a fact that contradicts the ledger ends all granting until a new epoch begins with registrations") {
+    "after a fact that contradicts the ledger nothing is granted until robots register in a new epoch") {
   Floor floor;
   floor.register_both();
   const Version unknown = continued(floor.a, 10, 1, {0, 3});
   floor.coordinator.on_feedback(fact(unknown, 1.5));
   CHECK(floor.coordinator.is_contradicted());
-  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted() == 0);
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version() == 0);
   floor.coordinator.begin_epoch(kEpoch + 1);
   CHECK_FALSE(floor.coordinator.is_contradicted());
   CHECK_FALSE(floor.coordinator.is_granting());
   CHECK(floor.coordinator.state().missing().size() == 2);
 }
 
-TEST_CASE("a robot that lost its reference is where it says, and who that is in conflict with is named") {
+TEST_CASE("the stop of a robot that lost its reference enters the ledger, and its conflicts are reported") {
   Floor floor;
   floor.register_both();
-  Version stop = standing(1, {0.85, 0}, 1'000'000);
+  Version stop = rest_version(1, {0.85, 0}, 1'000'000);
   stop.inflation_m = 0.01;
   auto feedback = fact(stop, 1);
   floor.coordinator.on_feedback(feedback);
-  CHECK(floor.coordinator.is_contradicted());  // it does not say that it lost its reference
+  CHECK(floor.coordinator.is_contradicted());  // the fact does not say that the robot lost its reference
   floor.coordinator.begin_epoch(kEpoch);
   floor.register_both();
   feedback.is_off_reference(true);
@@ -308,7 +308,7 @@ TEST_CASE("a robot that lost its reference is where it says, and who that is in 
   CHECK(state.conflicts() == 1);
   CHECK(state.conflict_first() == 1);
   CHECK(state.conflict_second() == 2);
-  // Off its reference or not, what does not end at rest is no version.
+  // A version that does not end at rest is refused, also off reference.
   feedback.executing().vx_mps(1);
   feedback.executing().version_number(2'000'000);
   floor.coordinator.on_feedback(feedback);
@@ -316,7 +316,7 @@ TEST_CASE("a robot that lost its reference is where it says, and who that is in 
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
 }
 
-TEST_CASE("a robot that is not on the floor registers without versions and is granted nothing but a stand") {
+TEST_CASE("an absent robot registers without versions and is granted a rest version only") {
   Floor floor;
   auto absent = registration_of(floor.a, kEpoch);
   absent.is_absent(true);
@@ -328,10 +328,10 @@ TEST_CASE("a robot that is not on the floor registers without versions and is gr
   CHECK(floor.coordinator.state().absent() == 1);
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons()[0] ==
         msg::REASON_ABSENT);
-  Version near = standing(1, {0.85, 0}, 11), there = standing(1, {0.5, 0.5}, 12);
-  near.incarnation = there.incarnation = 1;
-  const auto verdict = floor.ask(proposal_of({near, there}, kEpoch));
+  Version blocked = rest_version(1, {0.85, 0}, 11), free = rest_version(1, {0.5, 0.5}, 12);
+  blocked.incarnation = free.incarnation = 1;
+  const auto verdict = floor.ask(proposal_of({blocked, free}, kEpoch));
   CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
-  CHECK(verdict.granted() == 12);
+  CHECK(verdict.granted_version() == 12);
   CHECK(floor.coordinator.state().absent() == 0);
 }

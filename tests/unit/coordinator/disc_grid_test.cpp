@@ -8,7 +8,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("a grid finds exactly the discs that touch a circle, wherever they move, come and go") {
+TEST_CASE("a grid finds exactly the discs that touch a circle while discs are moved, added and removed") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -9,7 +9,8 @@
 
 namespace sidestep {
 
-/// Versions and messages for tests of the ledger and the coordinator: times in seconds, on an empty floor.
+/// Versions and messages for tests of the ledger and the coordinator. Times are in seconds; the floor is
+/// empty.
 inline Time at_s(double seconds) { return from_seconds(seconds) + Time{}; }
 
 inline FloorRules floor_for_tests() {
@@ -18,11 +19,11 @@ inline FloorRules floor_for_tests() {
   return rules;
 }
 
-inline Version standing(RobotId robot, Vec2 position, VersionNumber number = 0) {
+inline Version rest_version(RobotId robot, Vec2 position, VersionNumber number = 0) {
   return {robot, 0, number, 0, Trajectory::resting(at_s(0), position)};
 }
 
-/// Continues `base` at a time with an acceleration held for a while, then stops.
+/// Continues `base` from start_s with an acceleration for `seconds`, then stops.
 inline Version continued(const Version& base, VersionNumber number, double start_s, Vec2 acceleration,
                          double seconds = 1.0 / 60) {
   Trajectory trajectory(at_s(start_s), base.trajectory.state_at(at_s(start_s)));
@@ -34,8 +35,8 @@ inline Version continued(const Version& base, VersionNumber number, double start
 inline msg::Registration registration_of(const Version& version, Epoch epoch, Incarnation incarnation = 1) {
   msg::Registration registration;
   registration.robot(version.robot);
-  registration.head().sender(version.robot);
-  registration.head().incarnation(incarnation);
+  registration.header().sender(version.robot);
+  registration.header().incarnation(incarnation);
   registration.epoch(epoch);
   registration.version_count(1);
   registration.versions()[0] = encode(version);
@@ -46,8 +47,8 @@ inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch e
                                  Incarnation incarnation = 1) {
   msg::Proposal proposal;
   proposal.robot(candidates.front().robot);
-  proposal.head().sender(candidates.front().robot);
-  proposal.head().incarnation(incarnation);
+  proposal.header().sender(candidates.front().robot);
+  proposal.header().incarnation(incarnation);
   proposal.epoch(epoch);
   proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
   for (std::size_t i = 0; i < candidates.size(); ++i) proposal.candidates()[i] = encode(candidates[i]);
@@ -57,8 +58,8 @@ inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch e
 inline msg::Feedback fact(const Version& executing, double at) {
   msg::Feedback feedback;
   feedback.robot(executing.robot);
-  feedback.head().sender(executing.robot);
-  feedback.at_ns(to_ns(at_s(at)));
+  feedback.header().sender(executing.robot);
+  feedback.valid_at_ns(to_ns(at_s(at)));
   feedback.obeyed_incarnation(1);
   feedback.executing(encode(executing));
   return feedback;

@@ -17,20 +17,20 @@ Ledger ledger_of(std::size_t robots, double half_side_m, Rng& rng) {
   for (RobotId robot = 0; robot < robots; ++robot) roster.push_back(robot);
   Ledger ledger(rules, roster);
   for (const RobotId robot : roster) {
-    // A few are not on the floor.
+    // A few robots are absent.
     if (rng.chance(0.05)) continue;
-    const Vec2 place(rng.uniform(-half_side_m, half_side_m), rng.uniform(-half_side_m, half_side_m));
+    const Vec2 position(rng.uniform(-half_side_m, half_side_m), rng.uniform(-half_side_m, half_side_m));
     std::vector<Version> versions;
     for (std::uint64_t i = 0; i <= rng.below(3); ++i)
-      versions.push_back({robot, 1, i + 1, 0, Trajectory::resting({}, place + i * Vec2(0.01, 0)), 0});
-    (void)ledger.enter(robot, versions);
+      versions.push_back({robot, 1, i + 1, 0, Trajectory::resting({}, position + i * Vec2(0.01, 0)), 0});
+    (void)ledger.register_robot(robot, versions);
   }
   return ledger;
 }
 
 }  // namespace
 
-TEST_CASE("the ledger's pages hold every version of every robot once, each within its page's rectangle") {
+TEST_CASE("the ledger's pages hold every version once, each within its page's bounding box") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -47,8 +47,8 @@ TEST_CASE("the ledger's pages hold every version of every robot once, each withi
       CHECK(pages[i].versions().size() <= 256);
       for (const msg::Version& version : pages[i].versions()) {
         seen.emplace_back(version.robot(), version.version_number());
-        const bool is_within = version.x_m() >= pages[i].low_x_m() && version.x_m() <= pages[i].high_x_m() &&
-                               version.y_m() >= pages[i].low_y_m() && version.y_m() <= pages[i].high_y_m();
+        const bool is_within = version.x_m() >= pages[i].min_x_m() && version.x_m() <= pages[i].max_x_m() &&
+                               version.y_m() >= pages[i].min_y_m() && version.y_m() <= pages[i].max_y_m();
         REQUIRE(is_within);
       }
     }
@@ -60,12 +60,12 @@ TEST_CASE("the ledger's pages hold every version of every robot once, each withi
   }
 }
 
-TEST_CASE("robots of one page are near to each other where there are many") {
+TEST_CASE("the robots of a page are close together on a crowded floor") {
   Rng rng(4);
-  // A robot for each 0.7 m²: a page would fit a square with sides of 4.7 m, and where it lies in two strips,
-  // a rectangle twice as long.
+  // At 0.7 m² per robot, a page covers a square of 4.7 m, or a rectangle of twice that length if it spans two
+  // strips.
   for (const msg::LedgerPage& page : ledger_pages(ledger_of(1000, 13.2, rng), 1)) {
-    CHECK(page.high_x_m() - page.low_x_m() < 10);
-    CHECK(page.high_y_m() - page.low_y_m() < 10);
+    CHECK(page.max_x_m() - page.min_x_m() < 10);
+    CHECK(page.max_y_m() - page.min_y_m() < 10);
   }
 }

@@ -14,13 +14,13 @@ namespace {
 
 struct Two {
   Ledger ledger{floor_for_tests(), {1, 2}};
-  Version a = standing(1, {0, 0}), b;
-  explicit Two(double apart) : b(standing(2, {apart, 0})) {
-    ledger.enter(1, {&a, 1});
-    ledger.enter(2, {&b, 1});
+  Version a = rest_version(1, {0, 0}), b;
+  explicit Two(double apart) : b(rest_version(2, {apart, 0})) {
+    ledger.register_robot(1, {&a, 1});
+    ledger.register_robot(2, {&b, 1});
     REQUIRE(ledger.conflicts().empty());
   }
-  FactUse fact(const Version& executing, double at) {
+  FactOutcome fact(const Version& executing, double at) {
     return ledger.on_executing(executing, at_s(at), false);
   }
 };
@@ -30,15 +30,13 @@ struct Two {
 TEST_CASE("a clear candidate is granted, added, and removes nothing") {
   Two two(1);
   const Version p = continued(two.a, 10, 1, {3, 0});
-  CHECK(two.ledger.grant(p).granted());
+  CHECK(two.ledger.grant(p).is_granted());
   REQUIRE(two.ledger.versions(1).size() == 2);
   CHECK(two.ledger.versions(1)[0].number == 0);
   CHECK(two.ledger.versions(1)[1].number == 10);
 }
 
-TEST_CASE(
-    "a candidate that would come too near is refused and changes nothing, and the verdict names who is "
-    "there") {
+TEST_CASE("a candidate in conflict is refused and changes nothing, and the ruling names the other robot") {
   Two two(0.2);
   const Ruling ruling = two.ledger.grant(continued(two.a, 10, 1, {3, 0}, 0.2));
   CHECK(ruling.reason == msg::REASON_CONFLICT);
@@ -46,28 +44,27 @@ TEST_CASE(
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
-TEST_CASE(
-    "candidates are judged against everything that a robot may be executing, not against its newest wish") {
+TEST_CASE("candidates are checked against all versions that a robot may execute, not only its newest") {
   Two two(0.5);
-  // Robot 2 has been granted a move away, but the verdict may be lost and it may stand for ever.
+  // Robot 2 has been granted a move away, but the verdict may be lost, so the robot may stay where it is.
   const Version away = continued(two.b, 10, 1, {3, 0}, 0.5);
-  REQUIRE(two.ledger.grant(away).granted());
+  REQUIRE(two.ledger.grant(away).is_granted());
   const Version towards = continued(two.a, 20, 1, {3, 0}, 0.4);
   CHECK(is_clear(towards.trajectory, away.trajectory, 0.19));
   CHECK(two.ledger.grant(towards).reason == msg::REASON_CONFLICT);
-  // As soon as it is known to be on its way, the place is free.
-  REQUIRE(two.fact(away, 1.01) == FactUse::kUsed);
-  CHECK(two.ledger.grant(towards).granted());
+  // Once it is known to execute the move, its old position is free.
+  REQUIRE(two.fact(away, 1.01) == FactOutcome::kApplied);
+  CHECK(two.ledger.grant(towards).is_granted());
 }
 
-TEST_CASE("a base that the robot cannot be executing is refused") {
+TEST_CASE("a candidate whose base is not in the ledger is refused") {
   Two two(1);
   Version p = continued(two.a, 10, 1, {3, 0});
   p.base = 7;
   CHECK(two.ledger.grant(p).reason == msg::REASON_BASE_UNKNOWN);
 }
 
-TEST_CASE("a candidate has to continue its base, obey the limits, come to rest and stay on the field") {
+TEST_CASE("a candidate must continue its base, obey the limits, come to rest and stay on the field") {
   Two two(1);
   const auto reason = [&](Vec2 offset, Vec2 velocity, Vec2 acceleration, double brake) {
     Trajectory trajectory(at_s(1), {offset, velocity});
@@ -83,57 +80,57 @@ TEST_CASE("a candidate has to continue its base, obey the limits, come to rest a
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
-TEST_CASE("a fact removes older versions, and newer ones whose start is not after it") {
+TEST_CASE("a fact removes older versions, and newer ones that start at or before its time") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
-  for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).granted());
-  REQUIRE(two.fact(two.a, 1 - 1e-9) == FactUse::kUsed);
+  for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).is_granted());
+  REQUIRE(two.fact(two.a, 1 - 1e-9) == FactOutcome::kApplied);
   CHECK(two.ledger.versions(1).size() == 4);
-  REQUIRE(two.fact(two.a, 1.0) == FactUse::kUsed);  // 10 was not taken at its start
+  REQUIRE(two.fact(two.a, 1.0) == FactOutcome::kApplied);  // the robot did not switch to 10 at its start
   REQUIRE(two.ledger.versions(1).size() == 3);
-  REQUIRE(two.fact(q, 2.5) == FactUse::kUsed);
+  REQUIRE(two.fact(q, 2.5) == FactOutcome::kApplied);
   REQUIRE(two.ledger.versions(1).size() == 2);
   CHECK(two.ledger.versions(1)[0].number == 11);
   CHECK(two.ledger.versions(1)[1].number == 12);
 }
 
-TEST_CASE("facts may come late, twice and in any order") {
+TEST_CASE("facts may arrive late, twice and in any order") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 11, 1.1, {3, 0});
-  REQUIRE(two.ledger.grant(p).granted());
-  REQUIRE(two.ledger.grant(q).granted());
-  REQUIRE(two.fact(q, 1.2) == FactUse::kUsed);
+  REQUIRE(two.ledger.grant(p).is_granted());
+  REQUIRE(two.ledger.grant(q).is_granted());
+  REQUIRE(two.fact(q, 1.2) == FactOutcome::kApplied);
   for (int i = 0; i < 2; ++i) {
-    CHECK(two.fact(p, 1.05) == FactUse::kLate);
-    CHECK(two.fact(two.a, 0.5) == FactUse::kLate);
-    CHECK(two.fact(q, 1.15) == FactUse::kUsed);
+    CHECK(two.fact(p, 1.05) == FactOutcome::kStale);
+    CHECK(two.fact(two.a, 0.5) == FactOutcome::kStale);
+    CHECK(two.fact(q, 1.15) == FactOutcome::kApplied);
   }
   REQUIRE(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.versions(1)[0].number == 11);
 }
 
-TEST_CASE("a fact that cannot be true if the ledger is says so, and changes nothing") {
+TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and changes nothing") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
-  REQUIRE(two.ledger.grant(p).granted());
-  REQUIRE(two.ledger.grant(q).granted());
+  REQUIRE(two.ledger.grant(p).is_granted());
+  REQUIRE(two.ledger.grant(q).is_granted());
   Version unknown = p, other = p;
   unknown.number = 11;
-  CHECK(two.fact(unknown, 100) == FactUse::kContradiction);
+  CHECK(two.fact(unknown, 100) == FactOutcome::kContradiction);
   unknown.number = 999;
-  CHECK(two.fact(unknown, 100) == FactUse::kContradiction);
-  // One number, two versions.
+  CHECK(two.fact(unknown, 100) == FactOutcome::kContradiction);
+  // A known number with other contents.
   other.trajectory = continued(two.a, 10, 1, {2.9, 0}).trajectory;
-  CHECK(two.fact(other, 100) == FactUse::kContradiction);
+  CHECK(two.fact(other, 100) == FactOutcome::kContradiction);
   CHECK(two.ledger.versions(1).size() == 3);
-  // What is older than everything it holds may be late.
-  REQUIRE(two.fact(q, 1.2) == FactUse::kUsed);
-  CHECK(two.fact(unknown, 1.3) == FactUse::kContradiction);
-  CHECK(two.fact(p, 1.3) == FactUse::kLate);
+  // A fact about a version older than all held ones may be late.
+  REQUIRE(two.fact(q, 1.2) == FactOutcome::kApplied);
+  CHECK(two.fact(unknown, 1.3) == FactOutcome::kContradiction);
+  CHECK(two.fact(p, 1.3) == FactOutcome::kStale);
 }
 
-TEST_CASE("without facts the ledger fills up and then grants no more") {
+TEST_CASE("without facts the ledger fills up and then grants nothing") {
   Two two(10);
   Version last = two.a;
   msg::Reason reason = msg::REASON_GRANTED;
@@ -146,7 +143,7 @@ TEST_CASE("without facts the ledger fills up and then grants no more") {
   CHECK(two.ledger.versions(1).size() == VersionSet::kCapacity);
 }
 
-TEST_CASE("whatever is granted, lost and reported, all versions of different robots stay clear") {
+TEST_CASE("all versions of different robots stay clear through random grants, losses and facts") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -155,8 +152,8 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
   Ledger ledger(rules, roster);
   std::map<RobotId, Version> executing;
   for (const RobotId robot : roster) {
-    executing[robot] = standing(robot, 0.3 * rotated({1, 0}, robot * 0.785398));
-    ledger.enter(robot, {&executing[robot], 1});
+    executing[robot] = rest_version(robot, 0.3 * rotated({1, 0}, robot * 0.785398));
+    ledger.register_robot(robot, {&executing[robot], 1});
   }
   REQUIRE(ledger.conflicts().empty());
   std::uint64_t grants = 0, conflicts = 0;
@@ -168,13 +165,13 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
     const Version base = held[rng.below(held.size())];
     const double start = std::max(now, to_seconds(base.trajectory.start().time_since_epoch()) + 1e-3) + 0.01;
     const Vec2 velocity = base.trajectory.state_at(at_s(start)).velocity_mps;
-    const Vec2 desired =
-        limited(sample(velocity, rules.limits, rng), velocity, rules.limits, from_seconds(0.15));
+    const Vec2 desired = limit_acceleration(sample_acceleration(velocity, rules.limits, rng), velocity,
+                                            rules.limits, from_seconds(0.15));
     const Ruling ruling = ledger.grant(continued(base, number, start, desired, 0.15));
-    grants += ruling.granted();
+    grants += ruling.is_granted();
     conflicts += ruling.reason == msg::REASON_CONFLICT;
     if (rng.chance(0.5)) {
-      // The robot happens to take one of its versions whose time has come, or stays with what it has.
+      // The robot switches to one of its due versions, or keeps its current one.
       Version& current = executing[robot];
       for (const Version& v : ledger.versions(robot)) {
         const bool possible = v.base == current.number && v.trajectory.start() > current.trajectory.start() &&
@@ -184,8 +181,8 @@ TEST_CASE("whatever is granted, lost and reported, all versions of different rob
           break;
         }
       }
-      // Only a true fact: whatever could still have been taken with a start before now was not.
-      REQUIRE(ledger.on_executing(current, at_s(now), false) == FactUse::kUsed);
+      // A true fact: the robot did not switch to any other version that starts before now.
+      REQUIRE(ledger.on_executing(current, at_s(now), false) == FactOutcome::kApplied);
     }
     if (number % 100 != 0) continue;
     for (const RobotId i : roster) {

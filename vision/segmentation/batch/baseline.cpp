@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vision/segmentation/batch/levels.hpp"
+#include "vision/segmentation/batch/kernel_tables.hpp"
 
 namespace sidestep::segmentation {
 namespace {
@@ -21,7 +21,7 @@ struct Yuv422Row {
   }
 };
 
-/// As CMVision does it: table look-up and AND.
+/// Table look-up and AND, as in CMVision.
 template <typename Row>
 void classify(const ClassesView& classes, const std::uint8_t* row, std::size_t width_px,
               const RowMasks& masks) {
@@ -29,17 +29,17 @@ void classify(const ClassesView& classes, const std::uint8_t* row, std::size_t w
   for (std::size_t word = 0; word * kWord < width_px; ++word) {
     const std::size_t begin = word * kWord;
     const std::size_t end = begin + kWord < width_px ? begin + kWord : width_px;
-    std::uint64_t* of = masks.of + word * kMasks;
+    std::uint64_t* by_colour = masks.by_colour + word * kMasks;
     std::uint64_t any = 0;
     for (std::size_t x = begin; x < end; ++x) {
       const std::uint32_t bits = pixels.bits(classes, x);
       if (bits == 0) continue;
       if (any == 0) {
-        for (std::size_t colour = 0; colour < kMasks; ++colour) of[colour] = 0;
+        for (std::size_t colour = 0; colour < kMasks; ++colour) by_colour[colour] = 0;
       }
       const std::uint64_t bit = std::uint64_t{1} << (x - begin);
       any |= bit;
-      of[classes.thresholds[__builtin_ctz(bits)].colour] |= bit;
+      by_colour[classes.thresholds[__builtin_ctz(bits)].colour] |= bit;
     }
     masks.any[word] = any;
   }

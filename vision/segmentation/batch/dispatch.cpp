@@ -2,7 +2,7 @@
 #include "vision/segmentation/batch/dispatch.hpp"
 
 #include "common/processor/instruction_set.hpp"
-#include "vision/segmentation/batch/levels.hpp"
+#include "vision/segmentation/batch/kernel_tables.hpp"
 
 namespace sidestep::segmentation {
 

@@ -7,10 +7,10 @@
 
 namespace sidestep::segmentation {
 
-/// The kernels that this machine can run, the fastest last.
+/// The kernels that this machine can run, fastest last.
 const std::vector<Kernels>& available_kernels();
 
-/// The fastest of them.
+/// The fastest available kernels.
 const Kernels& best_kernels();
 
 }  // namespace sidestep::segmentation

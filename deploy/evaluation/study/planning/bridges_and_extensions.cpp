@@ -2,39 +2,43 @@
 #include "deploy/evaluation/study/planning/bridges_and_extensions.hpp"
 
 #include "agents/planning/trees/bidirectional_errt.hpp"
-#include "deploy/evaluation/planning/ground.hpp"
-#include "deploy/evaluation/study/planning/contestant.hpp"
+#include "deploy/evaluation/planning/benchmark_world.hpp"
+#include "deploy/evaluation/study/planning/measured_planner.hpp"
 
 namespace sidestep {
 namespace {
 
-std::vector<Contestant> contestants_of(const BridgesAndExtensions& settings, std::uint64_t seed) {
+std::vector<MeasuredPlanner> planners_of(const BridgesAndExtensions& settings, std::uint64_t seed) {
   Rng seeds(seed);
-  std::vector<Contestant> contestants;
+  std::vector<MeasuredPlanner> planners;
   for (const std::size_t extensions : settings.extensions) {
     for (const std::size_t bridges : settings.bridges) {
       const BidirectionalErrtSettings trees{
-          .cache_capacity = 0, .extensions = extensions, .bridges = bridges};
-      contestants.push_back(contestant<BidirectionalErrt<DiscDomain>>("", seeds.bits(), trees));
+          .cache_capacity = 0,
+          .growth_extensions = extensions,
+          .connect_extensions = extensions,
+          .bridges = bridges};
+      planners.emplace_back("", plan_function(std::make_shared<BidirectionalErrt<DiscDomain>>(trees)),
+                            seeds.bits(), DiscDomainSettings{.step_m = settings.step_m});
     }
   }
-  return contestants;
+  return planners;
 }
 
 }  // namespace
 
 StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uint64_t seed,
-                                  const StudyAdvance& advance) {
-  std::vector<Contestant> contestants = contestants_of(settings, seed);
+                                  const ProgressCallback& progress) {
+  std::vector<MeasuredPlanner> planners = planners_of(settings, seed);
+  Rng order(seed);
   for (std::size_t i = 0; i < settings.worlds; ++i) {
-    const Ground ground(make_world("circles", settings.queries, seed + i));
+    const BenchmarkWorld world(make_world("circles", settings.queries, seed + i));
     for (std::size_t query = 0; query < settings.queries; ++query) {
-      const auto& [start_m, goal_m] = ground.world.queries[query];
-      const DiscDomain domain(ground.obstacles, ground.world.field, ground.world.radius_m, start_m, goal_m,
-                              {.step_m = settings.step_m});
-      ask_all(contestants, query, domain, start_m, {}, ground.shortest_m[query]);
+      const PlanQuery& ends = world.world.queries[query];
+      plan_all(planners, order, domain_factory(world.obstacles, world.world, ends), ends.start_m, {},
+               world.shortest_m[query]);
     }
-    advance(i + 1, settings.worlds);
+    progress(i + 1, settings.worlds);
   }
 
   StudyTable table;
@@ -46,7 +50,7 @@ StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uin
                   .x_label = "bridges",
                   .y_label = "length over the shortest, median",
                   .has_log_x = true,
-                  .least_y = 1},
+                  .min_y = 1},
                  {.title = title,
                   .x_label = "bridges",
                   .y_label = "time of a plan, median [us]",
@@ -57,11 +61,11 @@ StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uin
     for (Plot& plot : table.plots)
       plot.lines.push_back({extensions == 1 ? "one extension" : fmt::format("up to {}", extensions), {}});
     for (const std::size_t bridges : settings.bridges) {
-      const PlanMeasures& m = contestants[i++].measures();
-      table.rows.push_back(plan_cells(cells(extensions, bridges), m));
+      const PlanStatistics& s = planners[i++].statistics();
+      table.rows.push_back(plan_cells(cells(extensions, bridges), s));
       const auto x = static_cast<double>(bridges);
-      table.plots[0].lines.back().points.push_back(plot_point(x, m.length.median()));
-      table.plots[1].lines.back().points.push_back(plot_point(x, m.plan_us.median()));
+      table.plots[0].lines.back().points.push_back(plot_point(x, s.length.median()));
+      table.plots[1].lines.back().points.push_back(plot_point(x, s.plan_us.median()));
     }
   }
   return table;

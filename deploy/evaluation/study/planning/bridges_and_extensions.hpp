@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "deploy/evaluation/study/study_table.hpp"
+#include "deploy/evaluation/study/table/study_table.hpp"
 
 namespace sidestep {
 
 struct BridgesAndExtensions {
   std::vector<std::size_t> extensions{1, 2, 4, 8, 32};
   std::vector<std::size_t> bridges{1, 2, 4, 8, 16, 32};
-  std::size_t worlds = 20;
+  std::size_t worlds = 50;
   std::size_t queries = 20;  ///< in each world
-  double step_m = 0.25;      ///< of an extension: a ten-metre field is crossed in forty
+  double step_m = 0.25;      ///< of an extension; forty cross the ten-metre field
 };
 
-/// Two trees (multi-bridge ERRT without cache: every query is new) over how often a tree is extended towards
-/// one target, and how many bridges are waited for: lengths of ways and times, among 64 circles.
+/// Two trees (multi-bridge ERRT, Bruce 2006, section 4.3.4, without a cache because every query is new) over
+/// the number of extensions towards one target and the number of bridges: lengths and times among 64 circles.
 StudyTable bridges_and_extensions(const BridgesAndExtensions& settings, std::uint64_t seed,
-                                  const StudyAdvance& advance);
+                                  const ProgressCallback& progress);
 
 }  // namespace sidestep

@@ -4,12 +4,12 @@
 #include <array>
 
 #include "agents/planning/trees/errt.hpp"
-#include "deploy/evaluation/study/planning/contestant.hpp"
+#include "deploy/evaluation/study/planning/measured_planner.hpp"
 
 namespace sidestep {
 namespace {
 
-// With the usual 0.1, nothing would be left to chance at the highest probability.
+// The usual 0.1 would leave nothing to uniform samples at the highest waypoint probability.
 constexpr double kGoalProbability = 0.05;
 
 struct Strategy {
@@ -21,30 +21,31 @@ constexpr std::array kStrategies{Strategy{"random", CacheReplacement::kRandom},
                                  Strategy{"least recently used", CacheReplacement::kLeastRecentlyUsed},
                                  Strategy{"whole plan", CacheReplacement::kWholePlan}};
 
-std::vector<Contestant> contestants_with(double waypoint_probability, std::uint64_t seed) {
-  // Seeds of their own: where all do the same, who comes later is faster by what the processor has learned.
+std::vector<MeasuredPlanner> planners_with(double waypoint_probability, std::uint64_t seed) {
+  // Different seeds: of planners that do exactly the same, later ones are faster, because the processor has
+  // learned their branches.
   Rng seeds(seed);
-  std::vector<Contestant> contestants;
+  std::vector<MeasuredPlanner> planners;
   for (const Strategy& strategy : kStrategies) {
     const ErrtSettings settings{.goal_probability = kGoalProbability,
                                 .waypoint_probability = waypoint_probability,
                                 .replacement = strategy.replacement};
-    contestants.push_back(contestant<Errt<DiscDomain>>(strategy.name, seeds.bits(), settings));
+    planners.push_back(measured_planner<Errt<DiscDomain>>(strategy.name, seeds.bits(), settings));
   }
-  return contestants;
+  return planners;
 }
 
 }  // namespace
 
 StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed,
-                            const StudyAdvance& advance) {
+                            const ProgressCallback& progress) {
   StudyTable table;
   table.name = "strategies";
   table.columns = plan_columns({"waypoint_probability", "strategy"});
   const std::string title = fmt::format("ERRT, {} courses of {} replans", settings.courses, settings.replans);
   for (const char* quantile : {"median", "95th percentile"})
     table.plots.push_back({.title = title,
-                           .x_label = "probability to grow towards a way point",
+                           .x_label = "probability to grow towards a waypoint",
                            .y_label = fmt::format("time of a replan, {} [us]", quantile),
                            .has_log_y = true});
   for (Plot& plot : table.plots)
@@ -53,17 +54,17 @@ StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed,
   const std::size_t runs = settings.waypoint_probabilities.size() * settings.courses * settings.replans;
   std::size_t done = 0;
   for (const double probability : settings.waypoint_probabilities) {
-    std::array<PlanMeasures, kStrategies.size()> all;
+    std::array<PlanStatistics, kStrategies.size()> all;
     for (std::size_t course = 0; course < settings.courses; ++course) {
-      std::vector<Contestant> contestants = contestants_with(probability, seed + course);
-      replan_all(contestants, settings.replans, seed + course, [&] { advance(++done, runs); });
-      for (std::size_t i = 0; i < contestants.size(); ++i) all[i].add(contestants[i].measures());
+      std::vector<MeasuredPlanner> planners = planners_with(probability, seed + course);
+      replan_all(planners, settings.replans, seed + course, [&] { progress(++done, runs); });
+      for (std::size_t i = 0; i < planners.size(); ++i) all[i].add(planners[i].statistics());
     }
     for (std::size_t i = 0; i < kStrategies.size(); ++i) {
-      const PlanMeasures& m = all[i];
-      table.rows.push_back(plan_cells(cells(probability, kStrategies[i].name), m));
-      table.plots[0].lines[i].points.push_back(plot_point(probability, m.plan_us.median()));
-      table.plots[1].lines[i].points.push_back(plot_point(probability, m.plan_us.at(0.95)));
+      const PlanStatistics& s = all[i];
+      table.rows.push_back(plan_cells(cells(probability, kStrategies[i].name), s));
+      table.plots[0].lines[i].points.push_back(plot_point(probability, s.plan_us.median()));
+      table.plots[1].lines[i].points.push_back(plot_point(probability, s.plan_us.quantile(0.95)));
     }
   }
   return table;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "deploy/evaluation/study/study_table.hpp"
+#include "deploy/evaluation/study/table/study_table.hpp"
 
 namespace sidestep {
 
@@ -11,8 +11,8 @@ struct CacheStrategies {
   std::size_t replans = 890;  ///< in each course
 };
 
-/// The four ways to replace way points in the cache of one tree (ERRT), over how likely it grows towards a
-/// way point: replans among moving obstacles, all in each cycle, in turn.
-StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed, const StudyAdvance& advance);
+/// The four replacement strategies of one tree's waypoint cache (ERRT) over the probability of growing
+/// towards a waypoint: replans among moving obstacles, all strategies in each cycle, in shuffled order.
+StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed, const ProgressCallback& progress);
 
 }  // namespace sidestep

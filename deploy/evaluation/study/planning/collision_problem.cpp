@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
-/// A shape about as large as a circle of the radius.
-Shape any_shape(Rng& rng, const Vec2& at, double radius_m) {
+/// A shape about as large as a circle with this radius.
+Shape sample_shape(Rng& rng, const Vec2& at, double radius_m) {
   const double half_m = 0.88 * radius_m;
   switch (rng.below(4)) {
     case 0:
@@ -28,7 +28,7 @@ Shape any_shape(Rng& rng, const Vec2& at, double radius_m) {
 
 }  // namespace
 
-CollisionProblem::CollisionProblem(std::size_t obstacles, std::size_t way_count, bool circles_only,
+CollisionProblem::CollisionProblem(std::size_t obstacles, std::size_t motion_count, bool circles_only,
                                    std::uint64_t seed) {
   Rng rng(seed);
   const double spacing_m = 1 / std::sqrt(static_cast<double>(obstacles));
@@ -37,11 +37,11 @@ CollisionProblem::CollisionProblem(std::size_t obstacles, std::size_t way_count,
   for (std::size_t i = 0; i < obstacles; ++i) {
     const Vec2 at(rng.uniform(), rng.uniform());
     const double size_m = mean_radius_m * rng.uniform(0.5, 1.5);
-    shapes.push_back(circles_only ? Circle{at, size_m} : any_shape(rng, at, size_m));
+    shapes.push_back(circles_only ? Circle{at, size_m} : sample_shape(rng, at, size_m));
   }
-  for (std::size_t i = 0; i < way_count; ++i) {
+  for (std::size_t i = 0; i < motion_count; ++i) {
     const Vec2 from(rng.uniform(), rng.uniform());
-    ways.push_back({from, from + rotated({rng.uniform(0, 0.8) * spacing_m, 0}, rng.uniform(0, 6.283))});
+    motions.push_back({from, from + rotated({rng.uniform(0, 0.8) * spacing_m, 0}, rng.uniform(0, 6.283))});
   }
 }
 

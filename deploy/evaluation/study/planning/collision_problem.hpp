@@ -8,33 +8,33 @@
 
 namespace sidestep {
 
-/// Obstacles that cover a fifth of the unit square, and short ways of a small robot among them: sizes go with
-/// the distance between obstacles, so the world only becomes larger as their number grows, and hits stay as
-/// frequent.
+/// Obstacles that cover a fifth of the unit square, and short straight motions of a small robot among them.
+/// All sizes scale with the spacing of the obstacles: more obstacles make the world larger in proportion, and
+/// contacts stay as frequent.
 struct CollisionProblem {
-  /// Circles, or boxes, segments and pentagons too.
-  CollisionProblem(std::size_t obstacles, std::size_t ways, bool circles_only, std::uint64_t seed);
+  /// Circles only, or boxes, segments and pentagons too.
+  CollisionProblem(std::size_t obstacles, std::size_t motions, bool circles_only, std::uint64_t seed);
 
   static constexpr double kCovered = 0.2;
 
   std::vector<Shape> shapes{};
-  std::vector<Segment> ways{};
+  std::vector<Segment> motions{};
   double radius_m = 0;  ///< of the robot
 };
 
-/// Whether what touches a robot on its way is waited for.
+/// What the caller does with the answer of a query.
 enum class AnswerUse {
-  kCounted,   ///< queries overlap
-  kBranched,  ///< what is done next depends on the answer, as in planners
+  kCounted,   ///< counts it: successive queries overlap in the processor
+  kBranched,  ///< branches on it, as planners do
 };
 
-/// Asks all ways and returns how long one took. `ask` takes a way and says whether it touches.
-template <AnswerUse kUse, typename Ask>
-double query_ns(const CollisionProblem& problem, const Ask& ask) {
+/// Queries all motions and returns the mean time of one. `query` takes a motion and returns whether it touches.
+template <AnswerUse kUse, typename Query>
+double query_ns(const CollisionProblem& problem, const Query& query) {
   std::size_t clear = 0;
   const double begin_us = cpu_us();
-  for (const Segment& way : problem.ways) {
-    const bool touches = ask(way);
+  for (const Segment& motion : problem.motions) {
+    const bool touches = query(motion);
     if constexpr (kUse == AnswerUse::kBranched) {
       if (touches) {
         asm volatile("nop" ::: "memory");
@@ -47,7 +47,7 @@ double query_ns(const CollisionProblem& problem, const Ask& ask) {
   }
   const double end_us = cpu_us();
   asm volatile("" : : "r"(clear));
-  return 1e3 * (end_us - begin_us) / static_cast<double>(problem.ways.size());
+  return 1e3 * (end_us - begin_us) / static_cast<double>(problem.motions.size());
 }
 
 }  // namespace sidestep

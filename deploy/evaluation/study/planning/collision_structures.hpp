@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "deploy/evaluation/study/study_table.hpp"
+#include "deploy/evaluation/study/table/study_table.hpp"
 
 namespace sidestep {
 
@@ -11,9 +11,10 @@ struct CollisionStructures {
   std::size_t rounds = 9;
 };
 
-/// Structures that find what a disc touches on its way (Bruce 2006, chapter 3), and FCL's, over the number of
-/// circles: times of a query, medians of rounds in which all are asked the same.
+/// Structures that decide whether a moving disc touches anything (Bruce 2006, chapter 3), and FCL's, over the
+/// number of circles: times of a query, medians of rounds in which all get the same queries, in shuffled
+/// order.
 StudyTable collision_structures(const CollisionStructures& settings, std::uint64_t seed,
-                                const StudyAdvance& advance);
+                                const ProgressCallback& progress);
 
 }  // namespace sidestep

@@ -6,9 +6,9 @@
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/evaluation/planning/benchmark_world.hpp"
 #include "deploy/evaluation/planning/cpu_clock.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
-#include "deploy/evaluation/study/planning/contestant.hpp"
+#include "deploy/evaluation/study/planning/measured_planner.hpp"
 
 namespace sidestep {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using OneTree = Errt<DiscDomain>;
 using TwoTrees = BidirectionalErrt<DiscDomain>;
 
-/// A planner, and the smoothing of what it finds.
+/// A planner followed by the smoothing of its path.
 template <typename Planner>
 class Smoothed {
  public:
@@ -32,45 +32,78 @@ class Smoothed {
   Plan<Vec2> plan_;
 };
 
-/// Who is asked in one world. Caches begin empty.
-std::vector<Contestant> contestants(std::uint64_t seed) {
-  return {contestant<LazyVisibility>("lazy graph", seed), contestant<OneTree>("one tree", seed),
-          contestant<TwoTrees>("two trees", seed), contestant<Smoothed<OneTree>>("one tree smoothed", seed),
-          contestant<Smoothed<TwoTrees>>("two trees smoothed", seed)};
-}
+/// The full graph of a world, built in advance.
+class KeptGraph {
+ public:
+  explicit KeptGraph(const BenchmarkWorld& world)
+      : graph_(world.obstacles, world.world.field, world.world.radius_m) {}
+  const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {
+    return graph_.plan(start, domain.goal(start));
+  }
 
-/// What all planners were like in worlds of one size, in the order of the table.
-struct Outcome {
-  std::string planner;
-  PlanMeasures measures;
+ private:
+  TangentGraph graph_;
 };
 
-void ask_world(const PlanWorld& world, std::uint64_t seed, std::vector<Outcome>& outcomes) {
-  const ObstacleWorld obstacles(world.obstacles);
+/// The textbook's planners: uniform samples, no cache, no attempt at the straight line.
+MeasuredPlanner plain_rrt(std::uint64_t seed) {
+  const auto planner =
+      std::make_shared<OneTree>(ErrtSettings{.cache_capacity = 0, .tries_straight_line = false});
+  return {"RRT", plan_function(planner), seed, {.contact_probability = 0}};
+}
+MeasuredPlanner plain_rrt_connect(std::uint64_t seed) {
+  const auto planner = std::make_shared<TwoTrees>(BidirectionalErrtSettings{
+      .cache_capacity = 0, .growth_extensions = 1, .tries_straight_line = false});
+  return {"RRT-Connect", plan_function(planner), seed, {.contact_probability = 0}};
+}
+
+/// The planners of one world, the kept graph first. Caches begin empty.
+std::vector<MeasuredPlanner> planners_of(const BenchmarkWorld& world, std::uint64_t seed) {
+  return {{"graph kept", plan_function(std::make_shared<KeptGraph>(world)), seed},
+          measured_planner<LazyVisibility>("lazy graph", seed),
+          measured_planner<OneTree>("one tree", seed),
+          measured_planner<TwoTrees>("two trees", seed),
+          measured_planner<Smoothed<OneTree>>("one tree smoothed", seed),
+          measured_planner<Smoothed<TwoTrees>>("two trees smoothed", seed),
+          plain_rrt(seed),
+          plain_rrt_connect(seed)};
+}
+
+/// A row of the table for worlds of one size.
+struct Row {
+  std::string planner;
+  PlanStatistics statistics;
+};
+
+std::vector<Row> empty_rows() {
+  const BenchmarkWorld world(make_circles(1, 0, 1));
+  std::vector<Row> rows{{"graph built anew", {}}};
+  for (const MeasuredPlanner& planner : planners_of(world, 1)) rows.push_back({planner.name(), {}});
+  return rows;
+}
+
+void plan_world(const BenchmarkWorld& world, std::uint64_t seed, std::vector<Row>& rows) {
   const double begin_us = cpu_us();
-  TangentGraph graph(obstacles, world.field, world.radius_m);
+  const KeptGraph built(world);
   const double build_us = cpu_us() - begin_us;
-  std::vector<Contestant> asked = contestants(seed);
-  for (std::size_t query = 0; query < world.queries.size(); ++query) {
-    const auto& [start_m, goal_m] = world.queries[query];
-    const double query_us = cpu_us();
-    const Plan<Vec2>& plan = graph.plan(start_m, goal_m);
-    const double plan_us = cpu_us() - query_us;
-    outcomes[0].measures.add(plan, build_us + plan_us, graph.shortest_m());
-    outcomes[1].measures.add(plan, plan_us, graph.shortest_m());
-    const DiscDomain domain(obstacles, world.field, world.radius_m, start_m, goal_m);
-    ask_all(asked, query, domain, start_m, {}, graph.shortest_m());
+  std::vector<MeasuredPlanner> planners = planners_of(world, seed);
+  Rng order(seed);
+  for (std::size_t i = 0; i < world.world.queries.size(); ++i) {
+    const PlanQuery& query = world.world.queries[i];
+    plan_all(planners, order, domain_factory(world.obstacles, world.world, query), query.start_m, {},
+             world.shortest_m[i]);
   }
-  for (std::size_t i = 0; i < asked.size(); ++i) outcomes[2 + i].measures.add(asked[i].measures());
+  for (std::size_t i = 0; i < planners.size(); ++i) rows[1 + i].statistics.add(planners[i].statistics());
+  PlanStatistics built_anew = planners[0].statistics();
+  built_anew.plan_us = built_anew.plan_us.shifted(build_us);
+  rows[0].statistics.add(built_anew);
 }
 
 }  // namespace
 
 StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t seed,
-                               const StudyAdvance& advance) {
-  std::vector<std::string> planners{"graph built anew", "graph kept"};
-  for (const Contestant& contestant : contestants(seed)) planners.push_back(contestant.name());
-
+                               const ProgressCallback& progress) {
+  const std::vector<Row> empty = empty_rows();
   StudyTable table;
   table.name = "visibility";
   table.columns = plan_columns({"obstacles", "planner"});
@@ -84,24 +117,23 @@ StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t 
                   .x_label = "obstacles",
                   .y_label = "length over the shortest, median",
                   .has_log_x = true,
-                  .least_y = 0.95}};
+                  .min_y = 0.95}};
   for (Plot& plot : table.plots)
-    for (const std::string& planner : planners) plot.lines.push_back({planner, {}});
+    for (const Row& row : empty) plot.lines.push_back({row.planner, {}});
 
   std::size_t done = 0;
   for (const std::size_t obstacles : settings.obstacles) {
-    std::vector<Outcome> outcomes;
-    for (const std::string& planner : planners) outcomes.push_back({planner, {}});
+    std::vector<Row> rows = empty;
     for (std::size_t i = 0; i < settings.worlds; ++i) {
-      ask_world(make_circles(obstacles, settings.queries, seed + i), seed + i, outcomes);
-      advance(++done, settings.obstacles.size() * settings.worlds);
+      plan_world(BenchmarkWorld(make_circles(obstacles, settings.queries, seed + i)), seed + i, rows);
+      progress(++done, settings.obstacles.size() * settings.worlds);
     }
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      const auto& [planner, m] = outcomes[i];
-      table.rows.push_back(plan_cells(cells(obstacles, planner), m));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto& [planner, statistics] = rows[i];
+      table.rows.push_back(plan_cells(cells(obstacles, planner), statistics));
       const auto x = static_cast<double>(obstacles);
-      table.plots[0].lines[i].points.push_back(plot_point(x, m.plan_us.median()));
-      table.plots[1].lines[i].points.push_back(plot_point(x, m.length.median()));
+      table.plots[0].lines[i].points.push_back(plot_point(x, statistics.plan_us.median()));
+      table.plots[1].lines[i].points.push_back(plot_point(x, statistics.length.median()));
     }
   }
   return table;

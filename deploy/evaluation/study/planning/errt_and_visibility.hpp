@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "deploy/evaluation/study/study_table.hpp"
+#include "deploy/evaluation/study/table/study_table.hpp"
 
 namespace sidestep {
 
 struct ErrtAndVisibility {
   std::vector<std::size_t> obstacles{4, 8, 16, 32, 64, 128, 256, 512};
-  std::size_t worlds = 5;    ///< of each size
+  std::size_t worlds = 25;   ///< of each size
   std::size_t queries = 40;  ///< in each world
 };
 
-/// One tree and two (ERRT, its cache filled by the earlier queries in a world), as they are and smoothed,
-/// against visibility graphs: the full one, kept for a world or built anew for each query as it has to be
-/// when obstacles move, and the lazy one, which keeps nothing. Times and lengths over the number of circles;
-/// the field grows with it, so that they are always as dense.
+/// One tree and two trees (ERRT, its cache filled by the earlier queries in a world), raw and smoothed, and
+/// the plain RRT and RRT-Connect without our additions, against visibility graphs: the full graph, kept for a
+/// world or built anew for each query as moving obstacles require, and the lazy graph, which keeps nothing.
+/// Times and lengths over the number of circles; the field grows with it, so that the density is constant.
 StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t seed,
-                               const StudyAdvance& advance);
+                               const ProgressCallback& progress);
 
 }  // namespace sidestep

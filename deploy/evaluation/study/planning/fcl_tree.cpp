@@ -4,7 +4,7 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/narrowphase/collision.h>
 
-#include "common/collision/fcl/solid_world.hpp"
+#include "common/collision/fcl/prism.hpp"
 
 namespace sidestep {
 namespace {
@@ -29,15 +29,15 @@ struct FclTree::Tree {
 FclTree::FclTree(const std::vector<Shape>& shapes) : tree_(std::make_unique<Tree>()) {
   std::vector<fcl::CollisionObjectd*> objects;
   for (const Shape& shape : shapes) {
-    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     Solid solid;
     if (const auto* circle = std::get_if<Circle>(&shape)) {
       solid = std::make_shared<fcl::Sphered>(circle->radius_m);
-      place.translation() << circle->centre_m, 0;
+      pose.translation() << circle->centre_m, 0;
     } else {
       solid = prism(shape, 1);
     }
-    tree_->objects.push_back(std::make_unique<fcl::CollisionObjectd>(solid, place));
+    tree_->objects.push_back(std::make_unique<fcl::CollisionObjectd>(solid, pose));
     objects.push_back(tree_->objects.back().get());
   }
   tree_->manager.registerObjects(objects);

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// FCL's dynamic tree of boxes over spheres and prisms on a plane, asked with a capsule that lies in it: its
-/// own continuous collision iterates, while this is exact and fast. What our structures are compared with.
+/// FCL's dynamic tree of boxes over spheres and prisms on a plane, queried with a capsule in that plane: the
+/// peer of our structures. The capsule is exact and fast; FCL's continuous collision iterates.
 class FclTree {
  public:
   explicit FclTree(const std::vector<Shape>& shapes);

@@ -7,11 +7,12 @@
 #include "deploy/evaluation/study/planning/collision_structures.hpp"
 #include "deploy/evaluation/study/planning/errt_and_visibility.hpp"
 #include "deploy/evaluation/study/planning/roadmap_connections.hpp"
+#include "deploy/evaluation/study/planning/terrain_structures.hpp"
 
 namespace sidestep {
 namespace {
 
-/// How much of everything.
+/// The size of each experiment.
 struct Sizes {
   CacheReplans cache;
   CacheStrategies strategies;
@@ -19,6 +20,7 @@ struct Sizes {
   ErrtAndVisibility visibility;
   RoadmapConnections roadmaps;
   CollisionStructures collision;
+  TerrainStructures terrain;
 };
 Sizes quick_sizes() {
   Sizes sizes;
@@ -28,6 +30,7 @@ Sizes quick_sizes() {
   sizes.visibility = {.obstacles = {4, 64}, .worlds = 2, .queries = 5};
   sizes.roadmaps = {.sectors = {8}, .neighbours = {8}, .radii_m = {1.5}, .worlds = 2, .queries = 5};
   sizes.collision = {.obstacles = {4, 64, 1024}, .queries = 2000, .rounds = 3};
+  sizes.terrain = {.squares = {4, 16}, .queries = 200, .rounds = 3};
   return sizes;
 }
 
@@ -47,6 +50,7 @@ int study_planning(const StudyOptions& options) {
   run("visibility", errt_and_visibility, sizes.visibility);
   run("roadmaps", roadmap_connections, sizes.roadmaps);
   run("collision", collision_structures, sizes.collision);
+  run("terrain", terrain_structures, sizes.terrain);
   return 0;
 }
 

@@ -9,13 +9,13 @@
 
 namespace sidestep {
 
-/// Measures how deep and how long discs of one size are in one place (Bruce, ch. 5).
+/// Measures the interpenetration of discs of one size: depth integrated over time (Bruce 2006, chapter 5).
 class Interpenetration {
  public:
   Interpenetration(std::size_t robots, double radius_m)
       : radius_m_(radius_m), is_touching_(robots * robots) {}
 
-  /// Where the robots are, for so long.
+  /// Adds the robots' positions, which last for `seconds`.
   void add(std::span<const Vec2> positions_m, double seconds);
 
   double depth_time_m_s() const { return depth_time_m_s_; }

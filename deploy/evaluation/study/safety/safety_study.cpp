@@ -17,7 +17,7 @@
 namespace sidestep {
 namespace {
 
-/// How much of everything.
+/// The size of each experiment.
 struct Sizes {
   std::vector<int> robots{2, 4, 8, 16, 24, 32};
   int trials = 10;
@@ -31,9 +31,9 @@ struct Sizes {
 };
 Sizes quick_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
 
-/// One run: the row that it will be, and how to measure it.
+/// One run: the key of its row in the table, and how to measure it.
 struct Run {
-  std::string line;  ///< in a plot
+  std::string line;  ///< in a plot; empty: none
   double x = 0;
   std::vector<std::string> key;          ///< the first columns
   std::function<std::string()> columns;  ///< the others, the plotted one first
@@ -49,7 +49,7 @@ std::string columns_of(const TraversalResult& r) {
   return fmt::format("{:.9f},{},{:.6f},{},{:.6f}", r.penetration_m_s, r.contacts, r.min_clearance_m,
                      r.traversals, r.reference_error_m);
 }
-/// The columns of a run of the floor, after those that say which.
+/// The columns of a traversal run, after those of the key.
 std::vector<std::string> traversal_columns(std::vector<std::string> columns) {
   for (const char* name :
        {"penetration_m_s", "contacts", "min_clearance_m", "traversals", "max_reference_error_m"})
@@ -95,18 +95,18 @@ Experiment margins(const StudyOptions& options, const Sizes& sizes) {
   Plot& plot = experiment.table.plots.emplace_back();
   plot = {fmt::format("Margins against noise: {} robots, poor odometry, {} runs of {} s each",
                       sizes.margin_robots, sizes.margin_trials, sizes.margin_seconds),
-          "noise of vision, standard deviation per axis [mm]", "interpenetration, depth x time [m s]"};
+          "vision noise, standard deviation per axis [mm]", "interpenetration, depth x time [m s]"};
   plot.has_log_x = true;
-  const auto add = [&](bool is_poor, bool breaks_off, double margin_mm, double noise_mm) {
+  const auto add = [&](bool is_poor, bool stops_off_reference, double margin_mm, double noise_mm) {
     for (int trial = 0; trial < sizes.margin_trials; ++trial) {
       const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(trial);
       Run run;
-      if (is_poor && !breaks_off) run.line = fmt::format("margin {} mm", margin_mm);
+      if (is_poor && !stops_off_reference) run.line = fmt::format("margin {} mm", margin_mm);
       run.x = noise_mm;
-      run.key = cells(is_poor ? "poor" : "usual", breaks_off ? "on" : "off", margin_mm, noise_mm,
+      run.key = cells(is_poor ? "poor" : "usual", stops_off_reference ? "on" : "off", margin_mm, noise_mm,
                       sizes.margin_robots, sizes.margin_seconds, seed);
       run.columns = [=, robots = sizes.margin_robots, seconds = sizes.margin_seconds] {
-        const TraversalSettings settings{robots, margin_mm * 1e-3, noise_mm * 1e-3, is_poor, breaks_off};
+        const TraversalSettings settings{robots, margin_mm * 1e-3, noise_mm * 1e-3, is_poor, stops_off_reference};
         return columns_of(traverse_with_search(traversal_scenario(settings, seed), seed, seconds));
       };
       experiment.runs.push_back(std::move(run));
@@ -140,7 +140,7 @@ Experiment search_times(const StudyOptions& options, const Sizes& sizes) {
   return experiment;
 }
 
-/// Measures all runs; each is done by a process of its own that cannot harm the others.
+/// Measures all runs, each in a process of its own.
 std::vector<std::string> measure(const Experiment& experiment) {
   const std::vector<Run>& runs = experiment.runs;
   std::vector<std::string> results(runs.size());
@@ -157,7 +157,7 @@ std::vector<std::string> measure(const Experiment& experiment) {
   std::vector<std::uint64_t> jobs(runs.size());
   std::iota(jobs.begin(), jobs.end(), 0);
   pool.run(jobs);
-  if (!failure.empty()) throw std::runtime_error("a run has died: " + failure);
+  if (!failure.empty()) throw std::runtime_error("a run ended abnormally: " + failure);
   return results;
 }
 

@@ -14,12 +14,12 @@ namespace sidestep {
 namespace {
 
 constexpr double kArea_m2 = 0.7;
-constexpr int kTries = 8;
+constexpr int kMaxAttempts = 8;
 constexpr Time kNow = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle{16'666'667};
 constexpr int kWarmUps = 2;
 
-/// Motions on a jittered grid that keep clear of each other; a robot that finds none stands.
+/// Motions on a jittered grid that are clear of each other; a robot that finds none in kMaxAttempts rests.
 std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& rng) {
   const double cell_m = std::sqrt(kArea_m2);
   const int columns = static_cast<int>(std::ceil(std::sqrt(robots)));
@@ -27,14 +27,14 @@ std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& r
   std::vector<Version> versions;
   for (int i = 0; i < robots; ++i) {
     const Vec2 corner = -0.5 * cell_m * (columns - 1) * Vec2(1, 1);
-    const Vec2 place = corner + cell_m * Vec2(i % columns, i / columns) +
+    const Vec2 position = corner + cell_m * Vec2(i % columns, i / columns) +
                        Vec2(rng.uniform(-jitter_m, jitter_m), rng.uniform(-jitter_m, jitter_m));
-    Trajectory trajectory = Trajectory::resting(kNow, place);
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    Trajectory trajectory = Trajectory::resting(kNow, position);
+    for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
       const Vec2 velocity = rng.uniform(0, rules.limits.speed_mps) *
                             rotated({1, 0}, rng.uniform(-std::numbers::pi, std::numbers::pi));
       const Trajectory moving =
-          accelerate_then_stop(kNow, {place, velocity}, Vec2::Zero(), kCycle, rules.limits.deceleration_mps2);
+          accelerate_then_stop(kNow, {position, velocity}, Vec2::Zero(), kCycle, rules.limits.deceleration_mps2);
       bool is_free = rules.field.contains(moving.rest_position_m(), rules.radius_m);
       for (const Version& other : versions)
         is_free = is_free && is_clear(moving, other.trajectory, rules.min_separation_m());
@@ -65,17 +65,17 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
     query.start = start;
     query.at_start = there;
     query.desired_mps2 = desired.acceleration_mps2;
-    query.phase = kCycle;
+    query.hold_time = kCycle;
     query.robot = version.robot;
     queries.push_back(query);
   }
   SafetySearch search(rules, {});
-  TrajectoryIndex crowd;
+  TrajectoryIndex index;
   double begin_us = 0;
   for (int round = 0; round <= kWarmUps; ++round) {
     begin_us = cpu_us();
-    crowd.assign(versions);
-    for (const SearchQuery& query : queries) search.search(query, crowd, rng);
+    index.assign(versions);
+    for (const SearchQuery& query : queries) static_cast<void>(search.search(query, index, rng));
   }
   return (cpu_us() - begin_us) / robots;
 }

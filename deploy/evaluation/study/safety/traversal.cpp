@@ -15,13 +15,13 @@ namespace sidestep {
 namespace {
 
 constexpr int kRows = 8;
-// Between places at a side: robots pass between others that stand there.
-constexpr double kSpacing_m = 0.45;
-constexpr double kToFirstColumn_m = 1.4;
-constexpr double kToWall_m = 0.4;
-// More than anybody gets to.
+// Between slots at a side, so that robots pass between others that rest there.
+constexpr double kSlotSpacing_m = 0.45;
+constexpr double kFirstColumn_m = 1.4;
+constexpr double kWallDistance_m = 0.4;
+// More than a robot reaches.
 constexpr int kGoals = 100;
-constexpr double kPoor = 10;
+constexpr double kPoorOdometryFactor = 10;
 constexpr double kBodyRadius_m = 0.05;
 constexpr double kNoBound_m = 1;
 constexpr Duration kStartDeadline = std::chrono::seconds(20);
@@ -33,21 +33,22 @@ std::vector<int> shuffled(int count, Rng& rng) {
   return numbers;
 }
 
-/// Place `slot` at a side: -1 left, 1 right.
-Vec2 place(int slot, int side) {
-  const double x = kToFirstColumn_m + kSpacing_m * (slot / kRows);
-  return {side * x, kSpacing_m * (slot % kRows - 0.5 * (kRows - 1))};
+/// The position of a slot at a side: -1 left, 1 right.
+Vec2 slot_position_m(int slot, int side) {
+  const double x = kFirstColumn_m + kSlotSpacing_m * (slot / kRows);
+  return {side * x, kSlotSpacing_m * (slot % kRows - 0.5 * (kRows - 1))};
 }
 
-/// Where robots are between two ground truths: cubic polynomials with the positions and velocities at both.
-class Tracks {
+/// Measures interpenetration between two ground truths by cubic polynomials with the positions and velocities
+/// of both.
+class InterpolatedMeter {
  public:
-  explicit Tracks(std::size_t robots) : meter_(robots, kStudyRadius_m), last_(robots), positions_m_(robots) {}
+  explicit InterpolatedMeter(std::size_t robots) : meter_(robots, kStudyRadius_m), last_(robots), positions_m_(robots) {}
 
   void add(const msg::GroundTruth& truth) {
-    const Time at = time_from_ns(truth.at_ns());
+    const Time at = time_from_ns(truth.valid_at_ns());
     std::vector<State> states;
-    for (const msg::TruthRobot& robot : truth.robots())
+    for (const msg::TrueRobotState& robot : truth.robots())
       states.push_back({{robot.x_m(), robot.y_m()}, {robot.vx_mps(), robot.vy_mps()}});
     if (last_at_ && at > *last_at_) measure(states, to_seconds(at - *last_at_));
     last_ = states;
@@ -90,21 +91,21 @@ Scenario traversal_scenario(const TraversalSettings& settings, std::uint64_t see
   const int columns = (settings.robots + kRows - 1) / kRows;
   Scenario scenario;
   scenario.name = "traversals";
-  scenario.field = {2 * (kToFirstColumn_m + kSpacing_m * (columns - 1) + kToWall_m),
-                    kSpacing_m * (kRows - 1) + 2 * kToWall_m};
+  scenario.field = {2 * (kFirstColumn_m + kSlotSpacing_m * (columns - 1) + kWallDistance_m),
+                    kSlotSpacing_m * (kRows - 1) + 2 * kWallDistance_m};
   scenario.radius_m = kBodyRadius_m;
   scenario.margin_m = settings.margin_m + 2 * (kStudyRadius_m - kBodyRadius_m);
-  if (!settings.breaks_off) scenario.tracking_bound_m = kNoBound_m;
+  if (!settings.stops_off_reference) scenario.tracking_bound_m = kNoBound_m;
   scenario.vision.position_noise_m = settings.position_noise_m;
   if (settings.has_poor_odometry) {
-    scenario.odometry.velocity_noise_mps *= kPoor;
-    scenario.odometry.scale_error *= kPoor;
+    scenario.odometry.velocity_noise_mps *= kPoorOdometryFactor;
+    scenario.odometry.scale_error *= kPoorOdometryFactor;
   }
   const std::vector<int> left = shuffled(columns * kRows, rng), right = shuffled(columns * kRows, rng);
   for (int i = 0; i < settings.robots; ++i) {
     const auto index = static_cast<std::size_t>(i);
     const bool begins_left = i % 2 == 0;
-    const Vec2 ends[2] = {place(left[index], -1), place(right[index], 1)};
+    const Vec2 ends[2] = {slot_position_m(left[index], -1), slot_position_m(right[index], 1)};
     RobotSpec robot;
     robot.id = static_cast<RobotId>(i);
     robot.team = begins_left ? Team::kBlue : Team::kYellow;
@@ -118,23 +119,23 @@ Scenario traversal_scenario(const TraversalSettings& settings, std::uint64_t see
 
 TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t seed, double seconds) {
   SimSystem system(scenario, seed);
-  SimBus ear(system.network());
-  ear.listen_aside();
+  SimBus observer(system.network());
+  observer.become_observer();
   std::map<RobotId, std::uint64_t> traversals;
-  ear.subscribe<msg::AgentStatus>(topics::kStatus, [&](const msg::AgentStatus& status) {
+  observer.subscribe<msg::AgentStatus>(topics::kStatus, [&](const msg::AgentStatus& status) {
     traversals[status.robot()] = status.goal_index();
   });
-  Tracks tracks(scenario.robots.size());
-  system.on_truth([&](const msg::GroundTruth& truth) { tracks.add(truth); });
-  while (!system.judge().granting_since()) {
+  InterpolatedMeter interpolated(scenario.robots.size());
+  system.on_truth([&](const msg::GroundTruth& truth) { interpolated.add(truth); });
+  while (!system.metrics().granting_since()) {
     if (system.now() > system.begin() + kStartDeadline)
-      throw std::runtime_error("the coordinator does not grant");
+      throw std::runtime_error("the coordinator did not grant anything within 20 s");
     system.run_for(scenario.cycle);
   }
-  system.run_until(*system.judge().granting_since() + from_seconds(seconds));
-  TraversalResult result = result_of(tracks.meter());
+  system.run_until(*system.metrics().granting_since() + from_seconds(seconds));
+  TraversalResult result = result_of(interpolated.meter());
   for (const auto& [robot, count] : traversals) result.traversals += count;
-  result.reference_error_m = system.judge().report().max_reference_error_m;
+  result.reference_error_m = system.metrics().report().max_reference_error_m;
   return result;
 }
 

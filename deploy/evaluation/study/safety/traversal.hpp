@@ -8,21 +8,21 @@
 
 namespace sidestep {
 
-/// What robots measure in this study.
+/// The robots' radius in this study.
 inline constexpr double kStudyRadius_m = 0.09;
 
-/// Two groups of robots that traverse the field from left to right and back, over and over (Bruce, ch. 5).
+/// Two groups of robots that traverse the field from left to right and back repeatedly (Bruce 2006, chapter 5).
 struct TraversalSettings {
   int robots = 8;
   double margin_m = 0.01;
   double position_noise_m = 0.0005;  ///< of vision, standard deviation per axis
-  bool has_poor_odometry = false;    ///< ten times the noise and the scale error: fixes matter
-  bool breaks_off = true;            ///< robots beyond their tracking bound brake; else there is no bound
+  bool has_poor_odometry = false;    ///< ten times the noise and the scale error, so that vision matters
+  bool stops_off_reference = true;            ///< beyond their tracking bound; otherwise there is no bound
 };
 
-/// Each robot has a place of its own at either side, drawn from the seed. The margin may be below the safety
-/// budget, which scenario files may not have. The bodies are smaller than kStudyRadius_m and the margin so
-/// much larger: robots keep the same distance, and the simulator does not push apart what is in one place.
+/// Each robot has its own slot at either side, assigned by the seed. Unlike in scenario files, the margin may
+/// be below the safety budget. The bodies are smaller than kStudyRadius_m and the margin is larger by the
+/// difference: robots keep the same separation, and the simulator does not resolve contacts.
 Scenario traversal_scenario(const TraversalSettings& settings, std::uint64_t seed);
 
 struct TraversalResult {
@@ -35,12 +35,12 @@ struct TraversalResult {
 
 TraversalResult result_of(const Interpenetration& meter);
 
-/// The whole system for so long after the coordinator first granted. Throws std::runtime_error if it never
-/// does.
+/// Runs the whole system for `seconds` after the coordinator's first grant. Throws std::runtime_error if there
+/// is none.
 TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t seed, double seconds);
 
-/// The same bodies, firmware and motion control, but every robot follows its own wish and nobody asks
-/// anybody. There is no noise.
+/// Runs the same bodies, firmware and motion control without agents and coordinator: every robot executes its
+/// desired acceleration unchecked. There is no noise.
 TraversalResult traverse_without_search(const Scenario& scenario, double seconds);
 
 }  // namespace sidestep

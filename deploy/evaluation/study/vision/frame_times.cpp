@@ -4,39 +4,40 @@
 #include <algorithm>
 
 #include "deploy/evaluation/planning/cpu_clock.hpp"
-#include "deploy/evaluation/study/vision/hall.hpp"
+#include "deploy/evaluation/study/vision/vision_testbed.hpp"
 #include "vision/colours/default_colours.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr Field kDivisionA{12, 9};
-constexpr std::size_t kEach = 11, kSceneFrames = 250;
+constexpr std::size_t kRobotsPerTeam = 11, kSceneFrames = 250;
 
 }  // namespace
 
-StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const StudyAdvance& advance) {
+StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const ProgressCallback& advance) {
   StudyTable table;
   table.name = "frame-times";
-  table.columns = {"cameras", "rounds", "robots_seen", "median_us", "p99_us"};
+  table.columns = {"cameras", "rounds", "robots_tracked", "median_us", "p99_us"};
   struct Grid {
     int columns, rows;
   };
   const Grid grids[] = {{1, 1}, {2, 1}, {2, 2}};
-  PlotLine line{"median, least and p99", {}};
+  PlotLine line{"median, minimum and p99", {}};
   std::size_t done = 0;
   Rng rng(seed);
   for (const auto [columns, rows] : grids) {
-    Hall hall(hall_scenario(kDivisionA, columns, rows), {}, default_colours(RenderSpec().format), rng);
+    VisionTestbed testbed(testbed_scenario(kDivisionA, columns, rows), {},
+                          default_colours(RenderSpec().format), rng);
     std::vector<double> times_us;
-    std::size_t seen = 0;
+    std::size_t tracked = 0;
     for (std::size_t round = 0; round < settings.rounds; ++round) {
-      if (round % kSceneFrames == 0) hall.clear(kEach);
-      hall.step();
+      if (round % kSceneFrames == 0) testbed.reset(kRobotsPerTeam);
+      testbed.step();
       const double begin_us = cpu_us();
-      hall.see();
+      testbed.run_vision();
       times_us.push_back(cpu_us() - begin_us);
-      seen += hall.world().robots().size();
+      tracked += testbed.world().robots().size();
       advance(++done, settings.rounds * std::size(grids));
     }
     std::ranges::sort(times_us);
@@ -44,7 +45,7 @@ StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const Stu
                            times_us.front(), times_us[times_us.size() * 99 / 100]});
     table.rows.push_back(
         cells(columns * rows, settings.rounds,
-              fmt::format("{:.2f}", static_cast<double>(seen) / static_cast<double>(settings.rounds)),
+              fmt::format("{:.2f}", static_cast<double>(tracked) / static_cast<double>(settings.rounds)),
               fmt::format("{:.0f}", times_us[times_us.size() / 2]),
               fmt::format("{:.0f}", times_us[times_us.size() * 99 / 100])));
   }

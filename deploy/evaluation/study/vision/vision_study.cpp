@@ -2,16 +2,16 @@
 #include "deploy/evaluation/study/vision/vision_study.hpp"
 
 #include "deploy/evaluation/study/vision/frame_times.hpp"
-#include "deploy/evaluation/study/vision/patch_errors.hpp"
+#include "deploy/evaluation/study/vision/marker_errors.hpp"
 #include "deploy/evaluation/study/vision/recognition.hpp"
 
 namespace sidestep {
 namespace {
 
-/// How much of everything.
+/// Sizes of the experiments.
 struct Sizes {
   Recognition recognition;
-  PatchErrors errors;
+  MarkerErrors errors;
   FrameTimes times;
 };
 Sizes quick_sizes() { return {{.frames = 100}, {.frames = 20, .noises = {2, 6}}, {.rounds = 100}}; }
@@ -27,7 +27,7 @@ int study_vision(const StudyOptions& options) {
     fmt::print("{}\n", markdown_of(table));
   };
   run("recognition", recognition, sizes.recognition);
-  run("patch errors", patch_errors, sizes.errors);
+  run("marker errors", marker_errors, sizes.errors);
   run("frame times", frame_times, sizes.times);
   return 0;
 }

@@ -14,112 +14,112 @@ namespace {
 
 const Time kNow = time_from_ns(5'000'000'000);
 
-Version standing(RobotId robot, VersionNumber number, const Vec2& place) {
-  return {robot, 1, number, 0, Trajectory::resting(kNow, place), 0};
+Version resting_version(RobotId robot, VersionNumber number, const Vec2& position) {
+  return {robot, 1, number, 0, Trajectory::resting(kNow, position), 0};
 }
 
 msg::LedgerPage page_of(std::uint32_t index, std::uint64_t number, std::span<const Version> versions) {
   msg::LedgerPage page;
   page.page_index(index);
   page.epoch(1);
-  page.head().message_number(number);
+  page.header().message_number(number);
   for (const Version& version : versions) {
-    const Vec2& place = version.trajectory.at_start().position_m;
-    const bool first = page.versions().empty();
-    page.low_x_m(first ? place.x() : std::min(page.low_x_m(), place.x()));
-    page.low_y_m(first ? place.y() : std::min(page.low_y_m(), place.y()));
-    page.high_x_m(first ? place.x() : std::max(page.high_x_m(), place.x()));
-    page.high_y_m(first ? place.y() : std::max(page.high_y_m(), place.y()));
+    const Vec2& position = version.trajectory.at_start().position_m;
+    const bool is_first = page.versions().empty();
+    page.min_x_m(is_first ? position.x() : std::min(page.min_x_m(), position.x()));
+    page.min_y_m(is_first ? position.y() : std::min(page.min_y_m(), position.y()));
+    page.max_x_m(is_first ? position.x() : std::max(page.max_x_m(), position.x()));
+    page.max_y_m(is_first ? position.y() : std::max(page.max_y_m(), position.y()));
     page.versions().push_back(encode(version));
   }
   return page;
 }
 
-std::vector<VersionNumber> held(Neighbours& neighbours, const Vec2& here, double horizon) {
+std::vector<VersionNumber> versions_within(Neighbours& neighbours, const Vec2& centre, double horizon) {
   std::vector<VersionNumber> numbers;
-  TrajectoryIndex crowd;
-  neighbours.gather(here, horizon, crowd);
-  for (std::size_t i = 0; i < crowd.size(); ++i) numbers.push_back(crowd.version(i).number);
+  TrajectoryIndex index;
+  neighbours.collect(centre, horizon, index);
+  for (std::size_t i = 0; i < index.size(); ++i) numbers.push_back(index.version(i).number);
   std::ranges::sort(numbers);
   return numbers;
 }
 
 }  // namespace
 
-TEST_CASE("of the latest pages all versions within the horizon are known, and no others") {
+TEST_CASE("exactly the versions within the horizon of the latest pages are known") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
   constexpr double kHorizon_m = 2.5;
   Neighbours neighbours(0);
-  // As slow as can be: the versions of each page's latest message, as many as were within the horizon then.
+  // Reference: for each page, the versions of its latest message that were within the horizon at that time.
   std::map<std::uint32_t, std::vector<VersionNumber>> expected;
   std::uint64_t number = 0;
-  Vec2 here(0, 0);
+  Vec2 centre(0, 0);
   for (int step = 0; step < 5000; ++step) {
-    here += random_vector(rng, 0.2);
-    neighbours.look_about(here, kHorizon_m);
+    centre += random_vector(rng, 0.2);
+    neighbours.set_horizon(centre, kHorizon_m);
     const auto index = static_cast<std::uint32_t>(rng.below(100));
-    const Vec2 about = here + random_vector(rng, 6);
+    const Vec2 about = centre + random_vector(rng, 6);
     std::vector<Version> versions;
     const auto count = rng.below(6);
     for (std::uint64_t i = 0; i < count; ++i) {
       const auto robot = static_cast<RobotId>(rng.below(20));
-      versions.push_back(standing(robot, ++number, about + random_vector(rng, 2)));
+      versions.push_back(resting_version(robot, ++number, about + random_vector(rng, 2)));
     }
     neighbours.on_page(page_of(index, ++number, versions));
     expected[index].clear();
     for (const Version& version : versions) {
       if (version.robot != 0 &&
-          (version.trajectory.at_start().position_m - here).squaredNorm() <= kHorizon_m * kHorizon_m)
+          (version.trajectory.at_start().position_m - centre).squaredNorm() <= kHorizon_m * kHorizon_m)
         expected[index].push_back(version.number);
     }
     std::vector<VersionNumber> all;
     for (const auto& [page, numbers] : expected) all.insert(all.end(), numbers.begin(), numbers.end());
     std::ranges::sort(all);
-    REQUIRE(held(neighbours, here, 1e4) == all);
+    REQUIRE(versions_within(neighbours, centre, 1e4) == all);
   }
   CHECK(neighbours.invalid() == 0);
 }
 
-TEST_CASE("an older page changes nothing, and neither does one of an older epoch") {
+TEST_CASE("older pages and pages of older epochs change nothing") {
   Neighbours neighbours(0);
-  neighbours.look_about({0, 0}, 2);
-  const Version a = standing(1, 10, {1, 0}), b = standing(1, 11, {1, 1});
+  neighbours.set_horizon({0, 0}, 2);
+  const Version a = resting_version(1, 10, {1, 0}), b = resting_version(1, 11, {1, 1});
   neighbours.on_page(page_of(0, 5, {&a, 1}));
   neighbours.on_page(page_of(0, 4, {&b, 1}));
-  CHECK(held(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
+  CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
   auto old = page_of(0, 6, {&b, 1});
   old.epoch(0);
   neighbours.on_page(old);
-  CHECK(held(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
+  CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
   neighbours.on_page(page_of(0, 6, {&b, 1}));
-  CHECK(held(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{11});
+  CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{11});
 }
 
-TEST_CASE("a page whose rectangle makes no sense is looked at all the same") {
+TEST_CASE("a page with an invalid rectangle is still used") {
   Neighbours neighbours(0);
-  neighbours.look_about({0, 0}, 2);
-  const Version a = standing(1, 10, {1, 0});
+  neighbours.set_horizon({0, 0}, 2);
+  const Version a = resting_version(1, 10, {1, 0});
   auto page = page_of(0, 1, {&a, 1});
-  page.low_x_m(std::nan(""));
-  page.high_y_m(std::nan(""));
+  page.min_x_m(std::nan(""));
+  page.max_y_m(std::nan(""));
   neighbours.on_page(page);
-  CHECK(held(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
+  CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
 }
 
-TEST_CASE("those stand who have been at rest with all they may execute, the nearest first of all") {
+TEST_CASE("the nearest robots whose versions have all come to rest are found as stationary") {
   Neighbours neighbours(0);
-  neighbours.look_about({0, 0}, 5);
+  neighbours.set_horizon({0, 0}, 5);
   std::vector<Version> versions;
   for (RobotId robot = 1; robot <= 5; ++robot)
-    versions.push_back(standing(robot, robot, {0.5 * (6.0 - robot), 0}));
-  // Robot 5 is about to move.
-  Version leaving = standing(5, 50, {0.5, 0});
+    versions.push_back(resting_version(robot, robot, {0.5 * (6.0 - robot), 0}));
+  // Robot 5 has a version that moves later.
+  Version leaving = resting_version(5, 50, {0.5, 0});
   leaving.trajectory.append(std::chrono::seconds(9), {0, 0});
   versions.push_back(leaving);
   neighbours.on_page(page_of(0, 1, versions));
-  const auto places = neighbours.standing(kNow + std::chrono::seconds(1), {0, 0}, 2);
+  const auto places = neighbours.find_stationary(kNow + std::chrono::seconds(1), {0, 0}, 2);
   REQUIRE(places.size() == 2);
   CHECK(places[0] == Vec2(1.5, 0));
   CHECK(places[1] == Vec2(1, 0));

@@ -9,18 +9,18 @@ namespace {
 constexpr Duration kCycle{16'666'667};
 }  // namespace
 
-TEST_CASE("on a fast network one cycle ahead is enough, and a single slow answer changes nothing") {
+TEST_CASE("on a fast network the lead is one cycle, and single slow answers do not change it") {
   ProposalPacing pacing(kCycle);
   CHECK(pacing.lead() == 1);
   for (int i = 0; i < 100; ++i) pacing.on_round_trip(i % 20 == 0 ? Duration{40'000'000} : Duration{500'000});
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("on a slow network an agent looks as far ahead as answers and commands take") {
+TEST_CASE("on a slow network the lead covers the answer and the command") {
   ProposalPacing pacing(kCycle);
   for (int i = 0; i < 20; ++i) pacing.on_round_trip(Duration{100'000'000});
   CHECK(pacing.lead() == 9);  // 150 ms
-  CHECK(pacing.patience() == Duration{100'000'000});
+  CHECK(pacing.answer_timeout() == Duration{100'000'000});
   for (int i = 0; i < 20; ++i) pacing.on_round_trip(Duration{500'000});
   CHECK(pacing.lead() == 1);
   for (int i = 0; i < 20; ++i) pacing.on_round_trip(Duration{30'000'000'000});
@@ -29,17 +29,17 @@ TEST_CASE("on a slow network an agent looks as far ahead as answers and commands
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("what keeps getting lost earns time to ask again, one loss does not") {
+TEST_CASE("repeated late versions increase the lead, a single one does not") {
   ProposalPacing pacing(kCycle);
-  pacing.on_late();
-  pacing.on_taken();
-  pacing.on_late();
+  pacing.on_version_late();
+  pacing.on_version_taken();
+  pacing.on_version_late();
   CHECK(pacing.lead() == 1);
-  pacing.on_late();
+  pacing.on_version_late();
   CHECK(pacing.lead() == 2);
-  for (int i = 0; i < 100; ++i) pacing.on_late();
-  const int most = pacing.lead();
-  CHECK(most < 10);
-  for (int i = 0; i < 100; ++i) pacing.on_taken();
+  for (int i = 0; i < 100; ++i) pacing.on_version_late();
+  const int max_lead = pacing.lead();
+  CHECK(max_lead < 10);
+  for (int i = 0; i < 100; ++i) pacing.on_version_taken();
   CHECK(pacing.lead() == 1);
 }

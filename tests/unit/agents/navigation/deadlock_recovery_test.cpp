@@ -9,17 +9,17 @@ namespace {
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 }  // namespace
 
-TEST_CASE("a robot that is blocked and slow turns farther right once round and back once it is free") {
+TEST_CASE("a blocked robot turns farther and farther right, and back once it is free") {
   const DeadlockRecoverySettings settings;
   DeadlockRecovery recovery(settings);
   double t = 1;
   double last = 0;
   recovery.update(false, 0, at_s(t));
-  CHECK_FALSE(recovery.is_needed());
+  CHECK_FALSE(recovery.is_active());
   int rounds = 0;
   for (int i = 0; i < 400; ++i) {
     recovery.update(false, 0, at_s(t += 0.0166));
-    CHECK(recovery.is_needed() == (recovery.angle_rad() > settings.needed_rad));
+    CHECK(recovery.is_active() == (recovery.angle_rad() > settings.activation_rad));
     if (recovery.angle_rad() < last) {
       ++rounds;
       CHECK(recovery.angle_rad() == 0);
@@ -28,29 +28,29 @@ TEST_CASE("a robot that is blocked and slow turns farther right once round and b
     }
     last = recovery.angle_rad();
   }
-  CHECK(rounds == static_cast<int>(400 * 0.0166 * settings.rate_radps / 6.2832));
+  CHECK(rounds == static_cast<int>(400 * 0.0166 * settings.turn_rate_radps / 6.2832));
   for (int i = 0; i < 200; ++i) recovery.update(true, 0, at_s(t += 0.0166));
   CHECK(recovery.angle_rad() == 0);
 }
 
-TEST_CASE("a robot that gets on though not as it wishes does not turn away") {
+TEST_CASE("a robot that moves, though not as desired, does not start recovery") {
   DeadlockRecovery recovery;
   for (int i = 0; i < 100; ++i) recovery.update(false, 1.0, at_s(1 + 0.0166 * i));
   CHECK(recovery.angle_rad() == 0);
 }
 
-TEST_CASE("a robot that found a way out of a jam goes on there for a while") {
+TEST_CASE("a robot that escapes a deadlock holds its angle for the release delay") {
   const DeadlockRecoverySettings settings;
   DeadlockRecovery recovery(settings);
   double t = 1;
   recovery.update(false, 0, at_s(t));
-  while (!recovery.is_needed()) recovery.update(false, 0, at_s(t += 0.0166));
+  while (!recovery.is_active()) recovery.update(false, 0, at_s(t += 0.0166));
   recovery.update(false, 0, at_s(t += 0.0166));
   const double angle = recovery.angle_rad(), freed = t;
-  while (t - freed < settings.leaves_s - 0.02) {
+  while (t - freed < settings.release_delay_s - 0.02) {
     recovery.update(true, 1, at_s(t += 0.0166));
     CHECK(recovery.angle_rad() == angle);
   }
-  while (t - freed < settings.leaves_s + 1) recovery.update(true, 1, at_s(t += 0.0166));
+  while (t - freed < settings.release_delay_s + 1) recovery.update(true, 1, at_s(t += 0.0166));
   CHECK(recovery.angle_rad() == 0);
 }

@@ -12,7 +12,7 @@ using namespace sidestep;
 namespace {
 
 constexpr MotionLimits kLimits;
-constexpr double kRadius_m = 0.09, kKeep_m = 0.19;
+constexpr double kRadius_m = 0.09, kMinSeparation_m = 0.19;
 constexpr double kCycle_s = 1.0 / 60;
 
 struct Mover {
@@ -29,27 +29,27 @@ struct Mover {
         steering(field, kRadius_m, kLimits) {}
 };
 
-/// Goes on for a cycle as an intent says.
+/// Advances a state by one cycle according to an intent.
 void advance(State& state, const Intent& intent) {
   const Vec2 to_go = intent.waypoint_m - state.position_m;
   const double length = to_go.norm() + (intent.goal_m - intent.waypoint_m).norm();
   const double braking = std::sqrt(2 * kLimits.deceleration_mps2 * 0.8 * length);
   const Vec2 ahead = std::min(kLimits.speed_mps, braking) * to_go.stableNormalized();
-  Vec2 change = (intent.hold_s > 0 ? intent.velocity_mps : ahead) - state.velocity_mps;
-  const double most = kLimits.acceleration_mps2 * kCycle_s;
-  if (change.norm() > most) change *= most / change.norm();
+  Vec2 change = (intent.velocity_duration_s > 0 ? intent.velocity_mps : ahead) - state.velocity_mps;
+  const double max_change_mps = kLimits.acceleration_mps2 * kCycle_s;
+  if (change.norm() > max_change_mps) change *= max_change_mps / change.norm();
   state.position_m += kCycle_s * (state.velocity_mps + 0.5 * change);
   state.velocity_mps += change;
 }
 
-/// A cycle: one after the other chooses, then all go on as they have said. Each has its own steering unless
-/// they share one.
+/// Runs a cycle: the robots choose one after the other, then all move as they chose. Each has its own
+/// Steering unless one is shared.
 void drive(std::vector<Mover>& movers, Steering* shared = nullptr) {
   for (Mover& mover : movers) {
     Steering& steering = shared ? *shared : mover.steering;
     steering.clear();
     for (const Mover& other : movers) {
-      if (&other != &mover) steering.add_moving(other.state, other.intent, kKeep_m);
+      if (&other != &mover) steering.add_moving(other.state, other.intent, kMinSeparation_m);
     }
     mover.intent = steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s, mover.last);
   }
@@ -67,7 +67,7 @@ double nearest_m(const std::vector<Mover>& movers) {
 
 }  // namespace
 
-TEST_CASE("a robot that is alone makes straight for its way point") {
+TEST_CASE("a lone robot heads straight for its waypoint") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);
@@ -77,29 +77,29 @@ TEST_CASE("a robot that is alone makes straight for its way point") {
     const double x = rng.uniform(-4, 4), y = rng.uniform(-2, 2);
     const Vec2 waypoint(rng.uniform(-4, 4), 0), goal(0, rng.uniform(-2, 2));
     const Intent intent = steering.choose({{x, y}, {0, 0}}, waypoint, goal, 1, last);
-    CHECK(intent.hold_s == 0);
+    CHECK(intent.velocity_duration_s == 0);
     CHECK(intent.waypoint_m == waypoint);
     CHECK(intent.goal_m == goal);
   }
 }
 
-TEST_CASE("two that meet head on both turn right and pass") {
+TEST_CASE("two robots that meet head on both turn right and pass") {
   std::vector<Mover> movers;
   movers.emplace_back(Vec2(-1.5, 0), Vec2(1.5, 0), Field{});
   movers.emplace_back(Vec2(1.5, 0), Vec2(-1.5, 0), Field{});
-  double nearest = 1e9, right_of_way = 0;
+  double nearest = 1e9, passing_y_m = 0;
   int cycles = 0;
   while (movers[0].state.position_m.x() < 1.4 && cycles++ < 300) {
     drive(movers);
     nearest = std::min(nearest, nearest_m(movers));
-    if (std::abs(movers[0].state.position_m.x()) < 0.1) right_of_way = movers[0].state.position_m.y();
+    if (std::abs(movers[0].state.position_m.x()) < 0.1) passing_y_m = movers[0].state.position_m.y();
   }
   CHECK(cycles < 150);
-  CHECK(nearest > kKeep_m - 0.01);
-  CHECK(right_of_way < -0.02);
+  CHECK(nearest > kMinSeparation_m - 0.01);
+  CHECK(passing_y_m < -0.02);
 }
 
-TEST_CASE("a crowd that changes sides comes to terms") {
+TEST_CASE("two groups that swap sides all arrive") {
   const std::uint64_t seed = 5;
   CAPTURE(seed);
   Rng rng(seed);
@@ -110,26 +110,26 @@ TEST_CASE("a crowd that changes sides comes to terms") {
     movers.emplace_back(Vec2(1.5, y + 0.1), Vec2(-1.5, y + 0.1), Field{});
   }
   double nearest = 1e9;
-  const auto all_there = [&] {
+  const auto all_arrived = [&] {
     return std::ranges::all_of(movers,
                                [](const Mover& m) { return (m.state.position_m - m.goal_m).norm() < 0.1; });
   };
   int cycles = 0;
-  while (!all_there() && cycles++ < 600) {
+  while (!all_arrived() && cycles++ < 600) {
     drive(movers);
     nearest = std::min(nearest, nearest_m(movers));
   }
-  CHECK(all_there());
+  CHECK(all_arrived());
   CHECK(cycles < 240);
-  // Safety does not rest on it: they come near to what they must keep, and no nearer by much.
-  CHECK(nearest > kKeep_m - 0.05);
+  // Steering does not guarantee separation: small violations are tolerated.
+  CHECK(nearest > kMinSeparation_m - 0.05);
 }
 
-TEST_CASE("robots that share a steering choose as those do who have one each") {
+TEST_CASE("robots that share one Steering choose as robots with one each") {
   std::vector<Mover> apart;
   for (int i = 0; i < 12; ++i) {
-    const Vec2 place = rotated(Vec2(1.5, 0), i * 0.5236);
-    apart.emplace_back(place, -place, Field{});
+    const Vec2 start = rotated(Vec2(1.5, 0), i * 0.5236);
+    apart.emplace_back(start, -start, Field{});
   }
   std::vector<Mover> together = apart;
   Steering shared(Field{}, kRadius_m, kLimits);
@@ -147,7 +147,7 @@ TEST_CASE("robots that share a steering choose as those do who have one each") {
   CHECK(changes > 0);
 }
 
-TEST_CASE("what stands in the way is passed and nobody is led off the field") {
+TEST_CASE("a stationary obstacle is passed without leaving the field") {
   const std::uint64_t seed = 6;
   CAPTURE(seed);
   Rng rng(seed);
@@ -155,35 +155,35 @@ TEST_CASE("what stands in the way is passed and nobody is led off the field") {
   for (int round = 0; round < 50; ++round) {
     Mover mover({-1.8, rng.uniform(-0.4, 0.4)}, {1.8, rng.uniform(-0.4, 0.4)}, field);
     const double y = rng.uniform(-0.4, 0.4);
-    const Vec2 stands(0, y);
+    const Vec2 obstacle(0, y);
     double nearest = 1e9;
     for (int cycle = 0; cycle < 300 && mover.state.position_m.x() < 1.5; ++cycle) {
       mover.steering.clear();
-      mover.steering.add_standing(stands, kKeep_m);
+      mover.steering.add_stationary(obstacle, kMinSeparation_m);
       mover.intent = mover.steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s, mover.last);
       advance(mover.state, mover.intent);
-      nearest = std::min(nearest, (mover.state.position_m - stands).norm());
+      nearest = std::min(nearest, (mover.state.position_m - obstacle).norm());
       REQUIRE(std::abs(mover.state.position_m.y()) < field.width_m / 2 - kRadius_m + 0.05);
     }
     CAPTURE(round, y, nearest);
     CHECK(mover.state.position_m.x() > 1.4);
-    CHECK(nearest > kKeep_m - 0.03);
+    CHECK(nearest > kMinSeparation_m - 0.03);
   }
 }
 
-TEST_CASE("who has chosen a way round goes on with it") {
+TEST_CASE("a robot keeps its chosen detour") {
   Mover mover({-1.5, 0}, {1.5, 0}, Field{});
   double turned_m = 0;
   for (int cycle = 0; cycle < 300 && mover.state.position_m.x() < 1.4; ++cycle) {
     mover.steering.clear();
-    mover.steering.add_standing({0, 0.01}, kKeep_m);
+    mover.steering.add_stationary({0, 0.01}, kMinSeparation_m);
     mover.intent = mover.steering.choose(mover.state, mover.goal_m, mover.goal_m, kCycle_s, mover.last);
     advance(mover.state, mover.intent);
     turned_m = std::min(turned_m, mover.state.position_m.y());
   }
   CHECK(mover.state.position_m.x() >= 1.4);
   CHECK(turned_m < -0.1);
-  // Round it, and straight on again, and a few better ways round.
+  // The detour, the direct path again, and a few better detours.
   CHECK(mover.last.changes >= 2);
   CHECK(mover.last.changes < 12);
 }

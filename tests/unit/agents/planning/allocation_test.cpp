@@ -13,7 +13,7 @@ using namespace sidestep;
 
 namespace {
 
-/// How many allocations the planner makes for queries that it has planned before, with the same draws.
+/// Number of allocations for queries that the planner has planned before, with the same random samples.
 template <typename Planner>
 std::size_t allocations_once_warm(Planner plan, const std::string& name) {
   const PlanWorld world = make_world(name, 10, 1);
@@ -21,17 +21,17 @@ std::size_t allocations_once_warm(Planner plan, const std::string& name) {
   std::size_t before = 0;
   for (int round = 0; round < 2; ++round) {
     Rng rng(1);
-    before = allocations();
+    before = allocation_count();
     for (const PlanQuery& query : world.queries)
       plan(DiscDomain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m), query.start_m,
            rng);
   }
-  return allocations() - before;
+  return allocation_count() - before;
 }
 
 }  // namespace
 
-TEST_CASE("planners that are warm do not allocate") {
+TEST_CASE("warm planners do not allocate") {
   const std::string name = GENERATE(from_range(world_names()));
   CAPTURE(name);
   const Budget budget{.samples = 2000};

@@ -17,7 +17,7 @@ const BidirectionalErrtSettings kNoCache{.cache_capacity = 0};
 
 }  // namespace
 
-TEST_CASE("ways become shorter with the budget and come near the shortest") {
+TEST_CASE("paths become shorter with the budget and approach the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world("circles", 20, seed);
   const ObstacleWorld obstacles(world.obstacles);
@@ -34,7 +34,7 @@ TEST_CASE("ways become shorter with the budget and come near the shortest") {
       const Plan<Vec2>& plan = planner.plan(domain, query.start_m, budget, rng);
       REQUIRE(plan.arrives());
       REQUIRE(plan.samples <= budget.samples);
-      REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+      REQUIRE(is_valid_path(world, plan.states, 1e-9));
       REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
       REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
       over[is_long] += plan.length / graph.shortest_m() / 20;
@@ -44,7 +44,7 @@ TEST_CASE("ways become shorter with the budget and come near the shortest") {
   CHECK(over[1] < 1.06);
 }
 
-TEST_CASE("a way that is better than the first is reported so and a straight one is not looked at again") {
+TEST_CASE("an improved path is reported as such and a straight path is not planned again") {
   const PlanWorld world = make_world("u", 1, 1);
   const ObstacleWorld obstacles(world.obstacles), nothing;
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;
@@ -58,7 +58,7 @@ TEST_CASE("a way that is better than the first is reported so and a straight one
   CHECK(straight.samples == 0);
 }
 
-TEST_CASE("planning ends with the clock") {
+TEST_CASE("planning ends at the deadline") {
   const PlanWorld world = make_world("u", 1, 1);
   const ObstacleWorld obstacles(world.obstacles);
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;

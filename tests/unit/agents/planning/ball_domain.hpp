@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// A point in a cube from -1 to 1 among balls: a domain that has nothing to do with the floor, and whose
-/// states say no coordinates to planners.
+/// A point in the cube [-1, 1]³ among balls: a domain unrelated to the floor, which does not expose
+/// coordinates to planners.
 class BallDomain {
  public:
   using State = std::array<double, 3>;

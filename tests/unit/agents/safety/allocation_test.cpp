@@ -2,9 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include "agents/agent/neighbours.hpp"
+#include "agents/batch/dispatch.hpp"
+#include "agents/batch/lanes.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/codec.hpp"
-#include "agents/safety/clearance_batch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
@@ -21,66 +22,67 @@ Version random_version(RobotId robot, Rng& rng) {
   return {robot, 1, robot + 100u, 0, trajectory, 0};
 }
 
-/// How many allocations the work makes when it has been done a few hundred times before.
+/// Number of allocations in a few hundred runs of the work, after as many warm-up runs.
 template <typename Work>
 std::size_t allocations_once_warm(Work work) {
   for (int i = 0; i < 300; ++i) work();
-  const std::size_t before = allocations();
+  const std::size_t before = allocation_count();
   for (int i = 0; i < 300; ++i) work();
-  return allocations() - before;
+  return allocation_count() - before;
 }
 
 }  // namespace
 
-TEST_CASE("an allocation is counted") {
-  const std::size_t before = allocations();
+TEST_CASE("the counter counts an allocation") {
+  const std::size_t before = allocation_count();
   std::vector<int> numbers(100);
   CHECK(numbers.size() == 100);
-  CHECK(allocations() > before);
+  CHECK(allocation_count() > before);
 }
 
-TEST_CASE("a search allocates nothing once warm, whoever is near") {
+TEST_CASE("a search allocates nothing once warm, with any neighbours") {
   Rng rng(1);
   FloorRules rules;
   rules.obstacles = {{{0.5, 0.5}, 0.1}};
   SafetySearch search(rules, {});
-  TrajectoryIndex crowd;
+  TrajectoryIndex index;
   std::vector<std::vector<Version>> scenes(60);
   for (auto& scene : scenes) {
     for (RobotId robot = 1; robot <= 20; ++robot) scene.push_back(random_version(robot, rng));
   }
   std::size_t i = 0, found = 0;
   CHECK(allocations_once_warm([&] {
-          crowd.assign(scenes[i++ % scenes.size()]);
+          index.assign(scenes[i++ % scenes.size()]);
           const SearchQuery query{kStart, {{0, 0}, {1, 0}}, random_vector(rng, 3), kCycle};
-          found += search.search(query, crowd, rng).count;
+          found += search.search(query, index, rng).count;
         }) == 0);
   CHECK(found > 0);
 }
 
-TEST_CASE("a batch allocates nothing once warm") {
+TEST_CASE("batched comparisons allocate nothing once warm") {
   Rng rng(2);
-  ClearanceBatch batch;
-  std::vector<Version> others;
-  std::vector<TrajectoryBounds> outlines;
-  for (RobotId robot = 0; robot < 50; ++robot) {
-    others.push_back(random_version(robot, rng));
-    outlines.push_back(trajectory_bounds(others.back().trajectory));
-  }
+  batch::Lanes lanes(batch::best_kernels());
+  std::vector<TrajectoryBounds> others;
+  for (RobotId robot = 0; robot < 50; ++robot)
+    others.push_back(trajectory_bounds(random_version(robot, rng).trajectory));
   std::size_t clear = 0;
   CHECK(allocations_once_warm([&] {
-          batch.restart(kStart);
-          for (std::size_t k = 0; k < others.size(); ++k) batch.add(outlines[k], others[k].trajectory, 0.19);
-          for (const auto is_clear : batch.compare(random_version(99, rng).trajectory)) clear += is_clear;
+          lanes.restart(kStart);
+          for (const TrajectoryBounds& other : others) lanes.add(other, 0.19);
+          const Trajectory one = random_version(99, rng).trajectory;
+          const TrajectoryBounds bounds = trajectory_bounds(one);
+          lanes.sample(one.start(), bounds.first_s + bounds.second_s);
+          lanes.compare(batch::track_of(bounds, one.start(), lanes.step_s()), bounds.acceleration_mps2, 0);
+          for (std::size_t lane = 0; lane < lanes.size(); ++lane) clear += lanes.is_clear(lane);
         }) == 0);
   CHECK(clear > 0);
 }
 
-TEST_CASE("what the neighbours may be executing is kept without allocations once warm") {
+TEST_CASE("neighbours are stored without allocations once warm") {
   Rng rng(3);
   Neighbours neighbours(0);
-  TrajectoryIndex crowd;
-  neighbours.look_about({0, 0}, 2.5);
+  TrajectoryIndex index;
+  neighbours.set_horizon({0, 0}, 2.5);
   std::vector<msg::LedgerPage> pages(40);
   for (std::size_t k = 0; k < pages.size(); ++k) {
     pages[k].page_index(static_cast<std::uint32_t>(k % 2));
@@ -88,23 +90,23 @@ TEST_CASE("what the neighbours may be executing is kept without allocations once
     pages[k].epoch(1);
     for (RobotId robot = 1; robot <= 30; ++robot) {
       pages[k].versions().push_back(encode(random_version(robot + 30 * static_cast<RobotId>(k % 2), rng)));
-      // Others are not near any more, so that there are more and fewer.
+      // Some robots are far away, so that the number of stored versions varies.
       if (rng.chance(0.3)) pages[k].versions().back().x_m(50);
     }
-    pages[k].low_x_m(-1);
-    pages[k].low_y_m(-1);
-    pages[k].high_x_m(50);
-    pages[k].high_y_m(1);
+    pages[k].min_x_m(-1);
+    pages[k].min_y_m(-1);
+    pages[k].max_x_m(50);
+    pages[k].max_y_m(1);
   }
   std::uint64_t number = 0;
-  std::size_t seen = 0;
+  std::size_t collected = 0;
   CHECK(allocations_once_warm([&] {
           msg::LedgerPage& page = pages[number % pages.size()];
-          page.head().message_number(++number);
+          page.header().message_number(++number);
           neighbours.on_page(page);
-          neighbours.gather({0, 0}, 1.6, crowd);
-          seen += crowd.size();
-          seen += neighbours.standing(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
+          neighbours.collect({0, 0}, 1.6, index);
+          collected += index.size();
+          collected += neighbours.find_stationary(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
         }) == 0);
-  CHECK(seen > 0);
+  CHECK(collected > 0);
 }

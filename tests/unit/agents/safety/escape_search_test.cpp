@@ -11,17 +11,17 @@ using namespace sidestep;
 namespace {
 
 constexpr Time kStart = time_from_ns(2'000'000'000);
-constexpr Duration kPhase{50'000'000};
+constexpr Duration kHoldTime{50'000'000};
 
-FloorRules rules_here() {
+FloorRules test_rules() {
   FloorRules rules;
   rules.field = {4, 4};
   rules.obstacles.push_back({{1, 1}, 0.3});
   return rules;
 }
 
-Version braking(RobotId robot, Vec2 place, Vec2 velocity, double inflation_m = 0) {
-  Trajectory stop(kStart - kPhase, {place, velocity});
+Version braking(RobotId robot, Vec2 position, Vec2 velocity, double inflation_m = 0) {
+  Trajectory stop(kStart - kHoldTime, {position, velocity});
   append_stop(stop, 5);
   return {robot, 1, 100, 0, stop, inflation_m};
 }
@@ -38,67 +38,70 @@ SearchQuery query_on(const Version& base, Vec2 desired) {
   query.start = kStart;
   query.at_start = base.trajectory.state_at(kStart);
   query.desired_mps2 = desired;
-  query.phase = kPhase;
+  query.hold_time = kHoldTime;
   query.inflation_m = base.inflation_m;
   return query;
 }
 
-TrajectoryIndex crowd_of(std::span<const Version> versions) {
-  TrajectoryIndex crowd;
-  crowd.assign(versions);
-  return crowd;
+TrajectoryIndex index_of(std::span<const Version> versions) {
+  TrajectoryIndex index;
+  index.assign(versions);
+  return index;
 }
 
 }  // namespace
 
-TEST_CASE("where the base is clear of everybody there is nothing to escape from") {
+TEST_CASE("a base without conflicts has no escape candidates") {
   const Version base = braking(1, {0, 0}, {0.5, 0}), other = braking(2, {0.5, 0}, {0, 0});
-  CHECK(search_escape(query_on(base, {3, 0}), base, crowd_of({&other, 1}), rules_here()).count == 0);
+  CHECK(search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules()).count == 0);
 }
 
-TEST_CASE("ways out lead away from who is too near, and the wish comes first where it does too") {
+TEST_CASE("escape candidates lead away from the conflict, the desired one first if it does so too") {
   const Version base = braking(1, {0, 0}, {0, 0}), other = braking(2, {0.15, 0}, {0, 0});
-  const auto towards = search_escape(query_on(base, {3, 0}), base, crowd_of({&other, 1}), rules_here());
+  const auto towards = search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules());
   REQUIRE(towards.count == SearchResult::kMaxCandidates);
   CHECK_FALSE(towards.desired_is_clear);
   CHECK(towards.candidates[0].rest_position_m().x() < -0.001);
-  const auto away = search_escape(query_on(base, {-2, 0.5}), base, crowd_of({&other, 1}), rules_here());
+  const auto away = search_escape(query_on(base, {-2, 0.5}), base, index_of({&other, 1}), test_rules());
   CHECK(away.desired_is_clear);
   CHECK(away.candidates[0].rest_position_m().y() > 0);
 }
 
-TEST_CASE("robots that were pushed into an obstacle's room or off the field find a way out") {
-  for (const Vec2& place : {Vec2(1, 0.65), Vec2(0.7, 1.2), Vec2(1.98, 0), Vec2(-0.3, -2.1), Vec2(2.2, 2.2)}) {
-    CAPTURE(place.x(), place.y());
-    const Version base = braking(1, place, {0, 0});
-    CHECK(search_escape(query_on(base, {0, 0}), base, TrajectoryIndex(), rules_here()).count > 0);
+TEST_CASE("robots that were pushed too near to an obstacle or off the field find escape candidates") {
+  for (const Vec2& position :
+       {Vec2(1, 0.65), Vec2(0.7, 1.2), Vec2(1.98, 0), Vec2(-0.3, -2.1), Vec2(2.2, 2.2)}) {
+    CAPTURE(position.x(), position.y());
+    const Version base = braking(1, position, {0, 0});
+    CHECK(search_escape(query_on(base, {0, 0}), base, TrajectoryIndex(), test_rules()).count > 0);
   }
 }
 
-TEST_CASE("no way out comes nearer to anybody than the base does, or than it should") {
+TEST_CASE("no escape candidate comes nearer to another robot than the base or the minimum separation") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
-  const FloorRules rules = rules_here();
+  const FloorRules rules = test_rules();
   int found = 0;
   for (int i = 0; i < 400; ++i) {
-    const auto drawn = [&](double most) {
-      return rotated(Vec2(rng.uniform(0, most), 0), rng.uniform(0, 6.28));
+    const auto random_vector = [&](double max_norm) {
+      return rotated(Vec2(rng.uniform(0, max_norm), 0), rng.uniform(0, 6.28));
     };
-    const Version base = braking(1, drawn(0.5), drawn(1.5), rng.chance(0.3) ? 0.02 : 0);
+    const Version base = braking(1, random_vector(0.5), random_vector(1.5), rng.chance(0.3) ? 0.02 : 0);
     std::vector<Version> others;
-    for (RobotId robot = 2; robot < 6; ++robot) others.push_back(braking(robot, drawn(0.7), drawn(1.5)));
-    const auto result = search_escape(query_on(base, drawn(3)), base, crowd_of(others), rules);
+    for (RobotId robot = 2; robot < 6; ++robot)
+      others.push_back(braking(robot, random_vector(0.7), random_vector(1.5)));
+    const auto result = search_escape(query_on(base, random_vector(3)), base, index_of(others), rules);
     for (std::size_t k = 0; k < result.count; ++k) {
       ++found;
       for (const Version& other : others) {
-        const double keep = rules.min_separation_m() + base.inflation_m + other.inflation_m;
-        const double kept = std::min(keep, sampled_distance_m(base.trajectory, other.trajectory));
+        const double full_separation = rules.min_separation_m() + base.inflation_m + other.inflation_m;
+        const double min_distance =
+            std::min(full_separation, sampled_distance_m(base.trajectory, other.trajectory));
         CAPTURE(i, k, other.robot);
-        // The base's nearest point may lie between two samples.
-        REQUIRE(sampled_distance_m(result.candidates[k], other.trajectory) >= kept - 0.003);
+        // The closest approach of the base may lie between two samples.
+        REQUIRE(sampled_distance_m(result.candidates[k], other.trajectory) >= min_distance - 0.003);
       }
-      REQUIRE(check_limits(result.candidates[k], rules.limits) == msg::REASON_GRANTED);
+      REQUIRE(check_limits(result.candidates[k], rules.limits) == Validity::kValid);
     }
   }
   CHECK(found > 200);

@@ -21,26 +21,28 @@ Version moving_robot(RobotId id, Vec2 position, Vec2 velocity) {
   return {id, 1, id + 100u, 0, trajectory};
 }
 
-/// The search as its description says it: one candidate after the other, one pair after the other.
-SearchResult slow_search(const FloorRules& rules, const SearchSettings& settings, const SearchQuery& query,
-                         std::span<const Version> others, Rng& rng) {
+/// Slow reference: tests one candidate after another against one version after another.
+SearchResult reference_search(const FloorRules& rules, const SearchSettings& settings,
+                              const SearchQuery& query, std::span<const Version> others, Rng& rng) {
   const Vec2& velocity = query.at_start.velocity_mps;
-  const Vec2 desired = limited(query.desired_mps2, velocity, rules.limits, query.phase);
-  std::vector<Vec2> drawn{desired};
+  const Vec2 desired = limit_acceleration(query.desired_mps2, velocity, rules.limits, query.hold_time);
+  std::vector<Vec2> sampled{desired};
   for (int i = 0; i < settings.samples; ++i)
-    drawn.push_back(limited(sample(velocity, rules.limits, rng), velocity, rules.limits, query.phase));
-  std::ranges::stable_sort(drawn, {}, [&](const Vec2& a) { return (a - desired).squaredNorm(); });
+    sampled.push_back(limit_acceleration(sample_acceleration(velocity, rules.limits, rng), velocity,
+                                         rules.limits, query.hold_time));
+  std::ranges::stable_sort(sampled, {}, [&](const Vec2& a) { return (a - desired).squaredNorm(); });
   SearchResult result;
   std::vector<Vec2> chosen;
-  for (const Vec2& a : drawn) {
+  for (const Vec2& a : sampled) {
     const auto is_close = [&](const Vec2& b) { return (a - b).norm() < settings.spread_mps2; };
     if (result.count == SearchResult::kMaxCandidates || std::ranges::any_of(chosen, is_close)) continue;
     const Trajectory trajectory =
-        accelerate_then_stop(query.start, query.at_start, a, query.phase, rules.limits.deceleration_mps2);
-    const auto is_in_the_way = [&](const Version& other) {
-      return !is_clear(trajectory, other.trajectory, rules.min_separation_m() + query.inflation_m + other.inflation_m);
+        accelerate_then_stop(query.start, query.at_start, a, query.hold_time, rules.limits.deceleration_mps2);
+    const auto is_conflicting = [&](const Version& other) {
+      return !is_clear(trajectory, other.trajectory,
+                       rules.min_separation_m() + query.inflation_m + other.inflation_m);
     };
-    if (check_place(trajectory, rules) != msg::REASON_GRANTED || std::ranges::any_of(others, is_in_the_way))
+    if (check_workspace(trajectory, rules) != Validity::kValid || std::ranges::any_of(others, is_conflicting))
       continue;
     result.desired_is_clear = result.desired_is_clear || a == desired;
     chosen.push_back(a);
@@ -54,16 +56,16 @@ struct Scene {
   std::vector<Version> others;
 };
 
-/// A crowd in which about half the searches find something; some of the others start later, stand, are
-/// larger than usual or move as no agent of ours would let them.
+/// A dense scene in which about half of the searches succeed. Some robots start later, are at rest, are
+/// inflated, or exceed the motion limits.
 Scene random_scene(Rng& rng) {
   Scene scene;
-  const Duration phase = kCycle * static_cast<std::int64_t>(1 + (rng.chance(0.3) ? rng.below(9) : 0));
+  const Duration hold_time = kCycle * static_cast<std::int64_t>(1 + (rng.chance(0.3) ? rng.below(9) : 0));
   scene.query = {
       kStart,
       {{0, 0}, rng.chance(0.1) ? Vec2(0, 0) : Vec2(rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3)))},
       5 * random_vector(rng, 1),
-      phase};
+      hold_time};
   const auto count = rng.below(12);
   for (RobotId id = 1; id <= count; ++id) {
     Version version =
@@ -77,18 +79,19 @@ Scene random_scene(Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("with nobody near, the wish itself is the first candidate") {
+TEST_CASE("without neighbours, the desired acceleration is the first candidate") {
   SafetySearch search({}, {});
   Rng rng(1);
-  TrajectoryIndex nobody;
-  const auto result = search.search({kStart, {{0, 0}, {1, 0}}, {2, 1}, kCycle}, nobody, rng);
+  TrajectoryIndex empty_index;
+  const auto result = search.search({kStart, {{0, 0}, {1, 0}}, {2, 1}, kCycle}, empty_index, rng);
   REQUIRE(result.count == SearchResult::kMaxCandidates);
   CHECK(result.desired_is_clear);
   CHECK((result.candidates[0].phases()[0].acceleration_mps2 - Vec2(2, 1)).norm() < 1e-12);
 }
 
 TEST_CASE(
-    "every candidate is clear of everybody, within the limits, and the nearest to the wish comes first") {
+    "every candidate is clear of all robots and within the limits, and the nearest to the desired one is "
+    "first") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -96,7 +99,7 @@ TEST_CASE(
   rules.field = {6, 6};
   rules.obstacles = {{{0.5, 0.5}, 0.1}, {{-0.6, 0.2}, 0.15}};
   SafetySearch search(rules, {});
-  TrajectoryIndex crowd;
+  TrajectoryIndex index;
   std::size_t found = 0, blocked = 0;
   for (int scene = 0; scene < 3000; ++scene) {
     std::vector<Version> others;
@@ -104,17 +107,17 @@ TEST_CASE(
       others.push_back(moving_robot(id, {rng.uniform(-0.8, 0.8), rng.uniform(-0.8, 0.8)},
                                     rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3))));
     }
-    crowd.assign(others);
+    index.assign(others);
     const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
     const Vec2 desired = 5 * Vec2(rng.uniform(-1, 1), rng.uniform(-1, 1));
-    const auto result = search.search({kStart, {{0, 0}, velocity}, desired, kCycle}, crowd, rng);
+    const auto result = search.search({kStart, {{0, 0}, velocity}, desired, kCycle}, index, rng);
     ++(result.count ? found : blocked);
-    const Vec2 reachable = limited(desired, velocity, rules.limits, kCycle);
+    const Vec2 reachable = limit_acceleration(desired, velocity, rules.limits, kCycle);
     double last = -1;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
-      REQUIRE(check_limits(candidate, rules.limits) == msg::REASON_GRANTED);
-      REQUIRE(check_place(candidate, rules) == msg::REASON_GRANTED);
+      REQUIRE(check_limits(candidate, rules.limits) == Validity::kValid);
+      REQUIRE(check_workspace(candidate, rules) == Validity::kValid);
       for (const Version& other : others)
         REQUIRE(clearance_m(candidate, other.trajectory, rules.min_separation_m()) >= 0);
       const double distance = (candidate.phases()[0].acceleration_mps2 - reachable).norm();
@@ -126,7 +129,7 @@ TEST_CASE(
   CHECK(blocked > 100);
 }
 
-TEST_CASE("the search finds exactly what a slow one finds, on every instruction set") {
+TEST_CASE("the search finds the same candidates as a slow reference, on every instruction set") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   FloorRules rules;
   rules.field = {2.2, 2.6};
@@ -134,40 +137,40 @@ TEST_CASE("the search finds exactly what a slow one finds, on every instruction 
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(seed, kernels.name);
     SafetySearch search(rules, {}, kernels);
-    TrajectoryIndex crowd(kernels);
+    TrajectoryIndex index(kernels);
     Rng scenes(seed), rng(seed), slow_rng(seed);
-    int found = 0, refused_wishes = 0;
+    int found = 0, refused_desired = 0;
     for (int i = 0; i < 4000; ++i) {
       CAPTURE(i);
       const Scene scene = random_scene(scenes);
-      crowd.assign(scene.others);
-      const auto result = search.search(scene.query, crowd, rng);
-      const auto expected = slow_search(rules, {}, scene.query, scene.others, slow_rng);
+      index.assign(scene.others);
+      const auto result = search.search(scene.query, index, rng);
+      const auto expected = reference_search(rules, {}, scene.query, scene.others, slow_rng);
       REQUIRE(result.count == expected.count);
       REQUIRE(result.desired_is_clear == expected.desired_is_clear);
       for (std::size_t k = 0; k < result.count; ++k) {
-        const auto phases = result.candidates[k].phases(), wanted = expected.candidates[k].phases();
-        REQUIRE(phases.size() == wanted.size());
+        const auto phases = result.candidates[k].phases(), expected_phases = expected.candidates[k].phases();
+        REQUIRE(phases.size() == expected_phases.size());
         for (std::size_t p = 0; p < phases.size(); ++p) {
-          REQUIRE(phases[p].duration == wanted[p].duration);
-          REQUIRE(phases[p].acceleration_mps2 == wanted[p].acceleration_mps2);
+          REQUIRE(phases[p].duration == expected_phases[p].duration);
+          REQUIRE(phases[p].acceleration_mps2 == expected_phases[p].acceleration_mps2);
         }
       }
       found += result.count > 0;
-      refused_wishes += !result.desired_is_clear;
+      refused_desired += !result.desired_is_clear;
     }
     CHECK(found > 1000);
-    CHECK(refused_wishes > 1000);
+    CHECK(refused_desired > 1000);
   }
 }
 
 TEST_CASE("the same seed gives the same candidates") {
   SafetySearch one({}, {}), two({}, {});
   Rng rng_one(9), rng_two(9);
-  TrajectoryIndex nobody;
+  TrajectoryIndex empty_index;
   for (int i = 0; i < 20; ++i) {
     const SearchQuery query{kStart, {{0, 0}, {0.1 * i, 0}}, {1, 1}, kCycle};
-    const auto a = one.search(query, nobody, rng_one), b = two.search(query, nobody, rng_two);
+    const auto a = one.search(query, empty_index, rng_one), b = two.search(query, empty_index, rng_two);
     REQUIRE(a.count == b.count);
     for (std::size_t k = 0; k < a.count; ++k) {
       REQUIRE(a.candidates[k].phases()[0].acceleration_mps2 == b.candidates[k].phases()[0].acceleration_mps2);
@@ -175,14 +178,14 @@ TEST_CASE("the same seed gives the same candidates") {
   }
 }
 
-TEST_CASE("whatever moves without asking, every candidate is at rest before it could be there") {
+TEST_CASE("every candidate is at rest before any moving obstacle could reach it") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
   FloorRules rules;
   rules.field = {6, 6};
   SafetySearch search(rules, {});
-  TrajectoryIndex nobody;
+  TrajectoryIndex empty_index;
   std::size_t found = 0, blocked = 0, refused = 0;
   for (int scene = 0; scene < 1000; ++scene) {
     std::vector<MovingObstacle> moving;
@@ -195,9 +198,9 @@ TEST_CASE("whatever moves without asking, every candidate is at rest before it c
     const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
     SearchQuery query{kStart, {{0, 0}, velocity}, 3 * rotated({1, 0}, rng.uniform(-3, 3)), kCycle};
     Rng again = rng;
-    const std::size_t without = search.search(query, nobody, again).count;
+    const std::size_t without = search.search(query, empty_index, again).count;
     query.moving = moving;
-    const auto result = search.search(query, nobody, rng);
+    const auto result = search.search(query, empty_index, rng);
     ++(result.count ? found : blocked);
     refused += result.count < without;
     for (std::size_t i = 0; i < result.count; ++i) {

@@ -8,13 +8,13 @@
 
 using namespace sidestep;
 
-TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, near or far apart") {
+TEST_CASE("an index finds exactly the versions whose discs touch a circle, at any number and density") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(kernels.name);
-    TrajectoryIndex crowd(kernels);
+    TrajectoryIndex index(kernels);
     for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 63u, 64u, 65u, 300u, 2000u}) {
       CAPTURE(count);
       const double half_side = rng.chance(0.5) ? 0.5 : rng.uniform(1, 200);
@@ -27,16 +27,16 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
         if (rng.chance(0.01)) version.inflation_m = rng.uniform(0, 0.5);
         versions.push_back(version);
       }
-      crowd.assign(versions);
+      index.assign(versions);
       for (int i = 0; i < 50; ++i) {
         const Circle circle{random_vector(rng, 1.5 * half_side), rng.uniform(0, 1)};
         std::vector<std::uint32_t> expected, found;
         for (std::uint32_t k = 0; k < count; ++k) {
-          const double far = circle.radius_m + crowd.outline(k).disc.radius_m;
-          if ((circle.centre_m - crowd.outline(k).disc.centre_m).squaredNorm() <= far * far)
+          const double max_distance = circle.radius_m + index.bounds(k).disc.radius_m;
+          if ((circle.centre_m - index.bounds(k).disc.centre_m).squaredNorm() <= max_distance * max_distance)
             expected.push_back(k);
         }
-        crowd.find(circle, found);
+        index.find(circle, found);
         std::ranges::sort(found);
         REQUIRE(found == expected);
       }
@@ -44,13 +44,13 @@ TEST_CASE("a crowd finds exactly those whose discs touch a circle, few or many, 
   }
 }
 
-TEST_CASE("a disc in the outline of a crowd's version is larger by what the robot has grown") {
-  TrajectoryIndex crowd;
+TEST_CASE("the bounding disc of an indexed version includes its inflation") {
+  TrajectoryIndex index;
   Version version{1, 1, 1, 0, Trajectory::resting({}, {0, 0}), 0.25};
-  crowd.add(version);
-  CHECK(crowd.outline(0).disc.radius_m == Approx(0.25).margin(1e-5));
-  crowd.clear();
+  index.add(version);
+  CHECK(index.bounds(0).disc.radius_m == Approx(0.25).margin(1e-5));
+  index.clear();
   std::vector<std::uint32_t> found;
-  crowd.find({{0, 0}, 10}, found);
+  index.find({{0, 0}, 10}, found);
   CHECK(found.empty());
 }

@@ -7,19 +7,19 @@
 
 using namespace sidestep;
 
-TEST_CASE("cameras in a grid see the field with its overlaps") {
+TEST_CASE("cameras in a grid see the whole field with the overlaps") {
   const Field field{12, 9};
   VisionSpec spec;
   spec.columns = 2;
   spec.rows = 2;
   spec.overlap_m = 0.25;
-  const auto cameras = hang_grid(field, spec, OverheadCamera{});
+  const auto cameras = camera_grid(field, spec, OverheadCamera{});
   REQUIRE(cameras.size() == 4);
   Rng rng(66);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(rng.uniform(-6.2, 6.2), rng.uniform(-4.7, 4.7), rng.uniform(0, 0.15));
     int seen = 0;
-    for (const CameraModel& camera : cameras) seen += camera.shows(*camera.pixel_of(p));
+    for (const CameraModel& camera : cameras) seen += camera.is_in_image(*camera.pixel_of(p));
     CHECK(seen >= 1);
     if (p.head<2>().cwiseAbs().maxCoeff() < 0.24) CHECK(seen == 4);
   }

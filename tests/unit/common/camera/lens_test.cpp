@@ -10,7 +10,7 @@ using namespace sidestep;
 namespace {
 
 /// The root of s (1 + c s²) = 1 by bisection, on the branch that begins at s = 1 for c = 0.
-double slow_factor(double c) {
+double reference_factor(double c) {
   long double low = c >= 0 ? 0 : 1, high = c >= 0 ? 1 : 1 / std::sqrt(-3.0L * c);
   for (int i = 0; i < 200; ++i) {
     const long double middle = (low + high) / 2;
@@ -21,7 +21,7 @@ double slow_factor(double c) {
 
 }  // namespace
 
-TEST_CASE("a lens is inverted to the last bits") {
+TEST_CASE("the distortion is inverted to the last bits") {
   const std::uint64_t seed = 17;
   CAPTURE(seed);
   Rng rng(seed);
@@ -30,23 +30,23 @@ TEST_CASE("a lens is inverted to the last bits") {
     const double c =
         is_barrel ? std::exp(rng.uniform(std::log(1e-9), std::log(1e6))) : rng.uniform(-0.147, 0);
     CAPTURE(c);
-    const double s = lens::distorting_factor(c);
-    REQUIRE(s == Approx(slow_factor(c)).epsilon(1e-13).margin(0));
-    // There and back: k r_u² -> k r_d² -> factor.
-    REQUIRE(lens::undistorting_factor(c * s * s) * s == Approx(1).epsilon(1e-13).margin(0));
+    const double s = lens::distortion_factor(c);
+    REQUIRE(s == Approx(reference_factor(c)).epsilon(1e-13).margin(0));
+    // Round trip: k r_u² -> k r_d² -> factor.
+    REQUIRE(lens::undistortion_factor(c * s * s) * s == Approx(1).epsilon(1e-13).margin(0));
   }
-  CHECK(lens::distorting_factor(0) == 1);
+  CHECK(lens::distortion_factor(0) == 1);
 }
 
-TEST_CASE("a lens says where it ends") {
-  CHECK(std::isnan(lens::distorting_factor(-0.1471)));
-  CHECK(std::isnan(lens::distorting_factor(-4.0 / 27)));
-  CHECK(std::isnan(lens::distorting_factor(INFINITY)));
-  CHECK(std::isnan(lens::distorting_factor(NAN)));
-  CHECK(std::isnan(lens::undistorting_factor(-0.3001)));
-  CHECK(std::isnan(lens::undistorting_factor(NAN)));
-  // Both ends are the same point, and dr_u/dr_d is 0.1 there.
-  const double s = lens::distorting_factor(lens::kLeastSightBend);
-  CHECK(s * s * lens::kLeastSightBend == Approx(lens::kLeastBend));
-  CHECK(1 + 3 * lens::kLeastBend == Approx(0.1));
+TEST_CASE("the factors are NaN outside the domain of the lens") {
+  CHECK(std::isnan(lens::distortion_factor(-0.1471)));
+  CHECK(std::isnan(lens::distortion_factor(-4.0 / 27)));
+  CHECK(std::isnan(lens::distortion_factor(INFINITY)));
+  CHECK(std::isnan(lens::distortion_factor(NAN)));
+  CHECK(std::isnan(lens::undistortion_factor(-0.3001)));
+  CHECK(std::isnan(lens::undistortion_factor(NAN)));
+  // Both bounds describe the same point, where dr_u/dr_d is 0.1.
+  const double s = lens::distortion_factor(lens::kMinUndistortedKr2);
+  CHECK(s * s * lens::kMinUndistortedKr2 == Approx(lens::kMinDistortedKr2));
+  CHECK(1 + 3 * lens::kMinDistortedKr2 == Approx(0.1));
 }

@@ -8,62 +8,62 @@
 
 using namespace sidestep;
 
-TEST_CASE("a camera that is hung over a rectangle sees all of it and not much more") {
+TEST_CASE("an overhead camera sees its whole rectangle and little more") {
   const std::uint64_t seed = 6;
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 300; ++i) {
-    const OverheadCamera hanging = random_overhead_camera(rng);
-    const CameraModel camera = hang(hanging);
+    const OverheadCamera mount = random_overhead_camera(rng);
+    const CameraModel camera = overhead_camera_model(mount);
     double margin_px = 1e9;
     for (int j = 0; j < 500; ++j) {
-      Vec2 p = random_point_in(hanging.view_m, rng);
-      // Half of them on the border.
-      if (j % 4 == 0) p.x() = hanging.view_m.min_m.x();
-      if (j % 4 == 1) p.y() = hanging.view_m.max_m.y();
-      const Vec2 pixel = *camera.pixel_of(Vec3(p.x(), p.y(), j % 8 < 4 ? 0 : hanging.top_m));
+      Vec2 p = random_point_in(mount.view_m, rng);
+      // Half of the points lie on the border.
+      if (j % 4 == 0) p.x() = mount.view_m.min_m.x();
+      if (j % 4 == 1) p.y() = mount.view_m.max_m.y();
+      const Vec2 pixel = *camera.pixel_of(Vec3(p.x(), p.y(), j % 8 < 4 ? 0 : mount.object_height_m));
       REQUIRE(pixel.x() >= -0.6);
       REQUIRE(pixel.y() >= -0.6);
       REQUIRE(pixel.x() <= camera.parameters().width_px - 0.4);
       REQUIRE(pixel.y() <= camera.parameters().height_px - 0.4);
     }
-    for (const Vec2& p : corners_of(hanging.view_m)) {
-      for (const double z : {0.0, hanging.top_m}) {
+    for (const Vec2& p : corners_of(mount.view_m)) {
+      for (const double z : {0.0, mount.object_height_m}) {
         const Vec2 pixel = *camera.pixel_of(Vec3(p.x(), p.y(), z));
         margin_px = std::min({margin_px, pixel.x(), pixel.y(), camera.parameters().width_px - 1 - pixel.x(),
                               camera.parameters().height_px - 1 - pixel.y()});
       }
     }
-    // Barrel distortion may put the middle of a side farther out than the corners.
+    // With barrel distortion the middle of a side may lie closer to the image border than the corners.
     CHECK(margin_px < 0.12 * camera.parameters().width_px);
-    const Vec2 centre = (hanging.view_m.min_m + hanging.view_m.max_m) / 2;
+    const Vec2 centre = (mount.view_m.min_m + mount.view_m.max_m) / 2;
     CHECK(
         (*camera.pixel_of(Vec3(centre.x(), centre.y(), 0)) - camera.parameters().principal_point_px).norm() <
         1e-9);
-    const Vec2 above = centre + hanging.aside_m;
-    CHECK((camera.position_m() - Vec3(above.x(), above.y(), hanging.height_m)).norm() < 1e-12);
+    const Vec2 mount_m = centre + mount.lateral_offset_m;
+    CHECK((camera.position_m() - Vec3(mount_m.x(), mount_m.y(), mount.height_m)).norm() < 1e-12);
   }
 }
 
-TEST_CASE("an image lies as its rectangle does") {
-  OverheadCamera hanging;
-  const CameraModel along = hang(hanging);
+TEST_CASE("the long side of the image lies along the long side of the rectangle") {
+  OverheadCamera mount;
+  const CameraModel along = overhead_camera_model(mount);
   CHECK((*along.pixel_of(Vec3(1, 0, 0))).x() > 400);
   CHECK((*along.pixel_of(Vec3(0, 1, 0))).y() < 280);
-  hanging.view_m = {{-2.25, -3}, {2.25, 3}};
-  const CameraModel across = hang(hanging);
+  mount.view_m = {{-2.25, -3}, {2.25, 3}};
+  const CameraModel across = overhead_camera_model(mount);
   CHECK((*across.pixel_of(Vec3(0, 1, 0))).x() > 400);
   CHECK(across.parameters().focal_length_px == Approx(along.parameters().focal_length_px));
 }
 
-TEST_CASE("a camera that cannot see its rectangle is refused") {
-  OverheadCamera hanging;
-  hanging.height_m = 0.1;
-  CHECK_THROWS_AS(hang(hanging), std::invalid_argument);
-  hanging = {};
-  hanging.view_m = {{1, 1}, {1, 2}};
-  CHECK_THROWS_AS(hang(hanging), std::invalid_argument);
-  hanging = {};
-  hanging.distortion = -1;
-  CHECK_THROWS_AS(hang(hanging), std::invalid_argument);
+TEST_CASE("a camera that cannot cover its rectangle is rejected") {
+  OverheadCamera mount;
+  mount.height_m = 0.1;
+  CHECK_THROWS_AS(overhead_camera_model(mount), std::invalid_argument);
+  mount = {};
+  mount.view_m = {{1, 1}, {1, 2}};
+  CHECK_THROWS_AS(overhead_camera_model(mount), std::invalid_argument);
+  mount = {};
+  mount.distortion = -1;
+  CHECK_THROWS_AS(overhead_camera_model(mount), std::invalid_argument);
 }

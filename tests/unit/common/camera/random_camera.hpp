@@ -6,14 +6,15 @@
 
 namespace sidestep {
 
-/// Somewhere over the floor, tilted up to 30 degrees or so, with a barrel distortion or none.
+/// A camera above a random part of the floor, tilted by up to about 30 degrees, with or without barrel
+/// distortion.
 inline OverheadCamera random_overhead_camera(Rng& rng) {
   OverheadCamera camera;
   const Vec2 centre(rng.uniform(-5, 5), rng.uniform(-4, 4));
   const Vec2 half(rng.uniform(0.5, 3.5), rng.uniform(0.5, 3));
   camera.view_m = {centre - half, centre + half};
   camera.height_m = rng.uniform(2.5, 6);
-  camera.aside_m = Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  camera.lateral_offset_m = Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2));
   camera.distortion = rng.chance(0.2) ? 0 : rng.uniform(0, 0.4);
   if (rng.chance(0.3)) camera.width_px = 2448, camera.height_px = 2048;
   return camera;

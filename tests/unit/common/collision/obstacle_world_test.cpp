@@ -15,7 +15,7 @@ constexpr double kTolerance_m = 1e-9;
 constexpr Structure kStructures[] = {Structure::kAutomatic, Structure::kLinear, Structure::kMasks,
                                      Structure::kTree};
 
-/// The smallest distance from a way to any shape, by a function that shares nothing with the structures.
+/// The distance from a path to the nearest shape, by a function that shares no code with the structures.
 double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& to) {
   double nearest2 = kInfinite;
   for (const ObstacleId id : world.obstacles())
@@ -23,24 +23,24 @@ double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& 
   return std::sqrt(nearest2);
 }
 
-/// The first contact has to touch, and nothing before it.
+/// Checks that the first contact touches its obstacle, and that the path before it is free.
 void check_first_contact(const ObstacleWorld& world, const Vec2& from, const Vec2& to, double radius,
                          double distance) {
   const std::optional<Contact> contact = world.first_contact(from, to, radius);
   if (std::abs(distance - radius) > kTolerance_m) CHECK(contact.has_value() == (distance < radius));
   if (!contact) return;
-  CHECK((contact->part >= 0 && contact->part <= 1));
-  const Vec2 at = from + contact->part * (to - from);
+  CHECK((contact->fraction >= 0 && contact->fraction <= 1));
+  const Vec2 at = from + contact->fraction * (to - from);
   CHECK(signed_distance(at, world.shape(contact->obstacle)) <= radius + kTolerance_m);
-  if (contact->part > 0) CHECK(exact_distance(world, from, at) >= radius - kTolerance_m);
+  if (contact->fraction > 0) CHECK(exact_distance(world, from, at) >= radius - kTolerance_m);
 }
 
-void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double longest_m, int queries) {
+void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double max_length_m, int queries) {
   for (int i = 0; i < queries; ++i) {
-    const Vec2 from = random_place(rng, 1.2 * half_m);
-    const Vec2 to = rng.chance(0.1) ? from : from + random_way(rng, longest_m);
+    const Vec2 from = random_position(rng, 1.2 * half_m);
+    const Vec2 to = rng.chance(0.1) ? from : from + random_displacement(rng, max_length_m);
     const double distance = exact_distance(world, from, to);
-    // Many radii are about where the answer changes.
+    // Many radii are near the value at which the answer changes.
     double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.2 * half_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
@@ -57,7 +57,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double l
   }
 }
 
-TEST_CASE("a world answers as the distances to its shapes do") {
+TEST_CASE("a world's answers agree with the exact distances to its shapes") {
   const std::size_t count = GENERATE(1, 2, 15, 16, 17, 64, 65, 300, 1500);
   const std::uint64_t seed = GENERATE(1, 2, 3);
   for (const Structure structure : kStructures) {
@@ -70,7 +70,7 @@ TEST_CASE("a world answers as the distances to its shapes do") {
   }
 }
 
-TEST_CASE("a world of circles answers as the distances to them do") {
+TEST_CASE("the answers of a world of circles agree with the exact distances") {
   const std::size_t count = GENERATE(3, 16, 64, 100, 1100);
   const std::uint64_t seed = GENERATE(1, 2, 3);
   for (const Structure structure : kStructures) {
@@ -80,23 +80,23 @@ TEST_CASE("a world of circles answers as the distances to them do") {
       std::vector<Shape> circles;
       for (std::size_t i = 0; i < count; ++i)
         circles.push_back(
-            Circle{random_place(rng, 5), rng.uniform(0, 3 / std::sqrt(static_cast<double>(count)))});
+            Circle{random_position(rng, 5), rng.uniform(0, 3 / std::sqrt(static_cast<double>(count)))});
       const ObstacleWorld world(circles, structure, kernels);
       check_queries(world, rng, 5, 10 / std::sqrt(static_cast<double>(count)), count < 1000 ? 300 : 50);
     }
   }
 }
 
-TEST_CASE("shapes and ways on whole numbers are no special case") {
+TEST_CASE("shapes and paths with integer coordinates are answered correctly") {
   const std::uint64_t seed = GENERATE(range(1, 8));
   Rng rng(seed);
-  const auto whole_place = [&] {
+  const auto integer_position = [&] {
     return Vec2(static_cast<double>(rng.below(9)) - 4, static_cast<double>(rng.below(9)) - 4);
   };
-  // Some are points, lines or on one line with a way.
+  // Some shapes are degenerate to points or lines, or collinear with a path.
   std::vector<Shape> shapes;
   for (int i = 0; i < 12; ++i) {
-    const Vec2 a = whole_place(), b = whole_place();
+    const Vec2 a = integer_position(), b = integer_position();
     shapes.push_back(Segment{a, rng.chance(0.2) ? a : b});
     shapes.push_back(Box{a.cwiseMin(b), a.cwiseMax(b).cwiseMin(a.cwiseMin(b) + Vec2(1, 1))});
     shapes.push_back(ConvexPolygon{{b, b + Vec2(1, 0), b + Vec2(2, 0), b + Vec2(2, 1), b + Vec2(1, 1.5)}});
@@ -107,12 +107,12 @@ TEST_CASE("shapes and ways on whole numbers are no special case") {
   for (const Structure structure : kStructures) {
     for (const collision::Kernels& kernels : collision::available_kernels()) {
       CAPTURE(seed, structure, kernels.name);
-      std::size_t number = 1;
+      std::size_t next = 1;
       for (const Shape& shape : shapes) {
-        // Few at a time, or nearly every way touches.
-        const ObstacleWorld world({shape, shapes[number++ % shapes.size()]}, structure, kernels);
+        // Two shapes per world: with more, nearly every path would touch.
+        const ObstacleWorld world({shape, shapes[next++ % shapes.size()]}, structure, kernels);
         for (int i = 0; i < 60; ++i) {
-          const Vec2 from = whole_place(), to = whole_place();
+          const Vec2 from = integer_position(), to = integer_position();
           const double radius = 0.5 * static_cast<double>(rng.below(3)),
                        distance = exact_distance(world, from, to);
           CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
@@ -124,7 +124,7 @@ TEST_CASE("shapes and ways on whole numbers are no special case") {
   }
 }
 
-TEST_CASE("a world far from the origin answers exactly") {
+TEST_CASE("a world far from the origin answers accurately") {
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   CAPTURE(structure);
   Rng rng(3);
@@ -132,21 +132,21 @@ TEST_CASE("a world far from the origin answers exactly") {
   for (Shape& shape : shapes) shape = moved(shape, {4e5, -3e5});
   const ObstacleWorld world(shapes, structure);
   for (int i = 0; i < 300; ++i) {
-    const Vec2 from = Vec2(4e5, -3e5) + random_place(rng, 6), to = from + random_way(rng, 2);
+    const Vec2 from = Vec2(4e5, -3e5) + random_position(rng, 6), to = from + random_displacement(rng, 2);
     const double distance = exact_distance(world, from, to);
     CHECK(world.touches(from, to, distance + 1e-8));
     if (distance > 1e-8) CHECK_FALSE(world.touches(from, to, distance - 1e-8));
   }
 }
 
-TEST_CASE("a swept disc touches where one of the discs along its way does") {
+TEST_CASE("a swept disc touches if a disc at any position along its path does") {
   const std::uint64_t seed = GENERATE(range(1, 8));
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   CAPTURE(seed, structure);
   Rng rng(seed);
   const ObstacleWorld world(random_shapes(rng, 30, 1), structure);
   for (int i = 0; i < 50; ++i) {
-    const Vec2 from = random_place(rng, 1), to = from + random_way(rng, 0.5);
+    const Vec2 from = random_position(rng, 1), to = from + random_displacement(rng, 0.5);
     const double radius = rng.uniform(0, 0.1);
     double sampled = kInfinite;
     for (const ObstacleId id : world.obstacles())
@@ -156,32 +156,32 @@ TEST_CASE("a swept disc touches where one of the discs along its way does") {
   }
 }
 
-TEST_CASE("a world answers for what is in it after obstacles came and moved and went") {
+TEST_CASE("a world answers correctly after obstacles were added, moved and removed") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   const std::size_t count = GENERATE(0, 20, 400);
   CAPTURE(seed, structure, count);
   Rng rng(seed);
   ObstacleWorld world(random_shapes(rng, count, 2), structure);
-  // First more come than go, then the other way round.
+  // At first more obstacles are added than removed, later more are removed.
   for (int round = 0; round < 60; ++round) {
-    const double coming = round < 30 ? 0.3 : 0.05;
+    const double add_probability = round < 30 ? 0.3 : 0.05;
     for (int change = 0; change < 15; ++change) {
       const std::vector<ObstacleId> ids = world.obstacles();
       const ObstacleId any = ids.empty() ? kNoObstacle : ids[rng.below(ids.size())];
-      const double what = rng.uniform();
-      if (what < coming || ids.empty())
+      const double choice = rng.uniform();
+      if (choice < add_probability || ids.empty())
         world.add(random_shape(rng, 2, 0.3));
-      else if (what < 0.5)
+      else if (choice < 0.5)
         world.remove(any);
       else
-        world.move(any, random_way(rng, rng.chance(0.1) ? 30 : 0.5));
+        world.move(any, random_displacement(rng, rng.chance(0.1) ? 30 : 0.5));
     }
     if (world.size() > 0) check_queries(world, rng, 2, 1, 20);
   }
 }
 
-TEST_CASE("an obstacle's id stays its own while others come and go") {
+TEST_CASE("an obstacle keeps its id while others are added and removed") {
   ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}, Circle{{9, 0}, 1}});
   const ObstacleId third{2};
   world.remove(ObstacleId{0});
@@ -207,7 +207,7 @@ TEST_CASE("nothing touches in an empty world") {
   CHECK_FALSE(world.touches({0.5, 0}, 0));
 }
 
-TEST_CASE("what only touches touches") {
+TEST_CASE("shapes with a single common point touch") {
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   CAPTURE(structure);
   const ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}}, structure);
@@ -216,7 +216,7 @@ TEST_CASE("what only touches touches") {
   CHECK(world.touches({3, 0.5}, 1));
 }
 
-TEST_CASE("a world refuses what is none of its business") {
+TEST_CASE("a world rejects invalid shapes, queries and ids") {
   CHECK_THROWS_WITH(ObstacleWorld({Circle{{0, 0}, 1}, Circle{{0, 0}, -1}}),
                     "obstacle 1: a circle's radius is negative");
   const Structure structure = kStructures[GENERATE(range(0, 4))];

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Hills and rough ground, a metre to the square.
+/// Hills with rough ground, on a grid with a spacing of 1 m.
 inline HeightField random_terrain(Rng& rng, std::size_t columns, std::size_t rows) {
   HeightField field{
       {-0.5 * static_cast<double>(columns), -0.5 * static_cast<double>(rows)}, 1, columns, rows, {}};
@@ -20,7 +20,7 @@ inline HeightField random_terrain(Rng& rng, std::size_t columns, std::size_t row
   return field;
 }
 
-inline Vec3 random_place_over(Rng& rng, const HeightField& field) {
+inline Vec3 random_position_above(Rng& rng, const HeightField& field) {
   return {field.corner_m.x() * rng.uniform(-1, 1), field.corner_m.y() * rng.uniform(-1, 1),
           rng.uniform(-3, 8)};
 }

@@ -9,43 +9,43 @@
 
 namespace sidestep {
 
-inline Vec2 random_place(Rng& rng, double half_m) {
+inline Vec2 random_position(Rng& rng, double half_m) {
   return {rng.uniform(-half_m, half_m), rng.uniform(-half_m, half_m)};
 }
 
-inline Vec2 random_way(Rng& rng, double longest_m) {
-  return rotated(Vec2(rng.uniform(0, longest_m), 0), rng.uniform(0, 6.28));
+inline Vec2 random_displacement(Rng& rng, double max_length_m) {
+  return rotated(Vec2(rng.uniform(0, max_length_m), 0), rng.uniform(0, 6.28));
 }
 
-/// Corners on an ellipse, which makes the polygon convex.
+/// A polygon with its corners on an ellipse, hence convex.
 inline ConvexPolygon random_polygon(Rng& rng, const Vec2& centre, double size_m) {
   std::vector<double> angles(3 + rng.below(5));
   for (std::size_t i = 0; i < angles.size(); ++i)
     angles[i] = 6.28 * (static_cast<double>(i) + rng.uniform(0.1, 0.9)) / static_cast<double>(angles.size());
-  const double narrow = rng.uniform(0.2, 1), turn_rad = rng.uniform(0, 3);
+  const double aspect_ratio = rng.uniform(0.2, 1), turn_rad = rng.uniform(0, 3);
   ConvexPolygon polygon;
   for (const double angle : angles) {
-    const Vec2 on_circle = size_m * Vec2(std::cos(angle), narrow * std::sin(angle));
+    const Vec2 on_circle = size_m * Vec2(std::cos(angle), aspect_ratio * std::sin(angle));
     polygon.corners_m.push_back(centre + rotated(on_circle, turn_rad));
   }
   return polygon;
 }
 
 inline Shape random_shape(Rng& rng, double half_m, double size_m) {
-  const Vec2 place = random_place(rng, half_m);
+  const Vec2 position = random_position(rng, half_m);
   switch (rng.below(4)) {
     case 0:
-      return Circle{place, rng.uniform(0, size_m)};
+      return Circle{position, rng.uniform(0, size_m)};
     case 1:
-      return Box{place, place + Vec2(rng.uniform(0, 2 * size_m), rng.uniform(0, 2 * size_m))};
+      return Box{position, position + Vec2(rng.uniform(0, 2 * size_m), rng.uniform(0, 2 * size_m))};
     case 2:
-      return random_polygon(rng, place, rng.uniform(0.1, 1) * size_m);
+      return random_polygon(rng, position, rng.uniform(0.1, 1) * size_m);
     default:
-      return Segment{place, place + random_way(rng, 3 * size_m)};
+      return Segment{position, position + random_displacement(rng, 3 * size_m)};
   }
 }
 
-/// Shapes of all kinds that cover about a fifth of a square, whatever their number.
+/// Shapes of all kinds that together cover about a fifth of a square, independent of their number.
 inline std::vector<Shape> random_shapes(Rng& rng, std::size_t count, double half_m) {
   const double size_m = 0.4 * 2 * half_m / std::sqrt(static_cast<double>(count) + 1);
   std::vector<Shape> shapes;
@@ -53,7 +53,8 @@ inline std::vector<Shape> random_shapes(Rng& rng, std::size_t count, double half
   return shapes;
 }
 
-/// The smallest distance from points on the way to a shape; the true one is at most half a step smaller.
+/// The smallest distance from sampled points of a path to a shape; at most half a step above the exact
+/// distance.
 inline double sampled_distance(const Vec2& from, const Vec2& to, const Shape& shape, std::size_t steps) {
   double nearest = signed_distance(from, shape);
   for (std::size_t i = 1; i <= steps; ++i) {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <numbers>
 
 #include "tests/unit/common/collision/random_world.hpp"
 
@@ -11,60 +12,60 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Points along the border, which is what every shape's distance is to.
-std::vector<Vec2> border_of(const Shape& shape) {
-  std::vector<Vec2> corners, border;
+/// Points along a shape's boundary, 1/1000 of an edge or 1 mrad apart.
+std::vector<Vec2> boundary_of(const Shape& shape) {
+  std::vector<Vec2> corners, boundary;
   if (const auto* circle = std::get_if<Circle>(&shape)) {
     for (double angle = 0; angle < 6.2832; angle += 1e-3)
-      border.push_back(circle->centre_m + rotated(Vec2(circle->radius_m, 0), angle));
-    return border;
+      boundary.push_back(circle->centre_m + rotated(Vec2(circle->radius_m, 0), angle));
+    return boundary;
   }
   if (const auto* box = std::get_if<Box>(&shape))
     corners = {box->min_m, {box->max_m.x(), box->min_m.y()}, box->max_m, {box->min_m.x(), box->max_m.y()}};
   if (const auto* segment = std::get_if<Segment>(&shape)) corners = {segment->from_m, segment->to_m};
   if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) corners = polygon->corners_m;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2 way = corners[(i + 1) % corners.size()] - corners[i];
-    for (double part = 0; part < 1; part += 1e-3) border.push_back(corners[i] + part * way);
+    const Vec2 edge = corners[(i + 1) % corners.size()] - corners[i];
+    for (double fraction = 0; fraction < 1; fraction += 1e-3) boundary.push_back(corners[i] + fraction * edge);
   }
-  return border;
+  return boundary;
 }
 
-/// Whether a ray from the point to the right meets the border an odd number of times.
+/// Whether a ray from the point in x direction crosses the boundary an odd number of times.
 bool is_inside(const Vec2& p, const Shape& shape) {
   if (std::holds_alternative<Segment>(shape)) return false;
-  const std::vector<Vec2> border = border_of(shape);
+  const std::vector<Vec2> boundary = boundary_of(shape);
   bool inside = false;
-  for (std::size_t i = 0; i < border.size(); ++i) {
-    const Vec2 &a = border[i], &b = border[(i + 1) % border.size()];
+  for (std::size_t i = 0; i < boundary.size(); ++i) {
+    const Vec2 &a = boundary[i], &b = boundary[(i + 1) % boundary.size()];
     if ((a.y() > p.y()) == (b.y() > p.y())) continue;
     if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
   }
   return inside;
 }
 
-TEST_CASE("the distance to a shape is that to the nearest point of its border") {
+TEST_CASE("the distance to a shape is the distance to the nearest point of its boundary") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);
   const Shape shape = random_shape(rng, 1, 0.6);
   for (int i = 0; i < 20; ++i) {
-    const Vec2 p = random_place(rng, 1.5);
+    const Vec2 p = random_position(rng, 1.5);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec2& q : border_of(shape)) nearest = std::min(nearest, (p - q).norm());
+    for (const Vec2& q : boundary_of(shape)) nearest = std::min(nearest, (p - q).norm());
     CAPTURE(shape.index(), p.x(), p.y());
     CHECK(std::abs(signed_distance(p, shape)) == Approx(nearest).margin(2e-3));
     if (nearest > 2e-3) CHECK((signed_distance(p, shape) < 0) == is_inside(p, shape));
   }
 }
 
-TEST_CASE("the distance between a segment and a shape is the smallest of its points") {
+TEST_CASE("the distance between a segment and a shape is the smallest over its points") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Rng rng(seed);
   const Shape shape = random_shape(rng, 1, 0.6);
   for (int i = 0; i < 20; ++i) {
-    const Vec2 from = random_place(rng, 1.5), to = from + random_way(rng, 1);
+    const Vec2 from = random_position(rng, 1.5), to = from + random_displacement(rng, 1);
     const double sampled = std::max(0.0, sampled_distance(from, to, shape, 500));
     const double exact = std::sqrt(squared_distance(Segment{from, to}, shape));
     CAPTURE(shape.index(), from.x(), from.y(), to.x(), to.y());
@@ -73,28 +74,28 @@ TEST_CASE("the distance between a segment and a shape is the smallest of its poi
   }
 }
 
-TEST_CASE("segments one behind the other on one line do not touch") {
+TEST_CASE("disjoint collinear segments do not touch") {
   Rng rng(7);
   for (int i = 0; i < 1000; ++i) {
-    const Vec2 start = random_place(rng, 1), way = rotated(Vec2(1, 0), rng.uniform(0, 6.28));
-    const Segment one{start, start + 0.3 * way}, other{start + 0.5 * way, start + 0.9 * way};
+    const Vec2 start = random_position(rng, 1), edge = rotated(Vec2(1, 0), rng.uniform(0, 6.28));
+    const Segment one{start, start + 0.3 * edge}, other{start + 0.5 * edge, start + 0.9 * edge};
     CHECK(squared_distance(one, other) == Approx(0.04));
   }
 }
 
-TEST_CASE("bounds hold a shape and move with it") {
+TEST_CASE("bounds contain a shape and move with it") {
   const std::uint64_t seed = GENERATE(range(1, 40));
   CAPTURE(seed);
   Rng rng(seed);
   const Shape shape = random_shape(rng, 1, 0.6);
-  const Vec2 by = random_place(rng, 5);
+  const Vec2 by = random_position(rng, 5);
   const Box box = bounds(shape), after = bounds(moved(shape, by));
-  for (const Vec2& p : border_of(shape)) CHECK(signed_distance(p, box) < 1e-12);
+  for (const Vec2& p : boundary_of(shape)) CHECK(signed_distance(p, box) < 1e-12);
   CHECK((after.min_m - by - box.min_m).norm() < 1e-12);
   CHECK((after.max_m - by - box.max_m).norm() < 1e-12);
 }
 
-TEST_CASE("shapes that are none are refused") {
+TEST_CASE("invalid shapes are rejected") {
   const double infinite = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH(check(Circle{{0, 0}, -0.1}), "a circle's radius is negative");
   CHECK_THROWS_AS(check(Circle{{0, kNan}, 0.1}), std::invalid_argument);
@@ -112,11 +113,11 @@ TEST_CASE("shapes that are none are refused") {
   CHECK_THROWS_AS(check(ConvexPolygon{{{0, 0}, {0, 0}, {1, 0}, {0, 1}}}), std::invalid_argument);
   CHECK_THROWS_AS(check(ConvexPolygon{{{0, 0}, {1, 0}, {2, 0}}}), std::invalid_argument);
   ConvexPolygon star;
-  for (int i = 0; i < 5; ++i) star.corners_m.push_back(rotated(Vec2(1, 0), 2 * i * 6.283185307 / 5));
-  CHECK_THROWS_WITH(check(star), "a polygon's border does not go round once");
+  for (int i = 0; i < 5; ++i) star.corners_m.push_back(rotated(Vec2(1, 0), 4 * i * std::numbers::pi / 5));
+  CHECK_THROWS_WITH(check(star), "a polygon's boundary has to go around exactly once");
 }
 
-TEST_CASE("shapes without an inside are shapes") {
+TEST_CASE("shapes without an interior are valid") {
   CHECK_NOTHROW(check(Circle{{1, 2}, 0}));
   CHECK_NOTHROW(check(Box{{1, 2}, {1, 2}}));
   CHECK_NOTHROW(check(Segment{{1, 2}, {1, 2}}));

@@ -10,29 +10,29 @@
 namespace sidestep {
 namespace {
 
-TEST_CASE("distances alone tell whether a way touches as exact comparisons do") {
+TEST_CASE("sweeps by distance agree with exact sweeps") {
   const std::uint64_t seed = GENERATE(range(1, 20));
   CAPTURE(seed);
   Rng rng(seed);
   const ObstacleWorld world(random_shapes(rng, 60, 3));
   for (int i = 0; i < 200; ++i) {
-    const Vec2 from = random_place(rng, 3), to = rng.chance(0.1) ? from : from + random_way(rng, 2);
+    const Vec2 from = random_position(rng, 3), to = rng.chance(0.1) ? from : from + random_displacement(rng, 2);
     const double radius = rng.uniform(0, 0.2);
     const SweepByDistance sweep(from, to, radius,
                                 [&](const Vec2& at) { return world.nearest(at).distance_m; });
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius);
     if (world.touches(from, to, radius)) CHECK(sweep.touches());
     if (!world.touches(from, to, radius + 2 * kGrazing_m)) CHECK_FALSE(sweep.touches());
-    const double length = (to - from).norm(), free = sweep.free_way_m();
+    const double length = (to - from).norm(), free = sweep.free_path_m();
     const std::optional<Contact> contact = world.first_contact(from, to, radius);
     CHECK(free <= length);
-    if (contact) CHECK(free <= contact->part * length + 1e-12);
+    if (contact) CHECK(free <= contact->fraction * length + 1e-12);
     if (free < length)
       CHECK(world.nearest(from + free / length * (to - from)).distance_m <= radius + 1.001 * kGrazing_m);
   }
 }
 
-TEST_CASE("a clear way costs few distances and one that grazes a bounded number") {
+TEST_CASE("a clear path takes few distance queries and a grazing one a bounded number") {
   const Circle circle{{0, 0}, 1};
   int asked = 0;
   const auto clearance = [&](const Vec2& at) {
@@ -49,14 +49,14 @@ TEST_CASE("a clear way costs few distances and one that grazes a bounded number"
   CHECK(asked < 10'000);
 }
 
-TEST_CASE("a clearance that is no number is no clearance") {
+TEST_CASE("a NaN clearance counts as contact") {
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinite = std::numeric_limits<double>::infinity();
   CHECK(SweepByDistance(Vec2(0, 0), Vec2(1, 0), 0, [&](const Vec2&) { return nan; }).touches());
   CHECK_FALSE(SweepByDistance(Vec2(0, 0), Vec2(1, 0), 0, [&](const Vec2&) { return infinite; }).touches());
 }
 
-TEST_CASE("ways that are none are refused") {
+TEST_CASE("invalid sweeps are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto far = [](const Vec2&) { return 1.0; };
   CHECK_THROWS_AS(SweepByDistance(Vec2(0, nan), Vec2(1, 0), 0, far), std::invalid_argument);

@@ -16,9 +16,9 @@ double height_at(const HeightField& field, std::size_t column, std::size_t row) 
   return field.heights_m[row * field.columns + column];
 }
 
-/// The ground's height by interpolation between the corners of one triangle.
-double ground(const HeightField& field, const Vec2& place) {
-  const Vec2 grid = (place - field.corner_m) / field.spacing_m;
+/// The terrain's height, interpolated between the corners of a triangle.
+double terrain_height(const HeightField& field, const Vec2& position) {
+  const Vec2 grid = (position - field.corner_m) / field.spacing_m;
   const double last_column = static_cast<double>(field.columns - 1),
                last_row = static_cast<double>(field.rows - 1);
   if (grid.x() < 0 || grid.y() < 0 || grid.x() > last_column || grid.y() > last_row) return -kInfinite;
@@ -34,34 +34,34 @@ double ground(const HeightField& field, const Vec2& place) {
   return corner + (1 - u) * (above - corner) + (1 - v) * (right - corner);
 }
 
-/// Points of the ground, some hundredths of a metre from each other.
-std::vector<Vec3> sampled_ground(const HeightField& field, std::size_t per_square) {
+/// Points of the terrain at `per_square` intervals per grid square.
+std::vector<Vec3> sampled_terrain(const HeightField& field, std::size_t per_square) {
   std::vector<Vec3> points;
   const double step = field.spacing_m / static_cast<double>(per_square);
   for (std::size_t i = 0; i <= (field.columns - 1) * per_square; ++i) {
     for (std::size_t k = 0; k <= (field.rows - 1) * per_square; ++k) {
-      const Vec2 place = field.corner_m + step * Vec2(static_cast<double>(i), static_cast<double>(k));
-      points.emplace_back(place.x(), place.y(), ground(field, place));
+      const Vec2 position = field.corner_m + step * Vec2(static_cast<double>(i), static_cast<double>(k));
+      points.emplace_back(position.x(), position.y(), terrain_height(field, position));
     }
   }
   return points;
 }
 
-TEST_CASE("the distance to terrain is that to its nearest point") {
+TEST_CASE("the distance to terrain is the distance to its nearest point") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   CAPTURE(seed);
   Rng rng(seed);
   const HeightField field = random_terrain(rng, 12, 9);
   const TerrainTree tree(field);
-  const std::vector<Vec3> points = sampled_ground(field, 20);
+  const std::vector<Vec3> points = sampled_terrain(field, 20);
   for (int i = 0; i < 60; ++i) {
-    const Vec3 from = random_place_over(rng, field), to = random_place_over(rng, field);
+    const Vec3 from = random_position_above(rng, field), to = random_position_above(rng, field);
     double point_m = kInfinite, line_m = kInfinite;
     for (const Vec3& point : points) {
-      const Vec3 way = to - from;
-      const double part = std::clamp((point - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+      const Vec3 displacement = to - from;
+      const double part = std::clamp((point - from).dot(displacement) / displacement.squaredNorm(), 0.0, 1.0);
       point_m = std::min(point_m, (point - from).norm());
-      line_m = std::min(line_m, (point - from - part * way).norm());
+      line_m = std::min(line_m, (point - from - part * displacement).norm());
     }
     CAPTURE(from.transpose(), to.transpose());
     CHECK(tree.distance_m(from) <= point_m + 1e-12);
@@ -71,7 +71,7 @@ TEST_CASE("the distance to terrain is that to its nearest point") {
   }
 }
 
-TEST_CASE("the tree leaves nothing out that comparing every triangle finds") {
+TEST_CASE("the tree agrees with a comparison of all triangles") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   CAPTURE(seed);
   Rng rng(seed);
@@ -97,73 +97,73 @@ TEST_CASE("the tree leaves nothing out that comparing every triangle finds") {
   }
 }
 
-TEST_CASE("the height over terrain is that over the lowest clearance along the way") {
+TEST_CASE("the minimum height above terrain agrees with sampling along the path") {
   const std::uint64_t seed = GENERATE(range(1, 10));
   CAPTURE(seed);
   Rng rng(seed);
   const HeightField field = random_terrain(rng, 20, 15);
   const TerrainTree tree(field);
   for (int i = 0; i < 60; ++i) {
-    const Vec3 from = 1.2 * random_place_over(rng, field), to = 1.2 * random_place_over(rng, field);
+    const Vec3 from = 1.2 * random_position_above(rng, field), to = 1.2 * random_position_above(rng, field);
     double sampled = kInfinite;
     constexpr int kSteps = 4000;
     for (int k = 0; k <= kSteps; ++k) {
       const Vec3 p = from + static_cast<double>(k) / kSteps * (to - from);
-      sampled = std::min(sampled, p.z() - ground(field, p.head<2>()));
+      sampled = std::min(sampled, p.z() - terrain_height(field, p.head<2>()));
     }
     CAPTURE(from.transpose(), to.transpose());
     if (sampled == kInfinite) continue;
-    CHECK(tree.height_m(from, to) <= sampled + 1e-6);
-    CHECK(tree.height_m(from, to) >= sampled - 0.1);
-    const double here = from.z() - ground(field, from.head<2>());
-    if (here < kInfinite) CHECK(tree.height_m(from, from) == Approx(here).margin(1e-6));
+    CHECK(tree.min_height_m(from, to) <= sampled + 1e-6);
+    CHECK(tree.min_height_m(from, to) >= sampled - 0.1);
+    const double here = from.z() - terrain_height(field, from.head<2>());
+    if (here < kInfinite) CHECK(tree.min_height_m(from, from) == Approx(here).margin(1e-6));
   }
 }
 
-TEST_CASE("a ball touches terrain where it comes near or is below") {
+TEST_CASE("a ball touches terrain if it comes within its radius or starts below") {
   const std::uint64_t seed = GENERATE(range(1, 10));
   CAPTURE(seed);
   Rng rng(seed);
   const HeightField field = random_terrain(rng, 20, 15);
   const TerrainTree tree(field);
   for (int i = 0; i < 60; ++i) {
-    const Vec3 from = random_place_over(rng, field);
+    const Vec3 from = random_position_above(rng, field);
     const Vec3 to = from + Vec3(rng.uniform(-4, 4), rng.uniform(-4, 4), rng.uniform(-1, 1));
     const double distance = tree.distance_m(from, to), radius = rng.uniform(0, 1);
-    const bool is_below = tree.height_m(from, from) <= 0;
+    const bool is_below = tree.min_height_m(from, from) <= 0;
     CHECK(tree.touches(from, to, distance + 1e-9));
     if (!is_below && distance > 1e-9) CHECK_FALSE(tree.touches(from, to, distance - 1e-9));
     CHECK(tree.touches(from, to, radius) == (is_below || distance <= radius));
   }
 }
 
-TEST_CASE("places on the lines between triangles have ground") {
+TEST_CASE("positions on the edges between triangles have terrain below") {
   const TerrainTree tree(HeightField{{0, 0}, 0.1, 4, 4, std::vector<double>(16, 2.0)});
   for (int i = 0; i <= 30; ++i) {
     for (int k = 0; k <= 30; ++k) {
       const Vec3 p(0.01 * i, 0.01 * k, 5);
       CAPTURE(i, k);
-      CHECK(tree.height_m(p, p) == Approx(3));
+      CHECK(tree.min_height_m(p, p) == Approx(3));
     }
   }
-  CHECK(tree.height_m({-0.01, 0, 5}, {-0.01, 3, 5}) == kInfinite);
+  CHECK(tree.min_height_m({-0.01, 0, 5}, {-0.01, 3, 5}) == kInfinite);
 }
 
-TEST_CASE("terrain that is none is refused") {
+TEST_CASE("invalid terrain and invalid queries are rejected") {
   CHECK_THROWS_WITH(TerrainTree(HeightField{{0, 0}, 1, 1, 5, std::vector<double>(5)}),
-                    "a height field has no square");
+                    "a height field needs at least two columns and two rows");
   CHECK_THROWS_WITH(TerrainTree(HeightField{{0, 0}, 1, 2, 2, std::vector<double>(5)}),
-                    "a height field has not as many heights as points");
+                    "a height field needs columns * rows heights");
   CHECK_THROWS_AS(TerrainTree(HeightField{{0, 0}, 0, 2, 2, std::vector<double>(4)}), std::invalid_argument);
   CHECK_THROWS_AS(TerrainTree(HeightField{{0, 0}, 1, 2, 2, {0, 0, kNan, 0}}), std::invalid_argument);
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   CHECK_THROWS_WITH(TerrainTree(points, {}), "a terrain has no triangles");
-  CHECK_THROWS_WITH(TerrainTree(points, {{0, 1, 3}}), "a terrain's triangle has no such corner");
+  CHECK_THROWS_WITH(TerrainTree(points, {{0, 1, 3}}), "a terrain triangle refers to a corner that does not exist");
   const TerrainTree tree(points, {{0, 1, 2}});
   CHECK_THROWS_AS(tree.distance_m({0, kNan, 0}), std::invalid_argument);
   CHECK_THROWS_AS(tree.touches({0, 0, 1}, {0, kInfinite, 0}, 1), std::invalid_argument);
   CHECK_THROWS_AS(tree.touches({0, 0, 1}, {0, 0, 1}, -1), std::invalid_argument);
-  CHECK_THROWS_AS(tree.height_m({0, 0, kNan}, {0, 0, 1}), std::invalid_argument);
+  CHECK_THROWS_AS(tree.min_height_m({0, 0, kNan}, {0, 0, 1}), std::invalid_argument);
 }
 
 }  // namespace

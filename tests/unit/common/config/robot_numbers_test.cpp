@@ -20,7 +20,7 @@ Scenario scenario_of(const std::vector<std::pair<RobotId, Team>>& robots) {
 
 }  // namespace
 
-TEST_CASE("a robot is found by its team and its number in it") {
+TEST_CASE("a robot is found by its team and number") {
   const Scenario scenario = scenario_of({{3, Team::kBlue}, {16, Team::kYellow}, {19, Team::kYellow}});
   CHECK(number_of(3) == 3);
   CHECK(number_of(16) == 0);
@@ -33,12 +33,12 @@ TEST_CASE("a robot is found by its team and its number in it") {
   CHECK_FALSE(find_robot(scenario, Team::kBlue, 19));
 }
 
-TEST_CASE("two robots of one team and number are refused by name and those of two teams are not") {
-  CHECK_NOTHROW(require_own_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kYellow}})));
-  CHECK_THROWS_AS(require_own_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kBlue}})),
+TEST_CASE("two robots of a team with one number are rejected by id, of two teams accepted") {
+  CHECK_NOTHROW(require_unique_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kYellow}})));
+  CHECK_THROWS_AS(require_unique_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kBlue}})),
                   std::invalid_argument);
   CHECK_THROWS_WITH(
-      require_own_numbers(scenario_of({{0, Team::kYellow}, {3, Team::kYellow}, {19, Team::kYellow}})),
+      require_unique_numbers(scenario_of({{0, Team::kYellow}, {3, Team::kYellow}, {19, Team::kYellow}})),
       Catch::Contains("robots 3 and 19 both have number 3") && Catch::Contains("yellow"));
 }
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "tests/unit/common/config/refusal.hpp"
+#include "tests/unit/common/config/scenario_errors.hpp"
 
 namespace sidestep {
 namespace {
@@ -28,7 +28,7 @@ TEST_CASE("every shipped scenario loads") {
   CHECK(count >= 5);
 }
 
-TEST_CASE("the shipped scenarios hold what they are named for") {
+TEST_CASE("the shipped scenarios match their names") {
   CHECK(load_scenario(kScenarios + "crossing.yaml").robots.size() == 8);
   CHECK(load_scenario(kScenarios + "crossing.yaml").obstacles.size() == 4);
   CHECK(load_scenario(kScenarios + "two-teams-22.yaml").robots.size() == 22);
@@ -36,11 +36,11 @@ TEST_CASE("the shipped scenarios hold what they are named for") {
   const Scenario noisy = load_scenario(kScenarios + "crossing-noisy.yaml");
   CHECK(noisy.vision.position_noise_m == 0.0015);
   CHECK(noisy.vision.delay == std::chrono::milliseconds(35));
-  CHECK(noisy.vision.missed == 0.02);
+  CHECK(noisy.vision.miss_probability == 0.02);
   CHECK(noisy.command_loss == 0.03);
 }
 
-TEST_CASE("a circle puts neighbours one spacing apart and every goal opposite") {
+TEST_CASE("a circle has one spacing between neighbours, and goals opposite the starts") {
   const Scenario scenario = load_scenario(kScenarios + "circle-100.yaml");
   const auto& robots = scenario.robots;
   REQUIRE(robots.size() == 100);
@@ -53,7 +53,8 @@ TEST_CASE("a circle puts neighbours one spacing apart and every goal opposite") 
 }
 
 TEST_CASE(
-    "streams give each robot a square of its own, and a way across so many lanes in one of four directions") {
+    "streams give each robot its own cell, and a path across the given number of lanes in one of four "
+    "directions") {
   const Scenario scenario = load_scenario(kScenarios + "streams-1000.yaml");
   const auto& robots = scenario.robots;
   REQUIRE(robots.size() == 1000);
@@ -62,9 +63,10 @@ TEST_CASE(
     for (std::size_t j = 0; j < i; ++j) {
       if ((robots[i].start_m - robots[j].start_m).norm() < 0.8366) FAIL("starts of " << i << " and " << j);
     }
-    const Vec2 way = robots[i].goals.back().position_m - robots[i].start_m;
-    CHECK(way.norm() == Approx(12 * 0.83666));
-    ++directions[{static_cast<int>(std::lround(way.x())), static_cast<int>(std::lround(way.y()))}];
+    const Vec2 displacement = robots[i].goals.back().position_m - robots[i].start_m;
+    CHECK(displacement.norm() == Approx(12 * 0.83666));
+    ++directions[{static_cast<int>(std::lround(displacement.x())),
+                  static_cast<int>(std::lround(displacement.y()))}];
   }
   REQUIRE(directions.size() == 4);
   for (const auto& [direction, count] : directions) CHECK(count > 200);
@@ -82,7 +84,7 @@ control_rate_hz: 50
 goal_tolerance_m: 0.03
 time_limit_s: 12.5
 vision: {images: {format: rgb, width_px: 1001, height_px: 400, camera_height_m: 3.5, distortion: 0.2}, rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
-         delay_ms: 12.5, missed: 0.1, ghosts: 0.2}
+         delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2}
 odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
 command_loss: 0.25
 network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
@@ -93,7 +95,7 @@ obstacles: [{centre_m: [3, 3], radius_m: 0.5}]
 opponents:
   - {radius_m: 0.3, speed_mps: 0.75, path_m: [[4, 1], [4, -1], [3, -1]]}
   - {radius_m: 0.2, speed_mps: 2.5, path_m: [[-4, 0]]}
-opponent_speed_mps: 2.5
+max_opponent_speed_mps: 2.5
 robots:
   - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, clock_offset_ms: -1.25, absent: true, goals_m: [[2, 2], [-2, 2, -0.5]]}
   - {id: 3, start_m: [0, 0], goals_m: [[1, 1]]}
@@ -119,8 +121,8 @@ robots:
   CHECK(s.vision.position_noise_m == 0.002);
   CHECK(s.vision.heading_noise_rad == 0.01);
   CHECK(s.vision.delay == std::chrono::microseconds(12500));
-  CHECK(s.vision.missed == 0.1);
-  CHECK(s.vision.ghosts == 0.2);
+  CHECK(s.vision.miss_probability == 0.1);
+  CHECK(s.vision.ghost_probability == 0.2);
   REQUIRE(s.vision.images);
   CHECK(s.vision.images->format == PixelFormat::kRgb);
   CHECK(s.vision.images->width_px == 1001);
@@ -140,7 +142,7 @@ robots:
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
   REQUIRE(s.obstacles.size() == 1);
   CHECK(s.obstacles[0].radius_m == 0.5);
-  CHECK(s.opponent_speed_mps == 2.5);
+  CHECK(s.max_opponent_speed_mps == 2.5);
   REQUIRE(s.opponents.size() == 2);
   CHECK(s.opponents[0].radius_m == 0.3);
   CHECK(s.opponents[0].speed_mps == 0.75);
@@ -161,14 +163,14 @@ robots:
   CHECK(find_robot(s, 8) == nullptr);
 }
 
-TEST_CASE("missing keys leave the struct's defaults") {
-  const Scenario given = parse_scenario(kRobot, "dir/lone.yaml"), usual;
+TEST_CASE("missing keys leave the defaults") {
+  const Scenario given = parse_scenario(kRobot, "dir/lone.yaml"), defaults;
   CHECK(given.name == "lone");
-  CHECK(given.cycle == usual.cycle);
-  CHECK(given.vision.delay == usual.vision.delay);
+  CHECK(given.cycle == defaults.cycle);
+  CHECK(given.vision.delay == defaults.vision.delay);
   CHECK_FALSE(given.vision.images);
-  CHECK(given.margin_m == usual.margin_m);
-  CHECK(given.time_limit_s == usual.time_limit_s);
+  CHECK(given.margin_m == defaults.margin_m);
+  CHECK(given.time_limit_s == defaults.time_limit_s);
   CHECK_FALSE(given.ball);
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-/// A number that breaks what trusts it.
-void put_giant(Bytes& bytes, std::size_t at, Rng& rng) {
+/// Overwrites bytes with a huge number.
+void put_huge_number(Bytes& bytes, std::size_t at, Rng& rng) {
   for (std::size_t i = at; i < std::min(bytes.size(), at + 4); ++i) {
     bytes[i] = rng.chance(0.8) ? std::byte{0xff} : std::byte{0x7f};
   }
@@ -18,7 +18,7 @@ void put_giant(Bytes& bytes, std::size_t at, Rng& rng) {
 
 Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
   for (std::uint64_t changes = 1 + rng.below(6); changes > 0 && !bytes.empty(); --changes) {
-    // The first byte says what it is for.
+    // The first byte selects the reader.
     const std::size_t at = 1 + rng.below(bytes.size());
     if (at >= bytes.size()) continue;
     switch (rng.below(6)) {
@@ -32,7 +32,7 @@ Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
         bytes.resize(at);
         break;
       case 3:
-        put_giant(bytes, at, rng);
+        put_huge_number(bytes, at, rng);
         break;
       case 4:
         bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at));
@@ -47,15 +47,15 @@ Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("sound inputs that are changed at random break nothing that reads packets or logs") {
+TEST_CASE("randomly mutated inputs do not break the readers of packets and logs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
   const auto seeds = fuzz::league_seeds(seed);
-  for (const Bytes& sound : seeds) fuzz::try_league_input(sound);
+  for (const Bytes& valid : seeds) fuzz::try_league_input(valid);
   for (int i = 0; i < 10'000; ++i) {
-    const Bytes& sound = seeds[rng.below(seeds.size())];
-    fuzz::try_league_input(mutated(sound, seeds[rng.below(seeds.size())], rng));
+    const Bytes& valid = seeds[rng.below(seeds.size())];
+    fuzz::try_league_input(mutated(valid, seeds[rng.below(seeds.size())], rng));
   }
   SUCCEED("50000 inputs");
 }

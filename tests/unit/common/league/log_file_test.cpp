@@ -30,7 +30,7 @@ class TemporaryFile {
       (std::filesystem::temp_directory_path() / ("sidestep-log-test-" + std::to_string(getpid()))).string();
 };
 
-/// Vision packets every 10 ms with a tracked one after each second of them.
+/// Alternating vision and tracked packets every 10 ms.
 std::vector<LogRecord> random_records(Rng& rng, int count) {
   std::vector<LogRecord> records;
   for (int i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ LogReader reader_of(const std::string& content) {
   return LogReader(std::make_unique<std::istringstream>(content), "x.log");
 }
 
-/// All records, and the reader as they left it.
+/// All remaining records.
 std::vector<LogRecord> all_of(LogReader& reader) {
   std::vector<LogRecord> records;
   LogRecord record;
@@ -73,7 +73,7 @@ void check_same(const std::vector<LogRecord>& a, std::span<const LogRecord> b) {
   }
 }
 
-std::string refusal(const std::string& content) {
+std::string error_of(const std::string& content) {
   try {
     (void)reader_of(content);
   } catch (const std::runtime_error& error) {
@@ -82,8 +82,8 @@ std::string refusal(const std::string& content) {
   return "accepted";
 }
 
-/// One record's head by hand: big-endian.
-std::string head(std::int64_t received_ns, std::int32_t type, std::int32_t size) {
+/// A record header, big-endian.
+std::string header(std::int64_t received_ns, std::int32_t type, std::int32_t size) {
   std::string bytes;
   for (int i = 7; i >= 0; --i) bytes += static_cast<char>(received_ns >> 8 * i & 0xff);
   for (const std::int32_t number : {type, size}) {
@@ -92,11 +92,11 @@ std::string head(std::int64_t received_ns, std::int32_t type, std::int32_t size)
   return bytes;
 }
 
-const std::string kFront = std::string("SSL_LOG_FILE") + std::string("\0\0\0\1", 4);
+const std::string kFileHeader = std::string("SSL_LOG_FILE") + std::string("\0\0\0\1", 4);
 
 }  // namespace
 
-TEST_CASE("a log that was written is read back as it was") {
+TEST_CASE("a written log is read back unchanged") {
   Rng rng(1);
   const auto records = random_records(rng, 300);
   TemporaryFile file;
@@ -106,25 +106,25 @@ TEST_CASE("a log that was written is read back as it was") {
   writer.close();
   LogReader reader(file.path());
   check_same(all_of(reader), records);
-  CHECK(reader.end() == LogEnd::kWhole);
-  CHECK(reader.damage().empty());
+  CHECK(reader.status() == LogStatus::kComplete);
+  CHECK(reader.error().empty());
 }
 
-TEST_CASE("a log is written as the league has it: big-endian behind its name and version") {
+TEST_CASE("a log has the league's format: magic, version, and big-endian records") {
   const std::byte payload[] = {std::byte{0xaa}, std::byte{0xbb}};
   const std::string content =
       log_of({{time_from_ns(0x0102030405060708), LogType::kVision, {payload[0], payload[1]}}});
-  CHECK(content == kFront + std::string("\1\2\3\4\5\6\7\10\0\0\0\4\0\0\0\2\xaa\xbb", 18));
+  CHECK(content == kFileHeader + std::string("\1\2\3\4\5\6\7\10\0\0\0\4\0\0\0\2\xaa\xbb", 18));
 }
 
-TEST_CASE("wherever a log is cut off nothing before is lost") {
+TEST_CASE("a truncated log keeps all complete records") {
   Rng rng(2);
   const auto records = random_records(rng, 8);
   const std::string whole = log_of(records);
-  std::vector<std::size_t> ends{kFront.size()};
+  std::vector<std::size_t> ends{kFileHeader.size()};
   for (const LogRecord& record : records) ends.push_back(ends.back() + 16 + record.bytes.size());
   REQUIRE(ends.back() == whole.size());
-  for (std::size_t length = kFront.size(); length <= whole.size(); ++length) {
+  for (std::size_t length = kFileHeader.size(); length <= whole.size(); ++length) {
     CAPTURE(length);
     LogReader reader = reader_of(whole.substr(0, length));
     const auto read = all_of(reader);
@@ -133,58 +133,59 @@ TEST_CASE("wherever a log is cut off nothing before is lost") {
     REQUIRE(read.size() == complete);
     if (length % 97 == 0) check_same(read, std::span(records).first(complete));
     const bool is_whole = ends[complete] == length;
-    REQUIRE(reader.end() == (is_whole ? LogEnd::kWhole : LogEnd::kCutOff));
+    REQUIRE(reader.status() == (is_whole ? LogStatus::kComplete : LogStatus::kTruncated));
     if (!is_whole)
-      REQUIRE_THAT(reader.damage(), Contains("x.log: byte " + std::to_string(ends[complete]) + ": "));
+      REQUIRE_THAT(reader.error(), Contains("x.log: byte " + std::to_string(ends[complete]) + ": "));
   }
 }
 
-TEST_CASE("what is no log is refused with the place and what was expected") {
-  CHECK_THAT(refusal(""), Contains("x.log: byte 0: this is no log"));
-  CHECK_THAT(refusal("SSL_LOG_FILX\0\0\0\1"), Contains("x.log: byte 0: this is no log"));
-  CHECK_THAT(refusal("\x1f\x8b and so on, long enough to be one"), Contains("gunzip"));
-  CHECK_THAT(refusal("SSL_LOG_FILE"), Contains("x.log: byte 12: the file ends"));
-  CHECK_THAT(refusal(std::string("SSL_LOG_FILE\0\0\0\2", 16)), Contains("x.log: byte 12: version 2"));
-  CHECK_THAT(refusal(std::string("SSL_LOG_FILE\1\0\0\0", 16)), Contains("version 16777216"));
-  CHECK(refusal(kFront) == "accepted");
-  CHECK_THROWS_WITH(LogReader("/nowhere/x.log"), Contains("/nowhere/x.log: cannot be read: No such file"));
+TEST_CASE("a file that is not a log is rejected with the position and the expected content") {
+  CHECK_THAT(error_of(""), Contains("x.log: byte 0: not a log"));
+  CHECK_THAT(error_of("SSL_LOG_FILX\0\0\0\1"), Contains("x.log: byte 0: not a log"));
+  CHECK_THAT(error_of("\x1f\x8b and so on, long enough to be one"), Contains("gunzip"));
+  CHECK_THAT(error_of("SSL_LOG_FILE"), Contains("x.log: byte 12: the file ends"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\0\0\0\2", 16)), Contains("x.log: byte 12: format version 2"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\1\0\0\0", 16)), Contains("version 16777216"));
+  CHECK(error_of(kFileHeader) == "accepted");
+  CHECK_THROWS_WITH(LogReader("/nowhere/x.log"),
+                    Contains("/nowhere/x.log: cannot read the file: No such file"));
   CHECK_THROWS_WITH(LogReader("/tmp"), Contains("/tmp: "));
-  CHECK_THROWS_WITH(LogWriter("/nowhere/x.log"), Contains("/nowhere/x.log: cannot be written: No such file"));
+  CHECK_THROWS_WITH(LogWriter("/nowhere/x.log"),
+                    Contains("/nowhere/x.log: cannot write the file: No such file"));
 }
 
-TEST_CASE("a record that makes no sense ends the reading with its place") {
-  const std::string first = kFront + head(5, 4, 3) + "abc";
-  const auto damage_after_first = [&](const std::string& more) {
+TEST_CASE("an invalid record ends the reading with its position") {
+  const std::string first = kFileHeader + header(5, 4, 3) + "abc";
+  const auto error_after_first = [&](const std::string& more) {
     LogReader reader = reader_of(first + more);
     CHECK(all_of(reader).size() == 1);
-    CHECK(reader.end() == LogEnd::kDamaged);
+    CHECK(reader.status() == LogStatus::kCorrupt);
     LogRecord record;
     CHECK_FALSE(reader.next(record));
-    CHECK_THAT(reader.damage(), Contains("x.log: byte 35: "));
-    return reader.damage();
+    CHECK_THAT(reader.error(), Contains("x.log: byte 35: "));
+    return reader.error();
   };
-  CHECK_THAT(damage_after_first(head(6, 4, -1) + "xyz"), Contains("a size of -1, expected 0 to 65507"));
-  CHECK_THAT(damage_after_first(head(6, 4, 65508) + std::string(65508, 'x')), Contains("a size of 65508"));
-  CHECK_THAT(damage_after_first(head(6, 99, -5)), Contains("type 99 has a size of -5"));
-  CHECK_THAT(damage_after_first(head(-6, 4, 0)), Contains("received at -6 ns"));
-  CHECK_THAT(damage_after_first(head(std::int64_t{1} << 62, 4, 0)),
-             Contains("received at 4611686018427387904"));
+  CHECK_THAT(error_after_first(header(6, 4, -1) + "xyz"), Contains("the size -1, expected 0 to 65507"));
+  CHECK_THAT(error_after_first(header(6, 4, 65508) + std::string(65508, 'x')), Contains("the size 65508"));
+  CHECK_THAT(error_after_first(header(6, 99, -5)), Contains("type 99 with the size -5"));
+  CHECK_THAT(error_after_first(header(-6, 4, 0)), Contains("receive time -6 ns"));
+  CHECK_THAT(error_after_first(header(std::int64_t{1} << 62, 4, 0)),
+             Contains("receive time 4611686018427387904"));
 }
 
-TEST_CASE("records of types that nobody here knows are skipped however long they are") {
-  LogReader reader = reader_of(kFront + head(1, 6, 200'000) + std::string(200'000, 'x') + head(2, 1, 0) +
-                               head(3, 3, 2) + "ab");
+TEST_CASE("records of unknown types are skipped, whatever their length") {
+  LogReader reader = reader_of(kFileHeader + header(1, 6, 200'000) + std::string(200'000, 'x') +
+                               header(2, 1, 0) + header(3, 3, 2) + "ab");
   const auto records = all_of(reader);
   REQUIRE(records.size() == 1);
   CHECK(records[0].type == LogType::kReferee);
-  CHECK(reader.skipped() == 2);
-  CHECK(reader.end() == LogEnd::kWhole);
-  LogReader giant = reader_of(kFront + head(1, 6, 0x7fffffff) + "short");
-  CHECK(all_of(giant).empty());
-  CHECK(giant.end() == LogEnd::kCutOff);
+  CHECK(reader.status() == LogStatus::kComplete);
+  LogReader truncated = reader_of(kFileHeader + header(1, 6, 0x7fffffff) + "short");
+  CHECK(all_of(truncated).empty());
+  CHECK(truncated.status() == LogStatus::kTruncated);
 }
 
-TEST_CASE("seeking goes to the first record that is so long after the first to and fro") {
+TEST_CASE("seek finds the first record after an offset, forwards and backwards") {
   Rng rng(3);
   const auto records = random_records(rng, 100);
   LogReader reader = reader_of(log_of(records));
@@ -194,10 +195,10 @@ TEST_CASE("seeking goes to the first record that is so long after the first to a
     CAPTURE(ms);
     REQUIRE(reader.seek(milliseconds(ms)));
     check_same(all_of(reader), std::span(records).subspan(static_cast<std::size_t>((ms + 9) / 10)));
-    CHECK(reader.end() == LogEnd::kWhole);
+    CHECK(reader.status() == LogStatus::kComplete);
   }
   CHECK_FALSE(reader.seek(milliseconds(991)));
-  CHECK(reader.end() == LogEnd::kWhole);
+  CHECK(reader.status() == LogStatus::kComplete);
   CHECK_FALSE(reader.next(record));
   REQUIRE(reader.seek(milliseconds(20)));
   REQUIRE(reader.next(record));

@@ -7,7 +7,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
-#include "tests/own_endpoint.hpp"
+#include "tests/test_endpoint.hpp"
 
 namespace sidestep::league {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 using Catch::Matchers::Contains;
 using Bytes = std::vector<std::byte>;
 
-std::string refusal(const std::string& text) {
+std::string parsed(const std::string& text) {
   try {
-    return "accepted as " + to_text(multicast_endpoint(text));
+    return "accepted as " + to_text(parse_multicast_endpoint(text));
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -29,7 +29,7 @@ Bytes random_bytes(Rng& rng, std::size_t size) {
   return bytes;
 }
 
-/// What comes until the count is reached; fewer when nothing more comes for ten seconds.
+/// Receives `count` datagrams; fewer if none arrives for 10 s.
 std::vector<Bytes> received(MulticastReceiver& receiver, std::size_t count) {
   std::vector<Bytes> all;
   pollfd readable{receiver.descriptor(), POLLIN, 0};
@@ -42,33 +42,33 @@ std::vector<Bytes> received(MulticastReceiver& receiver, std::size_t count) {
   return all;
 }
 
-bool has_something(const MulticastReceiver& receiver) {
+bool is_readable(const MulticastReceiver& receiver) {
   pollfd readable{receiver.descriptor(), POLLIN, 0};
   return poll(&readable, 1, 0) > 0;
 }
 
 }  // namespace
 
-TEST_CASE("an address and a port of a group are read and anything else is refused with what was expected") {
-  CHECK(refusal("224.5.23.2:10006") == "accepted as 224.5.23.2:10006");
-  CHECK(refusal("239.255.255.255:65535") == "accepted as 239.255.255.255:65535");
+TEST_CASE("a multicast address and port are parsed, and other text is rejected with what was expected") {
+  CHECK(parsed("224.5.23.2:10006") == "accepted as 224.5.23.2:10006");
+  CHECK(parsed("239.255.255.255:65535") == "accepted as 239.255.255.255:65535");
   for (const char* text : {kVisionEndpoint, kTrackedEndpoint, kRefereeEndpoint}) {
-    CHECK(refusal(text) == std::string("accepted as ") + text);
+    CHECK(parsed(text) == std::string("accepted as ") + text);
   }
   for (const char* text : {"", "224.5.23.2", "10006"})
-    CHECK_THAT(refusal(text), Contains("expected ADDRESS:PORT"));
+    CHECK_THAT(parsed(text), Contains("expected ADDRESS:PORT"));
   for (const char* text : {":10006", "192.168.0.1:10006", "223.255.255.255:1", "240.0.0.0:1", "224.5.23:1",
                            "224.5.23.256:1", "vision:10006", "ff02::1:10006"}) {
-    CHECK_THAT(refusal(text), Contains(std::string("\"") + text + "\": expected a multicast address"));
+    CHECK_THAT(parsed(text), Contains(std::string("\"") + text + "\": expected a multicast address"));
   }
   for (const char* text : {"224.5.23.2:", "224.5.23.2:0", "224.5.23.2:65536", "224.5.23.2:-1",
                            "224.5.23.2:1x", "224.5.23.2: 1"}) {
-    CHECK_THAT(refusal(text), Contains("expected a port, 1 to 65535"));
+    CHECK_THAT(parsed(text), Contains("expected a port, 1 to 65535"));
   }
 }
 
-TEST_CASE("an interface that this machine does not have is refused with those that it has") {
-  const OwnEndpoint group;
+TEST_CASE("an unknown interface is rejected with the list of interfaces") {
+  const TestEndpoint group;
   for (const char* interface : {"192.0.2.77", "lo", "", "256.0.0.1"}) {
     CAPTURE(interface);
     CHECK_THROWS_WITH(MulticastSender(group.endpoint(), interface),
@@ -77,60 +77,60 @@ TEST_CASE("an interface that this machine does not have is refused with those th
   }
 }
 
-TEST_CASE("every receiver of a group gets all datagrams as they were sent") {
-  const OwnEndpoint group;
+TEST_CASE("every receiver of a group gets all datagrams unchanged") {
+  const TestEndpoint group;
   MulticastReceiver first(group.endpoint(), kLeagueInterface), second(group.endpoint(), kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface);
   Rng rng(7);
   std::vector<Bytes> sent;
-  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1500}, kLongestDatagram}) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1500}, kMaxDatagramSize}) {
     sent.push_back(random_bytes(rng, size));
     REQUIRE(sender.send(sent.back()));
   }
   CHECK(sender.sent() == 4);
-  CHECK_FALSE(sender.send(random_bytes(rng, kLongestDatagram + 1)));
+  CHECK_FALSE(sender.send(random_bytes(rng, kMaxDatagramSize + 1)));
   CHECK(sender.failed() == 1);
   CHECK(received(first, 4) == sent);
   CHECK(received(second, 4) == sent);
-  CHECK_FALSE(has_something(first));
+  CHECK_FALSE(is_readable(first));
 }
 
-TEST_CASE("a receiver gets nothing that is sent to another group or to this machine alone") {
-  const OwnEndpoint group;
+TEST_CASE("a receiver gets no datagrams of another group and no unicast datagrams") {
+  const TestEndpoint group;
   const Endpoint other{group.endpoint().address ^ 0x100, group.endpoint().port};
   MulticastReceiver receiver(group.endpoint(), kLeagueInterface), of_other(other, kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface), to_other(other, kLeagueInterface);
-  // A sender to a plain address, for want of another socket here.
+  // Sends to a unicast address.
   MulticastSender to_host({0x7f000001, group.endpoint().port}, kLeagueInterface);
   const Bytes wrong{std::byte{1}}, right{std::byte{2}};
   REQUIRE(to_other.send(wrong));
   (void)to_host.send(wrong);
   REQUIRE(sender.send(right));
   CHECK(received(receiver, 1) == std::vector<Bytes>{right});
-  CHECK_FALSE(has_something(receiver));
+  CHECK_FALSE(is_readable(receiver));
   CHECK(received(of_other, 1) == std::vector<Bytes>{wrong});
 }
 
-TEST_CASE("an event loop hands datagrams to its thread and sleeps in between") {
-  const OwnEndpoint group;
+TEST_CASE("an event loop delivers datagrams to its thread and sleeps in between") {
+  const TestEndpoint group;
   MulticastReceiver receiver(group.endpoint(), kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface);
   EventLoop loop;
   constexpr int kDatagrams = 200;
-  int count = 0, turns = 0;
+  int count = 0, wakeups = 0;
   std::function<void()> send = [&] {
     REQUIRE(sender.send(Bytes(1)));
     if (sender.sent() < kDatagrams) loop.at(loop.now() + Duration{500'000}, send);
   };
   loop.watch(receiver.descriptor(), [&] {
-    ++turns;
+    ++wakeups;
     receiver.receive([&](std::span<const std::byte>, const Endpoint&) { ++count; });
     if (count == kDatagrams) loop.stop();
   });
   loop.at(loop.now(), send);
   loop.run_until(loop.now() + std::chrono::seconds(30));
   CHECK(count == kDatagrams);
-  CHECK(turns <= kDatagrams);
+  CHECK(wakeups <= kDatagrams);
 }
 
 }  // namespace sidestep::league

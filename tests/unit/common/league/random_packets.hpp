@@ -22,14 +22,14 @@ inline std::string random_text(Rng& rng) {
   for (char& c : text) c = static_cast<char>('A' + rng.below(26));
   return text;
 }
-/// What `make` makes, in half of the cases.
+/// The result of `make` with probability 0.5.
 template <typename Make>
 auto maybe(Rng& rng, Make make) -> std::optional<decltype(make())> {
   return rng.chance(0.5) ? std::optional(make()) : std::nullopt;
 }
 
-inline SeenBall random_ball(Rng& rng) {
-  SeenBall ball;
+inline DetectedBall random_ball(Rng& rng) {
+  DetectedBall ball;
   ball.position_m = random_vec2(rng, 10);
   ball.height_m = maybe(rng, [&] { return rng.uniform(0, 3); });
   ball.confidence = rng.uniform();
@@ -38,9 +38,9 @@ inline SeenBall random_ball(Rng& rng) {
   return ball;
 }
 
-inline SeenRobot random_robot(Rng& rng) {
-  SeenRobot robot;
-  robot.number = maybe(rng, [&] { return static_cast<std::uint32_t>(rng.below(kMaxNumbers)); });
+inline DetectedRobot random_robot(Rng& rng) {
+  DetectedRobot robot;
+  robot.number = maybe(rng, [&] { return static_cast<std::uint32_t>(rng.below(kRobotNumbers)); });
   robot.position_m = random_vec2(rng, 10);
   robot.heading_rad = maybe(rng, [&] { return rng.uniform(-3.14, 3.14); });
   robot.confidence = rng.uniform();
@@ -49,15 +49,15 @@ inline SeenRobot random_robot(Rng& rng) {
   return robot;
 }
 
-inline Detection random_detection(Rng& rng) {
-  Detection detection;
+inline DetectionFrame random_detection(Rng& rng) {
+  DetectionFrame detection;
   detection.frame_number = random_u32(rng);
   detection.camera = static_cast<std::uint32_t>(rng.below(kMaxCameras));
   detection.captured = from_seconds(rng.chance(0.5) ? rng.uniform(0, 1000) : rng.uniform(1.7e9, 1.8e9));
   detection.sent = detection.captured + from_seconds(rng.uniform(0, 0.1));
   detection.captured_by_camera = maybe(rng, [&] { return from_seconds(rng.uniform(0, 1e6)); });
-  const auto fill = [&](auto& list, std::size_t most, auto make) {
-    list.resize(rng.below(most + 1));
+  const auto fill = [&](auto& list, std::size_t max_count, auto make) {
+    list.resize(rng.below(max_count + 1));
     std::generate(list.begin(), list.end(), [&] { return make(rng); });
   };
   fill(detection.balls, 5, random_ball);
@@ -81,7 +81,7 @@ inline CameraCalibration random_calibration(Rng& rng) {
 }
 
 inline Geometry random_geometry(Rng& rng) {
-  // Whole millimetres, as the wire has them.
+  // Whole millimetres, as on the wire.
   const auto length_m = [&] { return 0.001 * static_cast<double>(1 + rng.below(12000)); };
   Geometry geometry;
   FieldSize& field = geometry.field;
@@ -133,7 +133,7 @@ inline TrackedPacket random_tracked_packet(Rng& rng) {
   for (std::uint64_t i = rng.below(23); i > 0; --i) {
     TrackedRobot robot;
     robot.team = maybe(rng, [&] { return rng.chance(0.5) ? Team::kBlue : Team::kYellow; });
-    robot.number = static_cast<std::uint32_t>(rng.below(kMaxNumbers));
+    robot.number = static_cast<std::uint32_t>(rng.below(kRobotNumbers));
     robot.position_m = random_vec2(rng, 10);
     robot.heading_rad = rng.uniform(-3.14, 3.14);
     robot.velocity_mps = maybe(rng, [&] { return random_vec2(rng, 4); });

@@ -17,9 +17,9 @@ wire::tracked::Packet message_of(std::span<const std::byte> bytes) {
   return message;
 }
 
-Refusal refusal_of(const wire::tracked::Packet& message) {
+DecodeError error_of(const wire::tracked::Packet& message) {
   const std::string text = message.SerializePartialAsString();
-  return decode_tracked(std::as_bytes(std::span(text))).refusal;
+  return decode_tracked(std::as_bytes(std::span(text))).error;
 }
 
 template <typename Vector>
@@ -38,13 +38,13 @@ bool is_close(const std::optional<double>& a, const std::optional<double>& b) {
 
 }  // namespace
 
-TEST_CASE("tracked packets come back from their bytes as they were") {
+TEST_CASE("a tracked packet survives encoding and decoding") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     const TrackedPacket packet = test::random_tracked_packet(rng);
     const auto decoded = decode_tracked(encode(packet));
-    REQUIRE(decoded.refusal == Refusal::kNone);
+    REQUIRE(decoded.error == DecodeError::kNone);
     CHECK(decoded.packet->uuid == packet.uuid);
     CHECK(decoded.packet->source_name == packet.source_name);
     REQUIRE(decoded.packet->frame.has_value() == packet.frame.has_value());
@@ -71,7 +71,7 @@ TEST_CASE("tracked packets come back from their bytes as they were") {
   }
 }
 
-TEST_CASE("tracked robots are sent in metres with the league's colours") {
+TEST_CASE("tracked robots are encoded in metres with the league's team colours") {
   TrackedFrame frame;
   frame.frame_number = 4;
   frame.at = std::chrono::milliseconds(1'500);
@@ -94,36 +94,36 @@ TEST_CASE("tracked robots are sent in metres with the league's colours") {
   CHECK_FALSE(message.tracked_frame().robots(1).has_vel());
 }
 
-TEST_CASE("a tracked packet that makes no sense is refused for its reason") {
+TEST_CASE("an invalid tracked packet is rejected with its reason") {
   Rng rng(3);
   TrackedPacket packet{"id", std::nullopt, TrackedFrame{}};
   packet.frame->robots.push_back({Team::kBlue, 3, {1.5, -2}, 0.5, Vec2(1, 0), 2.0, 1.0});
   packet.frame->balls.emplace_back();
-  const auto sound = message_of(encode(packet));
-  const auto after = [&](auto spoil) {
-    wire::tracked::Packet message = sound;
-    spoil(message);
-    return refusal_of(message);
+  const auto valid = message_of(encode(packet));
+  const auto after = [&](auto change) {
+    wire::tracked::Packet message = valid;
+    change(message);
+    return error_of(message);
   };
   using P = wire::tracked::Packet;
   const auto robot = [](P& p) { return p.mutable_tracked_frame()->mutable_robots(0); };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  CHECK(after([](P&) {}) == Refusal::kNone);
-  CHECK(after([&](P& p) { robot(p)->mutable_pos()->set_x(nan); }) == Refusal::kNumber);
-  CHECK(after([&](P& p) { robot(p)->mutable_vel()->set_y(101); }) == Refusal::kNumber);
-  CHECK(after([&](P& p) { robot(p)->set_vel_angular(nan); }) == Refusal::kNumber);
-  CHECK(after([&](P& p) { robot(p)->set_orientation(8); }) == Refusal::kNumber);
-  CHECK(after([&](P& p) { robot(p)->set_visibility(-0.5F); }) == Refusal::kNumber);
-  CHECK(after([&](P& p) { robot(p)->mutable_robot_id()->set_id(16); }) == Refusal::kRobot);
-  CHECK(after([&](P& p) { robot(p)->mutable_robot_id()->set_team_color(3); }) == Refusal::kRobot);
-  CHECK(after([&](P& p) { robot(p)->clear_pos(); }) == Refusal::kMalformed);
-  CHECK(after([](P& p) { p.clear_uuid(); }) == Refusal::kMalformed);
-  CHECK(after([](P& p) { p.set_uuid(std::string(257, 'x')); }) == Refusal::kText);
-  CHECK(after([](P& p) { p.mutable_tracked_frame()->set_timestamp(-1); }) == Refusal::kTime);
+  CHECK(after([](P&) {}) == DecodeError::kNone);
+  CHECK(after([&](P& p) { robot(p)->mutable_pos()->set_x(nan); }) == DecodeError::kNumber);
+  CHECK(after([&](P& p) { robot(p)->mutable_vel()->set_y(101); }) == DecodeError::kNumber);
+  CHECK(after([&](P& p) { robot(p)->set_vel_angular(nan); }) == DecodeError::kNumber);
+  CHECK(after([&](P& p) { robot(p)->set_orientation(8); }) == DecodeError::kNumber);
+  CHECK(after([&](P& p) { robot(p)->set_visibility(-0.5F); }) == DecodeError::kNumber);
+  CHECK(after([&](P& p) { robot(p)->mutable_robot_id()->set_id(16); }) == DecodeError::kRobot);
+  CHECK(after([&](P& p) { robot(p)->mutable_robot_id()->set_team_color(3); }) == DecodeError::kRobot);
+  CHECK(after([&](P& p) { robot(p)->clear_pos(); }) == DecodeError::kMalformed);
+  CHECK(after([](P& p) { p.clear_uuid(); }) == DecodeError::kMalformed);
+  CHECK(after([](P& p) { p.set_uuid(std::string(257, 'x')); }) == DecodeError::kText);
+  CHECK(after([](P& p) { p.mutable_tracked_frame()->set_timestamp(-1); }) == DecodeError::kTime);
   CHECK(after([](P& p) {
           auto& frame = *p.mutable_tracked_frame();
           while (frame.robots_size() < 257) *frame.add_robots() = frame.robots(0);
-        }) == Refusal::kTooMany);
+        }) == DecodeError::kTooMany);
 }
 
 }  // namespace sidestep::league

@@ -23,7 +23,7 @@ wire::vision::Packet message_of(std::span<const std::byte> bytes) {
   return message;
 }
 
-/// What single precision in millimetres leaves of a number.
+/// Equality within the single precision of millimetres on the wire.
 void check_close(double a, double b) { CHECK(a == Approx(b).epsilon(1e-6).margin(1e-6)); }
 void check_close(const Vec2& a, const Vec2& b) { CHECK((a - b).norm() <= 1e-6 * (1 + b.norm())); }
 void check_close(const Vec3& a, const Vec3& b) { CHECK((a - b).norm() <= 1e-6 * (1 + b.norm())); }
@@ -34,7 +34,7 @@ void check_close(const std::optional<T>& a, const std::optional<T>& b);
 template <typename T>
 void check_close(const std::vector<T>& a, const std::vector<T>& b);
 
-void check_close(const SeenBall& a, const SeenBall& b) {
+void check_close(const DetectedBall& a, const DetectedBall& b) {
   check_close(a.position_m, b.position_m);
   check_close(a.height_m, b.height_m);
   check_close(a.confidence, b.confidence);
@@ -42,7 +42,7 @@ void check_close(const SeenBall& a, const SeenBall& b) {
   check_close(a.area, b.area);
 }
 
-void check_close(const SeenRobot& a, const SeenRobot& b) {
+void check_close(const DetectedRobot& a, const DetectedRobot& b) {
   check_close(a.number, b.number);
   check_close(a.position_m, b.position_m);
   check_close(a.heading_rad, b.heading_rad);
@@ -81,7 +81,7 @@ void check_close(const CameraCalibration& a, const CameraCalibration& b) {
   check_close(a.image_height_px, b.image_height_px);
 }
 
-void check_close(const Detection& a, const Detection& b) {
+void check_close(const DetectionFrame& a, const DetectionFrame& b) {
   CHECK(a.frame_number == b.frame_number);
   CHECK(a.camera == b.camera);
   check_close(a.captured, b.captured);
@@ -123,8 +123,8 @@ void check_close(const std::vector<T>& a, const std::vector<T>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) check_close(a[i], b[i]);
 }
 
-/// A message that nothing is wrong with.
-wire::vision::Packet sound_message() {
+/// A valid message.
+wire::vision::Packet valid_message() {
   wire::vision::Packet message;
   auto& detection = *message.mutable_detection();
   detection.set_frame_number(7);
@@ -149,18 +149,18 @@ wire::vision::Packet sound_message() {
   return message;
 }
 
-Refusal refusal_of(const wire::vision::Packet& message) {
+DecodeError error_of(const wire::vision::Packet& message) {
   const auto decoded = decode_vision(bytes_of(message));
-  CHECK(decoded.packet.has_value() == (decoded.refusal == Refusal::kNone));
-  return decoded.refusal;
+  CHECK(decoded.packet.has_value() == (decoded.error == DecodeError::kNone));
+  return decoded.error;
 }
 
-/// What is said against the sound message once `spoil` has been at its detection.
-template <typename Spoil>
-Refusal refusal_after(Spoil spoil) {
-  wire::vision::Packet message = sound_message();
-  spoil(*message.mutable_detection());
-  return refusal_of(message);
+/// The error of the valid message after `change` has modified its detection.
+template <typename Change>
+DecodeError error_after(Change change) {
+  wire::vision::Packet message = valid_message();
+  change(*message.mutable_detection());
+  return error_of(message);
 }
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -168,24 +168,24 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-TEST_CASE("vision packets come back from their bytes as they were") {
+TEST_CASE("a vision packet survives encoding and decoding") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     const VisionPacket packet = test::random_vision_packet(rng);
     const auto decoded = decode_vision(encode(packet));
-    REQUIRE(decoded.refusal == Refusal::kNone);
+    REQUIRE(decoded.error == DecodeError::kNone);
     check_close(decoded.packet->detection, packet.detection);
     check_close(decoded.packet->geometry, packet.geometry);
     check_close(decoded.packet->source, packet.source);
   }
 }
 
-TEST_CASE("a detection written by another program is read in metres and radians") {
-  const auto decoded = decode_vision(bytes_of(sound_message()));
+TEST_CASE("a detection from another program is decoded into metres and radians") {
+  const auto decoded = decode_vision(bytes_of(valid_message()));
   REQUIRE(decoded.packet);
   CHECK_FALSE(decoded.packet->geometry);
-  const Detection& detection = *decoded.packet->detection;
+  const DetectionFrame& detection = *decoded.packet->detection;
   CHECK(detection.frame_number == 7);
   CHECK(detection.camera == 2);
   CHECK(detection.captured == std::chrono::milliseconds(12'500));
@@ -201,13 +201,13 @@ TEST_CASE("a detection written by another program is read in metres and radians"
   check_close(*detection.blue[0].height_m, 0.15);
 }
 
-TEST_CASE("what is sent has every field that the league requires in its units") {
-  Detection detection;
+TEST_CASE("an encoded packet has every field that the league requires, in its units") {
+  DetectionFrame detection;
   detection.frame_number = 3;
   detection.camera = 1;
   detection.captured = std::chrono::milliseconds(2'500);
   detection.sent = std::chrono::milliseconds(2'510);
-  SeenRobot robot;
+  DetectedRobot robot;
   robot.number = 5;
   robot.position_m = {1.25, -0.5};
   robot.heading_rad = 0.5;
@@ -229,15 +229,15 @@ TEST_CASE("what is sent has every field that the league requires in its units") 
   CHECK(message.detection().robots_blue_size() == 0);
 }
 
-TEST_CASE("the numbers of fields and their types are the league's") {
-  // Written by hand from the league's tables: key = field number * 8 + type (0 varint, 1 double, 2 message,
+TEST_CASE("field numbers and types are the league's") {
+  // From the league's tables: key = field number * 8 + type (0 varint, 1 double, 2 message,
   // 5 float).
-  SeenRobot robot;
+  DetectedRobot robot;
   robot.number = 5;
   robot.position_m = {0.001, 0};
   robot.heading_rad = 0;
   robot.height_m = 0.001;
-  Detection detection;
+  DetectionFrame detection;
   detection.frame_number = 1;
   detection.camera = 2;
   detection.blue.push_back(robot);
@@ -263,83 +263,85 @@ TEST_CASE("the numbers of fields and their types are the league's") {
   CHECK(bytes == expected);
 }
 
-TEST_CASE("a packet with a number that makes no sense is refused as a whole and for its reason") {
-  using D = wire::vision::Detection;
-  CHECK(refusal_of(sound_message()) == Refusal::kNone);
+TEST_CASE("a packet with an invalid number is rejected as a whole with its reason") {
+  using D = wire::vision::DetectionFrame;
+  CHECK(error_of(valid_message()) == DecodeError::kNone);
   for (const float wrong : {kNan, kInfinity, -kInfinity, 100'001.0F, -1e30F}) {
     CAPTURE(wrong);
-    CHECK(refusal_after([=](D& d) { d.mutable_balls(0)->set_x(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_balls(0)->set_z(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_robots_blue(0)->set_y(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_robots_blue(0)->set_orientation(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_robots_blue(0)->set_confidence(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_robots_blue(0)->set_height(wrong); }) == Refusal::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_balls(0)->set_x(wrong); }) == DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_balls(0)->set_z(wrong); }) == DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_y(wrong); }) == DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_orientation(wrong); }) ==
+          DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_confidence(wrong); }) ==
+          DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_height(wrong); }) == DecodeError::kNumber);
   }
   for (const float wrong : {kNan, kInfinity, 1e7F}) {
-    CHECK(refusal_after([=](D& d) { d.mutable_balls(0)->set_pixel_x(wrong); }) == Refusal::kNumber);
-    CHECK(refusal_after([=](D& d) { d.mutable_robots_blue(0)->set_pixel_y(wrong); }) == Refusal::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_balls(0)->set_pixel_x(wrong); }) == DecodeError::kNumber);
+    CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_pixel_y(wrong); }) == DecodeError::kNumber);
   }
   for (const double wrong : {static_cast<double>(kNan), static_cast<double>(kInfinity), -0.001, 1e300}) {
     CAPTURE(wrong);
-    CHECK(refusal_after([=](D& d) { d.set_t_capture(wrong); }) == Refusal::kTime);
-    CHECK(refusal_after([=](D& d) { d.set_t_sent(wrong); }) == Refusal::kTime);
-    CHECK(refusal_after([=](D& d) { d.set_t_capture_camera(wrong); }) == Refusal::kTime);
+    CHECK(error_after([=](D& d) { d.set_t_capture(wrong); }) == DecodeError::kTime);
+    CHECK(error_after([=](D& d) { d.set_t_sent(wrong); }) == DecodeError::kTime);
+    CHECK(error_after([=](D& d) { d.set_t_capture_camera(wrong); }) == DecodeError::kTime);
   }
-  CHECK(refusal_after([](D& d) { d.set_camera_id(kMaxCameras); }) == Refusal::kCamera);
-  CHECK(refusal_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(16); }) == Refusal::kRobot);
-  CHECK(refusal_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(~0U); }) == Refusal::kRobot);
+  CHECK(error_after([](D& d) { d.set_camera_id(kMaxCameras); }) == DecodeError::kCamera);
+  CHECK(error_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(16); }) == DecodeError::kRobot);
+  CHECK(error_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(~0U); }) == DecodeError::kRobot);
 }
 
-TEST_CASE("a packet that lacks what it must have or has too much of it is refused") {
-  using D = wire::vision::Detection;
-  CHECK(refusal_after([](D& d) { d.clear_camera_id(); }) == Refusal::kMalformed);
-  CHECK(refusal_after([](D& d) { d.mutable_robots_blue(0)->clear_pixel_x(); }) == Refusal::kMalformed);
-  CHECK(decode_vision({}).refusal == Refusal::kEmpty);
-  CHECK(refusal_of(wire::vision::Packet{}) == Refusal::kEmpty);
-  CHECK(decode_vision(std::vector<std::byte>(kLongestDatagram + 1)).refusal == Refusal::kTooLong);
+TEST_CASE("a packet with missing fields or too many elements is rejected") {
+  using D = wire::vision::DetectionFrame;
+  CHECK(error_after([](D& d) { d.clear_camera_id(); }) == DecodeError::kMalformed);
+  CHECK(error_after([](D& d) { d.mutable_robots_blue(0)->clear_pixel_x(); }) == DecodeError::kMalformed);
+  CHECK(decode_vision({}).error == DecodeError::kEmpty);
+  CHECK(error_of(wire::vision::Packet{}) == DecodeError::kEmpty);
+  CHECK(decode_vision(std::vector<std::byte>(kMaxDatagramSize + 1)).error == DecodeError::kTooLong);
   const auto many = [](int count) {
-    return refusal_after([=](D& d) {
+    return error_after([=](D& d) {
       for (int i = 1; i < count; ++i) *d.add_robots_blue() = d.robots_blue(0);
     });
   };
-  CHECK(many(64) == Refusal::kNone);
-  CHECK(many(65) == Refusal::kTooMany);
-  CHECK(refusal_after([](D& d) {
+  CHECK(many(64) == DecodeError::kNone);
+  CHECK(many(65) == DecodeError::kTooMany);
+  CHECK(error_after([](D& d) {
           while (d.balls_size() < 129) *d.add_balls() = d.balls(0);
-        }) == Refusal::kTooMany);
+        }) == DecodeError::kTooMany);
 }
 
-TEST_CASE("a geometry that makes no sense is refused for its reason") {
+TEST_CASE("an invalid geometry is rejected with its reason") {
   Rng rng(5);
   VisionPacket packet;
   packet.geometry = test::random_geometry(rng);
   packet.geometry->field.lines.resize(1);
   packet.geometry->cameras.resize(1);
   packet.geometry->cameras[0] = test::random_calibration(rng);
-  const auto sound = message_of(encode(packet));
-  const auto after = [&](auto spoil) {
-    wire::vision::Packet message = sound;
-    spoil(*message.mutable_geometry());
-    return refusal_of(message);
+  const auto valid = message_of(encode(packet));
+  const auto after = [&](auto change) {
+    wire::vision::Packet message = valid;
+    change(*message.mutable_geometry());
+    return error_of(message);
   };
   using G = wire::vision::Geometry;
-  CHECK(after([](G&) {}) == Refusal::kNone);
-  CHECK(after([](G& g) { g.mutable_field()->set_field_length(0); }) == Refusal::kNumber);
-  CHECK(after([](G& g) { g.mutable_field()->set_field_width(-6000); }) == Refusal::kNumber);
-  CHECK(after([](G& g) { g.mutable_field()->set_field_width(1 << 30); }) == Refusal::kNumber);
-  CHECK(after([](G& g) { g.mutable_field()->set_ball_radius(kNan); }) == Refusal::kNumber);
+  CHECK(after([](G&) {}) == DecodeError::kNone);
+  CHECK(after([](G& g) { g.mutable_field()->set_field_length(0); }) == DecodeError::kNumber);
+  CHECK(after([](G& g) { g.mutable_field()->set_field_width(-6000); }) == DecodeError::kNumber);
+  CHECK(after([](G& g) { g.mutable_field()->set_field_width(1 << 30); }) == DecodeError::kNumber);
+  CHECK(after([](G& g) { g.mutable_field()->set_ball_radius(kNan); }) == DecodeError::kNumber);
   CHECK(after([](G& g) { g.mutable_field()->mutable_field_lines(0)->mutable_p2()->set_x(kNan); }) ==
-        Refusal::kNumber);
+        DecodeError::kNumber);
   CHECK(after([](G& g) { g.mutable_field()->mutable_field_lines(0)->set_name(std::string(257, 'x')); }) ==
-        Refusal::kText);
-  CHECK(after([](G& g) { g.mutable_calib(0)->set_camera_id(64); }) == Refusal::kCamera);
-  CHECK(after([](G& g) { g.mutable_calib(0)->set_q3(kInfinity); }) == Refusal::kNumber);
-  CHECK(after([](G& g) { g.mutable_calib(0)->set_tz(1e9F); }) == Refusal::kNumber);
-  CHECK(after([](G& g) { g.mutable_calib(0)->set_pixel_image_width(~0U); }) == Refusal::kNumber);
+        DecodeError::kText);
+  CHECK(after([](G& g) { g.mutable_calib(0)->set_camera_id(64); }) == DecodeError::kCamera);
+  CHECK(after([](G& g) { g.mutable_calib(0)->set_q3(kInfinity); }) == DecodeError::kNumber);
+  CHECK(after([](G& g) { g.mutable_calib(0)->set_tz(1e9F); }) == DecodeError::kNumber);
+  CHECK(after([](G& g) { g.mutable_calib(0)->set_pixel_image_width(~0U); }) == DecodeError::kNumber);
   CHECK(after([](G& g) {
           while (g.calib_size() < 65) *g.add_calib() = g.calib(0);
-        }) == Refusal::kTooMany);
-  CHECK(after([](G& g) { g.clear_field(); }) == Refusal::kMalformed);
+        }) == DecodeError::kTooMany);
+  CHECK(after([](G& g) { g.clear_field(); }) == DecodeError::kMalformed);
 }
 
 }  // namespace sidestep::league

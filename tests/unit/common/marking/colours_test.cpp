@@ -6,7 +6,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("every colour stands at its number and has a name of its own") {
+TEST_CASE("every colour has its own index and name") {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < kColours.size(); ++i) {
     CHECK(static_cast<std::size_t>(kColours[i].colour) == i);
@@ -18,7 +18,7 @@ TEST_CASE("every colour stands at its number and has a name of its own") {
   CHECK(!colour_named(""));
 }
 
-TEST_CASE("colours go to YUV as the standard says and come back") {
+TEST_CASE("colours are converted to YUV by the standard, and back") {
   CHECK(yuv_of({255, 255, 255}) == Yuv{255, 128, 128});
   CHECK(yuv_of({0, 0, 0}) == Yuv{0, 128, 128});
   CHECK(yuv_of({255, 0, 0}) == Yuv{76, 85, 255});
@@ -37,7 +37,7 @@ TEST_CASE("colours go to YUV as the standard says and come back") {
   }
 }
 
-TEST_CASE("no two colours look alike to a camera") {
+TEST_CASE("any two colours are distinguishable to a camera") {
   for (const NamedColour& a : kColours) {
     for (const NamedColour& b : kColours) {
       if (a.colour >= b.colour) continue;

@@ -17,82 +17,82 @@ struct Fit {
   double heading_rad;
 };
 
-/// The pose that minimises the squared distances, by Kabsch's singular value decomposition.
-Fit fitted(const std::vector<Vec2>& model, const std::vector<Vec2>& seen) {
-  Vec2 model_mean(0, 0), seen_mean(0, 0);
-  for (std::size_t i = 0; i < model.size(); ++i) model_mean += model[i], seen_mean += seen[i];
+/// The least-squares pose by the Kabsch algorithm (singular value decomposition).
+Fit fitted(const std::vector<Vec2>& model, const std::vector<Vec2>& measured) {
+  Vec2 model_mean(0, 0), measured_mean(0, 0);
+  for (std::size_t i = 0; i < model.size(); ++i) model_mean += model[i], measured_mean += measured[i];
   model_mean /= static_cast<double>(model.size());
-  seen_mean /= static_cast<double>(model.size());
+  measured_mean /= static_cast<double>(model.size());
   Eigen::Matrix2d product = Eigen::Matrix2d::Zero();
   for (std::size_t i = 0; i < model.size(); ++i)
-    product += (model[i] - model_mean) * (seen[i] - seen_mean).transpose();
+    product += (model[i] - model_mean) * (measured[i] - measured_mean).transpose();
   const Eigen::JacobiSVD<Eigen::Matrix2d> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix2d turn = svd.matrixV() * svd.matrixU().transpose();
-  if (turn.determinant() < 0)
-    turn = svd.matrixV() * Eigen::Vector2d(1, -1).asDiagonal() * svd.matrixU().transpose();
-  return {seen_mean - turn * model_mean, std::atan2(turn(1, 0), turn(0, 0))};
+  Eigen::Matrix2d rotation = svd.matrixV() * svd.matrixU().transpose();
+  if (rotation.determinant() < 0)
+    rotation = svd.matrixV() * Eigen::Vector2d(1, -1).asDiagonal() * svd.matrixU().transpose();
+  return {measured_mean - rotation * model_mean, std::atan2(rotation(1, 0), rotation(0, 0))};
 }
 
-struct Measured {
-  double ahead_m = 0, aside_m = 0, heading_rad = 0;
+struct SampledError {
+  double longitudinal_m = 0, lateral_m = 0, heading_rad = 0;
 };
 
-Measured measured(const MarkingLayout& layout, double sd_m, Rng& rng) {
+SampledError sampled_error(const MarkerLayout& layout, double sd_m, Rng& rng) {
   std::vector<Vec2> model{layout.centre.position_m};
-  for (const MarkingDot& dot : layout.dots) model.push_back(dot.position_m);
+  for (const Marker& dot : layout.dots) model.push_back(dot.position_m);
   constexpr int kTrials = 40000;
-  Measured sum;
+  SampledError sum;
   for (int i = 0; i < kTrials; ++i) {
     const double heading_rad = rng.uniform(-3, 3);
-    const Vec2 place_m(rng.uniform(-5, 5), rng.uniform(-5, 5));
-    std::vector<Vec2> seen;
+    const Vec2 position_m(rng.uniform(-5, 5), rng.uniform(-5, 5));
+    std::vector<Vec2> measured;
     for (const Vec2& p : model) {
       const Vec2 error(rng.normal(), rng.normal());
-      seen.push_back(place_m + rotated(p, heading_rad) + sd_m * error);
+      measured.push_back(position_m + rotated(p, heading_rad) + sd_m * error);
     }
-    const Fit fit = fitted(model, seen);
-    const Vec2 off = rotated(fit.position_m - place_m, -heading_rad);
-    sum.ahead_m += off.x() * off.x();
-    sum.aside_m += off.y() * off.y();
+    const Fit fit = fitted(model, measured);
+    const Vec2 error_m = rotated(fit.position_m - position_m, -heading_rad);
+    sum.longitudinal_m += error_m.x() * error_m.x();
+    sum.lateral_m += error_m.y() * error_m.y();
     sum.heading_rad += std::pow(wrapped_rad(fit.heading_rad - heading_rad), 2);
   }
-  return {std::sqrt(sum.ahead_m / kTrials), std::sqrt(sum.aside_m / kTrials),
+  return {std::sqrt(sum.longitudinal_m / kTrials), std::sqrt(sum.lateral_m / kTrials),
           std::sqrt(sum.heading_rad / kTrials)};
 }
 
-void compare(const MarkingLayout& layout, Rng& rng) {
+void compare(const MarkerLayout& layout, Rng& rng) {
   for (const double sd_m : {0.0002, 0.001}) {
     const PoseError predicted = predicted_pose_error(layout, sd_m);
-    const Measured real = measured(layout, sd_m, rng);
+    const SampledError sampled = sampled_error(layout, sd_m, rng);
     CAPTURE(layout.dots.size(), sd_m);
-    // Four standard deviations of a standard deviation over 40,000 trials are 1.4 percent.
-    CHECK(real.ahead_m == Approx(predicted.ahead_m).epsilon(0.015));
-    CHECK(real.aside_m == Approx(predicted.aside_m).epsilon(0.015));
-    CHECK(real.heading_rad == Approx(predicted.heading_rad).epsilon(0.015));
+    // Four standard errors of a standard deviation over 40,000 trials are 1.4 %.
+    CHECK(sampled.longitudinal_m == Approx(predicted.longitudinal_m).epsilon(0.015));
+    CHECK(sampled.lateral_m == Approx(predicted.lateral_m).epsilon(0.015));
+    CHECK(sampled.heading_rad == Approx(predicted.heading_rad).epsilon(0.015));
   }
 }
 
 }  // namespace
 
-TEST_CASE("the error of a pose is what the layout predicts") {
+TEST_CASE("sampled pose errors match the prediction") {
   const std::uint64_t seed = 31;
   CAPTURE(seed);
   Rng rng(seed);
   compare(butterfly(), rng);
   compare(random_rings(3, 1, rng), rng);
-  MarkingLayout lopsided;  // its centroid is far from the origin
+  MarkerLayout lopsided;  // the centroid is far from the origin
   lopsided.centre = {{0.05, 0.04}, 0.02};
   lopsided.dots = {{{0.09, 0.03}, 0.01}, {{0.06, 0.09}, 0.01}};
   compare(lopsided, rng);
 }
 
-TEST_CASE("the butterfly's error is known") {
+TEST_CASE("the predicted error of the butterfly matches the closed form") {
   const PoseError error = predicted_pose_error(butterfly(), 0.001);
   CHECK(error.centroid_m == Approx(0.001 / std::sqrt(5.0)));
-  CHECK(error.ahead_m == Approx(error.centroid_m));
-  // Four dots 65 mm from the origin; the centroid lies 7.91 mm behind it.
+  CHECK(error.longitudinal_m == Approx(error.centroid_m));
+  // Four dots are 65 mm from the origin, and the centroid is 7.91 mm behind it.
   const double centroid_m = 2 * (0.035 - 0.054772) / 5,
-               squares_m2 = 4 * 0.065 * 0.065 - 5 * centroid_m * centroid_m;
-  CHECK(error.heading_rad == Approx(0.001 / std::sqrt(squares_m2)).epsilon(1e-4));
-  CHECK(error.aside_m > error.ahead_m);
+               sum_of_squares_m2 = 4 * 0.065 * 0.065 - 5 * centroid_m * centroid_m;
+  CHECK(error.heading_rad == Approx(0.001 / std::sqrt(sum_of_squares_m2)).epsilon(1e-4));
+  CHECK(error.lateral_m > error.longitudinal_m);
 }

@@ -8,7 +8,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("a version comes out of its message as it went in, to the last bit") {
+TEST_CASE("encoding and decoding a version preserves it bit for bit") {
   Rng rng(1);
   for (int i = 0; i < 10'000; ++i) {
     const Version in{static_cast<RobotId>(rng.below(kMaxRobots)), rng.bits(), rng.bits(), rng.bits(),
@@ -27,7 +27,7 @@ TEST_CASE("a version comes out of its message as it went in, to the last bit") {
   }
 }
 
-TEST_CASE("a version with a number that is none, or beyond all bounds, is refused") {
+TEST_CASE("a version with a non-finite or implausible number is refused") {
   Rng rng(2);
   Version version{1, 1, 1, 0, random_trajectory(rng)};
   const auto good = encode(version);
@@ -39,50 +39,50 @@ TEST_CASE("a version with a number that is none, or beyond all bounds, is refuse
           +[](msg::Version&m, double v) { m.vx_mps(v); }, +[](msg::Version&m, double v) { m.vy_mps(v); },
           +[](msg::Version&m, double v) { m.phases()[0].ax_mps2(v); },
           +[](msg::Version&m, double v) { m.phases()[0].ay_mps2(v); }}) {
-      auto spoilt = good;
-      set(spoilt, bad);
-      CHECK_FALSE(decode(spoilt));
+      auto corrupted = good;
+      set(corrupted, bad);
+      CHECK_FALSE(decode(corrupted));
     }
   }
-  auto spoilt = good;
-  spoilt.robot(kMaxRobots);
-  CHECK_FALSE(decode(spoilt));
-  spoilt = good;
-  spoilt.phase_count(Trajectory::kMaxPhases + 1);
-  CHECK_FALSE(decode(spoilt));
-  spoilt = good;
-  spoilt.phases()[0].duration_ns(-1);
-  CHECK_FALSE(decode(spoilt));
-  spoilt = good;
-  spoilt.start_ns(std::numeric_limits<std::int64_t>::min());
-  CHECK_FALSE(decode(spoilt));
+  auto corrupted = good;
+  corrupted.robot(kMaxRobots);
+  CHECK_FALSE(decode(corrupted));
+  corrupted = good;
+  corrupted.phase_count(Trajectory::kMaxPhases + 1);
+  CHECK_FALSE(decode(corrupted));
+  corrupted = good;
+  corrupted.phases()[0].duration_ns(-1);
+  CHECK_FALSE(decode(corrupted));
+  corrupted = good;
+  corrupted.start_ns(std::numeric_limits<std::int64_t>::min());
+  CHECK_FALSE(decode(corrupted));
 }
 
-TEST_CASE("what a robot means to do comes out of its message as it went in, to single precision") {
+TEST_CASE("encoding and decoding an intent preserves it to single precision") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);
   Version in{1, 1, 1, 0, random_trajectory(rng)};
   REQUIRE(decode(encode(in)));
   CHECK_FALSE(decode(encode(in))->intent);
-  const auto drawn = [&](double most) {
-    const double x = rng.uniform(-most, most);
-    return Vec2(x, rng.uniform(-most, most));
+  const auto random_vector = [&](double max) {
+    const double x = rng.uniform(-max, max);
+    return Vec2(x, rng.uniform(-max, max));
   };
   for (int i = 0; i < 1000; ++i) {
-    const Vec2 velocity = drawn(3), waypoint = drawn(10), goal = drawn(10);
+    const Vec2 velocity = random_vector(3), waypoint = random_vector(10), goal = random_vector(10);
     in.intent = Intent{velocity, rng.uniform(0, 2), waypoint, goal};
     const auto out = decode(encode(in));
     REQUIRE(out);
     REQUIRE(out->intent);
     REQUIRE((out->intent->velocity_mps - velocity).norm() < 1e-6);
-    REQUIRE(out->intent->hold_s == Approx(in.intent->hold_s).margin(1e-6));
+    REQUIRE(out->intent->velocity_duration_s == Approx(in.intent->velocity_duration_s).margin(1e-6));
     REQUIRE((out->intent->waypoint_m - waypoint).norm() < 2e-6);
     REQUIRE((out->intent->goal_m - goal).norm() < 2e-6);
   }
 }
 
-TEST_CASE("a version that means to do what makes no sense is refused") {
+TEST_CASE("a version with an implausible intent is refused") {
   Rng rng(4);
   Version version{1, 1, 1, 0, random_trajectory(rng)};
   version.intent = Intent{{1, 0}, 0.5, {1, 1}, {2, 2}};
@@ -92,19 +92,19 @@ TEST_CASE("a version that means to do what makes no sense is refused") {
   for (const float bad : {nan, inf, -inf, 1e30F}) {
     for (const auto set :
          {+[](msg::Intent&m, float v) { m.vx_mps(v); }, +[](msg::Intent&m, float v) { m.vy_mps(v); },
-          +[](msg::Intent&m, float v) { m.hold_s(v); }, +[](msg::Intent&m, float v) { m.via_x_m(v); },
-          +[](msg::Intent&m, float v) { m.via_y_m(v); }, +[](msg::Intent&m, float v) { m.goal_x_m(v); },
-          +[](msg::Intent&m, float v) { m.goal_y_m(v); }}) {
-      auto spoilt = good;
-      set(spoilt.intended(), bad);
+          +[](msg::Intent&m, float v) { m.velocity_duration_s(v); },
+          +[](msg::Intent&m, float v) { m.via_x_m(v); }, +[](msg::Intent&m, float v) { m.via_y_m(v); },
+          +[](msg::Intent&m, float v) { m.goal_x_m(v); }, +[](msg::Intent&m, float v) { m.goal_y_m(v); }}) {
+      auto corrupted = good;
+      set(corrupted.intent(), bad);
       CAPTURE(bad);
-      CHECK_FALSE(decode(spoilt));
-      // Nobody looks at what is not there.
-      spoilt.has_intent(false);
-      CHECK(decode(spoilt));
+      CHECK_FALSE(decode(corrupted));
+      // The intent is ignored if has_intent is false.
+      corrupted.has_intent(false);
+      CHECK(decode(corrupted));
     }
   }
-  auto spoilt = good;
-  spoilt.intended().hold_s(-0.1F);
-  CHECK_FALSE(decode(spoilt));
+  auto corrupted = good;
+  corrupted.intent().velocity_duration_s(-0.1F);
+  CHECK_FALSE(decode(corrupted));
 }

@@ -19,8 +19,8 @@ Trajectory moving(Time start, Vec2 position, Vec2 velocity, Vec2 acceleration, d
   return trajectory;
 }
 
-/// Independent and slow: dense samples from the later start to the later end, then ternary search about the
-/// best few.
+/// Independent reference: dense sampling from the later start to the later end, refined by ternary search
+/// around the best samples.
 double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
   const Time from = std::max(a.start(), b.start()), to = std::max({a.end(), b.end(), from});
   const double seconds = to_seconds(to - from);
@@ -29,7 +29,7 @@ double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
   const double step = seconds / samples;
   for (int i = 0; i <= samples; ++i) {
     const double here = at(i * step);
-    if (here > smallest + 10 * step) continue;  // nothing moves faster than 10 m/s relative to another
+    if (here > smallest + 10 * step) continue;  // relative speeds are below 10 m/s
     double low = std::max(0.0, (i - 1) * step), high = std::min(seconds, (i + 1) * step);
     while (high - low > 1e-8) {
       const double third = (high - low) / 3;
@@ -43,7 +43,7 @@ double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
 
 }  // namespace
 
-TEST_CASE("clearance is never above the distance at any instant, over two million random pairs") {
+TEST_CASE("the clearance never exceeds the distance at any time, over two million random pairs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -56,12 +56,13 @@ TEST_CASE("clearance is never above the distance at any instant, over two millio
       const double distance = distance_at(a, b, from + from_seconds(rng.uniform(0, 1.1 * seconds)));
       if (clearance > distance) FAIL("pair " << pair << ": " << clearance << " > " << distance);
     }
-    const double keep = rng.uniform(0, 0.5);
-    if (is_clear(a, b, keep) != (clearance_m(a, b, keep) >= 0)) FAIL("pair " << pair << " at " << keep);
+    const double min_separation_m = rng.uniform(0, 0.5);
+    if (is_clear(a, b, min_separation_m) != (clearance_m(a, b, min_separation_m) >= 0))
+      FAIL("pair " << pair << " at " << min_separation_m);
   }
 }
 
-TEST_CASE("clearance is the smallest distance of a dense search to a micrometre") {
+TEST_CASE("the clearance equals the minimum of a dense search to 1 um") {
   const std::uint64_t seed = GENERATE(11u, 12u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -74,7 +75,7 @@ TEST_CASE("clearance is the smallest distance of a dense search to a micrometre"
   }
 }
 
-TEST_CASE("clearance does not depend on the order of the two robots") {
+TEST_CASE("the clearance does not depend on the order of the two robots") {
   Rng rng(21);
   for (int pair = 0; pair < 10'000; ++pair) {
     const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
@@ -92,27 +93,26 @@ TEST_CASE("robots that meet between two samples are not clear") {
   CHECK_FALSE(is_clear(a, b, 0.19));
 }
 
-TEST_CASE("robots are compared at the same time, so that one may pass where the other has been") {
-  // b crosses the origin 0.5 s after a has.
+TEST_CASE("robots are compared at equal times, so one may pass where the other has been") {
+  // b crosses the origin 0.5 s after a.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 0.5);
   const auto b = moving(kBegin + from_seconds(0.3), {0, -0.6}, {0, 1.5}, {0, 0}, 0.4);
   CHECK(is_clear(a, b, 0.19));
-  // And one that is not in the same place at the same elapsed time may be in the same place at the same time.
+  // Different positions at equal elapsed times, but equal positions at the same absolute time.
   const auto late = moving(kBegin + from_seconds(0.25), {0.6, -0.1}, {0, 1}, {0, 0}, 0.2);
   CHECK_FALSE(is_clear(a, late, 0.19));
 }
 
 TEST_CASE("the overlap begins at the later of the two starts") {
-  // At a's start b is elsewhere: what b's trajectory says of the time before its own start is not to be
-  // judged.
+  // b is elsewhere at a's start: its trajectory is undefined before its own start.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 1.0);
   const auto b = Trajectory::resting(kBegin + from_seconds(0.5), {0, 0});
   CHECK(clearance_m(a, b, 0) == Approx(1.0).margin(1e-6));
   CHECK(is_clear(a, b, 0.19));
 }
 
-TEST_CASE("of two minima the deeper one counts, whichever it is") {
-  // a flies past b, turns round and comes back past it: one parabola, two near passes.
+TEST_CASE("the smaller of two minima counts, whether it is the first or the second") {
+  // a passes b, reverses and passes it again: one parabola with two close passes.
   const auto b = Trajectory::resting(kBegin, {0, 0.3});
   const auto first_deeper = moving(kBegin, {-0.5, 0.25}, {2.4, 0.1}, {-4, 0}, 1.0);
   const auto second_deeper = moving(kBegin, {-0.5, 0.45}, {2.4, -0.1}, {-4, 0}, 1.0);
@@ -122,7 +122,7 @@ TEST_CASE("of two minima the deeper one counts, whichever it is") {
   CHECK(clearance_m(second_deeper, b, 0) < 0.08);
 }
 
-TEST_CASE("equal motions, standing robots and empty phases have a clearance") {
+TEST_CASE("equal motions, resting robots and empty phases have a clearance") {
   const auto a = moving(kBegin, {0, 0}, {1, 1}, {1, 0}, 0.2),
              b = moving(kBegin, {0.3, 0}, {1, 1}, {1, 0}, 0.2);
   CHECK(clearance_m(a, b, 0) == Approx(0.3).margin(1e-8));
@@ -137,13 +137,13 @@ TEST_CASE("equal motions, standing robots and empty phases have a clearance") {
   CHECK(clearance_m(c, empty, 0) == Approx(0.5).margin(1e-8));
 }
 
-TEST_CASE("what happens after the last start for ever counts, long after both have ended") {
+TEST_CASE("the clearance covers all time, long after both trajectories have ended") {
   const auto a = moving(kBegin, {0, 0}, {1, 0}, {0, 0}, 0.1);
   const auto b = Trajectory::resting(kBegin + std::chrono::hours(24), a.rest_position_m() + Vec2(0.1, 0));
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
 }
 
-TEST_CASE("a disc that never moves is a robot at rest") {
+TEST_CASE("a static disc equals a robot at rest") {
   Rng rng(31);
   for (int i = 0; i < 10'000; ++i) {
     const Trajectory a = random_trajectory(rng);

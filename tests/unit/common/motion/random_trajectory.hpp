@@ -6,12 +6,9 @@
 
 namespace sidestep {
 
-inline Vec2 random_vector(Rng& rng, double largest) {
-  return {rng.uniform(-largest, largest), rng.uniform(-largest, largest)};
-}
+inline Vec2 random_vector(Rng& rng, double max) { return {rng.uniform(-max, max), rng.uniform(-max, max)}; }
 
-/// Up to three phases of anything and then a stop, starting within half a second of `around`, near the
-/// origin.
+/// Up to three random phases and a stop, near the origin. The start is within 0.5 s of `around`.
 inline Trajectory random_trajectory(Rng& rng, Time around = time_from_ns(1'000'000'000)) {
   Trajectory trajectory(around + from_seconds(rng.uniform(-0.5, 0.5)),
                         {random_vector(rng, 0.6), rng.chance(0.1) ? Vec2(0, 0) : random_vector(rng, 2)});

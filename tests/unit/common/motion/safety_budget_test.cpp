@@ -9,7 +9,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("the budget's line names what the margin is made of, and what is left of it") {
+TEST_CASE("the budget line shows the composition of the margin and the spare part") {
   CHECK(budget_line({}, 0.01) ==
         "safety budget: margin 10.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
   CHECK(
@@ -18,11 +18,11 @@ TEST_CASE("the budget's line names what the margin is made of, and what is left 
       "mm to spare");
 }
 
-TEST_CASE("bodies off their references and clocks off each other within the budget leave robots apart") {
+TEST_CASE("tracking errors and clock offsets within the budget do not bring robots into contact") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);
-  double for_clocks = 0;
+  double max_clock_share = 0;
   for (int pair = 0; pair < 20'000; ++pair) {
     const Trajectory a = random_trajectory(rng), b = random_trajectory(rng);
     SafetyBudget budget{0.003, 0.002, 0};
@@ -34,21 +34,21 @@ TEST_CASE("bodies off their references and clocks off each other within the budg
         budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
       }
     }
-    // The margin is all that is kept: discs without a radius.
+    // Discs without a radius, so the clearance is the margin.
     const double margin = clearance_m(a, b, 0);
     const Time from = std::max(a.start(), b.start()) + from_seconds(budget.clock_bound_s);
     const double seconds = std::max(0.0, to_seconds(std::max(a.end(), b.end()) - from));
     const Duration off_a = from_seconds(budget.clock_bound_s), off_b = -off_a;
     for (int i = 0; i < 20; ++i) {
       const Time t = from + from_seconds(rng.uniform(0, seconds));
-      const Vec2 place_a = a.state_at(t + off_a).position_m, place_b = b.state_at(t + off_b).position_m;
-      const double lost = margin - ((place_a - place_b).norm() - 2 * budget.tracking_bound_m);
-      REQUIRE(lost <= budget.needed_margin_m());
-      // What is really needed: twice the bound at the speed, not at twice the speed.
+      const Vec2 body_a = a.state_at(t + off_a).position_m, body_b = b.state_at(t + off_b).position_m;
+      const double lost = margin - ((body_a - body_b).norm() - 2 * budget.tracking_bound_m);
+      REQUIRE(lost <= budget.required_margin_m());
+      // The tight bound: clocks that differ by twice the bound at the speed of one robot.
       REQUIRE(lost <= 2 * budget.tracking_bound_m + 2 * budget.clock_bound_s * budget.speed_mps + 1e-9);
-      for_clocks = std::max(for_clocks, lost - 2 * budget.tracking_bound_m);
+      max_clock_share = std::max(max_clock_share, lost - 2 * budget.tracking_bound_m);
     }
   }
-  // Clocks really cost something.
-  CHECK(for_clocks > 0.001);
+  // The clock offsets have an effect.
+  CHECK(max_clock_share > 0.001);
 }

@@ -7,7 +7,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("a trajectory agrees with small steps of integration") {
+TEST_CASE("a trajectory matches numerical integration") {
   Rng rng(1);
   for (int i = 0; i < 200; ++i) {
     const Trajectory trajectory = random_trajectory(rng);
@@ -15,7 +15,7 @@ TEST_CASE("a trajectory agrees with small steps of integration") {
     const Duration step{50'000};
     double error = 0;
     for (Time t = trajectory.start(); t < trajectory.end(); t += step) {
-      const Vec2 acceleration = trajectory.acceleration_at(t + step / 2);
+      const Vec2 acceleration = trajectory.motion_at(t + step / 2).acceleration_mps2;
       position += to_seconds(step) * (velocity + 0.5 * to_seconds(step) * acceleration);
       velocity += to_seconds(step) * acceleration;
       error = std::max(error, (trajectory.state_at(t + step).position_m - position).norm());
@@ -25,7 +25,7 @@ TEST_CASE("a trajectory agrees with small steps of integration") {
   }
 }
 
-TEST_CASE("every trajectory with a stop ends at rest and stays there") {
+TEST_CASE("every trajectory with a stop ends at rest and remains at rest") {
   Rng rng(2);
   for (int i = 0; i < 100'000; ++i) {
     const Trajectory trajectory = random_trajectory(rng);
@@ -37,7 +37,7 @@ TEST_CASE("every trajectory with a stop ends at rest and stays there") {
   }
 }
 
-TEST_CASE("the stop manoeuvre brakes against the velocity with the deceleration asked for") {
+TEST_CASE("the stop decelerates against the velocity at the given rate") {
   Trajectory trajectory(time_from_ns(0), {{0, 0}, {1.2, 1.6}});
   append_stop(trajectory, 5);
   REQUIRE(trajectory.phases().size() == 1);
@@ -50,7 +50,7 @@ TEST_CASE("the stop manoeuvre brakes against the velocity with the deceleration 
   CHECK(trajectory.phases().size() == before);
 }
 
-TEST_CASE("no trajectory gets farther than its reach") {
+TEST_CASE("no trajectory exceeds its reach") {
   Rng rng(3);
   for (int i = 0; i < 20'000; ++i) {
     const Trajectory trajectory = random_trajectory(rng);

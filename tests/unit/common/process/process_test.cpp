@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/process/process.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <signal.h>
 #include <stdexcept>
 
-#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+#include "common/process/command_line.hpp"
+#include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep {
 namespace {
@@ -35,14 +35,14 @@ std::vector<std::string> good_arguments() {
 Program test_program() {
   Program program;
   program.name = "sidestep-test";
-  program.description = "Is tested.";
+  program.description = "A program under test.";
   program.start = [](Bus&, const Scenario&) { return nullptr; };
   return program;
 }
 
 }  // namespace
 
-TEST_CASE("wrong usage and a wrong scenario exit with 2, help with 0, and nothing starts") {
+TEST_CASE("wrong usage and an invalid scenario exit with 2, --help exits with 0, and nothing starts") {
   Program program = test_program();
   bool started = false;
   program.start = [&](Bus&, const Scenario&) {
@@ -60,7 +60,7 @@ TEST_CASE("wrong usage and a wrong scenario exit with 2, help with 0, and nothin
   CHECK_FALSE(started);
 }
 
-TEST_CASE("a program that starts says what the margin is made of") {
+TEST_CASE("a program prints its safety budget at start") {
   Program program = test_program();
   program.start = [](Bus& bus, const Scenario&) {
     static_cast<DdsBus&>(bus).stop();
@@ -74,7 +74,7 @@ TEST_CASE("a program that starts says what the margin is made of") {
                "within 0.5 ms at 2 m/s\n"));
 }
 
-TEST_CASE("what is thrown at the start is said on stderr and exits with 1") {
+TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") {
   Program program = test_program();
   program.start = [](Bus&, const Scenario&) -> std::shared_ptr<void> {
     throw std::runtime_error("no such robot");
@@ -89,15 +89,15 @@ TEST_CASE("what is thrown at the start is said on stderr and exits with 1") {
   CHECK_THAT(no_interface.err, Contains("192.0.2.1"));
 }
 
-TEST_CASE("an option whose value is left out has its default and one that is not given has none") {
+TEST_CASE("an option without a value has its default, and an option that is not given has none") {
   const auto parsed = [](std::vector<std::string> arguments) {
-    CLI::App app;
+    CommandLine command_line("test", "test");
+    const Command app = command_line.root();
     std::optional<std::string> value;
     bool flag = false;
-    add_optional_value(app, "--to", value, "nowhere", "sends it");
+    app.add_optional_value("--to", value, "nowhere", "sends it");
     app.add_flag("--flag", flag);
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    command_line.parse(arguments);
     return value;
   };
   CHECK_FALSE(parsed({}));
@@ -105,23 +105,23 @@ TEST_CASE("an option whose value is left out has its default and one that is not
   CHECK(parsed({"--to"}) == "nowhere");
   CHECK(parsed({"--to", "--flag"}) == "nowhere");
   CHECK(parsed({"--flag", "--to", "there"}) == "there");
-  CHECK_THROWS_AS(parsed({"--to", "there", "elsewhere"}), CLI::ParseError);
+  CHECK_THROWS_AS(parsed({"--to", "there", "elsewhere"}), UsageError);
 }
 
-TEST_CASE("a signal ends the process in order: the nodes die before the bus, and the exit code is 0") {
+TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit code 0") {
   const int signal_number = GENERATE(SIGINT, SIGTERM);
   Program program = test_program();
   int robot = 0;
-  program.add_options = [&](CLI::App& app) { app.add_option("--robot", robot); };
+  program.add_options = [&](const Command& app) { app.add_option("--robot", robot); };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   std::size_t robots_in_scenario = 0;
-  bool node_died = false;
+  bool is_node_destroyed = false;
   program.start = [&](Bus& bus, const Scenario& scenario) {
     robots_in_scenario = scenario.robots.size();
     bus.at(bus.now(), [=] { kill(getpid(), signal_number); });
     return std::shared_ptr<void>(&bus, [&](void* address) {
       static_cast<Bus*>(address)->now();
-      node_died = true;
+      is_node_destroyed = true;
     });
   };
   std::vector<std::string> arguments = good_arguments();
@@ -131,7 +131,7 @@ TEST_CASE("a signal ends the process in order: the nodes die before the bus, and
   CHECK(outcome.exit_code == 0);
   CHECK(robot == 3);
   CHECK(robots_in_scenario > 0);
-  CHECK(node_died);
+  CHECK(is_node_destroyed);
   CHECK_THAT(outcome.err, Contains("agent-3: domain "));
 }
 

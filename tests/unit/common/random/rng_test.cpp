@@ -9,54 +9,55 @@ namespace sidestep {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
-constexpr int kDraws = 60'000;
-// Counts lie so many standard deviations from what is expected once in sixteen thousand times.
-constexpr double kDeviations = 4;
+constexpr int kSamples = 60'000;
+// A count deviates from its expectation by more than this many standard deviations once in 16,000 times.
+constexpr double kMaxDeviations = 4;
 
 }  // namespace
 
-TEST_CASE("a seed means the same bits everywhere") {
+TEST_CASE("a seed gives the same bits everywhere") {
   Rng rng(1);
-  // Of xoshiro256++ and splitmix64 as published, computed apart from this code.
+  // Computed with the published code of xoshiro256++ and splitmix64.
   for (const std::uint64_t expected :
        {0xcfc5d07f6f03c29bU, 0xbf424132963fe08dU, 0x19a37d5757aaf520U, 0xbf08119f05cd56d6U}) {
     CHECK(rng.bits() == expected);
   }
 }
 
-TEST_CASE("each order of what is shuffled comes equally often") {
+TEST_CASE("all permutations of a shuffle are equally frequent") {
   CAPTURE(kSeed);
   Rng rng(kSeed);
   std::map<std::array<int, 4>, int> seen;
-  for (int i = 0; i < kDraws; ++i) {
+  for (int i = 0; i < kSamples; ++i) {
     std::array<int, 4> order{0, 1, 2, 3};
     rng.shuffle(order);
     ++seen[order];
   }
   REQUIRE(seen.size() == 24);
-  constexpr double kShare = 1.0 / 24;
-  const double deviation = std::sqrt(kDraws * kShare * (1 - kShare));
-  for (const auto& [order, count] : seen) CHECK(std::abs(count - kDraws * kShare) < kDeviations * deviation);
+  constexpr double kProbability = 1.0 / 24;
+  const double deviation = std::sqrt(kSamples * kProbability * (1 - kProbability));
+  for (const auto& [order, count] : seen)
+    CHECK(std::abs(count - kSamples * kProbability) < kMaxDeviations * deviation);
 }
 
-TEST_CASE("normal numbers have mean 0, variance 1 and no skew") {
+TEST_CASE("normal samples have mean 0, variance 1 and no skew") {
   CAPTURE(kSeed);
   Rng rng(kSeed);
   double first = 0, second = 0, third = 0;
-  for (int i = 0; i < kDraws; ++i) {
+  for (int i = 0; i < kSamples; ++i) {
     const double value = rng.normal();
     first += value;
     second += value * value;
     third += value * value * value;
   }
   // The variances of x, x^2 and x^3 are 1, 2 and 15.
-  const auto bound = [](double variance) { return kDeviations * std::sqrt(variance / kDraws); };
-  CHECK(std::abs(first / kDraws) < bound(1));
-  CHECK(std::abs(second / kDraws - 1) < bound(2));
-  CHECK(std::abs(third / kDraws) < bound(15));
+  const auto bound = [](double variance) { return kMaxDeviations * std::sqrt(variance / kSamples); };
+  CHECK(std::abs(first / kSamples) < bound(1));
+  CHECK(std::abs(second / kSamples - 1) < bound(2));
+  CHECK(std::abs(third / kSamples) < bound(15));
 }
 
-TEST_CASE("generators that were forked from one another share no numbers") {
+TEST_CASE("forked generators share no numbers") {
   Rng first(kSeed);
   Rng second = first.fork(), third = first.fork();
   int same = 0;

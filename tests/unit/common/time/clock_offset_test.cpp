@@ -12,40 +12,40 @@ using namespace sidestep;
 
 namespace {
 
-const Time kBegin = time_from_ns(1'800'000'000'000'000'000);  // as host clocks have it
+const Time kBegin = time_from_ns(1'800'000'000'000'000'000);  // a typical host clock
 constexpr Duration kPeriod{16'666'667};
 
-/// Two clocks, and messages between them whose delays one draws: the truth that estimates are judged by.
+/// Two clocks and messages between them with random delays: the ground truth for the estimates.
 struct TwoClocks {
   Rng rng;
-  Duration offset;  // of the other clock, at kBegin
+  Duration offset;  // of the peer's clock, at kBegin
   double drift_ppm = 0;
-  double least_s, mean_s;  // of a delay, exponential above the least
+  double min_s, mean_s;  // of a delay: exponential above the minimum
   double loss = 0;
 
-  Duration true_offset(Time own) const {
-    return offset + from_seconds(to_seconds(own - kBegin) * drift_ppm * 1e-6);
+  Duration true_offset(Time local) const {
+    return offset + from_seconds(to_seconds(local - kBegin) * drift_ppm * 1e-6);
   }
-  Time other(Time own) const { return own + true_offset(own); }
-  Duration delay() { return from_seconds(least_s - mean_s * std::log(1 - rng.uniform())); }
-  /// None: a message was lost.
+  Time peer(Time local) const { return local + true_offset(local); }
+  Duration delay() { return from_seconds(min_s - mean_s * std::log(1 - rng.uniform())); }
+  /// nullopt if a message was lost.
   std::optional<ClockExchange> exchange(Time sent) {
-    const Time heard = sent + delay();
-    const Time answered = heard + from_seconds(rng.uniform(0, 0.03));
-    const Time received = answered + delay();
+    const Time peer_received = sent + delay();
+    const Time peer_sent = peer_received + from_seconds(rng.uniform(0, 0.03));
+    const Time received = peer_sent + delay();
     if (rng.chance(loss) || rng.chance(loss)) return std::nullopt;
-    return ClockExchange{sent, other(heard), other(answered), received};
+    return ClockExchange{sent, peer(peer_received), peer(peer_sent), received};
   }
 };
 
-ClockExchange exchange_ms(double sent, double heard, double answered, double received) {
+ClockExchange exchange_ms(double sent, double peer_received, double peer_sent, double received) {
   const auto at = [](double ms) { return kBegin + from_seconds(ms * 1e-3); };
-  return {at(sent), at(heard), at(answered), at(received)};
+  return {at(sent), at(peer_received), at(peer_sent), at(received)};
 }
 
 }  // namespace
 
-TEST_CASE("whatever the delays, losses and drift, the true offset lies within what was measured") {
+TEST_CASE("the measured interval contains the true offset for any delays, losses and drift") {
   const std::uint64_t seed = GENERATE(range(1u, 41u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -56,7 +56,7 @@ TEST_CASE("whatever the delays, losses and drift, the true offset lies within wh
                    std::pow(10, rng.uniform(-5, -1)),
                    seed % 2 ? 0.3 : 0};
   ClockOffset measured;
-  int judged = 0;
+  int checked = 0;
   Time arrived = kBegin;
   for (int i = 0; i < 3000; ++i) {
     const Time sent = kBegin + i * kPeriod;
@@ -67,18 +67,18 @@ TEST_CASE("whatever the delays, losses and drift, the true offset lies within wh
     const Time now = std::max(arrived, sent + kPeriod);
     const auto known = measured.at(now);
     if (!known) continue;
-    ++judged;
+    ++checked;
     const Duration truth = clocks.true_offset(now);
     CAPTURE(i, truth.count(), known->low.count(), known->high.count());
     REQUIRE(known->low <= truth);
     REQUIRE(known->high >= truth);
     REQUIRE_FALSE(known->is_beyond(truth < Duration{0} ? -truth : truth));
   }
-  CHECK(judged > 2900);
+  CHECK(checked > 2900);
   CHECK(measured.jumps() == 0);
 }
 
-TEST_CASE("the uncertainty comes down to the quickest exchange's, with 30 % of the messages lost") {
+TEST_CASE("the uncertainty falls to that of the fastest exchange with 30 % of the messages lost") {
   TwoClocks clocks{Rng(7), from_seconds(0.004), 20, 0.0002, 0.001, 0.3};
   ClockOffset measured;
   for (int i = 0; i < 600; ++i) {
@@ -91,10 +91,10 @@ TEST_CASE("the uncertainty comes down to the quickest exchange's, with 30 % of t
   CHECK_FALSE(measured.at(now)->is_beyond(from_seconds(0.005)));
 }
 
-TEST_CASE("an exchange bounds the offset by its two ways, and later ones by what they have in common") {
+TEST_CASE("an exchange bounds the offset by its two delays, and several by the intersection") {
   ClockOffset measured;
   CHECK_FALSE(measured.at(kBegin));
-  // The other clock is 10 ms ahead: 3 ms there, 1 ms to answer, 2 ms back.
+  // The peer's clock is 10 ms ahead: 3 ms there, 1 ms until the reply, 2 ms back.
   REQUIRE(measured.add(exchange_ms(0, 13, 14, 6)));
   const auto first = measured.at(kBegin + from_seconds(0.006));
   REQUIRE(first);
@@ -113,7 +113,7 @@ TEST_CASE("an exchange bounds the offset by its two ways, and later ones by what
   CHECK_FALSE(measured.at(kBegin + from_seconds(1.019), from_seconds(0.9)));
 }
 
-TEST_CASE("after a clock has jumped only what came after it counts") {
+TEST_CASE("after a clock jump only later exchanges count") {
   const double jump_s = GENERATE(0.05, -0.05, 7.0, -7.0);
   CAPTURE(jump_s);
   TwoClocks clocks{Rng(3), from_seconds(0.001), 0, 0.0005, 0.002};
@@ -123,7 +123,7 @@ TEST_CASE("after a clock has jumped only what came after it counts") {
   clocks.offset += from_seconds(jump_s);
   measured.add(*clocks.exchange(kBegin + 102 * kPeriod));
   CHECK(measured.jumps() == 1);
-  // A straggler from before the jump.
+  // A late message from before the jump.
   measured.add(late);
   CHECK(measured.jumps() == 1);
   for (int i = 103; i < 200; ++i) {
@@ -135,7 +135,8 @@ TEST_CASE("after a clock has jumped only what came after it counts") {
   CHECK(measured.jumps() == 1);
 }
 
-TEST_CASE("a clock that jumps between hearing and answering leaves nothing known until it has heard again") {
+TEST_CASE(
+    "a peer clock that jumps between its two timestamps leaves the offset unknown until the next exchange") {
   ClockOffset measured;
   REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
   REQUIRE(measured.add(exchange_ms(10, 11, 62, 13)));
@@ -148,22 +149,22 @@ TEST_CASE("a clock that jumps between hearing and answering leaves nothing known
   CHECK_FALSE(measured.at(kBegin + from_seconds(0.023)));
 }
 
-TEST_CASE("stamps that make no sense change nothing") {
+TEST_CASE("invalid timestamps change nothing") {
   ClockOffset measured;
   REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
   const auto before = measured.at(kBegin + from_seconds(0.003));
   CHECK_FALSE(measured.add(exchange_ms(10, 11, 12, 9)));     // received before it was sent
-  CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // answered before it was heard
+  CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // the peer replied before it received
   CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than an exchange takes
-  constexpr std::int64_t kOwn = 1'000'000'000'000'000;
+  constexpr std::int64_t kValid = 1'000'000'000'000'000;
   const std::vector<std::int64_t> hostile{0, -1, std::numeric_limits<std::int64_t>::min(),
                                           std::numeric_limits<std::int64_t>::max(),
                                           (std::int64_t{1} << 61) + 1};
   for (const std::int64_t stamp : hostile) {
-    for (int place = 0; place < 4; ++place) {
-      std::int64_t stamps[4] = {kOwn, kOwn + 1, kOwn + 2, kOwn + 3};
-      stamps[place] = stamp;
-      CAPTURE(stamp, place);
+    for (int position = 0; position < 4; ++position) {
+      std::int64_t stamps[4] = {kValid, kValid + 1, kValid + 2, kValid + 3};
+      stamps[position] = stamp;
+      CAPTURE(stamp, position);
       CHECK_FALSE(measured.add({time_from_ns(stamps[0]), time_from_ns(stamps[1]), time_from_ns(stamps[2]),
                                 time_from_ns(stamps[3])}));
     }
@@ -174,7 +175,7 @@ TEST_CASE("stamps that make no sense change nothing") {
   CHECK(measured.jumps() == 0);
 }
 
-TEST_CASE("the extreme stamps that are accepted overflow nothing") {
+TEST_CASE("the extreme timestamps that are accepted cause no overflow") {
   ClockOffset measured;
   const Time last = time_from_ns(std::int64_t{1} << 61), first = time_from_ns(1);
   REQUIRE(measured.add({first, last, last, first + Duration{5}}));
@@ -185,7 +186,7 @@ TEST_CASE("the extreme stamps that are accepted overflow nothing") {
   CHECK(difference(*measured.at(last), *measured.at(last)).low <= Duration{0});
 }
 
-TEST_CASE("two clocks measured against a third differ by the difference") {
+TEST_CASE("the offset of two clocks is the difference of their offsets against a third") {
   const OffsetInterval robot{Duration{100}, Duration{300}}, coordinator{Duration{50}, Duration{80}};
   CHECK(difference(robot, coordinator).low == Duration{20});
   CHECK(difference(robot, coordinator).high == Duration{250});

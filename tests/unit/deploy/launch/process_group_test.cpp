@@ -25,7 +25,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr auto kDeadline = 20s;
 
-/// A folder of this process's own that goes with it.
+/// A folder that is removed with the process.
 struct Folder {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("process-group-" + std::to_string(getpid()));
@@ -53,12 +53,12 @@ ChildEvent next_event(ProcessGroup& group) {
 void wait_for_line(ProcessGroup& group, const std::string& name, const std::string& line) {
   const auto until = SteadyClock::now() + kDeadline;
   while (SteadyClock::now() < until) {
-    for (const auto& said : group.last_lines(name)) {
-      if (said == line) return;
+    for (const auto& printed : group.last_lines(name)) {
+      if (printed == line) return;
     }
     group.poll(10ms);
   }
-  FAIL(name + " never said " + line);
+  FAIL(name + " did not print " + line);
 }
 
 std::string text_of(const std::string& path) {
@@ -93,7 +93,7 @@ TEST_CASE("a death is reported with exit code or signal, and the last lines are 
 TEST_CASE("a program that does not exist is refused at once") {
   ProcessGroup group(log_path());
   CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),
-                    Catch::Contains("cannot start ghost, /nowhere/ghost: No such file"));
+                    Catch::Contains("cannot start ghost (/nowhere/ghost): No such file"));
 }
 
 TEST_CASE("a program that cannot be executed says why in its last lines") {
@@ -107,7 +107,7 @@ TEST_CASE("a program that cannot be executed says why in its last lines") {
   CHECK_THAT(group.last_lines("text")[0], Catch::StartsWith("cannot execute " + path));
 }
 
-TEST_CASE("a child that is to be restarted comes back as another process, again and again") {
+TEST_CASE("a child with `restart` is started again after each death, as a new process") {
   ProcessGroup group(log_path());
   const pid_t first = group.start(shell("phoenix", "echo up; exec sleep 1000", true));
   pid_t pid = first;
@@ -129,7 +129,7 @@ TEST_CASE("a child that is to be restarted comes back as another process, again 
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("terminating ends polite children by SIGTERM and stubborn ones by SIGKILL, and starts none again") {
+TEST_CASE("terminating ends children by SIGTERM, those that ignore it by SIGKILL, and restarts none") {
   ProcessGroup group(log_path());
   group.start(
       shell("polite", "trap 'echo bye; exit 0' TERM; echo ready; while :; do sleep 0.01; done", true));
@@ -144,7 +144,7 @@ TEST_CASE("terminating ends polite children by SIGTERM and stubborn ones by SIGK
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a child with an input reads it, again in its next life, and ends with it when it is asked to") {
+TEST_CASE("a child reads its input again after a restart, and ends when its stdin is closed") {
   ProcessGroup group(log_path());
   const std::string text(100'000, 'x');
   group.start({"reader", {"/bin/sh", "-c", "head -c 100000 | wc -c; read end; echo over"}, true, text});
@@ -163,7 +163,7 @@ TEST_CASE("a child with an input reads it, again in its next life, and ends with
                     Catch::Contains("too many"));
 }
 
-TEST_CASE("a child that prints without end does not stall, and only its last lines are kept") {
+TEST_CASE("a child that prints a lot does not stall, and only its last lines are kept") {
   ProcessGroup group(log_path());
   group.start(shell("chatter", "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done"));
   CHECK(next_event(group).reason == "exit code 0");
@@ -172,7 +172,7 @@ TEST_CASE("a child that prints without end does not stall, and only its last lin
   CHECK(lines.back() == "line 19999");
 }
 
-TEST_CASE("children inherit no descriptor, and a group only waits for its own") {
+TEST_CASE("children inherit no descriptors, and a group waits only for its own children") {
   const int inheritable = open("/dev/null", O_RDONLY);
   REQUIRE(inheritable >= 0);
   const pid_t stranger = fork();
@@ -190,7 +190,7 @@ TEST_CASE("children inherit no descriptor, and a group only waits for its own") 
   CHECK(WEXITSTATUS(status) == 42);
 }
 
-TEST_CASE("no child outlives its launcher, even if that is killed by SIGKILL") {
+TEST_CASE("no child outlives its launcher, even after SIGKILL") {
   const std::string path = log_path();
   int pids[2];
   REQUIRE(pipe(pids) == 0);
@@ -222,8 +222,8 @@ TEST_CASE("no child outlives its launcher, even if that is killed by SIGKILL") {
   close(pids[1]);
 }
 
-TEST_CASE("programs are found beside the one that runs") {
-  CHECK(std::filesystem::exists(program_beside_own("process_group_test")));
+TEST_CASE("programs are found in the folder of the running program") {
+  CHECK(std::filesystem::exists(sibling_program_path("unit_deploy_launch")));
 }
 
 }  // namespace sidestep

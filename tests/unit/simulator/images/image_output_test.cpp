@@ -7,7 +7,7 @@
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
-#include "common/messaging/sim/sim_bus.hpp"
+#include "common/messaging/sim/bus.hpp"
 
 namespace sidestep {
 namespace {
@@ -24,8 +24,8 @@ obstacles: [{centre_m: [-0.6, -0.7], radius_m: 0.2}]
 opponents: [{radius_m: 0.12, speed_mps: 1, path_m: [[0, 1.2], [1, 1.2]]}]
 )";
 
-struct Hall {
-  explicit Hall(const Scenario& with) : scenario(with), network(1, kBegin, scenario.network) {
+struct ImageSystem {
+  explicit ImageSystem(const Scenario& with) : scenario(with), network(1, kBegin, scenario.network) {
     listener.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) {
       images[image.camera()].push_back(image);
       late.push_back(network.now() - time_from_ns(image.captured_at_ns()));
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> rendered(const Scenario& scenario, const CameraModel& 
 
 }  // namespace
 
-TEST_CASE("a scenario's floor holds what it puts there, and who is absent is not there") {
+TEST_CASE("a scenario's floor contains its objects, without absent robots") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const FloorScene floor = floor_scene(scenario);
   REQUIRE(floor.robots.size() == 2);
@@ -65,19 +65,19 @@ TEST_CASE("a scenario's floor holds what it puts there, and who is absent is not
   CHECK(floor.robots[0].heading_rad == 1);
   CHECK(floor.robots[1].team == Team::kYellow);
   CHECK(floor.robots[1].pattern == 4);
-  REQUIRE(floor.blobs.size() == 2);
-  CHECK(floor.blobs[0].circle.radius_m == 0.2);
-  CHECK(floor.blobs[1].circle.centre_m == Vec2(0, 1.2));
+  REQUIRE(floor.cylinders.size() == 2);
+  CHECK(floor.cylinders[0].circle.radius_m == 0.2);
+  CHECK(floor.cylinders[1].circle.centre_m == Vec2(0, 1.2));
   REQUIRE(floor.ball);
   CHECK(floor.ball->position_m.head<2>() == Vec2(0.6, 0.4));
-  CHECK(floor_scene(scenario, World(scenario, Hall::kBegin, 1)).robots.size() == 2);
+  CHECK(floor_scene(scenario, World(scenario, ImageSystem::kBegin, 1)).robots.size() == 2);
 }
 
-TEST_CASE("each camera's images come at its rate and after its delay, and no detections") {
-  Hall hall(parse_scenario(kFloor, "floor.yaml"));
-  hall.network.run_until(Hall::kBegin + std::chrono::seconds(1));
-  REQUIRE(hall.images.size() == 2);
-  for (const auto& [camera, images] : hall.images) {
+TEST_CASE("each camera's images arrive at its rate and after its delay, without detections") {
+  ImageSystem system(parse_scenario(kFloor, "floor.yaml"));
+  system.network.run_until(ImageSystem::kBegin + std::chrono::seconds(1));
+  REQUIRE(system.images.size() == 2);
+  for (const auto& [camera, images] : system.images) {
     CAPTURE(camera);
     CHECK(images.size() >= 56);
     CHECK(images.size() <= 60);
@@ -90,34 +90,34 @@ TEST_CASE("each camera's images come at its rate and after its delay, and no det
     CHECK(images[0].height_px() == 150);
     CHECK(images[0].image_format() == msg::IMAGE_YUV422);
     CHECK(images[0].pixels().size() == 200 * 150 * 2);
-    CHECK(images[0].head().incarnation() == 7);
+    CHECK(images[0].header().incarnation() == 7);
   }
-  for (const Duration late : hall.late) {
+  for (const Duration late : system.late) {
     CHECK(late >= std::chrono::milliseconds(25));
     CHECK(late <= std::chrono::milliseconds(26));
   }
-  CHECK(hall.detections == 0);
+  CHECK(system.detections == 0);
 }
 
-TEST_CASE("an image shows what stands before its camera") {
+TEST_CASE("an image shows the objects in its camera's view") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   scenario.ball.reset();
   scenario.opponents.clear();
-  Hall hall(scenario);
-  hall.network.run_until(Hall::kBegin + std::chrono::milliseconds(100));
-  const std::vector<CameraModel> cameras = hang_grid(scenario);
+  ImageSystem system(scenario);
+  system.network.run_until(ImageSystem::kBegin + std::chrono::milliseconds(100));
+  const std::vector<CameraModel> cameras = camera_grid(scenario);
   for (std::size_t camera = 0; camera < 2; ++camera) {
     CAPTURE(camera);
-    REQUIRE(!hall.images[static_cast<std::uint32_t>(camera)].empty());
-    const auto& pixels = hall.images[static_cast<std::uint32_t>(camera)].front().pixels();
-    const auto off = [&](const std::vector<std::uint8_t>& other) {
+    REQUIRE(!system.images[static_cast<std::uint32_t>(camera)].empty());
+    const auto& pixels = system.images[static_cast<std::uint32_t>(camera)].front().pixels();
+    const auto difference = [&](const std::vector<std::uint8_t>& other) {
       double sum = 0;
       for (std::size_t i = 0; i < other.size(); ++i) sum += std::abs(pixels[i] - other[i]);
       return sum / static_cast<double>(other.size());
     };
-    // Nothing but noise and the carpet's own texture.
-    CHECK(off(rendered(scenario, cameras[camera])) < 4);
-    CHECK(off(rendered(scenario, cameras[camera])) < 0.8 * off(rendered(scenario, cameras[1 - camera])));
+    // The difference is only noise and the texture of the field surface.
+    CHECK(difference(rendered(scenario, cameras[camera])) < 4);
+    CHECK(difference(rendered(scenario, cameras[camera])) < 0.8 * difference(rendered(scenario, cameras[1 - camera])));
   }
 }
 

@@ -35,7 +35,7 @@ msg::RobotDetection robot(RobotId id, double x_m, double y_m, double heading_rad
   return seen;
 }
 
-/// By the league's formula with a rotation matrix, as any reader of a calibration computes it.
+/// Projection by the league's formula, independent of CameraModel.
 Vec2 projected(const league::CameraCalibration& camera, const Vec3& point_m) {
   const auto& q = camera.rotation;
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
@@ -45,7 +45,7 @@ Vec2 projected(const league::CameraCalibration& camera, const Vec3& point_m) {
 
 }  // namespace
 
-TEST_CASE("frames become packets of both teams with all that a receiver needs") {
+TEST_CASE("frames become packets with both teams and all data that a receiver needs") {
   const Scenario scenario = two_teams();
   const Cameras cameras(scenario, kNow, 1);
   LeagueFrames frames(scenario, cameras.views());
@@ -61,7 +61,7 @@ TEST_CASE("frames become packets of both teams with all that a receiver needs") 
   frame.obstacles()[0].y_m(1);
   const auto decoded = league::decode_vision(encode(frames.detection(frame, kNow)));
   REQUIRE(decoded.packet);
-  const league::Detection& detection = *decoded.packet->detection;
+  const league::DetectionFrame& detection = *decoded.packet->detection;
   CHECK(detection.camera == 1);
   CHECK(detection.frame_number == 1);
   CHECK(std::chrono::abs(detection.sent - detection.captured - Duration{10'000'000}) < Duration{1000});
@@ -80,7 +80,7 @@ TEST_CASE("frames become packets of both teams with all that a receiver needs") 
   CHECK(frames.detection(frame, kNow).detection->frame_number == 2);
 }
 
-TEST_CASE("pixels are where the camera of the geometry sees them") {
+TEST_CASE("pixels agree with the cameras of the geometry") {
   const Scenario scenario = two_teams();
   const Cameras cameras(scenario, kNow, 1);
   LeagueFrames frames(scenario, cameras.views());
@@ -97,7 +97,7 @@ TEST_CASE("pixels are where the camera of the geometry sees them") {
     frame.camera(number);
     frame.robots() = {robot(3, x_m, y_m, 0)};
     const auto packet = frames.detection(frame, kNow);
-    const league::SeenRobot& seen = packet.detection->blue.at(0);
+    const league::DetectedRobot& seen = packet.detection->blue.at(0);
     const league::CameraCalibration& camera = geometry->cameras[number];
     CHECK((seen.pixel - projected(camera, {x_m, y_m, *seen.height_m})).norm() < 1e-6);
     for (const double height_m : {0.0, 0.15}) {
@@ -113,7 +113,7 @@ TEST_CASE("pixels are where the camera of the geometry sees them") {
   }
 }
 
-TEST_CASE("the geometry is the scenario's field with markings on it") {
+TEST_CASE("the geometry contains the scenario's field with its markings") {
   for (const auto& [field, goal_width_m] :
        {std::pair{Field{12, 9}, 1.8}, {Field{9, 6}, 1.0}, {Field{1.2, 0.9}, 0.15}, {Field{6, 0.9}, 0.15}}) {
     CAPTURE(field.length_m);
@@ -138,7 +138,7 @@ TEST_CASE("the geometry is the scenario's field with markings on it") {
   }
 }
 
-TEST_CASE("images show the lines that the geometry tells of") {
+TEST_CASE("images show the lines of the geometry") {
   for (const Field& field : {Field{12, 9}, Field{9, 6}, Field{4.5, 3.5}, Field{14, 4}}) {
     CAPTURE(field.length_m, field.width_m);
     const league::FieldSize size = league_field(field);
@@ -154,7 +154,7 @@ TEST_CASE("images show the lines that the geometry tells of") {
   }
 }
 
-TEST_CASE("scenarios that packets cannot tell of are refused") {
+TEST_CASE("scenarios that packets cannot represent are refused") {
   Scenario scenario = two_teams();
   scenario.vision.columns = 9;
   scenario.vision.rows = 8;

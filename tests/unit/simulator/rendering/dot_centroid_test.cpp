@@ -11,7 +11,7 @@ using namespace sidestep;
 
 namespace {
 
-/// The centroid of what differs between two frames, weighted with how much.
+/// The centroid of the difference between two frames.
 Vec2 centroid_of_difference(const cv::Mat3b& a, const cv::Mat3b& b, int channel) {
   double sum = 0, x_sum = 0, y_sum = 0;
   for (int y = 0; y < a.rows; ++y) {
@@ -25,7 +25,8 @@ Vec2 centroid_of_difference(const cv::Mat3b& a, const cv::Mat3b& b, int channel)
   return {x_sum / sum, y_sum / sum};
 }
 
-/// The centroid of a disc's image: its points projected one by one, weighted with the image's area there.
+/// The centroid of a disc's image: its points projected individually, weighted by the local scale of the
+/// image.
 Vec2 centroid_of_disc(const CameraModel& camera, const Vec2& centre_m, double height_m, double radius_m) {
   Vec2 sum(0, 0);
   double weights = 0;
@@ -35,7 +36,7 @@ Vec2 centroid_of_disc(const CameraModel& camera, const Vec2& centre_m, double he
       const Vec2 p((i + 0.5) / kSteps * 2 - 1, (j + 0.5) / kSteps * 2 - 1);
       if (p.norm() > 1) continue;
       const Vec3 point(centre_m.x() + radius_m * p.x(), centre_m.y() + radius_m * p.y(), height_m);
-      const double weight = std::abs(camera.pixels_per_metre(point)->leftCols<2>().determinant());
+      const double weight = std::abs(camera.projection_jacobian(point)->leftCols<2>().determinant());
       sum += weight * *camera.pixel_of(point);
       weights += weight;
     }
@@ -43,51 +44,51 @@ Vec2 centroid_of_disc(const CameraModel& camera, const Vec2& centre_m, double he
   return sum / weights;
 }
 
-struct Bias {
+struct ErrorStatistics {
   Vec2 sum{0, 0};
-  double squares = 0, largest = 0;
+  double squares = 0, max_error = 0;
   int count = 0;
   void add(const Vec2& error) {
     sum += error;
     squares += error.squaredNorm();
-    largest = std::max(largest, error.norm());
+    max_error = std::max(max_error, error.norm());
     ++count;
   }
 };
 
-void check(const Bias& bias, double largest_px) {
-  INFO(fmt::format("mean {:.4f} {:.4f}, RMS {:.4f}, largest {:.4f} px over {} dots",
-                   bias.sum.x() / bias.count, bias.sum.y() / bias.count, std::sqrt(bias.squares / bias.count),
-                   bias.largest, bias.count));
-  CHECK((bias.sum / bias.count).norm() < 0.002);
-  CHECK(bias.largest < largest_px);
+void check(const ErrorStatistics& errors, double max_error_px) {
+  INFO(fmt::format("mean {:.4f} {:.4f}, RMS {:.4f}, max {:.4f} px over {} dots",
+                   errors.sum.x() / errors.count, errors.sum.y() / errors.count, std::sqrt(errors.squares / errors.count),
+                   errors.max_error, errors.count));
+  CHECK((errors.sum / errors.count).norm() < 0.002);
+  CHECK(errors.max_error < max_error_px);
 }
 
-/// The front left dot of the second pattern is missing.
-MarkingLayout with_and_without() {
-  MarkingLayout layout = butterfly();
+/// The second pattern lacks the front left dot.
+MarkerLayout layout_with_missing_dot() {
+  MarkerLayout layout = butterfly();
   layout.patterns[1].colours = layout.patterns[0].colours;
   layout.patterns[1].colours[0] = Colour::kBlack;
   return layout;
 }
 
-Bias bias_of_dots(const OverheadCamera& hanging, int count, Rng& rng) {
-  const MarkingLayout layout = with_and_without();
-  const CameraModel camera = hang(hanging);
+ErrorStatistics dot_errors(const OverheadCamera& overhead_camera, int count, Rng& rng) {
+  const MarkerLayout layout = layout_with_missing_dot();
+  const CameraModel camera = overhead_camera_model(overhead_camera);
   const RenderSpec spec = plain_spec();
   FrameRenderer renderer(camera, Field{12, 9}, layout, spec, Rng(1));
-  Bias bias;
+  ErrorStatistics errors;
   for (int i = 0; i < count; ++i) {
-    SceneRobot robot = random_robot(grown(hanging.view_m, -0.15), rng);
+    SceneRobot robot = random_robot(inflated(overhead_camera.view_m, -0.15), rng);
     robot.pattern = 0;
     Image with = renderer.render(Scene{{&robot, 1}});
     robot.pattern = 1;
     Image without = renderer.render(Scene{{&robot, 1}});
     const Vec2 dot_m = robot.position_m + rotated(layout.dots[0].position_m, robot.heading_rad);
     const Vec2 exact = centroid_of_disc(camera, dot_m, spec.robot.height_m, layout.dots[0].radius_m);
-    bias.add(centroid_of_difference(rgb_of(with), rgb_of(without), 0) - exact);
+    errors.add(centroid_of_difference(rgb_of(with), rgb_of(without), 0) - exact);
   }
-  return bias;
+  return errors;
 }
 
 }  // namespace
@@ -96,34 +97,34 @@ TEST_CASE("a rendered dot lies where the camera projects it") {
   const std::uint64_t seed = 41;
   CAPTURE(seed);
   Rng rng(seed);
-  check(bias_of_dots(quarter_field(), 300, rng), 0.02);
+  check(dot_errors(quarter_field(), 300, rng), 0.02);
 }
 
 TEST_CASE("a rendered dot lies where a tilted camera projects it") {
   const std::uint64_t seed = 42;
   CAPTURE(seed);
   Rng rng(seed);
-  OverheadCamera hanging = quarter_field();
-  hanging.aside_m = Vec2(-1.5, 1);
-  // On the far side a dot has a radius of 1.5 pixels, and a whole level is a larger share of it.
-  check(bias_of_dots(hanging, 200, rng), 0.035);
+  OverheadCamera overhead_camera = quarter_field();
+  overhead_camera.lateral_offset_m = Vec2(-1.5, 1);
+  // On the far side a dot has a radius of 1.5 pixels, so that rounding to whole levels has a larger effect.
+  check(dot_errors(overhead_camera, 200, rng), 0.035);
 }
 
-TEST_CASE("a rendered ball lies where the rays that meet it say") {
+TEST_CASE("a rendered ball lies where its viewing rays hit it") {
   const std::uint64_t seed = 43;
   CAPTURE(seed);
   Rng rng(seed);
-  const CameraModel camera = hang(quarter_field());
+  const CameraModel camera = overhead_camera_model(quarter_field());
   FrameRenderer renderer(camera, Field{12, 9}, butterfly(), plain_spec(), Rng(1));
   Image empty = renderer.render(Scene{});
-  Bias bias;
+  ErrorStatistics errors;
   for (int i = 0; i < 200; ++i) {
     const SceneBall ball{Vec3(rng.uniform(-2.8, 2.8), rng.uniform(-2, 2), rng.uniform(0.0215, 0.5))};
-    // Lines under the ball weigh differently: balls near them are left out.
+    // Lines below the ball would distort the weights, so balls near lines are excluded.
     const bool is_on_line = std::abs(ball.position_m.x()) < 0.4 || std::abs(ball.position_m.y()) < 0.4 ||
                             std::abs(ball.position_m.head<2>().norm() - 0.5) < 0.3;
     const auto middle = camera.pixel_of(ball.position_m);
-    if (is_on_line || !camera.shows(*middle + Vec2(8, 8)) || !camera.shows(*middle - Vec2(8, 8))) continue;
+    if (is_on_line || !camera.is_in_image(*middle + Vec2(8, 8)) || !camera.is_in_image(*middle - Vec2(8, 8))) continue;
     Image frame = renderer.render(Scene{{}, {}, ball});
     Vec2 sum(0, 0);
     int hits = 0;
@@ -136,8 +137,8 @@ TEST_CASE("a rendered ball lies where the rays that meet it say") {
         ++hits;
       }
     }
-    bias.add(centroid_of_difference(rgb_of(frame), rgb_of(empty), 0) - sum / hits);
+    errors.add(centroid_of_difference(rgb_of(frame), rgb_of(empty), 0) - sum / hits);
   }
-  CHECK(bias.count > 60);
-  check(bias, 0.02);
+  CHECK(errors.count > 60);
+  check(errors, 0.02);
 }

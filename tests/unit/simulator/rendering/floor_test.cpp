@@ -8,7 +8,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("lines stand where the league draws them") {
+TEST_CASE("lines are where the league's rules place them") {
   const FieldLines a(Field{12, 9}), b(Field{9, 6});
   for (const Vec2& p : {Vec2(6, 1), Vec2(-6, -4.5), Vec2(3, 4.5), Vec2(0, 3), Vec2(2, 0), Vec2(0.5, 0),
                         Vec2(0, -0.5), Vec2(4.2, 1), Vec2(-5, 1.8), Vec2(4.2, -1.8)})
@@ -21,7 +21,7 @@ TEST_CASE("lines stand where the league draws them") {
   CHECK(a.distance_m(Vec2(0, 4.6)) == Approx(0.095));
 }
 
-TEST_CASE("light falls to its share at the far end") {
+TEST_CASE("light falls off to its share at the far end") {
   RenderSpec spec;
   spec.far_light = 0.6;
   const Field field{12, 9};
@@ -29,20 +29,20 @@ TEST_CASE("light falls to its share at the far end") {
   CHECK(light_at(spec, field, Vec2(0, -4)) == Approx(0.8));
   CHECK(light_at(spec, field, Vec2(6, 0)) == Approx(0.6));
   CHECK(light_at(spec, field, Vec2(9, 0)) == Approx(0.6));
-  spec.light_fall = LightFall::kRadial;
+  spec.light_falloff = LightFalloff::kRadial;
   CHECK(light_at(spec, field, Vec2(0, 0)) == Approx(1));
   CHECK(light_at(spec, field, Vec2(6, -4.5)) == Approx(0.6));
 }
 
 TEST_CASE("a white line in the image runs where the camera projects it") {
-  const CameraModel camera = hang(quarter_field());
+  const CameraModel camera = overhead_camera_model(quarter_field());
   FrameRenderer renderer(camera, Field{12, 9}, butterfly(), plain_spec(), Rng(1));
   Image frame = renderer.render(Scene{});
   const cv::Mat3b rgb = rgb_of(frame);
   int rows = 0;
   double sum = 0;
   for (int y = 20; y < 560; ++y) {
-    // The halfway line, x = 0; the centre circle and the other line cross it.
+    // Along the halfway line, x = 0, without the crossings with the centre circle and the centre line.
     const Vec2 place = *camera.point_at(Vec2(389.5, y), 0);
     if (std::abs(place.y()) < 0.1 || std::abs(std::abs(place.y()) - 0.5) < 0.1) continue;
     const double expected = camera.pixel_of(Vec3(0, place.y(), 0))->x();

@@ -17,24 +17,24 @@ namespace {
 
 const Field kField{12, 9};
 
-struct Things {
+struct RandomScene {
   std::vector<SceneRobot> robots;
-  std::vector<SceneBlob> blobs;
+  std::vector<SceneCylinder> cylinders;
   SceneBall ball;
-  Scene scene() const { return {robots, blobs, ball}; }
+  Scene scene() const { return {robots, cylinders, ball}; }
 };
 
-/// Some of them overlap or stand outside the image.
-Things random_things(Rng& rng) {
-  Things things;
-  const Box view_m = grown(quarter_field().view_m, 0.4);
-  for (int i = 0; i < 12; ++i) things.robots.push_back(random_robot(view_m, rng));
-  things.robots[1].position_m = things.robots[0].position_m + Vec2(0.18, 0.02);
+/// Some objects overlap or are outside the image.
+RandomScene random_scene(Rng& rng) {
+  RandomScene objects;
+  const Box view_m = inflated(quarter_field().view_m, 0.4);
+  for (int i = 0; i < 12; ++i) objects.robots.push_back(random_robot(view_m, rng));
+  objects.robots[1].position_m = objects.robots[0].position_m + Vec2(0.18, 0.02);
   for (int i = 0; i < 3; ++i)
-    things.blobs.push_back(
+    objects.cylinders.push_back(
         {{random_robot(view_m, rng).position_m, rng.uniform(0.05, 0.3)}, rng.uniform(0.05, 0.4)});
-  things.ball.position_m = Vec3(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0215);
-  return things;
+  objects.ball.position_m = Vec3(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0215);
+  return objects;
 }
 
 bool are_equal(const Image& a, const Image& b) {
@@ -43,28 +43,28 @@ bool are_equal(const Image& a, const Image& b) {
 }
 
 FrameRenderer renderer_with(const RenderSpec& spec, std::uint64_t seed = 1) {
-  return FrameRenderer(hang(quarter_field()), kField, butterfly(), spec, Rng(seed));
+  return FrameRenderer(overhead_camera_model(quarter_field()), kField, butterfly(), spec, Rng(seed));
 }
 
 }  // namespace
 
 TEST_CASE("the same seed gives the same frames and another seed others") {
   Rng rng(71);
-  const Things things = random_things(rng);
+  const RandomScene objects = random_scene(rng);
   for (const PixelFormat format : {PixelFormat::kRgb, PixelFormat::kYuv422}) {
     RenderSpec spec;
     spec.format = format;
     FrameRenderer a = renderer_with(spec, 5), b = renderer_with(spec, 5), c = renderer_with(spec, 6);
-    const Image first = a.render(things.scene());
-    CHECK(are_equal(first, b.render(things.scene())));
-    CHECK(!are_equal(first, c.render(things.scene())));
-    const Image second = a.render(things.scene());
+    const Image first = a.render(objects.scene());
+    CHECK(are_equal(first, b.render(objects.scene())));
+    CHECK(!are_equal(first, c.render(objects.scene())));
+    const Image second = a.render(objects.scene());
     CHECK(!are_equal(first, second));
-    CHECK(are_equal(second, b.render(things.scene())));
+    CHECK(are_equal(second, b.render(objects.scene())));
   }
 }
 
-TEST_CASE("what moves away leaves the floor as it was") {
+TEST_CASE("a frame shows no traces of earlier objects") {
   const std::uint64_t seed = 72;
   CAPTURE(seed);
   Rng rng(seed);
@@ -74,13 +74,13 @@ TEST_CASE("what moves away leaves the floor as it was") {
   FrameRenderer renderer = renderer_with(spec);
   const Image empty = renderer.render(Scene{});
   for (int i = 0; i < 20; ++i) {
-    const Image frame = renderer.render(random_things(rng).scene());
+    const Image frame = renderer.render(random_scene(rng).scene());
     CHECK(!are_equal(frame, empty));
     CHECK(are_equal(renderer.render(Scene{}), empty));
   }
 }
 
-TEST_CASE("the lens blurs the whole picture") {
+TEST_CASE("the lens blurs the whole image") {
   const std::uint64_t seed = 73;
   CAPTURE(seed);
   Rng rng(seed);
@@ -89,16 +89,16 @@ TEST_CASE("the lens blurs the whole picture") {
   spec.blur_px = 0.8;
   FrameRenderer soft = renderer_with(spec);
   for (int i = 0; i < 10; ++i) {
-    const Things things = random_things(rng);
-    Image frame = sharp.render(things.scene());
+    const RandomScene objects = random_scene(rng);
+    Image frame = sharp.render(objects.scene());
     cv::Mat3b expected;
     cv::GaussianBlur(rgb_of(frame), expected, {5, 5}, 0.8, 0.8, cv::BORDER_REPLICATE);
-    Image blurred = soft.render(things.scene());
+    Image blurred = soft.render(objects.scene());
     CHECK(cv::norm(rgb_of(blurred), expected, cv::NORM_INF) == 0);
   }
 }
 
-TEST_CASE("a frame in YUV shows what one in RGB shows") {
+TEST_CASE("a frame in YUV shows the same as one in RGB") {
   const std::uint64_t seed = 74;
   CAPTURE(seed);
   Rng rng(seed);
@@ -108,8 +108,8 @@ TEST_CASE("a frame in YUV shows what one in RGB shows") {
   FrameRenderer rgb = renderer_with(spec);
   spec.format = PixelFormat::kYuv422;
   FrameRenderer yuv = renderer_with(spec);
-  const Things things = random_things(rng);
-  const Image a = rgb.render(things.scene()), b = yuv.render(things.scene());
+  const RandomScene objects = random_scene(rng);
+  const Image a = rgb.render(objects.scene()), b = yuv.render(objects.scene());
   for (int y = 0; y < 580; ++y) {
     for (int x = 0; x < 780; x += 2) {
       const std::uint8_t* const p = a.view().row(y) + 3 * x;
@@ -123,47 +123,48 @@ TEST_CASE("a frame in YUV shows what one in RGB shows") {
   }
 }
 
-TEST_CASE("what stands nearer to the camera hides what is behind it") {
+TEST_CASE("nearer objects hide farther ones") {
   FrameRenderer renderer = renderer_with(plain_spec());
-  // The camera hangs over the origin: a robot at x = 2 hides the floor behind it for 80 mm.
+  // The camera is above the origin: a robot at x = 2 hides 80 mm of the floor behind it.
   const SceneRobot robot{Team::kBlue, 3, Vec2(2, 0), 3};
   const Image alone = renderer.render(Scene{{&robot, 1}});
   const Image hidden = renderer.render(Scene{{&robot, 1}, {}, SceneBall{Vec3(2.112, 0, 0.0215)}});
   CHECK(are_equal(alone, hidden));
   const Image seen = renderer.render(Scene{{&robot, 1}, {}, SceneBall{Vec3(1.88, 0, 0.0215)}});
   CHECK(!are_equal(alone, seen));
-  // Whichever is named first.
+  // The order in the scene does not matter.
   const std::vector<SceneRobot> pair{robot, {Team::kYellow, 5, Vec2(2.185, 0), 1}};
   const std::vector<SceneRobot> reversed{pair[1], pair[0]};
   CHECK(are_equal(renderer.render(Scene{pair}), renderer.render(Scene{reversed})));
 }
 
-TEST_CASE("light and the camera's white balance colour everything") {
+TEST_CASE("light and white balance affect all colours") {
   RenderSpec spec = plain_spec();
   spec.far_light = 0.5;
   FrameRenderer renderer = renderer_with(spec);
   const Vec2 place(2.5, 1);
-  const SceneBlob blob{{place, 0.2}, 0.01, Rgb{200, 100, 50}};
+  const SceneCylinder cylinder{{place, 0.2}, 0.01, Rgb{200, 100, 50}};
   const Vec2 pixel = *renderer.camera().pixel_of(Vec3(place.x(), place.y(), 0.01));
-  const auto seen = [&](const Scene& scene) {
-    Image frame = renderer.render(scene);
+  const auto pixel_colour = [&](FrameRenderer& with, const Scene& scene) {
+    Image frame = with.render(scene);
     return rgb_of(frame)(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()));
   };
   const double light = 1 - 0.5 * (2.5 + 6) / 12;
-  const cv::Vec3b plain = seen(Scene{{}, {&blob, 1}});
+  const cv::Vec3b plain = pixel_colour(renderer, Scene{{}, {&cylinder, 1}});
   CHECK(std::abs(plain[0] - 200 * light) < 1);
   CHECK(std::abs(plain[1] - 100 * light) < 1);
-  const cv::Vec3b carpet = seen(Scene{});
-  CHECK(std::abs(carpet[1] - 98 * light) < 1);
-  renderer.set_colour_gain({1.1, 1, 0.9});
-  const cv::Vec3b tinted = seen(Scene{{}, {&blob, 1}});
+  const cv::Vec3b surface = pixel_colour(renderer, Scene{});
+  CHECK(std::abs(surface[1] - 98 * light) < 1);
+  spec.colour_gain = {1.1, 1, 0.9};
+  FrameRenderer tinting = renderer_with(spec);
+  const cv::Vec3b tinted = pixel_colour(tinting, Scene{{}, {&cylinder, 1}});
   CHECK(std::abs(tinted[0] - 220 * light) < 1);
   CHECK(std::abs(tinted[1] - 100 * light) < 1);
   CHECK(std::abs(tinted[2] - 45 * light) < 1);
-  CHECK(std::abs(seen(Scene{})[0] - 1.1 * carpet[0]) < 1);
+  CHECK(std::abs(pixel_colour(tinting, Scene{})[0] - 1.1 * surface[0]) < 1);
 }
 
-TEST_CASE("robots wear their team and id and hide what they are told to") {
+TEST_CASE("robots show their team and id, without their hidden dots") {
   FrameRenderer renderer = renderer_with(plain_spec());
   const auto colour_at = [&](const SceneRobot& robot, const Vec2& in_robot) {
     Image frame = renderer.render(Scene{{&robot, 1}});
@@ -173,7 +174,7 @@ TEST_CASE("robots wear their team and id and hide what they are told to") {
         rgb_of(frame)(static_cast<int>(std::lround(pixel.y())), static_cast<int>(std::lround(pixel.x())));
     return Rgb{c[0], c[1], c[2]};
   };
-  for (const MarkingPattern& pattern : butterfly().patterns) {
+  for (const MarkerPattern& pattern : butterfly().patterns) {
     for (const Team team : {Team::kBlue, Team::kYellow}) {
       SceneRobot robot{team, pattern.id, Vec2(0.3 * pattern.id - 2.4, 0.8), 0.7 * pattern.id};
       CHECK(colour_at(robot, Vec2(0, 0)) == named(butterfly().team_colour(team)).rgb);
@@ -189,19 +190,19 @@ TEST_CASE("robots wear their team and id and hide what they are told to") {
 }
 
 TEST_CASE("an odd width is refused for YUV") {
-  OverheadCamera hanging = quarter_field();
-  hanging.width_px = 781;
+  OverheadCamera overhead_camera = quarter_field();
+  overhead_camera.width_px = 781;
   RenderSpec spec;
-  CHECK_THROWS_AS(FrameRenderer(hang(hanging), kField, butterfly(), spec, Rng(1)), std::invalid_argument);
+  CHECK_THROWS_AS(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1)), std::invalid_argument);
   spec.format = PixelFormat::kRgb;
-  CHECK_NOTHROW(FrameRenderer(hang(hanging), kField, butterfly(), spec, Rng(1)).render(Scene{}));
+  CHECK_NOTHROW(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1)).render(Scene{}));
 }
 
-TEST_CASE("robots at places that no camera sees are left out") {
+TEST_CASE("robots outside the camera's view are omitted") {
   RenderSpec spec = plain_spec();
-  OverheadCamera hanging = quarter_field();
-  hanging.aside_m = Vec2(-6, 0);  // far tilted: half of the world is behind it
-  FrameRenderer renderer(hang(hanging), kField, butterfly(), spec, Rng(1));
+  OverheadCamera overhead_camera = quarter_field();
+  overhead_camera.lateral_offset_m = Vec2(-6, 0);  // strongly tilted: half of the world is behind it
+  FrameRenderer renderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1));
   const Image empty = renderer.render(Scene{});
   for (const Vec2& place : {Vec2(-60, 0), Vec2(1000, 0), Vec2(0, 1e6), Vec2(-1e9, 1e9)}) {
     const SceneRobot robot{Team::kBlue, 0, place, 0};

@@ -7,14 +7,14 @@
 
 namespace sidestep {
 
-/// Even light, a sharp lens, no noise: geometry alone.
+/// Uniform light, no blur and no noise: for tests of geometry.
 inline RenderSpec plain_spec() {
   RenderSpec spec;
   spec.format = PixelFormat::kRgb;
   spec.far_light = 1;
   spec.blur_px = 0;
   spec.noise = 0;
-  spec.carpet_texture = 0;
+  spec.surface_texture = 0;
   return spec;
 }
 

@@ -13,7 +13,7 @@ struct Moments {
   double mean, sd;
 };
 
-/// Of every step-th byte from the first on.
+/// The moments of every step-th byte, beginning at `first`.
 Moments moments(const std::vector<std::uint8_t>& bytes, std::size_t first, std::size_t step) {
   double sum = 0, squares = 0, count = 0;
   for (std::size_t i = first; i < bytes.size(); i += step, ++count) {
@@ -24,12 +24,12 @@ Moments moments(const std::vector<std::uint8_t>& bytes, std::size_t first, std::
   return {mean, std::sqrt(squares / count - mean * mean)};
 }
 
-/// Rounding to whole levels adds a twelfth.
+/// Rounding to whole levels adds a variance of 1/12.
 double rounded_sd(double sd) { return std::sqrt(sd * sd + 1.0 / 12); }
 
 }  // namespace
 
-TEST_CASE("noise has the deviation asked for in red green and blue") {
+TEST_CASE("noise has the given deviation in red, green and blue") {
   Rng rng(61);
   const SensorNoise noise(PixelFormat::kRgb, 2.5, 780, rng);
   const std::vector<std::uint8_t> clean(780 * 3 * 200, 100);
@@ -42,7 +42,7 @@ TEST_CASE("noise has the deviation asked for in red green and blue") {
   }
 }
 
-TEST_CASE("noise in YUV is what noise in red green and blue makes of it") {
+TEST_CASE("noise in YUV is the converted noise of red, green and blue") {
   Rng rng(62);
   const SensorNoise noise(PixelFormat::kYuv422, 3, 780, rng);
   const std::vector<std::uint8_t> clean(780 * 2 * 300, 100);
@@ -59,20 +59,20 @@ TEST_CASE("noise in YUV is what noise in red green and blue makes of it") {
   }
 }
 
-TEST_CASE("noise is cut off at black and white") {
+TEST_CASE("noise is clamped at black and white") {
   Rng rng(63);
   const SensorNoise noise(PixelFormat::kRgb, 30, 100, rng);
   std::vector<std::uint8_t> clean(100 * 3 * 100), out(clean.size());
   for (std::size_t i = 0; i < clean.size(); ++i) clean[i] = i % 2 == 0 ? 2 : 253;
   noise.add(clean.data(), 100, rng, out.data());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    // It never goes round to the other end.
+    // It never wraps around.
     if (i % 2 == 0) REQUIRE(out[i] < 200);
     if (i % 2 == 1) REQUIRE(out[i] > 55);
   }
 }
 
-TEST_CASE("frames and rows do not share their noise") {
+TEST_CASE("the noise of different frames and rows is uncorrelated") {
   Rng rng(64);
   const int rows = 300, width = 780;
   const SensorNoise noise(PixelFormat::kRgb, 3, width, rng);
@@ -91,7 +91,7 @@ TEST_CASE("frames and rows do not share their noise") {
   CHECK(std::abs(between_rows / double(a.size())) < 0.05);
 }
 
-TEST_CASE("without noise a frame stays as it is") {
+TEST_CASE("without noise a frame is unchanged") {
   Rng rng(65);
   const SensorNoise noise(PixelFormat::kYuv422, 0, 10, rng);
   std::vector<std::uint8_t> clean(10 * 2 * 5), out(clean.size());

@@ -21,33 +21,33 @@ Canvas empty_canvas(const CameraModel& camera) {
   return canvas;
 }
 
-bool is_in_outline(const VerticalBody& body, const Vec2& p) {
+bool is_in_cross_section(const VerticalBody& body, const Vec2& p) {
   return p.norm() <= body.radius_m && p.x() <= body.front_m;
 }
 
-/// What the ray through a point of the image meets first, from the top down in small steps.
-Light slow_light(const VerticalBody& body, const CameraModel& camera, const Vec2& pixel) {
+/// The light at a point of the image, by following its viewing ray from the top down in small steps.
+Light reference_light(const VerticalBody& body, const CameraModel& camera, const Vec2& pixel) {
   const auto in_frame = [&](double height_m) {
     return rotated(*camera.point_at(pixel, height_m) - body.position_m, -body.heading_rad);
   };
   const Vec2 top = in_frame(body.height_m), floor = in_frame(0);
-  if (is_in_outline(body, top)) {
+  if (is_in_cross_section(body, top)) {
     for (const TopDot& dot : body.dots)
       if ((top - dot.position_m).norm() <= dot.radius_m) return dot.light;
     return body.top;
   }
   constexpr int kSteps = 400;
   for (int i = 1; i <= kSteps; ++i)
-    if (is_in_outline(body, top + (floor - top) * i / kSteps)) return body.side;
+    if (is_in_cross_section(body, top + (floor - top) * i / kSteps)) return body.side;
   return kGround;
 }
 
-Light slow_pixel(const VerticalBody& body, const CameraModel& camera, int x, int y) {
+Light reference_pixel(const VerticalBody& body, const CameraModel& camera, int x, int y) {
   constexpr int kSteps = 12;
   Light sum(0, 0, 0);
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j)
-      sum += slow_light(body, camera, Vec2(x + (i + 0.5) / kSteps - 0.5, y + (j + 0.5) / kSteps - 0.5));
+      sum += reference_light(body, camera, Vec2(x + (i + 0.5) / kSteps - 0.5, y + (j + 0.5) / kSteps - 0.5));
   return sum / (kSteps * kSteps);
 }
 
@@ -70,19 +70,19 @@ VerticalBody random_body(const Box& view_m, Rng& rng) {
   return body;
 }
 
-OverheadCamera random_view(Rng& rng) {
-  OverheadCamera hanging;
-  hanging.view_m = {{-1.2, -0.9}, {1.2, 0.9}};
-  hanging.height_m = rng.uniform(1.5, 4);
-  hanging.aside_m = {rng.uniform(-1, 1), rng.uniform(-1, 1)};
-  hanging.width_px = 320;
-  hanging.height_px = 240;
-  return hanging;
+OverheadCamera random_camera(Rng& rng) {
+  OverheadCamera overhead_camera;
+  overhead_camera.view_m = {{-1.2, -0.9}, {1.2, 0.9}};
+  overhead_camera.height_m = rng.uniform(1.5, 4);
+  overhead_camera.lateral_offset_m = {rng.uniform(-1, 1), rng.uniform(-1, 1)};
+  overhead_camera.width_px = 320;
+  overhead_camera.height_px = 240;
+  return overhead_camera;
 }
 
 }  // namespace
 
-TEST_CASE("a body looks as rays that are followed one by one see it") {
+TEST_CASE("a drawn body matches individually traced viewing rays") {
   const std::uint64_t seed = 51;
   CAPTURE(seed);
   Rng rng(seed);
@@ -90,9 +90,9 @@ TEST_CASE("a body looks as rays that are followed one by one see it") {
   int edges = 0;
   for (int i = 0; i < 25; ++i) {
     CAPTURE(i);
-    const OverheadCamera hanging = random_view(rng);
-    const CameraModel camera = hang(hanging);
-    const VerticalBody body = random_body(hanging.view_m, rng);
+    const OverheadCamera overhead_camera = random_camera(rng);
+    const CameraModel camera = overhead_camera_model(overhead_camera);
+    const VerticalBody body = random_body(overhead_camera.view_m, rng);
     Canvas canvas = empty_canvas(camera);
     const cv::Rect rect = draw(body, camera, 0, canvas);
     REQUIRE(!rect.empty());
@@ -102,10 +102,10 @@ TEST_CASE("a body looks as rays that are followed one by one see it") {
           REQUIRE(light_of(canvas(y, x)) == kGround);
           continue;
         }
-        const Light slow = slow_pixel(body, camera, x, y);
-        const double error = (slow - light_of(canvas(y, x))).cwiseAbs().maxCoeff();
-        CAPTURE(x, y, canvas(y, x), slow.transpose());
-        // An edge of 220 levels, counted over 128 points here and 144 there.
+        const Light expected = reference_pixel(body, camera, x, y);
+        const double error = (expected - light_of(canvas(y, x))).cwiseAbs().maxCoeff();
+        CAPTURE(x, y, canvas(y, x), expected.transpose());
+        // At an edge of 220 levels, by 128 samples in draw() and 144 in the reference.
         REQUIRE(error <= 16);
         if (error == 0) continue;
         squares += error * error;
@@ -117,15 +117,15 @@ TEST_CASE("a body looks as rays that are followed one by one see it") {
   CHECK(std::sqrt(squares / edges) < 3);
 }
 
-TEST_CASE("nothing is seen beyond the place that draw names and the image") {
+TEST_CASE("draw changes only pixels in the returned rectangle, which is within the image") {
   const std::uint64_t seed = 52;
   CAPTURE(seed);
   Rng rng(seed);
   int partly = 0, outside = 0;
   for (int i = 0; i < 2000; ++i) {
-    const OverheadCamera hanging = random_view(rng);
-    const CameraModel camera = hang(hanging);
-    const VerticalBody body = random_body(grown(hanging.view_m, 1), rng);
+    const OverheadCamera overhead_camera = random_camera(rng);
+    const CameraModel camera = overhead_camera_model(overhead_camera);
+    const VerticalBody body = random_body(inflated(overhead_camera.view_m, 1), rng);
     Canvas canvas = empty_canvas(camera);
     const cv::Rect rect = draw(body, camera, 0, canvas);
     const cv::Rect image(0, 0, canvas.cols, canvas.rows);
@@ -140,14 +140,14 @@ TEST_CASE("nothing is seen beyond the place that draw names and the image") {
   CHECK(outside > 100);
 }
 
-TEST_CASE("a body that moves while the shutter is open looks like the mean of its instants") {
+TEST_CASE("a body that moves during the exposure looks like the mean over its positions") {
   const std::uint64_t seed = 53;
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 8; ++i) {
-    const OverheadCamera hanging = random_view(rng);
-    const CameraModel camera = hang(hanging);
-    VerticalBody body = random_body(grown(hanging.view_m, -0.2), rng);
+    const OverheadCamera overhead_camera = random_camera(rng);
+    const CameraModel camera = overhead_camera_model(overhead_camera);
+    VerticalBody body = random_body(inflated(overhead_camera.view_m, -0.2), rng);
     body.velocity_mps = {rng.uniform(-2, 2), rng.uniform(-2, 2)};
     body.angular_radps = rng.uniform(-6, 6);
     const double exposure_s = 0.01;
@@ -170,20 +170,20 @@ TEST_CASE("a body that moves while the shutter is open looks like the mean of it
     }
     cv::Mat3f exact;
     blurred.convertTo(exact, CV_32F);
-    double largest = 0, squares = 0;
+    double max_error = 0, squares = 0;
     int changed = 0;
     for (int y = 0; y < sum.rows; ++y) {
       for (int x = 0; x < sum.cols; ++x) {
         const cv::Vec3f d = sum(y, x) - exact(y, x);
         const double error = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-        largest = std::max(largest, error);
+        max_error = std::max(max_error, error);
         squares += error * error;
         changed += error > 0.01;
       }
     }
-    INFO(fmt::format("largest {:.1f}, RMS {:.2f} levels over {} pixels", largest,
+    INFO(fmt::format("max {:.1f}, RMS {:.2f} levels over {} pixels", max_error,
                      std::sqrt(squares / changed), changed));
-    CHECK(largest < 24);
+    CHECK(max_error < 24);
     CHECK(std::sqrt(squares / changed) < 4);
   }
 }

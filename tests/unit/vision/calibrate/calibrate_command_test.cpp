@@ -3,13 +3,13 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <unistd.h>
 
-#include "vision/cameras/camera_file.hpp"
+#include "common/file/write_file.hpp"
 #include "common/image/picture.hpp"
 #include "common/process/process.hpp"
 #include "tests/unit/vision/calibrate/rendered_start.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "vision/colours/colour_file.hpp"
 
 using namespace sidestep;
@@ -39,7 +39,7 @@ void save_start(const std::string& scenario_file, std::size_t camera, const std:
   const Scenario scenario = load_scenario(scenario_file);
   RenderSpec spec;
   spec.format = PixelFormat::kRgb;
-  write_png(bgr_of(rendered_start(scenario, hang_grid(scenario)[camera], spec, 1).view()), path);
+  write_png(bgr_of(rendered_start(scenario, camera_grid(scenario)[camera], spec, 1).view()), path);
 }
 
 /// Robots found in frames of a scenario's cameras by the thresholds of a file.
@@ -49,10 +49,10 @@ std::size_t found(const std::string& scenario_file, const std::string& colours_f
   RenderSpec spec;
   spec.format = colours.format;
   std::size_t sum = 0;
-  for (const CameraModel& camera : hang_grid(scenario)) {
-    Detector reader(camera, task_of(scenario, colours.boxes));
+  for (const CameraModel& camera : camera_grid(scenario)) {
+    Detector detector(camera, settings_of(scenario, colours.boxes));
     msg::DetectionFrame frame;
-    reader.read(rendered_start(scenario, camera, spec, 2).view(), {}, {}, frame);
+    detector.detect(rendered_start(scenario, camera, spec, 2).view(), {}, {}, frame);
     sum += found_at_start(scenario, frame);
   }
   return sum;
@@ -60,7 +60,7 @@ std::size_t found(const std::string& scenario_file, const std::string& colours_f
 
 }  // namespace
 
-TEST_CASE("a picture of the start makes a file by which all robots are found") {
+TEST_CASE("thresholds learned from one picture of the start find all robots") {
   const Folder folder;
   save_start(kFloorFile, 0, folder / "frame.png");
   const std::string format = GENERATE("yuv422", "rgb");
@@ -69,7 +69,7 @@ TEST_CASE("a picture of the start makes a file by which all robots are found") {
   CHECK(found(kFloorFile, folder / "c.yaml") == 6);
 }
 
-TEST_CASE("pictures of several cameras make one file") {
+TEST_CASE("pictures of several cameras give one file") {
   const Folder folder;
   save_start(kCrossing, 0, folder / "left.png");
   save_start(kCrossing, 1, folder / "right.png");
@@ -78,11 +78,11 @@ TEST_CASE("pictures of several cameras make one file") {
   CHECK(found(kCrossing, folder / "c.yaml") == load_scenario(kCrossing).robots.size());
 }
 
-TEST_CASE("cameras come from a file when there is one") {
+TEST_CASE("cameras are read from a file if given") {
   const Folder folder;
   save_start(kFloorFile, 0, folder / "frame.png");
-  CameraParameters camera = hang_grid(load_scenario(kFloorFile))[0].parameters();
-  save_cameras({{3, camera}}, folder / "cameras.yaml");
+  CameraParameters camera = camera_grid(load_scenario(kFloorFile))[0].parameters();
+  write_file(folder / "cameras.yaml", cameras_text({{3, camera}}));
   const std::vector<std::string> basic{kFloorFile, folder / "frame.png", "--cameras", folder / "cameras.yaml",
                                        "--out",    folder / "c.yaml"};
   const auto with = [&](std::vector<std::string> more) {
@@ -93,17 +93,17 @@ TEST_CASE("cameras come from a file when there is one") {
   CHECK(found(kFloorFile, folder / "c.yaml") == 6);
   CHECK(with({"--camera", "0"}) == kExitUsage);
   camera.width_px = 640;
-  save_cameras({{3, camera}}, folder / "cameras.yaml");
+  write_file(folder / "cameras.yaml", cameras_text({{3, camera}}));
   CHECK(with({"--camera", "3"}) == kExitUsage);
 }
 
-TEST_CASE("what makes no sense is refused and nothing is written") {
+TEST_CASE("invalid arguments and pictures are refused and nothing is written") {
   const Folder folder;
   save_start(kFloorFile, 0, folder / "frame.png");
   save_start(kCrossing, 0, folder / "elsewhere.png");
-  std::ofstream(folder / "text.png") << "no picture\n";
-  std::ofstream(folder / "absent.yaml") << "robots: [{id: 0, absent: true, team: blue, start_m: [0, 0], "
-                                           "goals_m: [[1, 0]]}]\n";
+  write_file(folder / "text.png", "no picture\n");
+  write_file(folder / "absent.yaml",
+             "robots: [{id: 0, absent: true, team: blue, start_m: [0, 0], goals_m: [[1, 0]]}]\n");
   const std::string out = folder / "c.yaml";
   const auto run = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--out", out});
@@ -120,5 +120,5 @@ TEST_CASE("what makes no sense is refused and nothing is written") {
   CHECK(run({kFloorFile, folder / "frame.png", "--format", "bgr"}) == kExitUsage);
   CHECK(run({folder / "absent.yaml", folder / "frame.png"}) == kExitUsage);
   CHECK(run({kFloorFile, folder / "elsewhere.png"}) == kExitFailure);
-  CHECK(calibrate({kFloorFile, folder / "frame.png", "--out", folder / "no/such/folder"}) == kExitFailure);
+  CHECK(calibrate({kFloorFile, folder / "frame.png", "--out", folder / "frame.png/c.yaml"}) == kExitFailure);
 }

@@ -8,79 +8,79 @@
 using namespace sidestep;
 using namespace sidestep::test;
 
-TEST_CASE("colours learned from one frame find robots and obstacles in frames of other light") {
+TEST_CASE("colours learned from one frame find robots and obstacles in different light") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   const double drift = GENERATE(0.0, 0.1, -0.1);
   CAPTURE(format, drift);
   const Scenario scenario = load_scenario(kFloorFile);
-  const CameraModel camera = hang_grid(scenario)[0];
+  const CameraModel camera = camera_grid(scenario)[0];
   RenderSpec spec;
   spec.format = format;
   const Image image = rendered_start(scenario, camera, spec, 1);
-  const std::vector<KnownImage> known{{image.view(), floor_at_start(scenario, butterfly(), camera)}};
-  const LearnedColours learned = learn_colours(known, colours_at_start(scenario, butterfly()));
+  const std::vector<LabelledImage> labelled{{image.view(), floor_labels_at_start(scenario, butterfly(), camera)}};
+  const LearnedColours learned = learn_colours(labelled, colours_at_start(scenario, butterfly()));
   CHECK(learned.warnings.empty());
   CHECK(learned.thresholds.format == format);
   REQUIRE(learned.colours.size() == 5);
   for (const LearnedColour& one : learned.colours) {
     CHECK(one.pixels > 30);
-    CHECK(one.told > 0.99);
+    CHECK(one.recall > 0.99);
   }
-  CHECK(learned.ground_named < 1e-3);
+  CHECK(learned.ground_false_positives < 1e-3);
 
   spec.colour_gain = {1 + drift, 1, 1 - drift};
   spec.far_light = 0.7;
-  Detector reader(camera, task_of(scenario, learned.thresholds.boxes));
+  Detector detector(camera, settings_of(scenario, learned.thresholds.boxes));
   msg::DetectionFrame frame;
   for (std::uint64_t seed = 2; seed < 7; ++seed) {
     CAPTURE(seed);
-    reader.read(rendered_start(scenario, camera, spec, seed).view(), {}, {}, frame);
+    detector.detect(rendered_start(scenario, camera, spec, seed).view(), {}, {}, frame);
     CHECK(found_at_start(scenario, frame) == scenario.robots.size());
     if (drift == 0) CHECK(frame.ball_count() == 1);
-    // The obstacle and the opponent, of which nothing was learned.
+    // The obstacle and the opponent, whose colours were not learned.
     CHECK(frame.obstacle_count() == 2);
   }
 }
 
-TEST_CASE("learning says what was not seen and what does not stand where it should") {
+TEST_CASE("learning warns of missing colours and of misplaced labels") {
   const Scenario scenario = load_scenario(kFloorFile);
-  const CameraModel camera = hang_grid(scenario)[0];
+  const CameraModel camera = camera_grid(scenario)[0];
   RenderSpec spec;
   const Image image = rendered_start(scenario, camera, spec, 1);
-  KnownFloor floor = floor_at_start(scenario, butterfly(), camera);
+  FloorLabels labels = floor_labels_at_start(scenario, butterfly(), camera);
   const std::vector<Colour> expected = colours_at_start(scenario, butterfly());
   const auto warnings = [&] {
-    const std::vector<KnownImage> known{{image.view(), floor}};
+    const std::vector<LabelledImage> labelled{{image.view(), labels}};
     std::string all;
-    for (const std::string& warning : learn_colours(known, expected).warnings) all += warning + "\n";
+    for (const std::string& warning : learn_colours(labelled, expected).warnings) all += warning + "\n";
     return all;
   };
   SECTION("a colour that is missing") {
-    std::erase_if(floor.discs, [](const KnownDisc& disc) { return disc.colour == Colour::kYellow; });
-    CHECK_THAT(warnings(), Catch::Contains("nothing yellow is in the image"));
+    std::erase_if(labels.discs, [](const LabelledDisc& disc) { return disc.colour == Colour::kYellow; });
+    CHECK_THAT(warnings(), Catch::Contains("the images show nothing yellow"));
   }
-  SECTION("dots that are taken for each other") {
-    for (KnownDisc& disc : floor.discs) {
+  SECTION("swapped labels") {
+    for (LabelledDisc& disc : labels.discs) {
       const bool is_pink = disc.colour == Colour::kPink, is_green = disc.colour == Colour::kGreen;
       if ((is_pink || is_green) && disc.centre_px.x() < 390)
         disc.colour = is_pink ? Colour::kGreen : Colour::kPink;
     }
     CHECK_THAT(warnings(), Catch::Contains("green and pink overlap"));
-    CHECK_THAT(warnings(), Catch::Contains("of what should be pink"));
+    CHECK_THAT(warnings(), Catch::Contains("of the pixels labelled pink"));
   }
-  SECTION("everything a hand's breadth aside") {
-    for (KnownDisc& disc : floor.discs) disc.centre_px.x() += 20;
-    CHECK_THAT(warnings(), Catch::Contains("does everything stand where"));
+  SECTION("all labels displaced by 20 pixels") {
+    for (LabelledDisc& disc : labels.discs) disc.centre_px.x() += 20;
+    CHECK_THAT(warnings(), Catch::Contains("check that everything is at its start position"));
   }
 }
 
-TEST_CASE("what is known of a floor is what its camera sees of it") {
+TEST_CASE("the labels of a floor are the discs in its camera's view") {
   const Scenario scenario = load_scenario(kFloorFile);
-  const CameraModel camera = hang_grid(scenario)[0];
-  const KnownFloor floor = floor_at_start(scenario, butterfly(), camera);
-  CHECK(floor.discs.size() == 6 * 5 + 1);
-  CHECK(floor.unknown.size() == 2 * 2);
-  MarkingLayout few = butterfly();
+  const CameraModel camera = camera_grid(scenario)[0];
+  const FloorLabels labels = floor_labels_at_start(scenario, butterfly(), camera);
+  CHECK(labels.discs.size() == 6 * 5 + 1);
+  CHECK(labels.ignored.size() == 2 * 2);
+  MarkerLayout few = butterfly();
   few.patterns.resize(12);
-  CHECK_THROWS_WITH(floor_at_start(scenario, few, camera), Catch::Contains("robot 12 has number 12"));
+  CHECK_THROWS_WITH(floor_labels_at_start(scenario, few, camera), Catch::Contains("robot 12 has number 12"));
 }

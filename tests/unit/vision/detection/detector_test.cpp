@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 
-#include "tests/unit/vision/detection/painted_floor.hpp"
+#include "tests/unit/vision/detection/rendered_field.hpp"
 #include "tests/unit/vision/detection/score.hpp"
 
 using namespace sidestep;
@@ -12,29 +12,29 @@ namespace {
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
 
-FrameTask task_for(PaintedFloor& floor, const std::vector<Marked>& robots) {
-  FrameTask task;
-  task.boxes = floor.learned_boxes();
-  task.layout = butterfly();
-  task.roster = roster_of(robots);
-  return task;
+DetectorSettings settings_for(RenderedField& floor, const std::vector<PlacedRobot>& robots) {
+  DetectorSettings settings;
+  settings.boxes = floor.learned_boxes();
+  settings.layout = butterfly();
+  settings.roster = roster_of(robots);
+  return settings;
 }
 
-/// Frames of robots that take a new place every tenth one and move a little in between.
-Score read_frames(PaintedFloor& floor, std::size_t each, int frames, int hidden) {
-  std::vector<Marked> robots = floor.scattered_robots(each);
-  Detector reader(floor.camera, task_for(floor, robots));
+/// Detects robots that jump to new poses every tenth frame and move a little in between.
+Score score_of_frames(RenderedField& floor, std::size_t robots_per_team, int frames, int hidden) {
+  std::vector<PlacedRobot> robots = floor.scattered_robots(robots_per_team);
+  Detector detector(floor.camera, settings_for(floor, robots));
   Score score;
   msg::DetectionFrame frame;
   for (int i = 0; i < frames; ++i) {
-    if (i % 10 == 0) robots = floor.scattered_robots(each);
+    if (i % 10 == 0) robots = floor.scattered_robots(robots_per_team);
     const auto expected = expected_of(robots);
-    for (Marked& robot : robots) {
+    for (PlacedRobot& robot : robots) {
       robot.pose.position_m += 0.02 * Vec2(floor.rng.uniform(-1, 1), floor.rng.uniform(-1, 1));
       robot.pose.heading_rad += floor.rng.uniform(-0.1, 0.1);
     }
-    const Image image = floor.frame(robots, floor.free_place(robots), hidden);
-    reader.read(image.view(), kBegin + i * kFrame, expected, frame);
+    const Image image = floor.frame(robots, floor.free_position(robots), hidden);
+    detector.detect(image.view(), kBegin + i * kFrame, expected, frame);
     score.add(robots, frame);
   }
   return score;
@@ -42,115 +42,115 @@ Score read_frames(PaintedFloor& floor, std::size_t each, int frames, int hidden)
 
 }  // namespace
 
-TEST_CASE("robots in frames are found, named, and placed within a millimetre and a half") {
+TEST_CASE("robots in frames are found, identified, and located within 1.5 mm RMS") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
-  const std::size_t each = GENERATE(6, 11);
-  CAPTURE(format, each);
+  const std::size_t robots_per_team = GENERATE(6, 11);
+  CAPTURE(format, robots_per_team);
   RenderSpec spec;
   spec.format = format;
-  PaintedFloor floor(each, spec);
-  const Score score = read_frames(floor, each, 20, 0);
+  RenderedField floor(robots_per_team, spec);
+  const Score score = score_of_frames(floor, robots_per_team, 20, 0);
   CHECK(score.share() > 0.999);
   CHECK(score.wrong == 0);
   CHECK(score.position_m() < 0.0015);
   CHECK(score.heading_rad() < 0.6 / 57.3);
 }
 
-TEST_CASE("all sixteen patterns of both teams are told apart in frames") {
-  PaintedFloor floor(3);
-  const Score score = read_frames(floor, 16, 10, 0);
+TEST_CASE("all sixteen patterns of both teams are distinguished in frames") {
+  RenderedField floor(3);
+  const Score score = score_of_frames(floor, 16, 10, 0);
   CHECK(score.share() > 0.999);
   CHECK(score.wrong == 0);
 }
 
 TEST_CASE("robots with one dot covered are found and never confused") {
-  PaintedFloor floor(4);
-  const Score score = read_frames(floor, 11, 40, 1);
+  RenderedField floor(4);
+  const Score score = score_of_frames(floor, 11, 40, 1);
   CHECK(score.share() > 0.99);
   CHECK(score.wrong == 0);
 }
 
-TEST_CASE("a team is told from a centre whose colour lies beside that team's thresholds") {
-  // As tint has it: all yellow centres are a little too orange for theirs. Nobody is expected anywhere, so
-  // the centre alone says the team.
+TEST_CASE("a team is identified by a centre whose colour is just outside that team's thresholds") {
+  // All yellow centres are a little too orange for their thresholds, as in tinted light. No robot is expected,
+  // so the centre alone determines the team.
   const bool is_covered = GENERATE(false, true);
   CAPTURE(is_covered);
-  PaintedFloor floor(5);
-  std::vector<Marked> robots = floor.scattered_robots(16);
-  FrameTask task = task_for(floor, robots);
-  // No blue robot is there, though it might be.
-  std::erase_if(robots, [](const Marked& robot) { return robot.entry.team == Team::kBlue; });
-  for (ColourBox& box : task.boxes) {
-    if (box.colour == static_cast<std::uint32_t>(Colour::kYellow)) box.low.v = 168;  // they have 152 to 158
+  RenderedField floor(5);
+  std::vector<PlacedRobot> robots = floor.scattered_robots(16);
+  DetectorSettings settings = settings_for(floor, robots);
+  // Blue robots are in the roster, but not on the floor.
+  std::erase_if(robots, [](const PlacedRobot& robot) { return robot.entry.team == Team::kBlue; });
+  for (ColourBox& box : settings.boxes) {
+    if (box.colour == static_cast<std::uint32_t>(Colour::kYellow)) box.low.v = 168;  // yellow has 152 to 158
   }
-  Detector reader(floor.camera, task);
+  Detector detector(floor.camera, settings);
   msg::DetectionFrame frame;
   Score score;
-  // The first of the dots that may be covered is the centre.
-  reader.read(floor.frame(robots, {}, is_covered ? 1 : 0).view(), kBegin, {}, frame);
+  // Covering one dot of each robot includes the centre dot of some.
+  detector.detect(floor.frame(robots, {}, is_covered ? 1 : 0).view(), kBegin, {}, frame);
   score.add(robots, frame);
   CHECK(score.wrong == 0);
   if (!is_covered) CHECK(score.share() == 1);
 }
 
-TEST_CASE("robots are found where light falls to three fifths and its colour is off by a tenth") {
+TEST_CASE("robots are found where light falls to 60 % and its colour is off by a tenth") {
   const double drift = GENERATE(0.1, -0.1);
   CAPTURE(drift);
   RenderSpec spec;
   spec.far_light = 0.6;
-  PaintedFloor learned(5, spec);
+  RenderedField learned(5, spec);
   const std::vector<ColourBox> boxes = learned.learned_boxes();
   spec.colour_gain = {1 + drift, 1, 1 - drift};
-  PaintedFloor floor(6, spec);
-  const std::vector<Marked> robots = floor.scattered_robots(11);
-  FrameTask task;
-  task.boxes = boxes;
-  task.layout = butterfly();
-  task.roster = roster_of(robots);
-  Detector reader(floor.camera, task);
+  RenderedField floor(6, spec);
+  const std::vector<PlacedRobot> robots = floor.scattered_robots(11);
+  DetectorSettings settings;
+  settings.boxes = boxes;
+  settings.layout = butterfly();
+  settings.roster = roster_of(robots);
+  Detector detector(floor.camera, settings);
   Score score;
   msg::DetectionFrame frame;
   for (int i = 0; i < 20; ++i) {
-    const std::vector<Marked> moved = floor.scattered_robots(11);
-    reader.read(floor.frame(moved).view(), kBegin + i * kFrame, expected_of(moved), frame);
+    const std::vector<PlacedRobot> moved = floor.scattered_robots(11);
+    detector.detect(floor.frame(moved).view(), kBegin + i * kFrame, expected_of(moved), frame);
     score.add(moved, frame);
   }
   CHECK(score.share() > 0.995);
   CHECK(score.wrong == 0);
 }
 
-TEST_CASE("a ball is found, and dots are no balls") {
-  PaintedFloor floor(7);
-  const std::vector<Marked> robots = floor.scattered_robots(11);
-  Detector reader(floor.camera, task_for(floor, robots));
+TEST_CASE("a ball is found, and dots are not balls") {
+  RenderedField floor(7);
+  const std::vector<PlacedRobot> robots = floor.scattered_robots(11);
+  Detector detector(floor.camera, settings_for(floor, robots));
   msg::DetectionFrame frame;
-  int others = 0;
+  int false_positives = 0;
   for (int i = 0; i < 20; ++i) {
-    const Vec2 ball = floor.free_place(robots);
-    reader.read(floor.frame(robots, ball).view(), kBegin + i * kFrame, expected_of(robots), frame);
+    const Vec2 ball = floor.free_position(robots);
+    detector.detect(floor.frame(robots, ball).view(), kBegin + i * kFrame, expected_of(robots), frame);
     REQUIRE(frame.ball_count() >= 1);
-    others += frame.ball_count() - 1;
+    false_positives += frame.ball_count() - 1;
     CHECK((Vec2(frame.balls()[0].x_m(), frame.balls()[0].y_m()) - ball).norm() < 0.01);
   }
-  CHECK(others == 0);
-  reader.read(floor.frame(robots).view(), kBegin, expected_of(robots), frame);
+  CHECK(false_positives == 0);
+  detector.detect(floor.frame(robots).view(), kBegin, expected_of(robots), frame);
   CHECK(frame.ball_count() == 0);
 }
 
-TEST_CASE("what has a colour that nobody wears is an obstacle, as large as it is") {
-  PaintedFloor floor(8);
-  const std::vector<Marked> robots = floor.scattered_robots(3);
-  FrameTask task = task_for(floor, robots);
+TEST_CASE("an object in a colour that no robot wears is an obstacle of the right size") {
+  RenderedField floor(8);
+  const std::vector<PlacedRobot> robots = floor.scattered_robots(3);
+  DetectorSettings settings = settings_for(floor, robots);
   const Rgb red = named(Colour::kRed).rgb;
-  const std::vector<SceneBlob> blobs{{{{0.5, -0.7}, 0.2}, 0.002, red}};
-  // Where it stands is known too: it is learned like the others.
+  const std::vector<SceneCylinder> cylinders{{{{0.5, -0.7}, 0.2}, 0.002, red}};
+  // Its colour is learned from its known position.
   ColourLearner learner;
-  const std::array discs{*seen_disc(floor.camera, Colour::kRed, {0.5, -0.7, 0}, 0.2)};
-  learner.add(floor.frame({}, {}, 0, blobs).view(), discs);
-  for (const ColourBox& box : learner.boxes()) task.boxes.push_back(box);
-  Detector reader(floor.camera, task);
+  const std::array discs{*projected_disc(floor.camera, Colour::kRed, {0.5, -0.7, 0}, 0.2)};
+  learner.add(floor.frame({}, {}, 0, cylinders).view(), discs);
+  for (const ColourBox& box : learner.boxes()) settings.boxes.push_back(box);
+  Detector detector(floor.camera, settings);
   msg::DetectionFrame frame;
-  reader.read(floor.frame({}, {}, 0, blobs).view(), kBegin, {}, frame);
+  detector.detect(floor.frame({}, {}, 0, cylinders).view(), kBegin, {}, frame);
   REQUIRE(frame.obstacle_count() == 1);
   CHECK((Vec2(frame.obstacles()[0].x_m(), frame.obstacles()[0].y_m()) - Vec2(0.5, -0.7)).norm() < 0.02);
   CHECK(frame.obstacles()[0].radius_m() == Approx(0.2).margin(0.02));

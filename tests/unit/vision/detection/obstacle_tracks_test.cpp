@@ -13,39 +13,42 @@ using namespace sidestep;
 namespace {
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
-constexpr Duration kBetween{8'333'333};
+constexpr Duration kFrameInterval{8'333'333};
 
-/// Two cameras whose views overlap, and a tracker of what they see.
-struct Hall {
+/// Two cameras with overlapping views, and a tracker for their detections.
+struct TwoCameraFixture {
   Scenario scenario;
   std::vector<CameraModel> cameras;
   std::vector<FrameRenderer> renderers;
-  std::vector<Detector> readers;
+  std::vector<Detector> detectors;
   Tracker tracker;
   msg::DetectionFrame detections;
   Frame frame;
 
-  Hall() : scenario(made()), cameras(hang_grid(scenario)), tracker(tracker_settings(scenario), {}) {
-    FrameTask task;
-    task.boxes = default_colours(PixelFormat::kYuv422).boxes;
-    task.layout = butterfly();
+  TwoCameraFixture()
+      : scenario(two_camera_scenario()),
+        cameras(camera_grid(scenario)),
+        tracker(tracker_settings(scenario), {}) {
+    DetectorSettings settings;
+    settings.boxes = default_colours(PixelFormat::kYuv422).boxes;
+    settings.layout = butterfly();
     for (const CameraModel& camera : cameras) {
       renderers.emplace_back(camera, scenario.field, butterfly(), RenderSpec{}, Rng(renderers.size() + 1));
-      readers.emplace_back(camera, task);
+      detectors.emplace_back(camera, settings);
     }
   }
-  static Scenario made() {
+  static Scenario two_camera_scenario() {
     Scenario scenario;
     scenario.field = {9, 6};
     scenario.vision.images = ImageSpec{};
     return scenario;
   }
-  /// What the world holds after frame i, in which one thing stood here.
-  msg::WorldState see(int i, const Circle& thing) {
-    const std::array blobs{SceneBlob{thing}};
-    const Time at = kBegin + i * kBetween;
+  /// The world after frame i, which shows one obstacle.
+  msg::WorldState world_after(int i, const Circle& obstacle) {
+    const std::array cylinders{SceneCylinder{obstacle}};
+    const Time at = kBegin + i * kFrameInterval;
     const auto camera = static_cast<std::size_t>(i % 2);
-    readers[camera].read(renderers[camera].render(Scene{{}, blobs}).view(), at, {}, detections);
+    detectors[camera].detect(renderers[camera].render(Scene{{}, cylinders}).view(), at, {}, detections);
     detections.camera(static_cast<std::uint32_t>(camera));
     frame.assign(detections, at);
     tracker.update(frame);
@@ -57,37 +60,37 @@ struct Hall {
 
 }  // namespace
 
-TEST_CASE("an obstacle that two cameras see is one and stands still") {
-  Hall hall;
+TEST_CASE("an obstacle in the view of two cameras is one stationary track") {
+  TwoCameraFixture fixture;
   for (const double y_m : {-2.0, -0.5, 1.3}) {
     CAPTURE(y_m);
-    const Circle thing{{0.1, y_m}, 0.12};
+    const Circle obstacle{{0.1, y_m}, 0.12};
     msg::WorldState world;
-    for (int i = 0; i < 60; ++i) world = hall.see(i, thing);
+    for (int i = 0; i < 60; ++i) world = fixture.world_after(i, obstacle);
     REQUIRE(world.obstacle_count() == 1);
-    const msg::TrackedObstacle& seen = world.obstacles()[0];
-    CHECK((Vec2(seen.x_m(), seen.y_m()) - thing.centre_m).norm() < 0.02);
-    CHECK(std::hypot(seen.vx_mps(), seen.vy_mps()) < 0.2);
-    CHECK(seen.radius_m() > 0.11);
-    CHECK(seen.radius_m() < 0.15);
-    hall.tracker = Tracker(tracker_settings(hall.scenario), {});
+    const msg::TrackedObstacle& track = world.obstacles()[0];
+    CHECK((Vec2(track.x_m(), track.y_m()) - obstacle.centre_m).norm() < 0.02);
+    CHECK(std::hypot(track.vx_mps(), track.vy_mps()) < 0.2);
+    CHECK(track.radius_m() > 0.11);
+    CHECK(track.radius_m() < 0.15);
+    fixture.tracker = Tracker(tracker_settings(fixture.scenario), {});
   }
 }
 
-TEST_CASE("an obstacle that crosses from one camera to the other stays one") {
-  Hall hall;
+TEST_CASE("an obstacle that crosses from one camera to the other keeps its track") {
+  TwoCameraFixture fixture;
   std::uint32_t number = 0;
   for (int i = 0; i < 240; ++i) {
-    const Circle thing{{-1 + 1.0 * to_seconds(i * kBetween), 0.8}, 0.12};
-    const msg::WorldState world = hall.see(i, thing);
+    const Circle obstacle{{-1 + 1.0 * to_seconds(i * kFrameInterval), 0.8}, 0.12};
+    const msg::WorldState world = fixture.world_after(i, obstacle);
     if (i < 20) continue;
     CAPTURE(i);
     REQUIRE(world.obstacle_count() == 1);
-    const msg::TrackedObstacle& seen = world.obstacles()[0];
-    if (number == 0) number = seen.obstacle();
-    CHECK(seen.obstacle() == number);
-    CHECK((Vec2(seen.x_m(), seen.y_m()) - thing.centre_m).norm() < 0.04);
-    CHECK(std::abs(seen.vx_mps() - 1) < 0.3);
-    CHECK(std::abs(seen.vy_mps()) < 0.3);
+    const msg::TrackedObstacle& track = world.obstacles()[0];
+    if (number == 0) number = track.obstacle();
+    CHECK(track.obstacle() == number);
+    CHECK((Vec2(track.x_m(), track.y_m()) - obstacle.centre_m).norm() < 0.04);
+    CHECK(std::abs(track.vx_mps() - 1) < 0.3);
+    CHECK(std::abs(track.vy_mps()) < 0.3);
   }
 }

@@ -6,28 +6,28 @@
 #include <vector>
 
 #include "idl/vision.h"
-#include "tests/unit/vision/patterns/scene.hpp"
+#include "tests/unit/vision/patterns/placed_robots.hpp"
 
 namespace sidestep::test {
 
-/// How well robots were found, over frames.
+/// Recognition rate and errors over a number of frames.
 struct Score {
   std::size_t visible = 0, found = 0, wrong = 0;
   double position2_m2 = 0, heading2_rad2 = 0;
 
-  void add(const std::vector<Marked>& robots, const msg::DetectionFrame& frame) {
+  void add(const std::vector<PlacedRobot>& robots, const msg::DetectionFrame& frame) {
     visible += robots.size();
-    for (const msg::RobotDetection& seen : frame.robots()) {
+    for (const msg::RobotDetection& detection : frame.robots()) {
       const auto truth = std::ranges::find_if(
-          robots, [&](const Marked& robot) { return robot.entry.robot == seen.robot(); });
-      const Vec2 error = truth->pose.position_m - Vec2(seen.x_m(), seen.y_m());
+          robots, [&](const PlacedRobot& robot) { return robot.entry.robot == detection.robot(); });
+      const Vec2 error = truth->pose.position_m - Vec2(detection.x_m(), detection.y_m());
       if (error.norm() > 0.03) {
         ++wrong;
         continue;
       }
       ++found;
       position2_m2 += error.squaredNorm();
-      heading2_rad2 += std::pow(wrapped_rad(seen.heading_rad() - truth->pose.heading_rad), 2);
+      heading2_rad2 += std::pow(wrapped_rad(detection.heading_rad() - truth->pose.heading_rad), 2);
     }
   }
   double share() const { return static_cast<double>(found) / static_cast<double>(visible); }

@@ -5,12 +5,13 @@
 #include <fstream>
 #include <limits>
 
-#include "vision/cameras/camera_file.hpp"
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
+#include "common/file/write_file.hpp"
 #include "common/marking/butterfly.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
+#include "vision/cameras/camera_file.hpp"
 #include "vision/images/image_options.hpp"
 #include "vision/tracking/tracker.hpp"
 
@@ -30,7 +31,7 @@ robots:
 )";
 
 msg::CameraImage image_of(const Scenario& scenario, std::uint32_t camera) {
-  const CameraModel model = hang_grid(scenario)[camera];
+  const CameraModel model = camera_grid(scenario)[camera];
   RenderSpec spec;
   spec.format = scenario.vision.images->format;
   FrameRenderer renderer(model, scenario.field, butterfly(), spec, Rng(3));
@@ -45,16 +46,20 @@ msg::CameraImage image_of(const Scenario& scenario, std::uint32_t camera) {
   return message;
 }
 
-std::vector<RobotId> seen_in(const msg::DetectionFrame& frame) {
+void write_cameras(const std::vector<NumberedCamera>& cameras, const std::string& path) {
+  write_file(path, cameras_text(cameras));
+}
+
+std::vector<RobotId> robots_in(const msg::DetectionFrame& frame) {
   std::vector<RobotId> robots;
-  for (const msg::RobotDetection& seen : frame.robots()) robots.push_back(seen.robot());
+  for (const msg::RobotDetection& detection : frame.robots()) robots.push_back(detection.robot());
   std::ranges::sort(robots);
   return robots;
 }
 
 }  // namespace
 
-TEST_CASE("each camera's image shows the robots before it where they are") {
+TEST_CASE("the robots in each camera's image are found at their positions") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   scenario.vision.images->format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   ImageReader reader = image_reader(scenario, {});
@@ -62,71 +67,71 @@ TEST_CASE("each camera's image shows the robots before it where they are") {
   REQUIRE(reader.read(image_of(scenario, 0), kNow, {}, frame));
   CHECK(frame.camera() == 0);
   CHECK(frame.captured_at_ns() == 5'000'000'000);
-  CHECK(seen_in(frame) == std::vector<RobotId>{3, 7});
+  CHECK(robots_in(frame) == std::vector<RobotId>{3, 7});
   REQUIRE(reader.read(image_of(scenario, 1), kNow, {}, frame));
-  CHECK(seen_in(frame) == std::vector<RobotId>{7, 24});
-  for (const msg::RobotDetection& seen : frame.robots()) {
-    const RobotSpec& robot = *find_robot(scenario, seen.robot());
-    CHECK(std::hypot(seen.x_m() - robot.start_m.x(), seen.y_m() - robot.start_m.y()) < 0.002);
-    CHECK(std::abs(wrapped_rad(seen.heading_rad() - robot.start_heading_rad)) < 0.02);
+  CHECK(robots_in(frame) == std::vector<RobotId>{7, 24});
+  for (const msg::RobotDetection& detection : frame.robots()) {
+    const RobotSpec& robot = *find_robot(scenario, detection.robot());
+    CHECK(std::hypot(detection.x_m() - robot.start_m.x(), detection.y_m() - robot.start_m.y()) < 0.002);
+    CHECK(std::abs(wrapped_rad(detection.heading_rad() - robot.start_heading_rad)) < 0.02);
   }
   REQUIRE(frame.ball_count() == 1);
   CHECK(std::hypot(frame.balls()[0].x_m() - 0.6, frame.balls()[0].y_m() - 0.4) < 0.003);
   CHECK(frame.obstacle_count() == 0);
 }
 
-TEST_CASE("obstacles are told that the scenario does not know and those that it knows are not") {
+TEST_CASE("unknown obstacles are reported and the scenario's are not") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   scenario.obstacles = {{{-1, -1}, 0.2}, {{-2.2, 1.2}, 0.15}, {{-0.6, 1.2}, 0.1}};
   const msg::CameraImage image = image_of(scenario, 0);
   msg::DetectionFrame frame;
-  ImageReader knows = image_reader(scenario, {});
-  REQUIRE(knows.read(image, kNow, {}, frame));
+  ImageReader all_known = image_reader(scenario, {});
+  REQUIRE(all_known.read(image, kNow, {}, frame));
   CHECK(frame.obstacle_count() == 0);
   const Circle unknown = scenario.obstacles[1];
   scenario.obstacles.erase(scenario.obstacles.begin() + 1);
-  ImageReader knows_less = image_reader(scenario, {});
-  REQUIRE(knows_less.read(image, kNow, {}, frame));
+  ImageReader one_unknown = image_reader(scenario, {});
+  REQUIRE(one_unknown.read(image, kNow, {}, frame));
   REQUIRE(frame.obstacle_count() == 1);
-  const msg::ObstacleDetection& seen = frame.obstacles()[0];
-  CHECK(std::hypot(seen.x_m() - unknown.centre_m.x(), seen.y_m() - unknown.centre_m.y()) < 0.02);
-  CHECK(std::abs(seen.radius_m() - unknown.radius_m) < 0.02);
+  const msg::ObstacleDetection& detection = frame.obstacles()[0];
+  CHECK(std::hypot(detection.x_m() - unknown.centre_m.x(), detection.y_m() - unknown.centre_m.y()) < 0.02);
+  CHECK(std::abs(detection.radius_m() - unknown.radius_m) < 0.02);
 }
 
-TEST_CASE("an image that no camera makes is refused and changes nothing") {
+TEST_CASE("an invalid image is rejected and changes nothing") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   ImageReader reader = image_reader(scenario, {});
   const msg::CameraImage good = image_of(scenario, 0);
   msg::DetectionFrame frame;
   REQUIRE(reader.read(good, kNow, {}, frame));
-  const auto is_refused = [&](const std::function<void(msg::CameraImage&)>& spoil) {
+  const auto is_rejected = [&](const std::function<void(msg::CameraImage&)>& corrupt) {
     msg::CameraImage image = good;
-    spoil(image);
-    msg::DetectionFrame untouched;
-    const bool is_read = reader.read(image, kNow, {}, untouched);
-    return !is_read && untouched.robots().empty() && untouched.captured_at_ns() == 0;
+    corrupt(image);
+    msg::DetectionFrame unchanged;
+    const bool is_read = reader.read(image, kNow, {}, unchanged);
+    return !is_read && unchanged.robots().empty() && unchanged.captured_at_ns() == 0;
   };
-  CHECK(is_refused([](auto& image) { image.camera(2); }));
-  CHECK(is_refused([](auto& image) { image.camera(0xffffffff); }));
+  CHECK(is_rejected([](auto& image) { image.camera(2); }));
+  CHECK(is_rejected([](auto& image) { image.camera(0xffffffff); }));
   for (const std::int64_t captured_at_ns :
        {std::numeric_limits<std::int64_t>::min(), std::int64_t{0}, std::int64_t{4'400'000'000},
         std::int64_t{5'200'000'000}, std::numeric_limits<std::int64_t>::max()}) {
     CAPTURE(captured_at_ns);
-    CHECK(is_refused([&](auto& image) { image.captured_at_ns(captured_at_ns); }));
+    CHECK(is_rejected([&](auto& image) { image.captured_at_ns(captured_at_ns); }));
   }
-  CHECK(is_refused([](auto& image) { image.width_px(0); }));
-  CHECK(is_refused([](auto& image) { image.width_px(0x80000000); }));
-  CHECK(is_refused([](auto& image) { image.height_px(581); }));
-  CHECK(is_refused([](auto& image) { image.image_format(msg::IMAGE_RGB); }));
-  CHECK(is_refused([](auto& image) { image.image_format(static_cast<msg::ImageFormat>(7)); }));
-  CHECK(is_refused([](auto& image) { image.pixels().pop_back(); }));
-  CHECK(is_refused([](auto& image) { image.pixels().push_back(0); }));
-  CHECK(is_refused([](auto& image) { image.pixels().clear(); }));
-  CHECK_FALSE(is_refused([](auto&) {}));
+  CHECK(is_rejected([](auto& image) { image.width_px(0); }));
+  CHECK(is_rejected([](auto& image) { image.width_px(0x80000000); }));
+  CHECK(is_rejected([](auto& image) { image.height_px(581); }));
+  CHECK(is_rejected([](auto& image) { image.image_format(msg::IMAGE_RGB); }));
+  CHECK(is_rejected([](auto& image) { image.image_format(static_cast<msg::ImageFormat>(7)); }));
+  CHECK(is_rejected([](auto& image) { image.pixels().pop_back(); }));
+  CHECK(is_rejected([](auto& image) { image.pixels().push_back(0); }));
+  CHECK(is_rejected([](auto& image) { image.pixels().clear(); }));
+  CHECK_FALSE(is_rejected([](auto&) {}));
 }
 
-TEST_CASE("the tracker expects the errors that images really have") {
-  // Wide and narrow fields, so that the image's longer side lies along either of the field's.
+TEST_CASE("the tracker's noise settings match the errors of detections in images") {
+  // Wide and narrow fields, so that the image's longer side is parallel to either of the field's.
   const Field field = GENERATE(Field{6, 4.5}, Field{3, 4.5}, Field{9, 3});
   CAPTURE(field.length_m, field.width_m);
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
@@ -135,10 +140,10 @@ TEST_CASE("the tracker expects the errors that images really have") {
   scenario.field = field;
   scenario.ball.reset();
   Rng rng(9);
-  FrameRenderer renderer(hang_grid(scenario)[0], field, butterfly(), {}, Rng(3));
+  FrameRenderer renderer(camera_grid(scenario)[0], field, butterfly(), {}, Rng(3));
   ImageReader reader = image_reader(scenario, {});
   double square_m2 = 0, square_rad2 = 0;
-  int seen_count = 0;
+  int detection_count = 0;
   for (int i = 0; i < 60; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       RobotSpec& robot = scenario.robots[k];
@@ -154,20 +159,20 @@ TEST_CASE("the tracker expects the errors that images really have") {
     message.pixels().assign(image.view().pixels, image.view().pixels + image.view().bytes());
     msg::DetectionFrame frame;
     REQUIRE(reader.read(message, kNow, {}, frame));
-    for (const msg::RobotDetection& seen : frame.robots()) {
-      const RobotSpec& truth = *find_robot(scenario, seen.robot());
-      square_m2 += (Vec2(seen.x_m(), seen.y_m()) - truth.start_m).squaredNorm() / 2;
-      square_rad2 += std::pow(wrapped_rad(seen.heading_rad() - truth.start_heading_rad), 2);
-      ++seen_count;
+    for (const msg::RobotDetection& detection : frame.robots()) {
+      const RobotSpec& truth = *find_robot(scenario, detection.robot());
+      square_m2 += (Vec2(detection.x_m(), detection.y_m()) - truth.start_m).squaredNorm() / 2;
+      square_rad2 += std::pow(wrapped_rad(detection.heading_rad() - truth.start_heading_rad), 2);
+      ++detection_count;
     }
   }
-  REQUIRE(seen_count > 150);
+  REQUIRE(detection_count > 150);
   const TrackModel robot = tracker_settings(scenario).robot;
-  CHECK(robot.position_noise_m == Approx(std::sqrt(square_m2 / seen_count)).epsilon(0.35));
-  CHECK(robot.heading_noise_rad == Approx(std::sqrt(square_rad2 / seen_count)).epsilon(0.35));
+  CHECK(robot.position_noise_m == Approx(std::sqrt(square_m2 / detection_count)).epsilon(0.35));
+  CHECK(robot.heading_noise_rad == Approx(std::sqrt(square_rad2 / detection_count)).epsilon(0.35));
 }
 
-TEST_CASE("any pixels are read") {
+TEST_CASE("images of random pixels are processed") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   ImageReader reader = image_reader(scenario, {});
   msg::CameraImage image = image_of(scenario, 1);
@@ -181,7 +186,7 @@ TEST_CASE("any pixels are read") {
   CHECK(frame.obstacle_count() <= msg::MAX_OBSTACLES);
 }
 
-TEST_CASE("a world from long ago or from nonsense does no harm") {
+TEST_CASE("an outdated or inconsistent world does not affect detection") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   ImageReader reader = image_reader(scenario, {});
   msg::WorldState world;
@@ -193,29 +198,29 @@ TEST_CASE("a world from long ago or from nonsense does no harm") {
   world.valid_at_ns(GENERATE(as<std::int64_t>(), 0, 4'999'000'000));
   msg::DetectionFrame frame;
   REQUIRE(reader.read(image_of(scenario, 0), kNow, world, frame));
-  CHECK(seen_in(frame) == std::vector<RobotId>{3, 7});
+  CHECK(robots_in(frame) == std::vector<RobotId>{3, 7});
 }
 
-TEST_CASE("cameras and colours that do not fit the scenario are refused by their file") {
+TEST_CASE("cameras and colours that do not fit the scenario are refused with their file") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const std::string file = "image-reader-test.yaml";
   const auto refusal = [&](const ImageOptions& options) -> std::string {
     try {
-      image_reader(scenario, options);
+      (void)image_reader(scenario, options);
     } catch (const std::exception& error) {
       return error.what();
     }
     return "accepted";
   };
-  const std::vector<CameraModel> cameras = hang_grid(scenario);
-  save_cameras({{0, cameras[0].parameters()}, {1, cameras[1].parameters()}}, file);
+  const std::vector<CameraModel> cameras = camera_grid(scenario);
+  write_cameras({{0, cameras[0].parameters()}, {1, cameras[1].parameters()}}, file);
   CHECK(refusal({.cameras_file = file}) == "accepted");
-  save_cameras({{0, cameras[0].parameters()}}, file);
-  CHECK(refusal({.cameras_file = file}) == file + ": 1 cameras, 2 expected");
-  save_cameras({{1, cameras[0].parameters()}, {0, cameras[1].parameters()}}, file);
-  CHECK_THAT(refusal({.cameras_file = file}), Catch::Contains("camera 1 stands where 0 is expected"));
+  write_cameras({{0, cameras[0].parameters()}}, file);
+  CHECK(refusal({.cameras_file = file}) == file + ": expected 2 cameras for the scenario, got 1");
+  write_cameras({{1, cameras[0].parameters()}, {0, cameras[1].parameters()}}, file);
+  CHECK_THAT(refusal({.cameras_file = file}), Catch::Contains("cameras[0].id: expected 0, got 1"));
   std::ofstream(file) << colours_text({PixelFormat::kRgb, {{{0, 0, 0}, {9, 9, 9}, 0}}});
-  CHECK(refusal({.colours_file = file}) == file + ": is for rgb, and the scenario's images are yuv422");
+  CHECK(refusal({.colours_file = file}) == file + ": format: expected yuv422 for the scenario's images, got rgb");
   CHECK_THAT(refusal({.layout_file = file}), Catch::StartsWith(file + ":"));
   std::remove(file.c_str());
 }

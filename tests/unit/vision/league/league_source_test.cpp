@@ -27,17 +27,17 @@ Scenario two_teams() {
   return scenario;
 }
 
-league::SeenRobot robot(std::optional<std::uint32_t> number, const Vec2& position_m, double heading_rad) {
-  league::SeenRobot seen;
-  seen.number = number;
-  seen.position_m = position_m;
-  seen.heading_rad = heading_rad;
-  seen.confidence = 0.9;
-  return seen;
+league::DetectedRobot robot(std::optional<std::uint32_t> number, const Vec2& position_m, double heading_rad) {
+  league::DetectedRobot detected;
+  detected.number = number;
+  detected.position_m = position_m;
+  detected.heading_rad = heading_rad;
+  detected.confidence = 0.9;
+  return detected;
 }
 
-league::Detection detection_at(Duration captured, std::uint32_t number) {
-  league::Detection detection;
+league::DetectionFrame detection_at(Duration captured, std::uint32_t number) {
+  league::DetectionFrame detection;
   detection.frame_number = number;
   detection.camera = 1;
   detection.captured = captured;
@@ -45,15 +45,15 @@ league::Detection detection_at(Duration captured, std::uint32_t number) {
   return detection;
 }
 
-std::vector<std::byte> datagram(const league::Detection& detection) {
+std::vector<std::byte> datagram(const league::DetectionFrame& detection) {
   return encode(league::VisionPacket{detection, std::nullopt, std::nullopt});
 }
 
-/// The sender's clock becomes known: it shows `captured` five milliseconds before kNow.
-void settle(LeagueSource& source, Duration captured, const league::Endpoint& from = kSender) {
+/// Synchronises with the sender's clock: it shows `captured` five milliseconds before kNow.
+void synchronise(LeagueSource& source, Duration captured, const league::Endpoint& from = kSender) {
   for (int ms = 200; ms >= 90; ms -= 10) {
     const auto number = static_cast<std::uint32_t>(100'000 + ms);
-    (void)source.take(datagram(detection_at(captured - milliseconds(ms), number)), from,
+    (void)source.decode(datagram(detection_at(captured - milliseconds(ms), number)), from,
                       kNow - milliseconds(ms));
   }
 }
@@ -62,13 +62,13 @@ constexpr Duration kCaptured = std::chrono::seconds(10);
 
 }  // namespace
 
-TEST_CASE("robots of both teams become the scenario's and strangers become obstacles") {
+TEST_CASE("robots of both teams are identified and unknown robots become obstacles") {
   LeagueSource source(two_teams());
-  settle(source, kCaptured);
-  league::Detection detection = detection_at(kCaptured, 1);
+  synchronise(source, kCaptured);
+  league::DetectionFrame detection = detection_at(kCaptured, 1);
   detection.yellow = {robot(0, {1, 2}, 0.5), robot(3, {-1, 2}, -0.5), robot(7, {2, 2}, 0)};
   detection.blue = {robot(3, {0, -1}, 3), robot(std::nullopt, {2, -2}, 0)};
-  const auto* frame = source.take(datagram(detection), kSender, kNow);
+  const auto* frame = source.decode(datagram(detection), kSender, kNow);
   REQUIRE(frame);
   CHECK(frame->camera() == 1);
   CHECK(frame->captured_at_ns() == Approx(to_ns(kNow - milliseconds(5))).margin(1000));
@@ -85,78 +85,78 @@ TEST_CASE("robots of both teams become the scenario's and strangers become obsta
   CHECK(frame->obstacles()[0].y_m() == Approx(2));
   CHECK(frame->obstacles()[0].radius_m() == 0.09);
   CHECK(frame->obstacles()[1].y_m() == Approx(-2));
-  CHECK(source.counts().detections == 0);
+  CHECK(source.counts().dropped == 0);
 }
 
-TEST_CASE("a scenario in which two robots have one team and number is refused") {
+TEST_CASE("a scenario in which two robots have the same team and number is refused") {
   Scenario scenario = two_teams();
   scenario.robots.push_back(scenario.robots.back());
   scenario.robots.back().id = 35;
   CHECK_THROWS_AS(LeagueSource(scenario), std::invalid_argument);
 }
 
-TEST_CASE("a robot without a heading is left out and so are obstacles beyond what a frame holds") {
+TEST_CASE("robots without a heading and obstacles beyond the capacity of a frame are dropped") {
   LeagueSource source(two_teams());
-  settle(source, kCaptured);
-  league::Detection detection = detection_at(kCaptured, 1);
+  synchronise(source, kCaptured);
+  league::DetectionFrame detection = detection_at(kCaptured, 1);
   detection.blue = {robot(3, {0, 0}, 0)};
   detection.blue[0].heading_rad.reset();
   for (int i = 0; i < 20; ++i) detection.yellow.push_back(robot(std::nullopt, {0.1 * i, 0}, 0));
-  const auto* frame = source.take(datagram(detection), kSender, kNow);
+  const auto* frame = source.decode(datagram(detection), kSender, kNow);
   REQUIRE(frame);
   CHECK(frame->robots().empty());
   CHECK(frame->obstacle_count() == msg::MAX_OBSTACLES);
-  CHECK(source.counts().detections == 1 + 20 - msg::MAX_OBSTACLES);
+  CHECK(source.counts().dropped == 1 + 20 - msg::MAX_OBSTACLES);
 }
 
-TEST_CASE("of too many balls those that the sender is surest of are taken") {
+TEST_CASE("of too many balls those with the highest confidence are kept") {
   LeagueSource source(two_teams());
-  settle(source, kCaptured);
-  league::Detection detection = detection_at(kCaptured, 1);
+  synchronise(source, kCaptured);
+  league::DetectionFrame detection = detection_at(kCaptured, 1);
   for (const double confidence : {0.1, 0.9, 0.3, 0.8, 0.2, 0.7}) {
-    league::SeenBall ball;
+    league::DetectedBall ball;
     ball.position_m = {confidence, 0};
     ball.confidence = confidence;
     detection.balls.push_back(ball);
   }
-  const auto* frame = source.take(datagram(detection), kSender, kNow);
+  const auto* frame = source.decode(datagram(detection), kSender, kNow);
   REQUIRE(frame);
   REQUIRE(frame->ball_count() == 4);
   for (const auto& [index, x_m] : {std::pair{0u, 0.9}, {1u, 0.8}, {2u, 0.7}, {3u, 0.3}}) {
     CHECK(frame->balls()[index].x_m() == Approx(x_m));
   }
-  CHECK(source.counts().detections == 2);
+  CHECK(source.counts().dropped == 2);
 }
 
-TEST_CASE("a frame that comes twice is taken once and every sender has a clock of its own") {
+TEST_CASE("a duplicate frame is dropped and each sender's clock is estimated separately") {
   LeagueSource source(two_teams());
-  settle(source, kCaptured);
-  settle(source, std::chrono::milliseconds(1'009'999), kOther);
-  const std::uint64_t undated = source.counts().undated;
-  const auto take = [&](const league::Detection& d, const league::Endpoint& from, Time now) {
-    return source.take(datagram(d), from, now) != nullptr;
+  synchronise(source, kCaptured);
+  synchronise(source, std::chrono::milliseconds(1'009'999), kOther);
+  const std::uint64_t unsynchronised = source.counts().unsynchronised;
+  const auto is_accepted = [&](const league::DetectionFrame& d, const league::Endpoint& from, Time now) {
+    return source.decode(datagram(d), from, now) != nullptr;
   };
-  CHECK(take(detection_at(kCaptured, 1), kSender, kNow));
-  CHECK_FALSE(take(detection_at(kCaptured, 1), kSender, kNow + milliseconds(1)));
-  CHECK(source.counts().doubled == 1);
-  // Another sender, which began a thousand seconds earlier.
-  CHECK(take(detection_at(std::chrono::seconds(1010), 1), kOther, kNow + milliseconds(1)));
-  CHECK(take(detection_at(std::chrono::milliseconds(10'017), 2), kSender, kNow + milliseconds(17)));
-  CHECK(source.counts().undated == undated);
-  // The same sender may not be a thousand seconds later, at least not at once.
-  CHECK_FALSE(take(detection_at(std::chrono::seconds(1011), 3), kSender, kNow + milliseconds(18)));
-  CHECK(source.counts().undated == undated + 1);
+  CHECK(is_accepted(detection_at(kCaptured, 1), kSender, kNow));
+  CHECK_FALSE(is_accepted(detection_at(kCaptured, 1), kSender, kNow + milliseconds(1)));
+  CHECK(source.counts().duplicates == 1);
+  // Another sender, whose clock is a thousand seconds ahead.
+  CHECK(is_accepted(detection_at(std::chrono::seconds(1010), 1), kOther, kNow + milliseconds(1)));
+  CHECK(is_accepted(detection_at(std::chrono::milliseconds(10'017), 2), kSender, kNow + milliseconds(17)));
+  CHECK(source.counts().unsynchronised == unsynchronised);
+  // A jump of a thousand seconds by the same sender is not accepted at once.
+  CHECK_FALSE(is_accepted(detection_at(std::chrono::seconds(1011), 3), kSender, kNow + milliseconds(18)));
+  CHECK(source.counts().unsynchronised == unsynchronised + 1);
   CHECK(source.clock_jumps() == 0);
 }
 
-TEST_CASE("a sender that begins again is followed soon since it speaks from another port") {
+TEST_CASE("a restarted sender is accepted soon because it sends from another port") {
   LeagueSource source(two_teams());
-  for (std::uint16_t life = 0; life < 40; ++life) {
+  for (std::uint16_t incarnation = 0; incarnation < 40; ++incarnation) {
     int frames = 0;
     for (std::uint32_t i = 0; i < 10; ++i) {
-      const Time now = kNow + std::chrono::seconds(life) + milliseconds(17) * i;
-      const auto* frame = source.take(datagram(detection_at(milliseconds(100 + 17 * i), i)),
-                                      {0x7f000001, static_cast<std::uint16_t>(6000 + life)}, now);
+      const Time now = kNow + std::chrono::seconds(incarnation) + milliseconds(17) * i;
+      const auto* frame = source.decode(datagram(detection_at(milliseconds(100 + 17 * i), i)),
+                                      {0x7f000001, static_cast<std::uint16_t>(6000 + incarnation)}, now);
       if (!frame) continue;
       REQUIRE(frame->captured_at_ns() == Approx(to_ns(now - milliseconds(5))).margin(1000));
       ++frames;
@@ -165,18 +165,18 @@ TEST_CASE("a sender that begins again is followed soon since it speaks from anot
   }
 }
 
-TEST_CASE("geometry is kept and gives no frame") {
+TEST_CASE("a geometry packet sets the field and gives no frame") {
   Rng rng(1);
   LeagueSource source(two_teams());
   league::VisionPacket packet;
   packet.geometry = league::test::random_geometry(rng);
-  CHECK_FALSE(source.take(encode(packet), kSender, kNow));
+  CHECK_FALSE(source.decode(encode(packet), kSender, kNow));
   REQUIRE(source.field());
   CHECK(source.field()->length_m == Approx(packet.geometry->field.length_m));
-  CHECK(source.refused() == 0);
+  CHECK(source.rejected() == 0);
 }
 
-TEST_CASE("whatever is flipped and cut off in packets nothing but sound frames comes of it") {
+TEST_CASE("corrupted and truncated packets give only valid frames") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -196,11 +196,11 @@ TEST_CASE("whatever is flipped and cut off in packets nothing but sound frames c
       bytes[rng.below(bytes.size())] ^= static_cast<std::byte>(1 << rng.below(8));
     }
     if (rng.chance(0.1)) bytes.resize(rng.below(bytes.size()));
-    const auto* given = source.take(bytes, kSender, now);
+    const auto* decoded = source.decode(bytes, kSender, now);
     ++packets;
-    if (!given) continue;
+    if (!decoded) continue;
     ++frames;
-    frame.assign(*given, now);
+    frame.assign(*decoded, now);
     REQUIRE(frame.is_usable());
     REQUIRE(frame.rejected() == 0);
   }
@@ -208,7 +208,7 @@ TEST_CASE("whatever is flipped and cut off in packets nothing but sound frames c
   CHECK(counts.packets == packets);
   CHECK(counts.frames == frames);
   CHECK(frames > 1000);
-  CHECK(source.refused() > 100);
+  CHECK(source.rejected() > 100);
 }
 
 }  // namespace sidestep

@@ -17,7 +17,7 @@ Scenario two_robots() {
   return scenario;
 }
 
-msg::TrackedRobot tracked(RobotId id, double x_m, std::int64_t seen_at_ns) {
+msg::TrackedRobot tracked(RobotId id, double x_m, std::int64_t observed_at_ns) {
   msg::TrackedRobot robot;
   robot.robot(id);
   robot.x_m(x_m);
@@ -26,13 +26,13 @@ msg::TrackedRobot tracked(RobotId id, double x_m, std::int64_t seen_at_ns) {
   robot.vx_mps(1.5);
   robot.vy_mps(-0.5);
   robot.angular_radps(2);
-  robot.seen_at_ns(seen_at_ns);
+  robot.observed_at_ns(observed_at_ns);
   return robot;
 }
 
 }  // namespace
 
-TEST_CASE("a world becomes a tracked packet of the teams' numbers") {
+TEST_CASE("a world is converted to a tracked packet with teams and numbers") {
   TrackedOutput output(two_robots(), 77);
   constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
   msg::WorldState world;
@@ -41,7 +41,7 @@ TEST_CASE("a world becomes a tracked packet of the teams' numbers") {
   world.ball().is_visible(true);
   world.ball().x_m(0.5);
   world.ball().vx_mps(3);
-  // As a receiver gets it.
+  // Encoded and decoded, as for a receiver.
   const auto packet = league::decode_tracked(encode(output.packet_of(world))).packet;
   REQUIRE(packet);
   CHECK(packet->source_name == "Sidestep");
@@ -65,7 +65,7 @@ TEST_CASE("a world becomes a tracked packet of the teams' numbers") {
   CHECK(output.packet_of(world).frame->frame_number == 2);
 }
 
-TEST_CASE("a sender is named uniquely for each of its lives") {
+TEST_CASE("a sender has a different UUID for each incarnation") {
   msg::WorldState world;
   TrackedOutput first(two_robots(), 77), second(two_robots(), 78);
   const std::string name = first.packet_of(world).uuid;

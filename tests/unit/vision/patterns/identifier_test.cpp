@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <numbers>
 
-#include "tests/unit/vision/patterns/scene.hpp"
+#include "tests/unit/vision/patterns/placed_robots.hpp"
 
 using namespace sidestep;
 using namespace sidestep::test;
@@ -12,25 +13,25 @@ const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
 
 struct Tally {
-  std::size_t right = 0, wrong = 0;
+  std::size_t correct = 0, wrong = 0;
 };
 
-Tally tally(std::span<const IdentifiedRobot> found, const std::vector<Marked>& robots) {
+Tally tally(std::span<const IdentifiedRobot> found, const std::vector<PlacedRobot>& robots) {
   Tally t;
   for (const IdentifiedRobot& one : found) {
     const auto truth =
-        std::ranges::find_if(robots, [&](const Marked& r) { return r.entry.robot == one.robot; });
-    const bool is_right =
-        truth != robots.end() && (truth->pose.position_m - one.seen.pose.position_m).norm() < 0.02;
-    ++(is_right ? t.right : t.wrong);
+        std::ranges::find_if(robots, [&](const PlacedRobot& r) { return r.entry.robot == one.robot; });
+    const bool is_correct =
+        truth != robots.end() && (truth->pose.position_m - one.pattern.pose.position_m).norm() < 0.02;
+    ++(is_correct ? t.correct : t.wrong);
   }
   return t;
 }
 
-/// Somewhere within 3 cm of their places.
-std::vector<Marked> moved(std::vector<Marked> robots, Rng& rng) {
-  for (Marked& robot : robots) {
-    robot.pose.position_m += rotated(Vec2(rng.uniform(0, 0.03), 0), rng.uniform(-3.14159, 3.14159));
+/// Displaces robots randomly by up to 3 cm.
+std::vector<PlacedRobot> moved(std::vector<PlacedRobot> robots, Rng& rng) {
+  for (PlacedRobot& robot : robots) {
+    robot.pose.position_m += rotated(Vec2(rng.uniform(0, 0.03), 0), rng.uniform(-std::numbers::pi, std::numbers::pi));
     robot.pose.heading_rad += rng.uniform(-0.2, 0.2);
   }
   return robots;
@@ -38,107 +39,107 @@ std::vector<Marked> moved(std::vector<Marked> robots, Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("robots all of whose dots are seen are known at once") {
+TEST_CASE("robots with all dots visible are identified at once") {
   Rng rng(1);
-  const std::vector<Marked> robots = scattered(butterfly(), 16, 0.2, rng);
+  const std::vector<PlacedRobot> robots = scattered(butterfly(), 16, 0.2, rng);
   PatternFinder finder(butterfly());
   Identifier identifier(roster_of(robots));
   const auto found =
-      identifier.identify(kBegin, finder.find(patches_of(butterfly(), robots, {0.001, 0.1, 0}, rng)), {});
-  CHECK(tally(found, robots).right == robots.size());
+      identifier.identify(kBegin, finder.find(regions_of(butterfly(), robots, {0.001, 0.1, 0}, rng)), {});
+  CHECK(tally(found, robots).correct == robots.size());
   CHECK(tally(found, robots).wrong == 0);
 }
 
-TEST_CASE("with one dot hidden robots are known where they are expected") {
+TEST_CASE("robots with one dot hidden are identified where they are expected") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
-  const std::vector<Marked> places = scattered(butterfly(), 16, 0.25, rng);
-  std::vector<Marked> robots = places;
+  const std::vector<PlacedRobot> initial = scattered(butterfly(), 16, 0.25, rng);
+  std::vector<PlacedRobot> robots = initial;
   PatternFinder finder(butterfly());
   Identifier identifier(roster_of(robots));
   for (int frame = 0; frame < 50; ++frame) {
     const auto expected = expected_of(robots);
-    robots = moved(places, rng);
-    const auto patches = patches_of(butterfly(), robots, {0.001, 0.1, 1}, rng);
+    robots = moved(initial, rng);
+    const auto regions = regions_of(butterfly(), robots, {0.001, 0.1, 1}, rng);
     const Tally t =
-        tally(identifier.identify(kBegin + frame * kFrame, finder.find(patches), expected), robots);
-    CHECK(t.right == robots.size());
+        tally(identifier.identify(kBegin + frame * kFrame, finder.find(regions), expected), robots);
+    CHECK(t.correct == robots.size());
     CHECK(t.wrong == 0);
   }
 }
 
-TEST_CASE("robots that nobody has ever seen as a whole become known by what is left over") {
+TEST_CASE("robots never observed with all dots are identified by the history of matches") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
-  std::vector<Marked> robots = scattered(butterfly(), 11, 0.3, rng);
+  std::vector<PlacedRobot> robots = scattered(butterfly(), 11, 0.3, rng);
   PatternFinder finder(butterfly());
   Identifier identifier(roster_of(robots));
   std::vector<bool> is_known(32);
   for (int frame = 0; frame < 40; ++frame) {
-    for (Marked& robot : robots) robot.pose.position_m += 0.005 * Vec2(rng.normal(), rng.normal());
+    for (PlacedRobot& robot : robots) robot.pose.position_m += 0.005 * Vec2(rng.normal(), rng.normal());
     const auto found = identifier.identify(
-        kBegin + frame * kFrame, finder.find(patches_of(butterfly(), robots, {0.001, 0.1, 1}, rng)), {});
+        kBegin + frame * kFrame, finder.find(regions_of(butterfly(), robots, {0.001, 0.1, 1}, rng)), {});
     CHECK(tally(found, robots).wrong == 0);
     for (const IdentifiedRobot& one : found) is_known[one.robot] = true;
   }
   CHECK(std::ranges::count(is_known, true) == static_cast<std::ptrdiff_t>(robots.size()));
 }
 
-TEST_CASE("who is expected somewhere is not mistaken for somebody whose dots are misread") {
+TEST_CASE("an expected robot is not mistaken for another when a dot is misread") {
   Rng rng(2);
-  std::vector<Marked> robots = scattered(butterfly(), 16, 0.3, rng);
+  std::vector<PlacedRobot> robots = scattered(butterfly(), 16, 0.3, rng);
   const std::vector<RosterEntry> roster = roster_of(robots);
   const auto expected = expected_of(robots);
   robots.resize(1);
-  std::vector<Marked> misread = robots;
+  std::vector<PlacedRobot> misread = robots;
   misread[0].entry.pattern = butterfly().patterns[1];
   PatternFinder finder(butterfly());
   Identifier identifier(roster);
   CHECK(
-      identifier.identify(kBegin, finder.find(patches_of(butterfly(), misread, {}, rng)), expected).empty());
-  CHECK(identifier.identify(kBegin, finder.find(patches_of(butterfly(), robots, {}, rng)), expected).size() ==
+      identifier.identify(kBegin, finder.find(regions_of(butterfly(), misread, {}, rng)), expected).empty());
+  CHECK(identifier.identify(kBegin, finder.find(regions_of(butterfly(), robots, {}, rng)), expected).size() ==
         1);
-  // Where nobody is expected dots are believed.
+  // Where no robot is expected, the dots decide.
   CHECK(
-      identifier.identify(kBegin, finder.find(patches_of(butterfly(), misread, {}, rng)), {}).front().robot ==
+      identifier.identify(kBegin, finder.find(regions_of(butterfly(), misread, {}, rng)), {}).front().robot ==
       1);
 }
 
-TEST_CASE("robots that pass each other closely keep their names although a dot of each is hidden") {
+TEST_CASE("robots that pass each other closely keep their identities with one dot of each hidden") {
   const std::uint64_t seed = GENERATE(range(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
   const auto& patterns = butterfly().patterns;
   // 0 and 10 differ in one dot.
-  std::vector<Marked> robots{{{0, Team::kBlue, patterns[0]}, {{-0.5, 0.095}, 0.3}},
+  std::vector<PlacedRobot> robots{{{0, Team::kBlue, patterns[0]}, {{-0.5, 0.095}, 0.3}},
                              {{10, Team::kBlue, patterns[10]}, {{0.5, -0.095}, -0.4}}};
   PatternFinder finder(butterfly());
   Identifier identifier(roster_of(robots));
-  std::size_t right = 0, wrong = 0;
+  std::size_t correct = 0, wrong = 0;
   for (int frame = 0; frame < 60; ++frame) {
     const auto expected = expected_of(robots);
     robots[0].pose.position_m.x() += 0.017;
     robots[1].pose.position_m.x() -= 0.017;
-    const auto patches = patches_of(butterfly(), robots, {0.0015, 0.1, 1}, rng);
+    const auto regions = regions_of(butterfly(), robots, {0.0015, 0.1, 1}, rng);
     const Tally t =
-        tally(identifier.identify(kBegin + frame * kFrame, finder.find(patches), expected), robots);
-    right += t.right;
+        tally(identifier.identify(kBegin + frame * kFrame, finder.find(regions), expected), robots);
+    correct += t.correct;
     wrong += t.wrong;
   }
-  CHECK(right >= 118);
+  CHECK(correct >= 118);
   CHECK(wrong == 0);
 }
 
-TEST_CASE("robots that are not in the roster are nobody") {
+TEST_CASE("robots that are not in the roster are not identified") {
   Rng rng(3);
-  const std::vector<Marked> robots = scattered(butterfly(), 4, 0.3, rng);
+  const std::vector<PlacedRobot> robots = scattered(butterfly(), 4, 0.3, rng);
   PatternFinder finder(butterfly());
   std::vector<RosterEntry> roster = roster_of(robots);
   roster.erase(roster.begin());
   Identifier identifier(roster);
-  const auto found = identifier.identify(kBegin, finder.find(patches_of(butterfly(), robots, {}, rng)), {});
+  const auto found = identifier.identify(kBegin, finder.find(regions_of(butterfly(), robots, {}, rng)), {});
   CHECK(found.size() == roster.size());
   CHECK(tally(found, robots).wrong == 0);
 }

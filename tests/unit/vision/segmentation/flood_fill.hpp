@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-/// The slow reference: each pixel looked up, regions filled from each pixel that is in none yet.
-inline std::vector<Region> flooded(const ImageView& image, const ColourClasses& classes,
-                                   std::uint32_t least_area_px) {
+/// Slow reference: classifies each pixel, and flood-fills a region from each pixel that is in none yet.
+inline std::vector<Region> flood_filled(const ImageView& image, const ColourClasses& classes,
+                                   std::uint32_t min_area_px) {
   const int width = image.width_px, height = image.height_px;
   std::vector<int> colour(static_cast<std::size_t>(width * height), -1);
   const auto at = [&](int x, int y) -> int& { return colour[static_cast<std::size_t>(y * width + x)]; };
@@ -25,18 +25,18 @@ inline std::vector<Region> flooded(const ImageView& image, const ColourClasses& 
     int x, y;
   };
   std::vector<Region> regions;
-  std::vector<Pixel> todo;
+  std::vector<Pixel> pending;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const int mine = at(x, y);
-      if (mine < 0) continue;
+      const int own = at(x, y);
+      if (own < 0) continue;
       std::uint64_t sum_x = 0, sum_y = 0;
-      Region region{static_cast<std::uint32_t>(mine), 0, 0, 0, x, x, y, y};
-      todo.push_back({x, y});
+      Region region{static_cast<std::uint32_t>(own), 0, 0, 0, x, x, y, y};
+      pending.push_back({x, y});
       at(x, y) = -1;
-      while (!todo.empty()) {
-        const Pixel p = todo.back();
-        todo.pop_back();
+      while (!pending.empty()) {
+        const Pixel p = pending.back();
+        pending.pop_back();
         ++region.area_px;
         sum_x += static_cast<std::uint64_t>(p.x);
         sum_y += static_cast<std::uint64_t>(p.y);
@@ -45,15 +45,15 @@ inline std::vector<Region> flooded(const ImageView& image, const ColourClasses& 
         region.bottom_px = std::max(region.bottom_px, p.y);
         for (int j = std::max(0, p.y - 1); j <= std::min(height - 1, p.y + 1); ++j) {
           for (int i = std::max(0, p.x - 1); i <= std::min(width - 1, p.x + 1); ++i) {
-            if (at(i, j) != mine) continue;
+            if (at(i, j) != own) continue;
             at(i, j) = -1;
-            todo.push_back({i, j});
+            pending.push_back({i, j});
           }
         }
       }
       region.x_px = static_cast<double>(sum_x) / region.area_px;
       region.y_px = static_cast<double>(sum_y) / region.area_px;
-      if (region.area_px >= least_area_px) regions.push_back(region);
+      if (region.area_px >= min_area_px) regions.push_back(region);
     }
   }
   std::stable_sort(regions.begin(), regions.end(),

@@ -5,24 +5,24 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/unit/vision/floor.hpp"
+#include "tests/unit/vision/tracker_fixture.hpp"
 
 using namespace sidestep;
 using namespace sidestep::test;
 
 namespace {
 
-msg::RobotDetection good_robot() {
+msg::RobotDetection valid_robot() {
   msg::DetectionFrame frame;
   add_robot(frame, 3, {1, 2}, 0.5);
   return frame.robots()[0];
 }
 
-/// How many detections of a frame with this one and a good one are taken and rejected.
-void check_that_only_the_good_one_is_taken(const msg::RobotDetection& bad) {
+/// A frame with an invalid and a valid detection must keep only the valid one.
+void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
   msg::DetectionFrame message = frame_message(0, kBegin);
   message.robots().push_back(bad);
-  message.robots().push_back(good_robot());
+  message.robots().push_back(valid_robot());
   Frame frame;
   frame.assign(message, kBegin);
   CHECK(frame.is_usable());
@@ -34,29 +34,29 @@ void check_that_only_the_good_one_is_taken(const msg::RobotDetection& bad) {
 
 }  // namespace
 
-TEST_CASE("a detection with a number that makes no sense is dropped alone and counted") {
+TEST_CASE("only a detection with an invalid number is dropped and counted") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                -std::numeric_limits<double>::infinity(), 100.001, -1e300);
   CAPTURE(bad);
-  msg::RobotDetection d = good_robot();
+  msg::RobotDetection d = valid_robot();
   SECTION("x") { d.x_m(bad); }
   SECTION("y") { d.y_m(bad); }
   SECTION("heading") { d.heading_rad(bad); }
   SECTION("confidence") { d.confidence(bad); }
-  check_that_only_the_good_one_is_taken(d);
+  check_that_only_the_valid_one_is_kept(d);
 }
 
-TEST_CASE("a confidence outside 0..1 or a robot number beyond all robots is dropped alone and counted") {
-  msg::RobotDetection d = good_robot();
+TEST_CASE("only a detection with an invalid confidence or robot number is dropped and counted") {
+  msg::RobotDetection d = valid_robot();
   SECTION("confidence below 0") { d.confidence(-0.001); }
   SECTION("confidence above 1") { d.confidence(1.001); }
-  SECTION("first number beyond") { d.robot(kMaxRobots); }
+  SECTION("first number out of range") { d.robot(kMaxRobots); }
   SECTION("largest number") { d.robot(0xffffffff); }
-  check_that_only_the_good_one_is_taken(d);
+  check_that_only_the_valid_one_is_kept(d);
 }
 
-TEST_CASE("a ball that makes no sense is dropped alone and counted") {
+TEST_CASE("only an invalid ball is dropped and counted") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   add_ball(message, {1, 1});
   add_ball(message, {std::nan(""), 1});
@@ -69,7 +69,7 @@ TEST_CASE("a ball that makes no sense is dropped alone and counted") {
   CHECK(frame.rejected() == 3);
 }
 
-TEST_CASE("a frame from too long ago or from the future is refused as a whole") {
+TEST_CASE("a frame that is too old or from the future is rejected as a whole") {
   const std::int64_t ns = to_ns(kBegin);
   const std::int64_t captured =
       GENERATE_COPY(ns - 500'000'001, ns + 100'000'001, std::int64_t{0},
@@ -77,8 +77,8 @@ TEST_CASE("a frame from too long ago or from the future is refused as a whole") 
   CAPTURE(captured);
   msg::DetectionFrame message = frame_message(0, kBegin);
   message.captured_at_ns(captured);
-  message.robots().push_back(good_robot());
-  message.robots().push_back(good_robot());
+  message.robots().push_back(valid_robot());
+  message.robots().push_back(valid_robot());
   Frame frame;
   frame.assign(message, kBegin);
   CHECK_FALSE(frame.is_usable());
@@ -86,22 +86,22 @@ TEST_CASE("a frame from too long ago or from the future is refused as a whole") 
   CHECK(frame.rejected() == 2);
 }
 
-TEST_CASE("a frame just within the bounds of time is taken") {
+TEST_CASE("a frame just within the time limits is accepted") {
   const Duration age = GENERATE(Duration{500'000'000}, Duration{-100'000'000});
   msg::DetectionFrame message = frame_message(0, kBegin - age);
-  message.robots().push_back(good_robot());
+  message.robots().push_back(valid_robot());
   Frame frame;
   frame.assign(message, kBegin);
   CHECK(frame.is_usable());
   CHECK(frame.robots().size() == 1);
 }
 
-TEST_CASE("a frame with counts beyond its bounds is refused as a whole") {
+TEST_CASE("a frame with counts out of range is rejected as a whole") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   std::uint64_t expected = 1;
   SECTION("balls") { message.ball_count(5); }
   SECTION("robots") {
-    message.robots().assign(kMaxRobots + 1, good_robot());
+    message.robots().assign(kMaxRobots + 1, valid_robot());
     expected = kMaxRobots + 1;
   }
   Frame frame;
@@ -112,9 +112,9 @@ TEST_CASE("a frame with counts beyond its bounds is refused as a whole") {
   CHECK(frame.rejected() == expected);
 }
 
-TEST_CASE("a frame that is used again holds nothing of the one before") {
+TEST_CASE("a reused frame holds nothing of its previous message") {
   msg::DetectionFrame message = frame_message(7, kBegin);
-  message.robots().assign(kMaxRobots, good_robot());
+  message.robots().assign(kMaxRobots, valid_robot());
   add_ball(message, {0, 0});
   Frame frame;
   frame.assign(message, kBegin);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <numbers>
 
-#include "tests/unit/vision/floor.hpp"
+#include "tests/unit/vision/tracker_fixture.hpp"
 
 using namespace sidestep;
 using namespace sidestep::test;
@@ -19,28 +20,28 @@ struct Errors {
 
 }  // namespace
 
-TEST_CASE("filtered velocities and positions of a driving robot are better than the camera's") {
+TEST_CASE("filtered velocities and positions of a driving robot are more accurate than the camera's") {
   const std::uint64_t seed = GENERATE(21u, 22u, 23u);
   CAPTURE(seed);
   Rng rng(seed);
   const TrueMotion motion = TrueMotion::driving(rng, 60);
-  Watcher watcher(1);
+  TrackerFixture fixture(1);
   Errors position, velocity, measured_position, measured_velocity;
   Vec2 last{0, 0};
   for (Time t = kBegin; t < after_s(60); t += kFrame) {
     msg::DetectionFrame frame = frame_message(0, t);
-    see(frame, 0, motion.at(t), {}, rng);
-    watcher.feed(frame);
-    const Vec2 seen{frame.robots()[0].x_m(), frame.robots()[0].y_m()};
+    add_noisy_robot(frame, 0, motion.at(t), {}, rng);
+    fixture.feed(frame);
+    const Vec2 measured{frame.robots()[0].x_m(), frame.robots()[0].y_m()};
     if (t > after_s(0.5)) {
-      const auto* robot = watcher.robot_at(0, t);
+      const auto* robot = fixture.robot_at(0, t);
       REQUIRE(robot);
       position.add(position_of(*robot) - motion.at(t).position_m);
       velocity.add(velocity_of(*robot) - motion.at(t).velocity_mps);
-      measured_position.add(seen - motion.at(t).position_m);
-      measured_velocity.add((seen - last) / to_seconds(kFrame) - motion.at(t).velocity_mps);
+      measured_position.add(measured - motion.at(t).position_m);
+      measured_velocity.add((measured - last) / to_seconds(kFrame) - motion.at(t).velocity_mps);
     }
-    last = seen;
+    last = measured;
   }
   INFO("position rms " << position.rms() << " of " << measured_position.rms() << " m, velocity rms "
                        << velocity.rms() << " of " << measured_velocity.rms() << " m/s");
@@ -49,21 +50,21 @@ TEST_CASE("filtered velocities and positions of a driving robot are better than 
   CHECK(velocity.rms() < 0.7 * measured_velocity.rms());
 }
 
-TEST_CASE("errors of the world at the time of publishing are as large as its variances say, and not larger") {
+TEST_CASE("errors of the world at the time of publication match its variances") {
   const std::uint64_t seed = GENERATE(31u, 32u, 33u);
   CAPTURE(seed);
   Rng rng(seed);
   const TrueMotion motion = TrueMotion::driving(rng, 60);
-  Watcher watcher(1);
+  TrackerFixture fixture(1);
   double position = 0, velocity = 0, worst = 0;
   int count = 0;
   for (Time t = kBegin; t < after_s(60); t += kFrame) {
     msg::DetectionFrame frame = frame_message(0, t);
-    if (!rng.chance(0.02)) see(frame, 0, motion.at(t), {}, rng);
+    if (!rng.chance(0.02)) add_noisy_robot(frame, 0, motion.at(t), {}, rng);
     const Time now = t + kDelay;
-    watcher.feed(frame, now);
+    fixture.feed(frame, now);
     if (t < after_s(0.5)) continue;
-    const auto* robot = watcher.robot_at(0, now);
+    const auto* robot = fixture.robot_at(0, now);
     REQUIRE(robot);
     const double p =
         (position_of(*robot) - motion.at(now).position_m).squaredNorm() / robot->position_variance_m2();
@@ -73,8 +74,7 @@ TEST_CASE("errors of the world at the time of publishing are as large as its var
   }
   INFO("mean NEES of position " << position / count << ", velocity " << velocity / count << ", worst "
                                 << worst);
-  // 2 is exact consistency; the model allows for harder driving than this, so the mean stays below, yet not
-  // idle.
+  // 2 is exact consistency. The model allows for more agile driving than this, so the mean may be lower.
   CHECK(position / count < 2.2);
   CHECK(position / count > 0.5);
   CHECK(velocity / count < 2.5);
@@ -82,8 +82,7 @@ TEST_CASE("errors of the world at the time of publishing are as large as its var
   CHECK(worst < 25);
 }
 
-TEST_CASE(
-    "the seen pose of a robot that accelerates with 5 m/s² is unbiased and no noisier than the camera") {
+TEST_CASE("the observed pose of a robot that accelerates at 5 m/s² is unbiased, with the camera's noise") {
   const std::uint64_t seed = GENERATE(41u, 42u);
   const double noise_m = GENERATE(0.0005, 0.0015);
   CAPTURE(seed, noise_m);
@@ -95,16 +94,16 @@ TEST_CASE(
   for (int run = 0; run < 200; ++run) {
     const Vec2 acceleration = Vec2(5, 0);
     const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {-1.5, 0.3}, 0}, acceleration, 0, 0.7);
-    Watcher watcher(1, settings);
+    TrackerFixture fixture(1, settings);
     for (Time t = kBegin; t < after_s(0.6); t += kFrame) {
       msg::DetectionFrame frame = frame_message(0, t);
-      see(frame, 0, motion.at(t), {noise_m, 0.005}, rng);
-      watcher.feed(frame, t + kDelay);
+      add_noisy_robot(frame, 0, motion.at(t), {noise_m, 0.005}, rng);
+      fixture.feed(frame, t + kDelay);
       if (t < after_s(0.1)) continue;
-      const auto* robot = watcher.robot_at(0, t + kDelay);
+      const auto* robot = fixture.robot_at(0, t + kDelay);
       REQUIRE(robot);
-      REQUIRE(robot->seen_at_ns() == to_ns(t));
-      const Vec2 error = seen_of(*robot) - motion.at(t).position_m;
+      REQUIRE(robot->observed_at_ns() == to_ns(t));
+      const Vec2 error = observed_position_of(*robot) - motion.at(t).position_m;
       sum += error;
       errors.add(error);
     }
@@ -113,62 +112,61 @@ TEST_CASE(
   CHECK(errors.rms() < 1.05 * noise_m);
 }
 
-TEST_CASE("latency is made up for: under constant acceleration the world lags by millimetres") {
+TEST_CASE("latency is compensated: under constant acceleration the world lags by millimetres") {
   const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {0, 0}, 0}, {5, 0}, 0, 0.5);
-  Watcher watcher(1);
+  TrackerFixture fixture(1);
   double worst = 0;
   for (Time t = kBegin; t < after_s(0.4); t += kFrame) {
     msg::DetectionFrame frame = frame_message(0, t);
     add_robot(frame, 0, motion.at(t).position_m);
-    watcher.feed(frame, t + kDelay);
-    const auto* robot = watcher.robot_at(0, t + kDelay);
+    fixture.feed(frame, t + kDelay);
+    const auto* robot = fixture.robot_at(0, t + kDelay);
     if (!robot) continue;
     const Pose truth = motion.at(t + kDelay);
     const double error = (position_of(*robot) - truth.position_m).norm();
     worst = std::max(worst, error);
     if (truth.velocity_mps.x() > 1) CHECK(error < 0.3 * (truth.position_m - motion.at(t).position_m).norm());
   }
-  // a t²/2 over 35 ms is 3.1 mm; the rest is the filter's lag in velocity. Without prediction it would be 60
-  // mm.
+  // a t²/2 over 35 ms is 3.1 mm; the rest is the filter's velocity lag. Without prediction the error is 60 mm.
   CHECK(worst < 0.008);
   CHECK(worst > 0.001);
 }
 
-TEST_CASE("two cameras that see a robot at once make one robot, and a better one than either") {
+TEST_CASE("a robot observed by two cameras is fused to a more accurate pose than either's") {
   Rng rng(51);
-  Watcher watcher(1);
-  Errors seen;
+  TrackerFixture fixture(1);
+  Errors observed;
   for (Time t = kBegin; t < after_s(10); t += kFrame) {
     for (std::uint32_t camera = 0; camera < 2; ++camera) {
       msg::DetectionFrame frame = frame_message(camera, t);
-      see(frame, 0, {{1, 1}, {0, 0}, 3.14159}, {}, rng);
-      watcher.feed(frame, t + kDelay);
+      add_noisy_robot(frame, 0, {{1, 1}, {0, 0}, std::numbers::pi}, {}, rng);
+      fixture.feed(frame, t + kDelay);
     }
-    const auto& world = watcher.world_at(t + kDelay);
+    const auto& world = fixture.world_at(t + kDelay);
     if (t < after_s(0.2)) continue;
     REQUIRE(world.robots().size() == 1);
     const auto& robot = world.robots()[0];
-    seen.add(seen_of(robot) - Vec2(1, 1));
-    CHECK(std::abs(wrapped_rad(robot.seen_heading_rad() - 3.14159)) < 0.03);
+    observed.add(observed_position_of(robot) - Vec2(1, 1));
+    CHECK(std::abs(wrapped_rad(robot.observed_heading_rad() - std::numbers::pi)) < 0.03);
   }
-  CHECK(seen.rms() == Approx(0.0015 / std::sqrt(2)).epsilon(0.1));
-  CHECK(watcher.world_at(after_s(10)).rejected() == 0);
+  CHECK(observed.rms() == Approx(0.0015 / std::sqrt(2)).epsilon(0.1));
+  CHECK(fixture.world_at(after_s(10)).rejected() == 0);
 }
 
-TEST_CASE("a heading that turns through pi stays a heading, with its rate") {
+TEST_CASE("a heading that wraps around at pi keeps its estimate and rate") {
   const double turn_radps = GENERATE(3.0, -3.0);
   CAPTURE(turn_radps);
   Rng rng(61);
   const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {0, 0}, 2.5}, {0, 0}, turn_radps, 11);
-  Watcher watcher(1);
+  TrackerFixture fixture(1);
   double squared_error = 0;
   int count = 0;
   for (Time t = kBegin; t < after_s(10); t += kFrame) {
     msg::DetectionFrame frame = frame_message(0, t);
-    see(frame, 0, motion.at(t), {}, rng);
-    watcher.feed(frame, t + kDelay);
+    add_noisy_robot(frame, 0, motion.at(t), {}, rng);
+    fixture.feed(frame, t + kDelay);
     if (t < after_s(0.2)) continue;
-    const auto* robot = watcher.robot_at(0, t + kDelay);
+    const auto* robot = fixture.robot_at(0, t + kDelay);
     REQUIRE(robot);
     CHECK(std::abs(robot->heading_rad()) < 3.1416);
     const double error_rad = wrapped_rad(robot->heading_rad() - motion.at(t + kDelay).heading_rad);
@@ -177,5 +175,5 @@ TEST_CASE("a heading that turns through pi stays a heading, with its rate") {
     CHECK(robot->angular_radps() == Approx(turn_radps).margin(1.5));
   }
   CHECK(std::sqrt(squared_error / count) < 0.025);
-  CHECK(watcher.world_at(after_s(10)).rejected() == 0);
+  CHECK(fixture.world_at(after_s(10)).rejected() == 0);
 }

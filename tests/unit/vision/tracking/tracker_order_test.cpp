@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/counted_allocations.hpp"
-#include "tests/unit/vision/floor.hpp"
+#include "tests/unit/vision/tracker_fixture.hpp"
 
 using namespace sidestep;
 using namespace sidestep::test;
@@ -14,8 +14,7 @@ struct Arrival {
   msg::DetectionFrame frame;
 };
 
-/// Two cameras' frames of three robots, one of which comes late into the picture, with ghosts, misses and a
-/// ball.
+/// Two cameras' frames of three robots, one of which appears later, with ghosts, misses and a ball.
 std::vector<Arrival> frames_of_two_cameras(Rng& rng, double duration_s) {
   std::vector<TrueMotion> motions;
   for (int i = 0; i < 3; ++i) motions.push_back(TrueMotion::driving(rng, duration_s));
@@ -26,7 +25,7 @@ std::vector<Arrival> frames_of_two_cameras(Rng& rng, double duration_s) {
       msg::DetectionFrame frame = frame_message(camera, captured);
       for (RobotId id = 0; id < 3; ++id) {
         if (id == 2 && t < after_s(0.5)) continue;
-        if (!rng.chance(0.05)) see(frame, id, motions[id].at(captured), {}, rng);
+        if (!rng.chance(0.05)) add_noisy_robot(frame, id, motions[id].at(captured), {}, rng);
         if (rng.chance(0.05)) add_robot(frame, id, {rng.uniform(-3, 3), rng.uniform(-3, 3)});
       }
       if (!rng.chance(0.1)) add_ball(frame, {rng.normal() * 0.001, 1});
@@ -40,8 +39,7 @@ bool by_arrival(const Arrival& a, const Arrival& b) { return a.at < b.at; }
 
 }  // namespace
 
-TEST_CASE(
-    "frames that come late, out of order and twice give the same world, bit for bit, as frames in order") {
+TEST_CASE("late, reordered and duplicate frames give the same world, bit for bit, as frames in order") {
   const std::uint64_t seed = GENERATE(range(200u, 220u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -53,73 +51,73 @@ TEST_CASE(
   }
   std::stable_sort(shuffled.begin(), shuffled.end(), by_arrival);
 
-  Watcher expected(3), watcher(3);
+  TrackerFixture expected(3), fixture(3);
   for (const Arrival& frame : in_order) expected.feed(frame.frame, frame.at);
-  for (const Arrival& frame : shuffled) watcher.feed(frame.frame, frame.at);
+  for (const Arrival& frame : shuffled) fixture.feed(frame.frame, frame.at);
   const Time end = after_s(3.1);
   REQUIRE(expected.world_at(end).robots().size() == 3);
   CHECK(expected.world_at(end).rejected() > 0);
   CHECK(expected.world_at(end).frames() == in_order.size());
-  CHECK(watcher.world_at(end) == expected.world_at(end));
+  CHECK(fixture.world_at(end) == expected.world_at(end));
 }
 
-TEST_CASE("a frame that is older than all that is kept changes nothing and is counted") {
+TEST_CASE("a frame older than the stored history changes nothing and is counted") {
   Rng rng(231);
-  Watcher watcher(1);
+  TrackerFixture fixture(1);
   for (int i = 0; i < 40; ++i) {
     if (i == 1) continue;
     msg::DetectionFrame frame = frame_message(0, kBegin + i * kFrame / 2);
-    see(frame, 0, {}, {}, rng);
-    watcher.feed(frame);
+    add_noisy_robot(frame, 0, {}, {}, rng);
+    fixture.feed(frame);
   }
   const Time now = kBegin + 20 * kFrame;
-  const msg::WorldState before = watcher.world_at(now);
+  const msg::WorldState before = fixture.world_at(now);
   msg::DetectionFrame late = frame_message(0, kBegin + kFrame / 2);
-  see(late, 0, {}, {}, rng);
-  watcher.feed(late, now);
+  add_noisy_robot(late, 0, {}, {}, rng);
+  fixture.feed(late, now);
   msg::WorldState expected = before;
   expected.rejected(before.rejected() + 1);
-  CHECK(watcher.world_at(now) == expected);
+  CHECK(fixture.world_at(now) == expected);
 }
 
-TEST_CASE("a frame that belongs right after all that is no longer kept is still taken in as if in order") {
+TEST_CASE("a frame at the start of the stored history is processed as if in order") {
   Rng rng(235);
   std::vector<msg::DetectionFrame> frames;
   for (int i = 0; i < 40; ++i) {
     frames.push_back(frame_message(0, kBegin + i * kFrame / 2));
-    see(frames.back(), 0, {}, {}, rng);
+    add_noisy_robot(frames.back(), 0, {}, {}, rng);
   }
-  Watcher expected(1), watcher(1);
+  TrackerFixture expected(1), fixture(1);
   for (const auto& frame : frames) expected.feed(frame);
-  // Of 39 sights the last 32 are kept: from number 7 on.
+  // Of 39 observations the last 32 are stored: from number 7 on.
   const std::size_t late = 8;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i != late) watcher.feed(frames[i]);
+    if (i != late) fixture.feed(frames[i]);
   }
   const Time now = kBegin + 20 * kFrame;
-  CHECK(watcher.world_at(now) != expected.world_at(now));
-  watcher.feed(frames[late], now);
-  CHECK(watcher.world_at(now) == expected.world_at(now));
+  CHECK(fixture.world_at(now) != expected.world_at(now));
+  fixture.feed(frames[late], now);
+  CHECK(fixture.world_at(now) == expected.world_at(now));
 }
 
 TEST_CASE("updates and publications allocate nothing") {
   Rng rng(241);
   const std::vector<Arrival> frames = frames_of_two_cameras(rng, 1);
-  Watcher watcher(3);
-  watcher.world_at(kBegin);
-  const std::size_t before = allocations();
+  TrackerFixture fixture(3);
+  fixture.world_at(kBegin);
+  const std::size_t before = allocation_count();
   for (const Arrival& frame : frames) {
-    watcher.feed(frame.frame, frame.at);
-    watcher.world_at(frame.at);
+    fixture.feed(frame.frame, frame.at);
+    fixture.world_at(frame.at);
   }
-  CHECK(allocations() == before);
+  CHECK(allocation_count() == before);
 }
 
-TEST_CASE("any numbers in any frame leave the tracker alive and its world finite") {
+TEST_CASE("arbitrary numbers in frames leave the world finite") {
   const std::uint64_t seed = GENERATE(range(250u, 260u));
   CAPTURE(seed);
   Rng rng(seed);
-  Watcher watcher(4);
+  TrackerFixture fixture(4);
   const auto number = [&rng](double usual) {
     const double odd[] = {0, -0.0, 1e-310, 100, -100, 101, 1e308, INFINITY, -INFINITY, NAN};
     return rng.chance(0.1) ? odd[rng.below(10)] : usual * rng.normal();
@@ -135,18 +133,18 @@ TEST_CASE("any numbers in any frame leave the tracker alive and its world finite
     }
     frame.ball_count(static_cast<std::uint8_t>(rng.below(6)));
     for (auto& ball : frame.balls()) ball.x_m(number(1)), ball.y_m(number(1)), ball.confidence(0.5);
-    watcher.feed(frame, now);
-    const auto& world = watcher.world_at(now);
+    fixture.feed(frame, now);
+    const auto& world = fixture.world_at(now);
     REQUIRE(world.robots().size() <= 4);
     for (const auto& robot : world.robots()) {
       REQUIRE(
           std::isfinite(robot.x_m() + robot.y_m() + robot.vx_mps() + robot.vy_mps() + robot.heading_rad()));
-      REQUIRE(std::isfinite(robot.angular_radps() + robot.seen_x_m() + robot.seen_y_m()));
+      REQUIRE(std::isfinite(robot.angular_radps() + robot.observed_x_m() + robot.observed_y_m()));
       REQUIRE(robot.position_variance_m2() > 0);
       REQUIRE(robot.velocity_variance_m2ps2() > 0);
     }
     const auto& ball = world.ball();
     if (ball.is_visible()) REQUIRE(std::isfinite(ball.x_m() + ball.y_m() + ball.vx_mps() + ball.vy_mps()));
   }
-  CHECK(watcher.world_at(kBegin).rejected() > 0);
+  CHECK(fixture.world_at(kBegin).rejected() > 0);
 }

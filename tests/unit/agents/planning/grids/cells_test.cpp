@@ -3,7 +3,7 @@
 
 #include "agents/planning/grids/grid_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
-#include "agents/planning/grids/trapezoids.hpp"
+#include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
@@ -28,7 +28,7 @@ Outcome plan_world(Planner planner, const std::string& name, std::uint64_t seed)
     const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
     const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {}, rng);
     REQUIRE(plan.states.front() == query.start_m);
-    REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+    REQUIRE(is_valid_path(world, plan.states, 1e-9));
     if (!plan.arrives()) continue;
     REQUIRE(plan.states.back() == query.goal_m);
     REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
@@ -43,7 +43,7 @@ Outcome plan_world(Planner planner, const std::string& name, std::uint64_t seed)
 
 }  // namespace
 
-TEST_CASE("a search on a grid finds ways that are little longer than the shortest") {
+TEST_CASE("grid search finds paths little longer than the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string name : {"empty", "circles", "mixed", "maze", "u"}) {
     CAPTURE(name, seed);
@@ -53,54 +53,54 @@ TEST_CASE("a search on a grid finds ways that are little longer than the shortes
     CHECK(a_star.solved >= 9);
     CHECK(breadth.solved == a_star.solved);
     CHECK(depth.solved == a_star.solved);
-    // 8.3 % at most for eight directions, and the cells' width.
+    // At most 8.3 % longer for eight directions, plus the cells' width.
     CHECK(a_star.over_shortest < 1.12);
     CHECK(a_star.over_shortest <= breadth.over_shortest);
     CHECK(breadth.over_shortest <= depth.over_shortest);
   }
 }
 
-TEST_CASE("cells lead to the goal in all worlds") {
+TEST_CASE("cell decompositions lead to the goal in all worlds") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string& name : world_names()) {
     CAPTURE(name, seed);
     const Outcome squares = plan_world(QuadTree(), name, seed);
-    // Its smallest squares are wider than what there is room for in the narrow ones.
+    // The smallest squares are wider than the passages of the narrow worlds.
     CHECK((squares.solved >= 6 || name == "gap" || name == "trap"));
     CHECK((squares.over_shortest < 1.6 || squares.solved == 0));
-    const Outcome trapezoids = plan_world(Trapezoids(), name, seed);
+    const Outcome trapezoids = plan_world(TrapezoidalDecomposition(), name, seed);
     CHECK(trapezoids.solved == 10);
     CHECK(trapezoids.over_shortest < 2.5);
   }
 }
 
-TEST_CASE("trapezoids cover what is free and nothing else") {
+TEST_CASE("the trapezoids cover exactly the free positions") {
   const auto seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const PlanWorld world = make_world("mixed", 1, seed);
   const ObstacleWorld obstacles(world.obstacles);
   Rng rng(seed);
-  Trapezoids planner;
-  // So that the way is not straight.
+  TrapezoidalDecomposition planner;
+  // A query without a straight path, which would skip the decomposition.
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;
   planner.plan({obstacles, world.field, world.radius_m, start, goal}, start, {}, rng);
-  PlanWorld slim = world, fat = world;
-  slim.radius_m -= 1e-7;
-  fat.radius_m += 0.01;
+  PlanWorld smaller_robot = world, larger_robot = world;
+  smaller_robot.radius_m -= 1e-7;
+  larger_robot.radius_m += 0.01;
   for (int i = 0; i < 3'000; ++i) {
-    const Vec2 place(rng.uniform(-4.89, 4.89), rng.uniform(-4.89, 4.89));
-    CAPTURE(place.transpose());
-    const auto holds = [&](const ConvexPolygon& cell) {
-      return signed_distance(place, std::span<const Vec2>(cell.corners_m)) < -1e-9;
+    const Vec2 position(rng.uniform(-4.89, 4.89), rng.uniform(-4.89, 4.89));
+    CAPTURE(position.transpose());
+    const auto contains = [&](const ConvexPolygon& cell) {
+      return signed_distance(position, std::span<const Vec2>(cell.corners_m)) < -1e-9;
     };
-    const auto count = std::count_if(planner.cells().cells.begin(), planner.cells().cells.end(), holds);
-    if (count > 0) REQUIRE(is_free(slim, place));
-    if (count == 0) REQUIRE_FALSE((is_free(fat, place) && fat.field.contains(place, 0.11)));
+    const auto count = std::count_if(planner.cells().cells.begin(), planner.cells().cells.end(), contains);
+    if (count > 0) REQUIRE(is_free(smaller_robot, position));
+    if (count == 0) REQUIRE_FALSE((is_free(larger_robot, position) && larger_robot.field.contains(position, 0.11)));
     REQUIRE(count <= 1);
   }
 }
 
-TEST_CASE("grids and cells know that no way leads through them") {
+TEST_CASE("grids and cell decompositions report that no path exists") {
   std::vector<Shape> ring;
   for (int i = 0; i < 24; ++i)
     ring.push_back(Circle{2 * Vec2(std::cos(i * 0.2618), std::sin(i * 0.2618)), 0.25});
@@ -112,7 +112,7 @@ TEST_CASE("grids and cells know that no way leads through them") {
   Rng rng(1);
   GridPlanner grid;
   QuadTree squares;
-  Trapezoids trapezoids;
+  TrapezoidalDecomposition trapezoids;
   CHECK(grid.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(squares.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(trapezoids.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);

@@ -2,6 +2,7 @@
 #include "agents/planning/roadmaps/prm.hpp"
 
 #include <catch2/catch.hpp>
+#include <numbers>
 #include <set>
 
 #include "agents/planning/domain/disc_domain.hpp"
@@ -14,7 +15,8 @@ namespace {
 
 using Roadmaps = Prm<DiscDomain>;
 
-/// Bellman and Ford over what joins the roadmap's nodes in this world: the shortest way between its last two.
+/// Bellman-Ford over the roadmap's edges that are free in this world: the shortest path between its last two
+/// nodes.
 double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
   std::vector<double> length(map.size(), std::numeric_limits<double>::infinity());
   length[map.size() - 2] = 0;
@@ -35,10 +37,10 @@ double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
 
 }  // namespace
 
-TEST_CASE("roadmaps find valid ways in all worlds and the same ones from the same seed") {
+TEST_CASE("roadmaps find valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u);
   const PrmSettings radial{.connection = {.method = Connection::kRadial, .neighbours = 8}};
-  const PrmSettings within{.connection = {.method = Connection::kWithin}};
+  const PrmSettings within{.connection = {.method = Connection::kRadius}};
   for (const PrmSettings& settings : {PrmSettings{}, one_shot_prm(), dynamic_prm(), radial, within}) {
     for (const std::string& name : world_names()) {
       const PlanWorld world = make_world(name, 12, seed);
@@ -51,7 +53,7 @@ TEST_CASE("roadmaps find valid ways in all worlds and the same ones from the sam
         const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
         const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {.nodes = 2000}, rng);
         REQUIRE(plan.states == again.plan(domain, query.start_m, {.nodes = 2000}, rng_again).states);
-        REQUIRE(is_valid_way(world, plan.states, 0.003, 1e-9));
+        REQUIRE(is_valid_path(world, plan.states, 1e-9));
         REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
         REQUIRE(plan.states.front() == query.start_m);
         if (!plan.arrives()) continue;
@@ -64,7 +66,7 @@ TEST_CASE("roadmaps find valid ways in all worlds and the same ones from the sam
   }
 }
 
-TEST_CASE("a roadmap's way is the shortest on it also after obstacles moved") {
+TEST_CASE("a roadmap's path is its shortest also after obstacles moved") {
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world("circles", 30, seed);
   ObstacleWorld obstacles(world.obstacles);
@@ -82,7 +84,7 @@ TEST_CASE("a roadmap's way is the shortest on it also after obstacles moved") {
     const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
     if (domain.start_is_blocked() || domain.goal_is_blocked()) continue;
     const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {.nodes = 2000}, rng);
-    REQUIRE(is_valid_way(now, plan.states, 0.003, 1e-9));
+    REQUIRE(is_valid_path(now, plan.states, 1e-9));
     if (!plan.arrives() || plan.states.size() == 2) continue;
     REQUIRE(plan.length == Approx(shortest_on(planner.roadmap(), domain)));
     ++compared;
@@ -90,7 +92,7 @@ TEST_CASE("a roadmap's way is the shortest on it also after obstacles moved") {
   CHECK(compared >= 10);
 }
 
-TEST_CASE("radial connection joins a node with one neighbour in each direction") {
+TEST_CASE("radial connection joins a node with one neighbour in each sector") {
   const ObstacleWorld nothing;
   const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
   Rng rng(1);
@@ -101,12 +103,12 @@ TEST_CASE("radial connection joins a node with one neighbour in each direction")
   std::set<int> sectors;
   for (const auto edge : map.edges_of(node)) {
     const Vec2 to = map[map.edges()[edge].other(node)] - map[node];
-    sectors.insert(static_cast<int>((std::atan2(to.y(), to.x()) / 6.283185307179586 + 0.5) * 8));
+    sectors.insert(static_cast<int>((std::atan2(to.y(), to.x()) / (2 * std::numbers::pi) + 0.5) * 8));
   }
   CHECK(sectors.size() == 8);
 }
 
-TEST_CASE("connection within a radius joins a node with all that it sees there") {
+TEST_CASE("connection within a radius joins a node with all visible nodes there") {
   const auto seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   const PlanWorld world = make_world("circles", 1, seed);
@@ -116,7 +118,7 @@ TEST_CASE("connection within a radius joins a node with all that it sees there")
   Roadmap<DiscDomain> map;
   std::size_t joined = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto node = map.add(domain, domain.sample(rng), {.method = Connection::kWithin, .radius = 1.2}, 1);
+    const auto node = map.add(domain, domain.sample(rng), {.method = Connection::kRadius, .radius = 1.2}, 1);
     std::set<std::uint32_t> seen, found;
     for (std::uint32_t other = 0; other < node; ++other)
       if ((map[node] - map[other]).norm() <= 1.2 && domain.check(map[node], map[other])) seen.insert(other);
@@ -127,7 +129,7 @@ TEST_CASE("connection within a radius joins a node with all that it sees there")
   CHECK(joined > 100);
 }
 
-TEST_CASE("a roadmap that is built before its first query is the one that the query would build") {
+TEST_CASE("a roadmap built ahead equals the one that the first query would build") {
   const PlanWorld world = make_world("circles", 1, 3);
   const ObstacleWorld obstacles(world.obstacles);
   const auto& [start, goal] = world.queries[0];
@@ -144,19 +146,19 @@ TEST_CASE("a roadmap that is built before its first query is the one that the qu
   CHECK(built.roadmap().edges().size() == queried.roadmap().edges().size());
 }
 
-TEST_CASE("a roadmap that loses its last nodes is as before") {
+TEST_CASE("removing the last nodes restores a roadmap") {
   const ObstacleWorld nothing;
   const DiscDomain domain(nothing, {10, 10}, 0.1, {0, 0}, {1, 1});
   Rng rng(1);
   Roadmap<DiscDomain> map;
   for (int i = 0; i < 50; ++i) map.add(domain, domain.sample(rng), {.neighbours = 5}, 1);
   const std::size_t edges = map.edges().size();
-  std::vector<std::vector<std::uint32_t>> joins;
-  for (std::uint32_t node = 0; node < 50; ++node) joins.push_back(map.edges_of(node));
+  std::vector<std::vector<std::uint32_t>> edges_before;
+  for (std::uint32_t node = 0; node < 50; ++node) edges_before.push_back(map.edges_of(node));
   for (int i = 0; i < 7; ++i) map.add(domain, domain.sample(rng), {Connection::kRadial, 8}, 1);
   REQUIRE(map.edges().size() > edges);
   map.shrink(50);
   CHECK(map.size() == 50);
   CHECK(map.edges().size() == edges);
-  for (std::uint32_t node = 0; node < 50; ++node) CHECK(map.edges_of(node) == joins[node]);
+  for (std::uint32_t node = 0; node < 50; ++node) CHECK(map.edges_of(node) == edges_before[node]);
 }

@@ -20,7 +20,7 @@ Tree random_tree(const BallDomain& domain, const BallDomain::State& root, int no
   return tree;
 }
 
-/// Floyd and Warshall over all nodes of both trees.
+/// Floyd-Warshall over all nodes of both trees.
 double shortest_by_brute_force(const Tree& a, const Tree& b,
                                const std::vector<std::pair<std::uint32_t, std::uint32_t>>& bridges) {
   const std::size_t n = a.size() + b.size();
@@ -39,7 +39,7 @@ double shortest_by_brute_force(const Tree& a, const Tree& b,
 
 }  // namespace
 
-TEST_CASE("the way over bridges is the shortest over the union of the trees") {
+TEST_CASE("the path over bridges is the shortest over the union of the trees") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 60));
   CAPTURE(seed);
   Rng rng(seed);
@@ -56,10 +56,10 @@ TEST_CASE("the way over bridges is the shortest over the union of the trees") {
     bridges.add(first, second);
     pairs.emplace_back(first, second);
   }
-  std::vector<BallDomain::State> way;
-  const double length = bridges.shortest(from_start, from_goal, way);
+  std::vector<BallDomain::State> path;
+  const double length = bridges.shortest(from_start, from_goal, path);
   CHECK(length == Approx(shortest_by_brute_force(from_start, from_goal, pairs)));
-  CHECK(length_of(domain, way) == Approx(length));
-  CHECK(way.front() == from_start[0]);
-  CHECK(way.back() == from_goal[0]);
+  CHECK(length_of(domain, path) == Approx(length));
+  CHECK(path.front() == from_start[0]);
+  CHECK(path.back() == from_goal[0]);
 }

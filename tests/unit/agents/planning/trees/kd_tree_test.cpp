@@ -10,9 +10,9 @@ using namespace sidestep;
 
 namespace {
 
-/// Draws points the way planners keep them: anywhere, in clusters, on lines, or again and again the same.
+/// Samples points as planners store them: uniform, in clusters, on lines, or repeated.
 template <std::size_t N>
-std::array<double, N> draw(std::uint64_t kind, Rng& rng) {
+std::array<double, N> sample_point(std::uint64_t kind, Rng& rng) {
   std::array<double, N> point;
   const double cluster = kind == 1 ? static_cast<double>(rng.below(3)) : 0;
   for (double& x : point) x = kind == 1 ? cluster + 0.01 * rng.normal() : rng.uniform(-5, 5);
@@ -33,12 +33,12 @@ void compare(std::uint64_t seed) {
     tree.clear();
     reference.clear();
     for (int i = 0; i < 1500; ++i) {
-      const auto point = draw<N>(seed % 4, rng);
+      const auto point = sample_point<N>(seed % 4, rng);
       tree.add(point);
       reference.add(point);
       REQUIRE(tree.size() == static_cast<std::size_t>(i + 1));
-      const auto wanted = draw<N>(rng.below(4), rng);
-      REQUIRE(tree.nearest(wanted) == reference.nearest(wanted));
+      const auto query = sample_point<N>(rng.below(4), rng);
+      REQUIRE(tree.nearest(query) == reference.nearest(query));
       REQUIRE(tree.nearest(point) == reference.nearest(point));
     }
   }
@@ -46,7 +46,7 @@ void compare(std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the tree finds the neighbour that a comparison with all points finds") {
+TEST_CASE("the K-D tree finds the same neighbour as linear search") {
   const auto seed = GENERATE(range<std::uint64_t>(0, 8));
   compare<2>(seed);
   compare<3>(seed);

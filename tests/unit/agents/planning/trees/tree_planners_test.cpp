@@ -15,13 +15,13 @@ namespace {
 constexpr double kSlack_m = 1e-9;
 
 template <typename State>
-bool leads(const Plan<State>& plan, const State& start, const State& goal) {
+bool connects(const Plan<State>& plan, const State& start, const State& goal) {
   return plan.states.front() == start && plan.states.back() == goal;
 }
 
-/// Plans every query of every world twice, and compares, measures and checks the ways.
+/// Plans every query of every world twice; compares, measures and checks the paths.
 template <typename Planner, typename Settings>
-void plan_all_worlds(const Settings& settings, std::uint64_t seed, double least_solved) {
+void plan_all_worlds(const Settings& settings, std::uint64_t seed, double min_solved) {
   for (const std::string& name : world_names()) {
     const PlanWorld world = make_world(name, 12, seed);
     const ObstacleWorld obstacles(world.obstacles);
@@ -35,25 +35,25 @@ void plan_all_worlds(const Settings& settings, std::uint64_t seed, double least_
       Plan<Vec2> plan = planner.plan(domain, query.start_m, {}, rng);
       REQUIRE(plan.states == again.plan(domain, query.start_m, {}, rng_again).states);
       REQUIRE_FALSE((plan.start_blocked || plan.goal_blocked));
-      REQUIRE(is_valid_way(world, plan.states, 0.003, kSlack_m));
+      REQUIRE(is_valid_path(world, plan.states, kSlack_m));
       REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
       solved += plan.arrives() ? 1 : 0;
       if (!plan.arrives()) continue;
-      REQUIRE(leads(plan, query.start_m, query.goal_m));
+      REQUIRE(connects(plan, query.start_m, query.goal_m));
       const double raw = plan.length;
       smoother.smooth(domain, plan);
-      REQUIRE(is_valid_way(world, plan.states, 0.003, kSlack_m));
-      REQUIRE(leads(plan, query.start_m, query.goal_m));
+      REQUIRE(is_valid_path(world, plan.states, kSlack_m));
+      REQUIRE(connects(plan, query.start_m, query.goal_m));
       REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
       REQUIRE(plan.length <= raw);
     }
     CAPTURE(name, seed);
-    CHECK(static_cast<double>(solved) >= least_solved * static_cast<double>(world.queries.size()));
+    CHECK(static_cast<double>(solved) >= min_solved * static_cast<double>(world.queries.size()));
   }
 }
 
-/// Two rooms of a cube, with a hole in the wall of balls between them.
-BallDomain rooms(bool with_hole) {
+/// Two halves of the cube, separated by a wall of balls, with or without a hole.
+BallDomain divided_cube(bool with_hole) {
   std::vector<BallDomain::Ball> wall;
   for (int i = -5; i <= 5; ++i)
     for (int j = -5; j <= 5; ++j)
@@ -61,21 +61,21 @@ BallDomain rooms(bool with_hole) {
   return {wall, {0.8, -0.8, -0.8}};
 }
 
-const BallDomain::State kRoomStart{-0.8, -0.8, 0.8};
+const BallDomain::State kCubeStart{-0.8, -0.8, 0.8};
 
 }  // namespace
 
-TEST_CASE("a tree finds valid ways in all worlds and the same ones from the same seed") {
+TEST_CASE("a tree finds valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<Errt<DiscDomain>>(ErrtSettings{.cache_capacity = 0}, seed, 0.8);
 }
 
-TEST_CASE("a tree with a cache finds valid ways in all worlds and the same ones from the same seed") {
+TEST_CASE("a tree with a cache finds valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<Errt<DiscDomain>>(ErrtSettings{}, seed, 0.8);
 }
 
-TEST_CASE("two trees find valid ways in all worlds and the same ones from the same seed") {
+TEST_CASE("two trees find valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{}, seed, 0.9);
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{.bridges = 4}, seed, 0.9);
@@ -84,51 +84,51 @@ TEST_CASE("two trees find valid ways in all worlds and the same ones from the sa
 TEST_CASE("trees plan in any domain") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
-  const BallDomain domain = rooms(true);
+  const BallDomain domain = divided_cube(true);
   Rng rng(seed);
   Errt<BallDomain> one;
   BidirectionalErrt<BallDomain> two;
   for (const Plan<BallDomain::State>& plan :
-       {one.plan(domain, kRoomStart, {}, rng), two.plan(domain, kRoomStart, {}, rng)}) {
+       {one.plan(domain, kCubeStart, {}, rng), two.plan(domain, kCubeStart, {}, rng)}) {
     REQUIRE(plan.arrives());
-    CHECK(leads(plan, kRoomStart, domain.goal(kRoomStart)));
+    CHECK(connects(plan, kCubeStart, domain.goal(kCubeStart)));
     for (std::size_t i = 1; i < plan.states.size(); ++i)
       CHECK(domain.check(plan.states[i - 1], plan.states[i]));
   }
 }
 
-TEST_CASE("a planner whose budget is spent returns a way as near to the goal as it came") {
+TEST_CASE("a planner whose budget is spent returns a path as near to the goal as it reached") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
-  const BallDomain domain = rooms(false);
-  const BallDomain::State goal = domain.goal(kRoomStart);
+  const BallDomain domain = divided_cube(false);
+  const BallDomain::State goal = domain.goal(kCubeStart);
   Rng rng(seed);
   Errt<BallDomain> one;
   BidirectionalErrt<BallDomain> two;
-  const Plan<BallDomain::State> plans[] = {one.plan(domain, kRoomStart, {.nodes = 300}, rng),
-                                           two.plan(domain, kRoomStart, {.samples = 300}, rng)};
+  const Plan<BallDomain::State> plans[] = {one.plan(domain, kCubeStart, {.nodes = 300}, rng),
+                                           two.plan(domain, kCubeStart, {.samples = 300}, rng)};
   CHECK(plans[0].nodes <= 300);
   CHECK(plans[1].samples <= 300);
   for (const auto& plan : plans) {
     CHECK(plan.reason == PlanReason::kBudgetSpent);
-    CHECK(plan.states.front() == kRoomStart);
-    CHECK(domain.distance(plan.states.back(), goal) < domain.distance(kRoomStart, goal));
+    CHECK(plan.states.front() == kCubeStart);
+    CHECK(domain.distance(plan.states.back(), goal) < domain.distance(kCubeStart, goal));
     for (std::size_t i = 1; i < plan.states.size(); ++i)
       CHECK(domain.check(plan.states[i - 1], plan.states[i]));
   }
 }
 
-TEST_CASE("a planner stops when its clock says so") {
-  const BallDomain domain = rooms(false);
+TEST_CASE("a planner stops at its deadline") {
+  const BallDomain domain = divided_cube(false);
   Rng rng(1);
   Errt<BallDomain> planner;
   int asked = 0;
   const Budget budget{.until = time_from_ns(10), .clock = [&] { return time_from_ns(++asked); }};
-  CHECK(planner.plan(domain, kRoomStart, budget, rng).reason == PlanReason::kBudgetSpent);
+  CHECK(planner.plan(domain, kCubeStart, budget, rng).reason == PlanReason::kBudgetSpent);
   CHECK(asked == 10);
 }
 
-TEST_CASE("more bridges make shorter ways") {
+TEST_CASE("more bridges give shorter paths") {
   const PlanWorld world = make_world("circles", 40, 5);
   const ObstacleWorld obstacles(world.obstacles);
   double length[2] = {0, 0};

@@ -23,14 +23,14 @@ WaypointCache<int> filled(CacheReplacement replacement, Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("a cache that is not full takes every way point") {
+TEST_CASE("a cache that is not full stores every waypoint") {
   Rng rng(1);
   for (const auto replacement :
        {CacheReplacement::kRandom, CacheReplacement::kOldest, CacheReplacement::kLeastRecentlyUsed})
     CHECK(contents(filled(replacement, rng)) == std::set{1, 2, 3, 4});
 }
 
-TEST_CASE("a full cache loses its oldest way points") {
+TEST_CASE("a full cache drops its oldest waypoints") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kOldest, rng);
   cache.use(0);
@@ -40,7 +40,7 @@ TEST_CASE("a full cache loses its oldest way points") {
   CHECK(contents(cache) == std::set{4, 5, 6, 7});
 }
 
-TEST_CASE("a full cache loses the way points that were not used for the longest") {
+TEST_CASE("a full cache drops the least recently used waypoints") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
   cache.use(0);  // a plan grew towards 1
@@ -50,7 +50,7 @@ TEST_CASE("a full cache loses the way points that were not used for the longest"
   CHECK(contents(cache) == std::set{1, 5, 6, 7});
 }
 
-TEST_CASE("a full cache loses its oldest way points where a plan used them all") {
+TEST_CASE("a full cache drops its oldest waypoints if a plan used them all") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
   for (std::size_t i = 0; i < 4; ++i) cache.use(i);
@@ -58,7 +58,7 @@ TEST_CASE("a full cache loses its oldest way points where a plan used them all")
   CHECK(contents(cache) == std::set{3, 4, 5, 6});
 }
 
-TEST_CASE("a cache of the whole plan holds nothing else") {
+TEST_CASE("a cache of the whole plan holds only the last plan") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kWholePlan, rng);
   CHECK(contents(cache) == std::set{3, 4});
@@ -66,7 +66,7 @@ TEST_CASE("a cache of the whole plan holds nothing else") {
   CHECK(contents(cache) == std::set{5, 6, 7});
 }
 
-TEST_CASE("random replacement keeps each old way point about as often as the others") {
+TEST_CASE("random replacement drops each old waypoint equally often") {
   Rng rng(3);
   int kept[4] = {};
   for (int round = 0; round < 4000; ++round) {
@@ -79,7 +79,7 @@ TEST_CASE("random replacement keeps each old way point about as often as the oth
   for (const int count : kept) CHECK(count == Approx(3000).margin(150));
 }
 
-TEST_CASE("a cache without room holds nothing") {
+TEST_CASE("a cache with zero capacity stays empty") {
   Rng rng(1);
   WaypointCache<int> cache(0);
   cache.store({1, 2, 3}, rng);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/collision/fcl/solid_world.hpp"
+#include "tests/unit/common/collision/fcl/solid_world.hpp"
 
 #include <catch2/catch.hpp>
 #include <fcl/geometry/shape/box.h>
@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
 
-/// A wall across x = 0 with a window of two metres around the origin, of triangles.
+/// A wall of triangles in the plane x = 0, with a window of 2 m by 2 m around the origin.
 Solid wall_with_window() {
   std::vector<Vector3d> corners;
   for (const double half : {1.0, 10.0})
@@ -30,7 +30,7 @@ Solid wall_with_window() {
   return mesh(corners, triangles);
 }
 
-TEST_CASE("a body goes through the window of a mesh and not through the wall") {
+TEST_CASE("a body passes through the window of a mesh but not through the wall") {
   SolidWorld world;
   world.add(wall_with_window(), Isometry3d::Identity());
   const Solid body = std::make_shared<fcl::Boxd>(0.4, 1.0, 1.0);
@@ -42,32 +42,32 @@ TEST_CASE("a body goes through the window of a mesh and not through the wall") {
   CHECK(world.sweep(body, at(-5, 0, 0), {5, 0, 0}, 0.51).touches());
   const auto into_wall = world.sweep(body, at(-5, 4, 0), {5, 4, 0});
   CHECK(into_wall.touches());
-  CHECK(into_wall.free_way_m() == Approx(4.8).margin(1e-4));
+  CHECK(into_wall.free_path_m() == Approx(4.8).margin(1e-4));
 }
 
-TEST_CASE("a swept body touches where one of the bodies along its way does") {
+TEST_CASE("a swept body touches if the body at any position along its path does") {
   const std::uint64_t seed = GENERATE(range(1, 6));
   CAPTURE(seed);
   Rng rng(seed);
   SolidWorld world;
-  const auto random_place = [&](double half) {
-    Isometry3d place = at(rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-half, half));
-    place.rotate(
+  const auto random_position = [&](double half) {
+    Isometry3d pose = at(rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-half, half));
+    pose.rotate(
         Eigen::AngleAxisd(rng.uniform(0, 3), Vector3d(rng.uniform(), rng.uniform(), 1).normalized()));
-    return place;
+    return pose;
   };
   for (int i = 0; i < 15; ++i)
     world.add(std::make_shared<fcl::Boxd>(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6), 0.3),
-              random_place(1.5));
+              random_position(1.5));
   const Solid body = std::make_shared<fcl::Boxd>(0.3, 0.2, 0.1);
   for (int i = 0; i < 20; ++i) {
-    const Isometry3d from = random_place(1.5);
-    const Vector3d to = random_place(1.5).translation();
+    const Isometry3d from = random_position(1.5);
+    const Vector3d to = random_position(1.5).translation();
     double sampled = 1e9;
     for (int k = 0; k <= 200; ++k) {
-      Isometry3d place = from;
-      place.translation() += k / 200.0 * (to - from.translation());
-      sampled = std::min(sampled, world.clearance_m(body, place));
+      Isometry3d pose = from;
+      pose.translation() += k / 200.0 * (to - from.translation());
+      sampled = std::min(sampled, world.clearance_m(body, pose));
     }
     const bool touches = world.sweep(body, from, to).touches();
     if (sampled == 0) CHECK(touches);
@@ -75,7 +75,7 @@ TEST_CASE("a swept body touches where one of the bodies along its way does") {
   }
 }
 
-TEST_CASE("solids move and go by their ids") {
+TEST_CASE("solids are moved and removed by their ids") {
   SolidWorld world;
   const Solid ball = std::make_shared<fcl::Sphered>(1);
   CHECK(world.clearance_m(ball, at(0, 0, 0)) == std::numeric_limits<double>::infinity());
@@ -91,12 +91,12 @@ TEST_CASE("solids move and go by their ids") {
   world.remove(other);
 }
 
-TEST_CASE("solids that are none are refused") {
+TEST_CASE("invalid solids are rejected") {
   const std::vector<Vector3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   using Triangles = std::vector<std::array<std::size_t, 3>>;
   CHECK_NOTHROW(mesh(corners, Triangles{{0, 1, 2}}));
   CHECK_THROWS_WITH(mesh(corners, Triangles{}), "a mesh has no triangles");
-  CHECK_THROWS_WITH(mesh(corners, Triangles{{0, 1, 3}}), "a mesh's triangle has no such corner");
+  CHECK_THROWS_WITH(mesh(corners, Triangles{{0, 1, 3}}), "a mesh triangle refers to a corner that does not exist");
   const std::vector<Vector3d> broken{{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}};
   CHECK_THROWS_AS(mesh(broken, Triangles{{0, 1, 2}}), std::invalid_argument);
   CHECK_THROWS_AS(prism(Circle{{0, 0}, -1}, 1), std::invalid_argument);

@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <fcl/geometry/shape/capsule.h>
 
-#include "common/collision/fcl/solid_world.hpp"
+#include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_terrain.hpp"
 
 namespace sidestep {
 namespace {
 
-TEST_CASE("distances to terrain agree with those of FCL to a mesh") {
+TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   CAPTURE(seed);
   Rng rng(seed);
@@ -29,13 +29,13 @@ TEST_CASE("distances to terrain agree with those of FCL to a mesh") {
   world.add(mesh(points, faces), Eigen::Isometry3d::Identity());
   for (int i = 0; i < 100; ++i) {
     const Vec3 from(rng.uniform(-1, 9), rng.uniform(-1, 7), rng.uniform(2, 8));
-    const Vec3 way(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(-2, 2));
-    Eigen::Isometry3d place(Eigen::Translation3d(from + 0.5 * way));
-    place.rotate(Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), way));
+    const Vec3 displacement(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(-2, 2));
+    Eigen::Isometry3d pose(Eigen::Translation3d(from + 0.5 * displacement));
+    pose.rotate(Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), displacement));
     const double radius = 0.05;
-    const double in_fcl = world.clearance_m(std::make_shared<fcl::Capsuled>(radius, way.norm()), place);
-    CAPTURE(from.transpose(), way.transpose());
-    CHECK(std::max(0.0, tree.distance_m(from, from + way) - radius) == Approx(in_fcl).margin(2e-6));
+    const double in_fcl = world.clearance_m(std::make_shared<fcl::Capsuled>(radius, displacement.norm()), pose);
+    CAPTURE(from.transpose(), displacement.transpose());
+    CHECK(std::max(0.0, tree.distance_m(from, from + displacement) - radius) == Approx(in_fcl).margin(2e-6));
   }
 }
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 namespace {
-/// By how much somebody has set this host's clock.
+/// Simulated step of this host's clock.
 std::atomic<long> host_clock_step_s{0};
 }  // namespace
 
-/// Stands before the C library's in this program, so that a test may set the host's clock.
+/// Overrides the C library's function in this program, so that a test can step the host's clock.
 extern "C" int clock_gettime(clockid_t clock, timespec* t) noexcept {
   const long result = syscall(SYS_clock_gettime, clock, t);
   if (clock == CLOCK_REALTIME) t->tv_sec += host_clock_step_s.load();
@@ -27,7 +27,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMillisecond{1'000'000};
-constexpr Duration kLong{30'000'000'000};  ///< beyond it a test fails instead of hanging
+constexpr Duration kLong{30'000'000'000};  ///< timeout of a failing test
 
 class Counter : public EventLoop::Source {
  public:
@@ -42,7 +42,7 @@ EventLoop* signalled = nullptr;
 
 }  // namespace
 
-TEST_CASE("timers fire by time, and in the order of scheduling when the time is the same") {
+TEST_CASE("timers fire in order of time, and of scheduling at equal times") {
   EventLoop loop;
   std::vector<int> fired;
   const Time begin = loop.now();
@@ -72,7 +72,7 @@ TEST_CASE("a timer never fires early") {
   CHECK(fired >= due);
 }
 
-TEST_CASE("a timer that is always due again leaves the others their turn") {
+TEST_CASE("a timer that is always due again does not starve sources") {
   EventLoop loop;
   int turns = 0;
   std::function<void()> again = [&] {
@@ -91,7 +91,7 @@ TEST_CASE("a timer that is always due again leaves the others their turn") {
   CHECK(turns >= 2);
 }
 
-TEST_CASE("a source that never runs dry leaves timers their turn") {
+TEST_CASE("a source that never runs dry does not starve timers") {
   EventLoop loop;
   Counter source([] { return true; });
   loop.notify(source);
@@ -104,7 +104,7 @@ TEST_CASE("a source that never runs dry leaves timers their turn") {
   CHECK(fired);
 }
 
-TEST_CASE("what other threads report is drained, however often and however late they do") {
+TEST_CASE("every report from another thread is drained") {
   EventLoop loop;
   constexpr int kReports = 20000;
   std::atomic<int> pending{0};
@@ -126,7 +126,7 @@ TEST_CASE("what other threads report is drained, however often and however late 
   CHECK(taken == kReports);
 }
 
-TEST_CASE("a watched descriptor calls back while it can be read and leaves timers and sources their turn") {
+TEST_CASE("a watched descriptor calls back while it is readable, and does not starve timers and sources") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -153,7 +153,7 @@ TEST_CASE("a watched descriptor calls back while it can be read and leaves timer
   close(ends[1]);
 }
 
-TEST_CASE("a watched descriptor wakes a loop that sleeps and one that is closed does not keep it awake") {
+TEST_CASE("a watched descriptor wakes a sleeping loop, and a closed one does not keep it awake") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -178,7 +178,7 @@ TEST_CASE("a watched descriptor wakes a loop that sleeps and one that is closed 
   CHECK(std::clock() - cpu_before < CLOCKS_PER_SEC / 20);
 }
 
-TEST_CASE("run_until() returns at its time when nothing happens") {
+TEST_CASE("an idle run_until() returns at its time") {
   EventLoop loop;
   const Time until = loop.now() + 2 * kMillisecond;
   loop.run_until(until);
@@ -186,7 +186,7 @@ TEST_CASE("run_until() returns at its time when nothing happens") {
   CHECK_FALSE(loop.stopped());
 }
 
-TEST_CASE("a signal handler may stop the loop while it sleeps") {
+TEST_CASE("a signal handler can stop a sleeping loop") {
   EventLoop loop;
   signalled = &loop;
   struct sigaction action {};
@@ -202,7 +202,7 @@ TEST_CASE("a signal handler may stop the loop while it sleeps") {
   CHECK(loop.now() < begin + kLong);
 }
 
-TEST_CASE("setting the host's clock does not reach a process that runs") {
+TEST_CASE("setting the host's clock does not affect a running process") {
   const long step_s = GENERATE(-3600, 3600);
   CAPTURE(step_s);
   EventLoop loop;
@@ -223,7 +223,7 @@ TEST_CASE("setting the host's clock does not reach a process that runs") {
   CHECK(end < begin + kLong);
 }
 
-TEST_CASE("the process's clock never runs backwards, in whichever thread and loop it is asked") {
+TEST_CASE("the process's clock never runs backwards, across threads and loops") {
   std::atomic<std::int64_t> latest{0};
   std::atomic<int> backwards{0};
   std::vector<std::thread> threads;
@@ -243,9 +243,9 @@ TEST_CASE("the process's clock never runs backwards, in whichever thread and loo
   CHECK(backwards == 0);
 }
 
-TEST_CASE("the process's clock shows what the host's does as long as nobody sets that") {
+TEST_CASE("the process's clock agrees with the host's while that is not set") {
   const auto host = [] { return Time{std::chrono::system_clock::now().time_since_epoch()}; };
-  // Time daemons slew, and that is all that can be between the two.
+  // The two can differ only by the slewing of a time daemon.
   const Duration slewed = std::chrono::seconds(1);
   const Time before = host(), now = EventLoop::now(), after = host();
   CHECK(now > before - slewed);

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 
 #include "tests/needs_root.hpp"
-#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+#include "tests/unit/common/messaging/dds/test_support.hpp"
 
 using namespace sidestep;
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kUsualBytes = 780 * 580 * 2;
 
-/// Every byte depends on the image's number.
+/// An image in which every byte depends on its number.
 msg::CameraImage numbered_image(std::uint32_t camera, int number, std::size_t bytes) {
   msg::CameraImage image;
   image.camera(camera);
@@ -33,7 +33,7 @@ msg::CameraImage numbered_image(std::uint32_t camera, int number, std::size_t by
   return image;
 }
 
-/// Counts the images of each camera, and those that are not as they were sent.
+/// Receives images, and counts those that differ from what was sent.
 struct Watcher {
   Watcher(const DdsSettings& settings, std::size_t bytes) : bus(settings), expected_bytes(bytes) {
     bus.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) {
@@ -55,7 +55,7 @@ DdsSettings settings_of(const std::string& name, bool faults) {
   return settings;
 }
 
-/// Sends images of two cameras on and on, a hundred in a second.
+/// Sends images of two cameras for ever, at 100 Hz.
 void send(DdsBus& bus, Writer<msg::CameraImage>& writer, std::size_t bytes, int number) {
   msg::CameraImage image = numbered_image(static_cast<std::uint32_t>(number % 2), number, bytes);
   writer.publish(image, bus.now());
@@ -65,7 +65,7 @@ void send(DdsBus& bus, Writer<msg::CameraImage>& writer, std::size_t bytes, int 
 
 }  // namespace
 
-TEST_CASE("images of any size arrive as they were sent, whether memory may be shared or not") {
+TEST_CASE("images of any size arrive unchanged, with and without shared memory") {
   const bool writer_shares = GENERATE(true, false), reader_shares = GENERATE(true, false);
   const std::size_t bytes = GENERATE(std::size_t{0}, kUsualBytes, std::size_t{2448 * 2048 * 3});
   CAPTURE(writer_shares, reader_shares, bytes);
@@ -77,8 +77,8 @@ TEST_CASE("images of any size arrive as they were sent, whether memory may be sh
   CHECK(watcher.wrong == 0);
 }
 
-TEST_CASE("a camera in a process of its own", "[.camera]") {
-  if (std::getenv("SIDESTEP_TEST_APART")) {
+TEST_CASE("camera process", "[.camera]") {
+  if (std::getenv("SIDESTEP_TEST_OWN_MEMORY")) {
     REQUIRE(unshare(CLONE_NEWNS) == 0);
     REQUIRE(mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0);
     REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", 0, "size=64m") == 0);
@@ -94,12 +94,12 @@ TEST_CASE("a camera in a process of its own", "[.camera]") {
 
 namespace {
 
-/// That camera, until it is killed.
+/// Runs the camera process until destruction.
 class Camera {
  public:
-  explicit Camera(bool is_apart) {
+  explicit Camera(bool has_own_memory) {
     setenv("SIDESTEP_TEST_DOMAIN", std::to_string(test_settings().domain).c_str(), 1);
-    is_apart ? setenv("SIDESTEP_TEST_APART", "1", 1) : unsetenv("SIDESTEP_TEST_APART");
+    has_own_memory ? setenv("SIDESTEP_TEST_OWN_MEMORY", "1", 1) : unsetenv("SIDESTEP_TEST_OWN_MEMORY");
     process_ = fork();
     if (process_ != 0) return;
     execl("/proc/self/exe", "camera", "[.camera]", nullptr);
@@ -118,7 +118,7 @@ class Camera {
 
 }  // namespace
 
-TEST_CASE("images arrive where shared memory is not the writer's") {
+TEST_CASE("images arrive at a reader whose shared memory is not the writer's") {
   SIDESTEP_NEEDS_ROOT();
   Watcher watcher(test_settings("watcher"), kUsualBytes);
   const Camera camera(true);
@@ -126,7 +126,7 @@ TEST_CASE("images arrive where shared memory is not the writer's") {
   CHECK(watcher.wrong == 0);
 }
 
-TEST_CASE("memory that a killed process left is removed and nothing else") {
+TEST_CASE("only the shared memory of killed processes is removed") {
   const auto folder = std::filesystem::temp_directory_path() / ("sidestep-shm-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const auto path = [&](const std::string& name) { return (folder / name).string(); };
@@ -138,23 +138,23 @@ TEST_CASE("memory that a killed process left is removed and nothing else") {
   const auto count = [&] {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
   };
-  remove_abandoned_memory(folder, std::chrono::hours(1));
+  remove_stale_segments(folder, std::chrono::hours(1));
   CHECK(count() == 7);
-  remove_abandoned_memory(folder, std::chrono::seconds(0));
+  remove_stale_segments(folder, std::chrono::seconds(0));
   CHECK(count() == 5);
   CHECK_FALSE(std::filesystem::exists(path("fastrtps_0a")));
   CHECK_FALSE(std::filesystem::exists(path("fastrtps_0a_el")));
   close(held);
-  remove_abandoned_memory(folder, std::chrono::seconds(0));
+  remove_stale_segments(folder, std::chrono::seconds(0));
   CHECK(count() == 3);
-  remove_abandoned_memory(folder / "none", std::chrono::seconds(0));
+  remove_stale_segments(folder / "none", std::chrono::seconds(0));
   std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("a camera that is killed is followed by the next one") {
   Watcher watcher(test_settings("watcher"), kUsualBytes);
-  for (int life = 0; life < 3; ++life) {
-    CAPTURE(life);
+  for (int run = 0; run < 3; ++run) {
+    CAPTURE(run);
     watcher.count = 0;
     const Camera camera(false);
     CHECK(run_until([&] { return watcher.count >= 4; }, watcher.bus));

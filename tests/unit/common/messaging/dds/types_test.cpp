@@ -5,20 +5,20 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+#include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep {
 namespace {
 
 using Payload = GuardedType::Payload;
 
-/// A type, a sample of it, and reading payloads from bytes.
-class Reading {
+/// Decodes payloads into a sample of a topic's type.
+class Decoder {
  public:
-  explicit Reading(const TopicInfo& topic) : type_(make_dds_type(topic.type)), sample_(type_->createData()) {}
-  ~Reading() { type_->deleteData(sample_); }
-  Reading(const Reading&) = delete;
-  Reading& operator=(const Reading&) = delete;
+  explicit Decoder(const TopicInfo& topic) : type_(make_dds_type(topic.type)), sample_(type_->createData()) {}
+  ~Decoder() { type_->deleteData(sample_); }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
 
   bool accepts(const std::vector<std::uint8_t>& bytes) {
     Payload payload(static_cast<std::uint32_t>(bytes.size() + 1));
@@ -48,7 +48,7 @@ std::vector<std::uint8_t> bytes_of(const TopicInfo& topic, Message& message) {
   return {payload.data, payload.data + payload.length};
 }
 
-/// The same message as a big-endian machine would send it.
+/// The message as a big-endian machine would send it.
 template <typename Message>
 std::vector<std::uint8_t> big_endian_bytes_of(const Message& message) {
   std::vector<char> body(Message::getCdrSerializedSize(message));
@@ -62,7 +62,7 @@ std::vector<std::uint8_t> big_endian_bytes_of(const Message& message) {
 
 }  // namespace
 
-TEST_CASE("every topic's type is known to DDS by its name in the topic table") {
+TEST_CASE("the DDS type of every topic has the name given in the topic table") {
   for (const TopicInfo& topic : all_topics()) {
     CAPTURE(topic.name);
     CHECK(std::string(make_dds_type(topic.type)->getName()) == topic.type.name);
@@ -72,67 +72,67 @@ TEST_CASE("every topic's type is known to DDS by its name in the topic table") {
                     Catch::Matchers::Contains("other::Type"));
 }
 
-TEST_CASE("random bytes never do more than be refused") {
+TEST_CASE("random bytes are refused without harm") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   Rng rng(seed);
   for (const TopicInfo& topic : all_topics()) {
     CAPTURE(seed, topic.name);
-    Reading reading(topic);
+    Decoder decoder(topic);
     int accepted = 0;
     for (int i = 0; i < 10000; ++i) {
       std::vector<std::uint8_t> bytes(rng.below(3000));
       for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(rng.bits());
       if (rng.chance(0.5) && bytes.size() >= 4) bytes[0] = 0, bytes[1] = bytes[1] & 1;
-      accepted += reading.accepts(bytes);
+      accepted += decoder.accepts(bytes);
     }
-    // A type without sequence and boolean is any bytes of its length; the others are hardly ever hit.
+    // Only a type without sequences and booleans accepts any bytes of its length.
     CHECK(accepted < 10000);
     if (topic.type.max_elements > 0) CHECK(accepted == 0);
   }
 }
 
-TEST_CASE("a sequence longer than the type's bound is refused before memory is taken for it") {
+TEST_CASE("a sequence longer than the type's bound is refused before memory is allocated for it") {
   Rng rng(7);
-  Reading reading(topics::kWorld);
+  Decoder decoder(topics::kWorld);
   msg::WorldState world = random_message<msg::WorldState>(rng, true, 0);
   std::vector<std::uint8_t> bytes = bytes_of(topics::kWorld, world);
-  CHECK(reading.accepts(bytes));
+  CHECK(decoder.accepts(bytes));
   const auto max = static_cast<std::uint32_t>(topics::kWorld.type.max_elements);
   for (const std::uint32_t count : {max + 1, 1u << 24, 0x7fffffffu, 0xffffffffu}) {
     CAPTURE(count);
     std::memcpy(bytes.data() + bytes.size() - 4, &count, sizeof count);
-    CHECK_FALSE(reading.accepts(bytes));
-    CHECK(reading.message<msg::WorldState>().robots().capacity() <= max);
+    CHECK_FALSE(decoder.accepts(bytes));
+    CHECK(decoder.message<msg::WorldState>().robots().capacity() <= max);
   }
 }
 
 TEST_CASE("a sequence as long as the type's bound is accepted, in either byte order") {
   Rng rng(8);
-  Reading reading(topics::kWorld);
+  Decoder decoder(topics::kWorld);
   msg::WorldState world = random_message<msg::WorldState>(
       rng, true, static_cast<std::uint32_t>(topics::kWorld.type.max_elements));
-  CHECK(reading.accepts(bytes_of(topics::kWorld, world)));
-  CHECK(reading.message<msg::WorldState>() == world);
-  reading.accepts({});
-  CHECK(reading.accepts(big_endian_bytes_of(world)));
-  CHECK(reading.message<msg::WorldState>() == world);
+  CHECK(decoder.accepts(bytes_of(topics::kWorld, world)));
+  CHECK(decoder.message<msg::WorldState>() == world);
+  decoder.accepts({});
+  CHECK(decoder.accepts(big_endian_bytes_of(world)));
+  CHECK(decoder.message<msg::WorldState>() == world);
   std::vector<std::uint8_t> too_long = big_endian_bytes_of(random_message<msg::WorldState>(rng, true, 0));
   too_long[too_long.size() - 4] = 1;  // 2^24 robots
-  CHECK_FALSE(reading.accepts(too_long));
+  CHECK_FALSE(decoder.accepts(too_long));
 }
 
 TEST_CASE("a payload that ends too early is refused at every length") {
   Rng rng(9);
   msg::Command command = random_message<msg::Command>(rng, false, 0);
   msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);
-  Reading commands(topics::kCommand);
-  Reading worlds(topics::kWorld);
-  const auto check = [](Reading& reading, std::vector<std::uint8_t> bytes) {
-    REQUIRE(reading.accepts(bytes));
+  Decoder commands(topics::kCommand);
+  Decoder worlds(topics::kWorld);
+  const auto check = [](Decoder& decoder, std::vector<std::uint8_t> bytes) {
+    REQUIRE(decoder.accepts(bytes));
     while (!bytes.empty()) {
       bytes.pop_back();
       CAPTURE(bytes.size());
-      CHECK_FALSE(reading.accepts(bytes));
+      CHECK_FALSE(decoder.accepts(bytes));
     }
   };
   check(commands, bytes_of(topics::kCommand, command));
@@ -147,23 +147,23 @@ TEST_CASE("a boolean that is neither true nor false is refused") {
   msg::Command other = command;
   other.has_version(false);
   const std::vector<std::uint8_t> other_bytes = bytes_of(topics::kCommand, other);
-  const auto place = std::mismatch(bytes.begin(), bytes.end(), other_bytes.begin()).first;
-  REQUIRE(place != bytes.end());
-  *place = 2;
-  Reading reading(topics::kCommand);
-  CHECK_FALSE(reading.accepts(bytes));
-  *place = 1;
-  CHECK(reading.accepts(bytes));
+  const auto position = std::mismatch(bytes.begin(), bytes.end(), other_bytes.begin()).first;
+  REQUIRE(position != bytes.end());
+  *position = 2;
+  Decoder decoder(topics::kCommand);
+  CHECK_FALSE(decoder.accepts(bytes));
+  *position = 1;
+  CHECK(decoder.accepts(bytes));
 }
 
-TEST_CASE("samples with one key have one handle, samples with another have another") {
-  Reading reading(topics::kVerdict);
+TEST_CASE("samples have equal handles if and only if their keys are equal") {
+  Decoder decoder(topics::kVerdict);
   const auto handle_of = [&](std::uint32_t robot) {
     msg::Verdict verdict;
     verdict.robot(robot);
     GuardedType::Sample sample{&verdict, true};
     eprosima::fastrtps::rtps::InstanceHandle_t handle;
-    REQUIRE(reading.type().getKey(&sample, &handle, false));
+    REQUIRE(decoder.type().getKey(&sample, &handle, false));
     return handle;
   };
   CHECK(handle_of(5) == handle_of(5));

@@ -8,7 +8,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("events come by time, and those of one time as they were put in, near or far ahead") {
+TEST_CASE("events come in order of time, and of insertion at equal times, both near and far ahead") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -19,33 +19,33 @@ TEST_CASE("events come by time, and those of one time as they were put in, near 
                              Duration{600'000}, Duration{33'000'000}, Duration{60'000'000'000}};
   int next = 0;
   for (int step = 0; step < 100'000; ++step) {
-    // Sometimes many are waiting, sometimes none.
+    // The queue grows and shrinks in turn.
     if (!expected.empty() && rng.chance(step / 1000 % 2 == 0 ? 0.4 : 0.6)) {
       REQUIRE(queue.next_time() == expected.begin()->first);
       now = expected.begin()->first;
-      REQUIRE(queue.take() == expected.begin()->second);
+      REQUIRE(queue.pop() == expected.begin()->second);
       expected.erase(expected.begin());
     } else {
       const Duration scale = scales[rng.below(6)];
       const Time when =
           now + Duration{static_cast<std::int64_t>(rng.uniform() * static_cast<double>(scale.count()))};
-      queue.put(when, next);
+      queue.push(when, next);
       expected.emplace(when, next++);
-      // Looking does not change what comes next.
+      // next_time() does not change the order.
       if (rng.chance(0.3)) REQUIRE(queue.next_time() == expected.begin()->first);
     }
     REQUIRE(queue.is_empty() == expected.empty());
   }
 }
 
-TEST_CASE("an event may be put in before another that was already looked at") {
+TEST_CASE("an event may be inserted before one whose time was already asked for") {
   EventQueue<int> queue;
-  queue.put(time_from_ns(5'000'000'000), 1);
+  queue.push(time_from_ns(5'000'000'000), 1);
   CHECK(queue.next_time() == time_from_ns(5'000'000'000));
-  queue.put(time_from_ns(7), 2);
-  queue.put(time_from_ns(4'999'999'999), 3);
-  CHECK(queue.take() == 2);
-  CHECK(queue.take() == 3);
-  CHECK(queue.take() == 1);
+  queue.push(time_from_ns(7), 2);
+  queue.push(time_from_ns(4'999'999'999), 3);
+  CHECK(queue.pop() == 2);
+  CHECK(queue.pop() == 3);
+  CHECK(queue.pop() == 1);
   CHECK(queue.is_empty());
 }

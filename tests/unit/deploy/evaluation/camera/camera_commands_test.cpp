@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
+#include "common/process/command_line.hpp"
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
 
@@ -18,11 +20,13 @@ namespace {
 const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
 
 int run(const std::string& arguments) {
-  CLI::App app;
+  CommandLine command_line("test", "test");
+  const Command app = command_line.root();
   std::function<int()> action;
   add_frame_command(app, action);
   add_pattern_command(app, action);
-  app.parse(arguments, false);
+  std::istringstream words(arguments);
+  command_line.parse({std::istream_iterator<std::string>(words), {}});
   return action();
 }
 
@@ -40,7 +44,7 @@ TEST_CASE("the frame of a scenario shows its robots where they start") {
   const cv::Mat3b bgr = cv::imread(file.path);
   REQUIRE(bgr.cols == 780);
   REQUIRE(bgr.rows == 580);
-  // Camera 0 looks at the low x, where the blue robots are: their four centre dots.
+  // Camera 0 covers low x, where the four blue robots are; their centre dots are counted.
   int blue = 0, yellow = 0, white = 0;
   for (const cv::Vec3b& c : bgr) {
     blue += c[0] > 130 && c[2] < 70 && c[1] < 110;
@@ -52,7 +56,7 @@ TEST_CASE("the frame of a scenario shows its robots where they start") {
   CHECK(white > 500);
 }
 
-TEST_CASE("the frame command takes another camera and size") {
+TEST_CASE("the frame command accepts another camera and size") {
   const PictureFile file;
   REQUIRE(run("frame " + kCrossing + " " + file.path + " --camera 1 --width 320 --height 240") == 0);
   const cv::Mat3b bgr = cv::imread(file.path);
@@ -62,29 +66,31 @@ TEST_CASE("the frame command takes another camera and size") {
   CHECK(run("frame " + kCrossing + " " + file.path + square) == 0);
 }
 
-TEST_CASE("the frame command says what is wrong") {
+TEST_CASE("the frame command refuses invalid arguments and files") {
   const PictureFile file;
   CHECK(run("frame " + kCrossing + " " + file.path + " --camera 7") == 2);
-  CHECK_THROWS_AS(run("frame " + kCrossing + " picture.gif"), CLI::ParseError);
-  CHECK_THROWS_AS(run("frame " + kCrossing), CLI::ParseError);
-  CHECK_THROWS_AS(run("frame nowhere.yaml " + file.path), ScenarioError);
-  CHECK_THROWS_AS(run("frame " + kCrossing + " " + file.path + " --layout " + kCrossing), ScenarioError);
+  CHECK_THROWS_AS(run("frame " + kCrossing + " picture.gif"), UsageError);
+  CHECK_THROWS_AS(run("frame " + kCrossing), UsageError);
+  CHECK_THROWS_AS(run("frame nowhere.yaml " + file.path), ConfigError);
+  CHECK_THROWS_AS(run("frame " + kCrossing + " " + file.path + " --layout " + kCrossing), ConfigError);
   CHECK_THROWS_AS(run("frame " + kCrossing + " /nowhere/frame.png"), std::runtime_error);
 }
 
-TEST_CASE("the pattern command prints what a layout can tell") {
+TEST_CASE("the pattern command prints the evaluation of a layout") {
   CHECK(describe_layout(butterfly(), 0.001) ==
-        "butterfly: 4 dots and the centre, no turn puts the dots on each other\n"
-        "patterns: 16 of 16 that 2 colours can show; the most alike differ in 1 dot\n"
+        "butterfly: 4 dots and the centre, no rotational symmetry\n"
+        "patterns: 16 of 16 possible with 2 colours; the most similar differ in 1 dot\n"
         "patterns with other numbers of colours: 2: 16, 3: 81, 4: 256, 5: 625, 6: 1296\n"
-        "with 1 mm per axis and dot: position 0.447 mm ahead and 0.451 mm aside, heading 0.445 degrees\n");
-  const MarkingLayout square = load_layout(SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/square.yaml");
+        "with 1 mm per axis and dot: position 0.447 mm longitudinal and 0.451 mm lateral, heading 0.445 "
+        "degrees\n");
+  const MarkerLayout square = load_layout(SIDESTEP_SOURCE_DIR "/deploy/scenarios/markings/square.yaml");
   CHECK(describe_layout(square, 0.002) ==
-        "square: 4 dots and the centre, turns by 90 degrees put the dots on each other\n"
-        "patterns: 8 of 60 that 4 colours can show; the most alike differ in 2 dots\n"
+        "square: 4 dots and the centre, rotational symmetry by 90 degrees\n"
+        "patterns: 8 of 60 possible with 4 colours; the most similar differ in 2 dots\n"
         "patterns with other numbers of colours: 2: 3, 3: 18, 4: 60, 5: 150, 6: 315\n"
-        "with 2 mm per axis and dot: position 0.894 mm ahead and 0.894 mm aside, heading 0.965 degrees\n");
+        "with 2 mm per axis and dot: position 0.894 mm longitudinal and 0.894 mm lateral, heading 0.965 "
+        "degrees\n");
   CHECK(run("pattern") == 0);
-  CHECK_THROWS_AS(run("pattern " + kCrossing), ScenarioError);
-  CHECK_THROWS_AS(run("pattern --dot-mm -1"), CLI::ParseError);
+  CHECK_THROWS_AS(run("pattern " + kCrossing), ConfigError);
+  CHECK_THROWS_AS(run("pattern --dot-mm -1"), UsageError);
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/named_planner.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "deploy/evaluation/planning/ompl_planner.hpp"
 #include "deploy/evaluation/planning/plan_picture.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
 
 using namespace sidestep;
 
@@ -17,23 +16,48 @@ std::size_t count(const std::string& text, const std::string& part) {
   return times;
 }
 
+/// A planner with a world that it plans in.
+class Planning {
+ public:
+  Planning(const std::string& planner, const PlanWorld& world)
+      : world_(world), obstacles_(world.obstacles), planner_(make_planner(planner)) {}
+
+  Plan<Vec2> plan(const PlanQuery& query) {
+    const DiscDomain domain(obstacles_, world_.field, world_.radius_m, query.start_m, query.goal_m,
+                            planner_.domain_settings(world_));
+    return planner_.plan(domain, query.start_m, {}, rng_);
+  }
+  PlanDrawing draw() const { return planner_.draw(); }
+
+ private:
+  const PlanWorld& world_;
+  ObstacleWorld obstacles_;
+  NamedPlanner planner_;
+  Rng rng_{1};
+};
+
+/// How many of the queries are answered by the straight line alone.
+int count_straight(const std::string& planner, const PlanWorld& world) {
+  Planning planning(planner, world);
+  int straight = 0;
+  for (const PlanQuery& query : world.queries) straight += planning.plan(query).states.size() == 2;
+  return straight;
+}
+
 }  // namespace
 
-TEST_CASE("every planner plans by its name and shows what it looked at") {
+TEST_CASE("every planner plans by its name and draws what it explored") {
   const PlanWorld world = make_world("u", 3, 1);
-  const ObstacleWorld obstacles(world.obstacles);
   const std::string name = GENERATE(from_range(planner_names()));
   CAPTURE(name);
-  NamedPlanner planner = make_planner(name);
-  CHECK(planner.name == name);
-  Rng rng(1);
+  CHECK(make_planner(name).name == name);
+  Planning planning(name, world);
   for (const PlanQuery& query : world.queries) {
-    const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
-    const Plan<Vec2> plan = planner.plan(domain, query.start_m, {}, rng);
+    const Plan<Vec2> plan = planning.plan(query);
     REQUIRE(plan.arrives());
-    CHECK(is_valid_way(world, plan.states, 0.005, 1e-9));
-    const PlanDrawing drawing = planner.draw();
-    CHECK(drawing.tree.size() + drawing.cells.size() > 2);
+    CHECK(is_valid_path(world, plan.states, 1e-9));
+    const PlanDrawing drawing = planning.draw();
+    CHECK(drawing.tree.size() + drawing.goal_tree.size() + drawing.cells.size() > 2);
     const std::string svg = plan_picture(world, query, drawing, plan.states, plan.states);
     CHECK(count(svg, "<polyline") == 2);
     CHECK(count(svg, "<polygon") == world.obstacles.size() + drawing.cells.size());
@@ -42,22 +66,45 @@ TEST_CASE("every planner plans by its name and shows what it looked at") {
   }
 }
 
+TEST_CASE("every planner's baseline is a planner") {
+  for (const std::string& name : planner_names()) {
+    const std::string baseline = make_planner(name).baseline;
+    CAPTURE(name, baseline);
+    CHECK((baseline.empty() || std::count(planner_names().begin(), planner_names().end(), baseline) == 1));
+  }
+}
+
 TEST_CASE("a planner with another name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), Catch::Contains("dijkstra") && Catch::Contains("bi-errt"));
 }
 
-TEST_CASE("peers plan valid ways with our check") {
-  const PlanWorld world = make_world("u", 3, 1);
-  const ObstacleWorld obstacles(world.obstacles);
-  for (const std::string& name : ompl_planner_names()) {
-    CAPTURE(name);
-    OmplPlanner planner(name, world, obstacles, 1);
-    for (const PlanQuery& query : world.queries) {
-      const BenchedPlan plan = planner.plan(query, 2000);
-      REQUIRE(plan.solved);
-      CHECK(is_valid_way(world, plan.raw, 0.005, 1e-9));
-      CHECK(is_valid_way(world, plan.smooth, 0.005, 1e-9));
-      CHECK(plan.smooth.back() == query.goal_m);
-    }
+TEST_CASE("OMPL's namesakes sample uniformly, remember nothing and do not try the straight line") {
+  const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
+  CAPTURE(name);
+  const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);
+  CHECK(make_planner(name).domain_settings(u).contact_probability == 0);
+  CHECK(make_planner(name).domain_settings(u).step_m == Approx(0.2 * 9.8 * std::sqrt(2.0)));
+  CHECK(count_straight(name, empty) < 10);
+  Planning planning(name, u);
+  for (const PlanQuery& query : u.queries) planning.plan(query);
+  CHECK(planning.draw().cache.empty());
+}
+
+TEST_CASE("each addition to a namesake is a row of its own") {
+  const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
+  CAPTURE(name);
+  const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);
+  CHECK(count_straight(name + "+straight-line", empty) == 20);
+  CHECK(count_straight(name + "+border-samples", empty) < 10);
+  CHECK(count_straight(name + "+cache", empty) < 10);
+  CHECK(make_planner(name + "+border-samples").domain_settings(u).contact_probability > 0);
+  CHECK(make_planner(name + "+cache").domain_settings(u).contact_probability == 0);
+  CHECK(make_planner(name + "+straight-line").domain_settings(u).contact_probability == 0);
+  Planning cached(name + "+cache", u), straight(name + "+straight-line", u);
+  for (const PlanQuery& query : u.queries) {
+    cached.plan(query);
+    straight.plan(query);
   }
+  CHECK_FALSE(cached.draw().cache.empty());
+  CHECK(straight.draw().cache.empty());
 }

@@ -13,7 +13,7 @@ Vec2 centre_of(const DiscDomain& domain, std::uint32_t circle) {
 
 }  // namespace
 
-TEST_CASE("on a course of replans everything moves as fast as it is said to and stays on the field") {
+TEST_CASE("on a replan course the robot and the obstacles keep their speeds and stay on the field") {
   const auto seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   ReplanCourse course(400, seed);
@@ -41,7 +41,7 @@ TEST_CASE("on a course of replans everything moves as fast as it is said to and 
   CHECK(driven_m > 8);
 }
 
-TEST_CASE("a course of replans finds a way that touches a circle") {
+TEST_CASE("a replan course finds a path that touches a circle") {
   ReplanCourse course(50, 1);
   int crossed = 0;
   for (int cycle = 0; cycle < 50; ++cycle) {
@@ -54,7 +54,7 @@ TEST_CASE("a course of replans finds a way that touches a circle") {
   CHECK(crossed > 0);
 }
 
-TEST_CASE("the same seed gives the same course of replans and another one another") {
+TEST_CASE("the same seed gives the same replan course, and a different seed a different one") {
   ReplanCourse a(100, 3), b(100, 3), c(100, 4);
   for (int cycle = 0; cycle < 100; ++cycle)
     for (ReplanCourse* course : {&a, &b, &c}) course->step();

@@ -4,11 +4,12 @@
 #include <catch2/catch.hpp>
 
 #include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/evaluation/planning/free_space.hpp"
 #include "deploy/evaluation/planning/world_file.hpp"
 
 using namespace sidestep;
 
-TEST_CASE("worlds come from their seed and all queries can be solved") {
+TEST_CASE("worlds come from their seed and all queries are solvable") {
   const std::string name = GENERATE(from_range(world_names()));
   const auto seed = GENERATE(1u, 9u);
   CAPTURE(name, seed);
@@ -18,9 +19,11 @@ TEST_CASE("worlds come from their seed and all queries can be solved") {
   REQUIRE(world.queries.size() == 30);
   const ObstacleWorld obstacles(world.obstacles);
   TangentGraph graph(obstacles, world.field, world.radius_m);
+  const FreeSpace free_space(world);
   for (const PlanQuery& query : world.queries) {
     CHECK(is_free(world, query.start_m));
     CHECK(is_free(world, query.goal_m));
+    CHECK(free_space.connects(query.start_m, query.goal_m));
     CHECK(graph.plan(query.start_m, query.goal_m).arrives());
   }
 }
@@ -29,12 +32,25 @@ TEST_CASE("a world with another name is refused") {
   CHECK_THROWS_WITH(make_world("ocean", 1, 1), Catch::Contains("ocean") && Catch::Contains("maze"));
 }
 
-TEST_CASE("the dense check finds a way that touches an obstacle or leaves the field") {
+TEST_CASE("the path check finds a path that touches an obstacle or leaves the field") {
   PlanWorld world;
   world.obstacles = {Circle{{0, 0}, 0.5}};
-  CHECK(is_valid_way(world, {{-2, 0.61}, {2, 0.61}}, 0.01, 0));
-  CHECK_FALSE(is_valid_way(world, {{-2, 0.59}, {2, 0.59}}, 0.01, 0));
-  CHECK(is_valid_way(world, {{-2, 0.59}, {2, 0.59}}, 0.01, 0.02));
-  CHECK_FALSE(is_valid_way(world, {{-2, 2}, {4.95, 2}}, 0.01, 0));
-  CHECK_FALSE(is_valid_way(world, {{0.3, 0}}, 0.01, 0));
+  CHECK(is_valid_path(world, {{-2, 0.61}, {2, 0.61}}, 0));
+  CHECK_FALSE(is_valid_path(world, {{-2, 0.59}, {2, 0.59}}, 0));
+  CHECK(is_valid_path(world, {{-2, 0.59}, {2, 0.59}}, 0.02));
+  CHECK_FALSE(is_valid_path(world, {{-2, 2}, {4.95, 2}}, 0));
+  CHECK_FALSE(is_valid_path(world, {{0.3, 0}}, 0));
+  CHECK_FALSE(is_valid_path(world, {}, 0));
+}
+
+TEST_CASE("the path check finds contacts of a micrometre between the corners of a path") {
+  PlanWorld world;
+  world.radius_m = 0.1;
+  for (const Shape& shape : std::initializer_list<Shape>{Circle{{0, 0}, 0.5}, Box{{-0.5, -0.5}, {0.5, 0.5}},
+                                                         Segment{{0, 0}, {0, 0.5}},
+                                                         ConvexPolygon{{{-1, 0}, {1, 0}, {0, 0.5}}}}) {
+    world.obstacles = {shape};
+    CHECK(is_valid_path(world, {{-3, -1}, {-3, 0.600001}, {3, 0.600001}}, 0));
+    CHECK_FALSE(is_valid_path(world, {{-3, -1}, {-3, 0.599999}, {3, 0.599999}}, 0));
+  }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/study_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
@@ -17,11 +17,12 @@ int study(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sidestep", "study"});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
-  CLI::App app("test", "sidestep");
+  CommandLine command_line("test", "sidestep");
+  const Command app = command_line.root();
   std::function<int()> action;
   add_study_command(app, action);
-  const int exit_code = parse_options(app, static_cast<int>(argv.size()), argv.data());
-  return exit_code < 0 ? action() : exit_code;
+  const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());
+  return exit_code ? *exit_code : action();
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ TEST_CASE("a study with wrong arguments is refused before it begins") {
   CHECK_FALSE(std::filesystem::exists(folder.path()));
 }
 
-TEST_CASE("a study says which folder it cannot write to before it begins") {
+TEST_CASE("a study names the folder that it cannot write to before it begins") {
   const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "deploy/evaluation/study/study_table.hpp"
+#include "deploy/evaluation/study/table/study_table.hpp"
 
-/// Cells by the names of their columns.
+/// A row: cells by the names of their columns.
 using StudyRow = std::map<std::string, std::string>;
 
-/// A folder for a study's files, which goes with this.
+/// A temporary folder for a study's files.
 class StudyFolder {
  public:
   StudyFolder();
@@ -21,7 +21,7 @@ class StudyFolder {
   StudyFolder& operator=(const StudyFolder&) = delete;
 
   std::string path() const { return path_.string(); }
-  /// The rows of a study's table; checks the lines of its head.
+  /// Reads the rows of a study's table, and checks the lines of its head.
   std::vector<StudyRow> table(const std::string& study, const std::string& name, std::uint64_t seed) const;
   bool has_png(const std::string& name) const;
 
@@ -30,19 +30,19 @@ class StudyFolder {
 };
 
 std::vector<StudyRow> rows_of(const sidestep::StudyTable& table);
-/// Without what depends on the machine.
+/// The rows without machine-dependent columns.
 std::vector<StudyRow> without_times(std::vector<StudyRow> rows);
-/// A cell of the only row that has these others.
+/// The number in a column of the only row with the given cells.
 double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const std::string& column);
 
-/// An experiment, asked for a table by a seed.
-using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const sidestep::StudyAdvance&)>;
+/// Runs an experiment for a seed.
+using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const sidestep::ProgressCallback&)>;
 
-/// Checks what holds for any of them: a cell for each column and lines with points; it says how far it is up
-/// to the end; the same seed gives the same but for times, another one another.
+/// Checks what holds for every experiment: each row has a cell for each column, each plot has lines with
+/// points, progress is reported up to the end, the same seed gives the same rows except for times, and a
+/// different seed gives different ones.
 void check_experiment(const Experiment& experiment);
 
-/// The sum of a column over the rows, of which there is at least one, that have this value in that other
-/// column.
+/// The sum of a column over the rows with the value `is` in the column `where`; there has to be one.
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,
               const std::string& is);

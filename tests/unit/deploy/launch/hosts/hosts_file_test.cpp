@@ -24,31 +24,31 @@ hosts:
     agents: rest
 )";
 
-std::string with(std::string text, const std::string& old_words, const std::string& new_words) {
-  const auto at = text.find(old_words);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old_words.size(), new_words);
+std::string with(std::string text, const std::string& old_text, const std::string& new_text) {
+  const auto position = text.find(old_text);
+  REQUIRE(position != std::string::npos);
+  return text.replace(position, old_text.size(), new_text);
 }
 
-void check_refused(const std::string& text, const std::string& beginning, const std::string& words) {
+void check_refused(const std::string& text, const std::string& prefix, const std::string& part) {
   INFO(text);
   try {
     (void)parse_hosts(text, "hosts.yaml");
-    FAIL("it was accepted");
-  } catch (const ScenarioError& error) {
+    FAIL("the hosts file was accepted");
+  } catch (const ConfigError& error) {
     INFO(error.what());
-    CHECK(std::string(error.what()).rfind(beginning, 0) == 0);
-    CHECK(std::string(error.what()).find(words) != std::string::npos);
+    CHECK(std::string(error.what()).rfind(prefix, 0) == 0);
+    CHECK(std::string(error.what()).find(part) != std::string::npos);
   }
 }
 
 Scenario eight_robots() { return parse_scenario("circle: {count: 8, spacing_m: 0.5}", "eight.yaml"); }
 
-std::string refusal_to_place(const std::string& text) {
+std::string placement_error(const std::string& text) {
   const Hosts hosts = parse_hosts(text, "hosts.yaml");
   try {
     (void)Placement(hosts, eight_robots());
-  } catch (const ScenarioError& error) {
+  } catch (const ConfigError& error) {
     return error.what();
   }
   return "";
@@ -56,7 +56,7 @@ std::string refusal_to_place(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a hosts file says where each process runs") {
+TEST_CASE("a hosts file assigns each process to a host") {
   const Hosts hosts = parse_hosts(kTwoHosts, "hosts.yaml");
   CHECK_FALSE(hosts.create);
   CHECK(hosts.interface == "10.1.0.9");
@@ -72,7 +72,7 @@ TEST_CASE("a hosts file says where each process runs") {
   for (const char* process : {"agent 3", "agent 6"}) CHECK(placement.host_of(process).name == "far");
 }
 
-TEST_CASE("hosts that take the rest share it evenly") {
+TEST_CASE("hosts with `rest` share the remaining processes evenly") {
   const Hosts hosts = parse_hosts(with(kTwoHosts, "[0-2, 7]", "rest"), "hosts.yaml");
   const Scenario scenario = eight_robots();
   const Placement placement(hosts, scenario);
@@ -83,7 +83,7 @@ TEST_CASE("hosts that take the rest share it evenly") {
   CHECK(on_floor == 4);
 }
 
-TEST_CASE("a wrong hosts file is refused with its line and what was expected") {
+TEST_CASE("an invalid hosts file is refused with the line and the expected value") {
   check_refused("", "hosts.yaml:1: ", "expected a hosts file");
   check_refused("hosts: [", "hosts.yaml:", "not YAML");
   check_refused("hosts: []", "hosts.yaml:1: ", "\"launcher\" is missing");
@@ -100,55 +100,55 @@ TEST_CASE("a wrong hosts file is refused with its line and what was expected") {
                 "hosts.yaml:9: ", "expected letters");
   check_refused(with(kTwoHosts, "10.1.0.2", "far.example"), "hosts.yaml:10: ", "IPv4 address");
   check_refused(with(kTwoHosts, "[0-2, 7]", "[2-0]"), "hosts.yaml:7: ", "lower number first");
-  check_refused(with(kTwoHosts, "[0-2, 7]", "[one]"), "hosts.yaml:7: ", "such as 3 or 5-9");
+  check_refused(with(kTwoHosts, "[0-2, 7]", "[one]"), "hosts.yaml:7: ", "a range such as 5-9");
   check_refused(with(kTwoHosts, "[0-2, 7]", "[0-4096]"), "hosts.yaml:7: ", "0 to 1023");
   check_refused(with(kTwoHosts, "vision,", "visions,"), "hosts.yaml:6: ", "expected simulator, vision");
   check_refused(with(kTwoHosts, "name: far", "name: floor"), "hosts.yaml:8: ", "another host has this name");
-  check_refused("create: true\n" + kTwoHosts, "hosts.yaml:4: ", "for namespaces only");
+  check_refused("create: true\n" + kTwoHosts, "hosts.yaml:4: ", "requires transport {namespace: NAME}");
   check_refused("create: perhaps\n" + kTwoHosts, "hosts.yaml:1: ", "true or false");
 }
 
-TEST_CASE("a file whose network the launcher makes needs different addresses and namespaces") {
+TEST_CASE("with `create` all addresses and namespaces must differ") {
   const std::string good =
       with(with("create: true\n" + kTwoHosts, "transport: local", "transport: {namespace: a}"),
            "{ssh: robot@far.example}", "{namespace: b}");
   CHECK(parse_hosts(good, "hosts.yaml").create);
-  check_refused(with(good, "10.1.0.2", "10.1.0.1"), "hosts.yaml:9: ", "already somebody else's");
-  check_refused(with(good, "10.1.0.2", "10.1.0.9"), "hosts.yaml:9: ", "already somebody else's");
+  check_refused(with(good, "10.1.0.2", "10.1.0.1"), "hosts.yaml:9: ", "is already in use");
+  check_refused(with(good, "10.1.0.2", "10.1.0.9"), "hosts.yaml:9: ", "is already in use");
   check_refused(with(good, "{namespace: b}", "{namespace: a}"),
                 "hosts.yaml:9: ", "another host has this namespace");
-  check_refused(with(good, "{namespace: b}", "{namespace: hub}"), "hosts.yaml:9: ", "the launcher's own");
+  check_refused(with(good, "{namespace: b}", "{namespace: bridge}"), "hosts.yaml:9: ", "reserved for the launcher");
 }
 
-TEST_CASE("coordinators that stand by are placed like agents") {
+TEST_CASE("standby coordinators are placed like agents") {
   const Scenario scenario =
       parse_scenario("coordinators: 3\ncircle: {count: 8, spacing_m: 0.5}", "eight.yaml");
-  const Hosts nobody = parse_hosts(kTwoHosts, "hosts.yaml");
-  CHECK_THROWS_WITH(Placement(nobody, scenario),
+  const Hosts without_standbys = parse_hosts(kTwoHosts, "hosts.yaml");
+  CHECK_THROWS_WITH(Placement(without_standbys, scenario),
                     Catch::StartsWith("hosts.yaml:1: no host runs coordinator 1"));
-  const Hosts both =
+  const Hosts with_standbys =
       parse_hosts(with(kTwoHosts, "agents: rest", "agents: rest\n    standbys: [1-2]"), "hosts.yaml");
-  const Placement placement(both, scenario);
+  const Placement placement(with_standbys, scenario);
   CHECK(placement.host_of("coordinator").name == "floor");
   CHECK(placement.host_of("coordinator 2").name == "far");
 }
 
-TEST_CASE("each process has exactly one host, and hosts name only robots that there are") {
-  CHECK(refusal_to_place(kTwoHosts).empty());
-  CHECK_THAT(refusal_to_place(with(kTwoHosts, "vision, ", "")),
-             Catch::StartsWith("hosts.yaml:1: no host runs the vision"));
-  CHECK_THAT(refusal_to_place(with(kTwoHosts, "rest", "[3-5]")),
+TEST_CASE("each process has exactly one host, and hosts name only existing robots") {
+  CHECK(placement_error(kTwoHosts).empty());
+  CHECK_THAT(placement_error(with(kTwoHosts, "vision, ", "")),
+             Catch::StartsWith("hosts.yaml:1: no host runs vision"));
+  CHECK_THAT(placement_error(with(kTwoHosts, "rest", "[3-5]")),
              Catch::StartsWith("hosts.yaml:1: no host runs agent 6"));
-  CHECK_THAT(refusal_to_place(with(kTwoHosts, "rest", "[2-6]")),
-             Catch::StartsWith("hosts.yaml:12: host far runs the agent 2, but floor does already"));
-  CHECK_THAT(refusal_to_place(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
-             Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, of which the scenario has none"));
+  CHECK_THAT(placement_error(with(kTwoHosts, "rest", "[2-6]")),
+             Catch::StartsWith("hosts.yaml:12: host far runs agent 2, but host floor runs it already"));
+  CHECK_THAT(placement_error(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
+             Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, but the scenario has none of them"));
 }
 
 TEST_CASE("the shipped hosts files fit any scenario") {
   const Scenario scenario = eight_robots();
   for (const char* name : {"three-namespaces", "two-machines"}) {
-    const Hosts hosts = load_hosts(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/launch/hosts/" + name + ".yaml");
+    const Hosts hosts = load_hosts(SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/" + std::string(name) + ".yaml");
     CHECK_NOTHROW(Placement(hosts, scenario));
   }
 }

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-TEST_CASE("an audited path is where the system's own trajectory is") {
+TEST_CASE("an audit path agrees with the system's own trajectory") {
   const std::uint64_t seed = GENERATE(range(1, 20));
   CAPTURE(seed);
   Rng rng(seed);
@@ -18,44 +18,44 @@ TEST_CASE("an audited path is where the system's own trajectory is") {
   const AuditPath path(encode(version));
   for (int i = 0; i < 200; ++i) {
     const Time t = version.trajectory.start() + from_seconds(3 * rng.uniform());
-    const State there = version.trajectory.state_at(t);
+    const State expected = version.trajectory.state_at(t);
     const AuditPath::Node node = path.at_ns(to_ns(t));
-    CHECK(std::hypot(node.x - there.position_m.x(), node.y - there.position_m.y()) < 1e-9);
+    CHECK(std::hypot(node.x - expected.position_m.x(), node.y - expected.position_m.y()) < 1e-9);
     CHECK(std::hypot(node.x - path.first().x, node.y - path.first().y) <= path.reach_m() + 1e-12);
   }
   CHECK(std::hypot(path.last().vx, path.last().vy) ==
         Approx(version.trajectory.residual_speed_mps()).margin(1e-9));
 }
 
-TEST_CASE("the nearest that two paths come is found to micrometres, where it is near enough to matter") {
+TEST_CASE("the closest approach of two paths is found to micrometres below the cutoff") {
   int near = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     const Version a{0, 1, 2, 0, random_trajectory(rng), 0}, b{1, 1, 2, 0, random_trajectory(rng), 0};
-    const double least = clearance_m(a.trajectory, b.trajectory, 0), enough = 0.5;
-    const Approach found = nearest(AuditPath(encode(a)), AuditPath(encode(b)), enough);
-    if (least < enough) {
+    const double expected_m = clearance_m(a.trajectory, b.trajectory, 0), cutoff_m = 0.5;
+    const ClosestApproach found = closest_approach(AuditPath(encode(a)), AuditPath(encode(b)), cutoff_m);
+    if (expected_m < cutoff_m) {
       ++near;
-      CHECK(found.distance_m == Approx(least).margin(3e-6));
+      CHECK(found.distance_m == Approx(expected_m).margin(3e-6));
     } else {
-      CHECK(found.distance_m >= enough - 1e-9);
+      CHECK(found.distance_m >= cutoff_m - 1e-9);
     }
   }
   CHECK(near > 20);
 }
 
-TEST_CASE("what no robot could mean is no version") {
+TEST_CASE("implausible versions are rejected") {
   msg::Version version = encode({0, 1, 2, 0, Trajectory::resting(time_from_ns(5), {1, 1}), 0});
   CHECK(is_sane(version));
   SECTION("not a number") { version.x_m(std::nan("")); }
   SECTION("too many phases") { version.phase_count(200); }
-  SECTION("a start before all time") { version.start_ns(-1); }
+  SECTION("a start at a negative time") { version.start_ns(-1); }
   SECTION("a phase of negative duration") {
     version.phase_count(1);
     version.phases()[0].duration_ns(-5);
   }
-  SECTION("shrunk") { version.inflation_m(-0.1); }
+  SECTION("negative inflation") { version.inflation_m(-0.1); }
   CHECK_FALSE(is_sane(version));
 }
 

@@ -11,9 +11,9 @@ namespace {
 AuditedRobot robot_with(VersionNumber count, VersionNumber excluded) {
   AuditedRobot robot;
   for (VersionNumber number = 1; number <= count; ++number) {
-    Known& known = robot.note(number);
+    KnownVersion& known = robot.find_or_insert(number);
     if (number > excluded) continue;
-    known.excluded = Excluded::kOlder;
+    known.exclusion = Exclusion::kOlder;
     known.excluded_ns = 10;
   }
   return robot;
@@ -23,11 +23,11 @@ VersionNumber first_recent(const AuditedRobot& robot) { return robot.versions.at
 
 }  // namespace
 
-TEST_CASE("what was excluded a while ago is passed over until more is known of it") {
+TEST_CASE("versions excluded long ago are skipped until new evidence arrives") {
   AuditedRobot robot = robot_with(5, 3);
-  robot.age(10);
+  robot.advance_recent(10);
   CHECK(first_recent(robot) == 1);
-  robot.age(11);
+  robot.advance_recent(11);
   CHECK(first_recent(robot) == 4);
   robot.make_recent(5);
   CHECK(first_recent(robot) == 4);
@@ -35,27 +35,27 @@ TEST_CASE("what was excluded a while ago is passed over until more is known of i
   CHECK(first_recent(robot) == 2);
 }
 
-TEST_CASE("a robot's recent versions stay so when older ones are given up or come late") {
-  AuditedRobot robot = robot_with(AuditedRobot::kMostVersions, 40);
-  robot.age(11);
+TEST_CASE("a robot's recent versions stay recent when older ones are evicted or arrive late") {
+  AuditedRobot robot = robot_with(AuditedRobot::kMaxVersions, 40);
+  robot.advance_recent(11);
   REQUIRE(first_recent(robot) == 41);
-  robot.note(AuditedRobot::kMostVersions + 1);
+  robot.find_or_insert(AuditedRobot::kMaxVersions + 1);
   CHECK(first_recent(robot) == 41);
   CHECK(robot.find(1) == nullptr);
-  CHECK(robot.given_up_version == 1);
+  CHECK(robot.max_evicted_version == 1);
   robot.forget(11);
-  robot.age(11);
+  robot.advance_recent(11);
   CHECK(first_recent(robot) == 41);
-  CHECK(robot.versions.size() == AuditedRobot::kMostVersions + 1 - 40);
-  robot.note(7);
+  CHECK(robot.versions.size() == AuditedRobot::kMaxVersions + 1 - 40);
+  robot.find_or_insert(7);
   CHECK(first_recent(robot) == 7);
 }
 
-TEST_CASE("a version is found near where it was, and where it has come to") {
+TEST_CASE("a version is found near its former index") {
   AuditedRobot robot = robot_with(10, 0);
   const std::size_t size = robot.versions.size();
   for (VersionNumber number = 1; number <= 11; ++number) {
-    const Known* const expected = robot.find(number);
+    const KnownVersion* const expected = robot.find(number);
     for (std::size_t index = 0; index <= size; ++index) CHECK(robot.find_near(index, number) == expected);
   }
 }

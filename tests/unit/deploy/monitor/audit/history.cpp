@@ -8,26 +8,26 @@
 namespace sidestep {
 
 void History::each_version(const std::function<void(msg::Version&)>& use) {
-  for (HeardMessage& heard : messages) {
-    if (auto* proposal = std::get_if<msg::Proposal>(&heard.message)) {
+  for (ReceivedMessage& received : messages) {
+    if (auto* proposal = std::get_if<msg::Proposal>(&received.message)) {
       for (std::size_t i = 0; i < proposal->candidate_count(); ++i) use(proposal->candidates()[i]);
-    } else if (auto* registration = std::get_if<msg::Registration>(&heard.message)) {
+    } else if (auto* registration = std::get_if<msg::Registration>(&received.message)) {
       for (std::size_t i = 0; i < registration->version_count(); ++i) use(registration->versions()[i]);
-    } else if (auto* page = std::get_if<msg::LedgerPage>(&heard.message)) {
+    } else if (auto* page = std::get_if<msg::LedgerPage>(&received.message)) {
       for (msg::Version& version : page->versions()) use(version);
-    } else if (auto* command = std::get_if<msg::Command>(&heard.message)) {
-      if (command->has_version()) use(command->granted());
-    } else if (auto* feedback = std::get_if<msg::Feedback>(&heard.message)) {
+    } else if (auto* command = std::get_if<msg::Command>(&received.message)) {
+      if (command->has_version()) use(command->version());
+    } else if (auto* feedback = std::get_if<msg::Feedback>(&received.message)) {
       use(feedback->executing());
     }
   }
 }
 
-void History::push(RobotId pushed, Time at) {
-  each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time heard_at) {
-    if (heard_at < at) return;
-    for (msg::TruthRobot& robot : truth.robots()) {
-      if (robot.robot() == pushed) robot.disturbance_end_ns(to_ns(at));
+void History::push(RobotId pushed_robot, Time at) {
+  each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time received_at) {
+    if (received_at < at) return;
+    for (msg::TrueRobotState& robot : truth.robots()) {
+      if (robot.robot() == pushed_robot) robot.disturbance_end_ns(to_ns(at));
     }
   });
 }
@@ -43,29 +43,29 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
   History history{scenario, {}};
   SimSystem system(scenario, seed);
   SimBus bus(system.network());
-  bus.listen_aside();
-  const auto keep = [&]<typename Message>(const Topic<Message>& topic, RobotId robot) {
+  bus.become_observer();
+  const auto collect = [&]<typename Message>(const Topic<Message>& topic, RobotId robot) {
     bus.subscribe<Message>(topic, robot, [&](const Message& message) {
       history.messages.push_back({bus.now(), message});
     });
   };
-  keep(topics::kProposal, 0);
-  keep(topics::kRegistration, 0);
-  keep(topics::kCoordinator, 0);
-  keep(topics::kLedger, 0);
-  keep(topics::kTruth, 0);
+  collect(topics::kProposal, 0);
+  collect(topics::kRegistration, 0);
+  collect(topics::kCoordinator, 0);
+  collect(topics::kLedger, 0);
+  collect(topics::kTruth, 0);
   for (const RobotSpec& robot : scenario.robots) {
-    keep(topics::kVerdict, robot.id);
-    keep(topics::kCommand, robot.id);
-    keep(topics::kFeedback, robot.id);
+    collect(topics::kVerdict, robot.id);
+    collect(topics::kCommand, robot.id);
+    collect(topics::kFeedback, robot.id);
   }
   system.run_for(duration);
   return history;
 }
 
-AuditTotals audit_of(const History& history, const AuditTrace& hearing) {
-  Auditor auditor(history.scenario, hearing);
-  struct Hear {
+AuditTotals audit_of(const History& history, const AuditInput& input) {
+  Auditor auditor(history.scenario, input);
+  struct Deliver {
     Auditor& auditor;
     Time at;
     void operator()(const msg::Proposal& m) const { auditor.on_proposal(m, at); }
@@ -77,23 +77,24 @@ AuditTotals audit_of(const History& history, const AuditTrace& hearing) {
     void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
     void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
   };
-  for (const HeardMessage& heard : history.messages) std::visit(Hear{auditor, heard.at}, heard.message);
+  for (const ReceivedMessage& received : history.messages)
+    std::visit(Deliver{auditor, received.at}, received.message);
   return auditor.totals();
 }
 
-History badly_heard(const History& history, std::uint64_t seed, double loss, Duration joined_after) {
+History degraded(const History& history, std::uint64_t seed, double loss, Duration joined_after) {
   Rng rng(seed);
-  History heard{history.scenario, {}};
+  History result{history.scenario, {}};
   const Time from = history.messages.front().at + joined_after;
-  for (const HeardMessage& message : history.messages) {
+  for (const ReceivedMessage& message : history.messages) {
     for (int copy = 0; copy < 2; ++copy) {
       if (copy == 1 && !rng.chance(0.1)) continue;
       const Time at = message.at + from_seconds(0.02 * rng.uniform() * rng.uniform());
-      if (at >= from && !rng.chance(loss)) heard.messages.push_back({at, message.message});
+      if (at >= from && !rng.chance(loss)) result.messages.push_back({at, message.message});
     }
   }
-  std::ranges::stable_sort(heard.messages, {}, &HeardMessage::at);
-  return heard;
+  std::ranges::stable_sort(result.messages, {}, &ReceivedMessage::at);
+  return result;
 }
 
 std::string lines(const AuditTotals& totals) {

@@ -8,26 +8,26 @@
 
 namespace sidestep {
 
-/// A true history of crossing.yaml, the same at each call.
+/// An unmodified history of crossing.yaml, the same at each call.
 const History& crossing();
 
-inline constexpr AuditTrace kComplete{true, {}};
+inline constexpr AuditInput kComplete{true, {}};
 
 std::uint64_t count(const AuditTotals& totals, AuditRule rule);
 
-/// A version that a robot switches to in full motion, and what surrounds that.
+/// A version that a moving robot switches to, and the version executed before it.
 struct Switch {
   RobotId robot;
   VersionNumber number, before;
   std::int64_t start_ns;
   msg::Version version;
 };
-Switch a_switch(History& history);
+Switch example_switch(History& history);
 
-/// Tampers with a copy of the true history, and hears it.
-AuditTotals tampered(const std::function<void(History&)>& tamper);
+/// The audit of a copy of crossing() after `tamper` has modified it.
+AuditTotals audit_of_tampered(const std::function<void(History&)>& tamper);
 
-/// The same, and the rule has to be named.
-void require_caught(AuditRule rule, const std::function<void(History&)>& tamper);
+/// Fails the test unless the audit of the modified history reports the rule.
+void require_violation(AuditRule rule, const std::function<void(History&)>& tamper);
 
 }  // namespace sidestep

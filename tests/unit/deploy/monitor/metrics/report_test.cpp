@@ -48,25 +48,25 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "penetration_m_s",
                                          "min_clearance_m",
                                          "crashes",
-                                         "moving_crashes",
-                                         "crash_speed_mps",
-                                         "robot_crash_speed_mps",
+                                         "crashes_while_moving",
+                                         "max_crash_speed_mps",
+                                         "max_robot_crash_speed_mps",
                                          "makespan_s",
                                          "mean_arrival_s",
-                                         "arrival_over_straight",
+                                         "straight_line_time_ratio",
                                          "arrival_s",
                                          "proposals",
                                          "grants",
                                          "denials",
                                          "cycles",
                                          "missed_cycles",
-                                         "plan_changes",
-                                         "plan_changes_per_s",
+                                         "route_changes",
+                                         "route_changes_per_s",
                                          "invalid_messages",
                                          "firmware_violations",
                                          "conflicts",
                                          "max_reference_error_m",
-                                         "clock_offset_max_s",
+                                         "max_clock_offset_s",
                                          "clock_uncertainty_s",
                                          "negotiation_us",
                                          "robot_time_s",
@@ -84,12 +84,12 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK(json["negotiation_us"]["p50"] >= 5000.0);
   CHECK(json["negotiation_us"]["p50"] < 5700.0);
   CHECK(json["conflicts"].dump() == "[[3,7]]");
-  CHECK_THAT(summary(example()), Catch::Contains("robots 3 and 7 were brought too near"));
+  CHECK_THAT(summary(example()), Catch::Contains("brought robots 3 and 7 into conflict"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
 }
 
-TEST_CASE("reports that differ in wall-clock figures only differ under wall_clock only") {
+TEST_CASE("reports of one run on machines of different speed differ only under wall_clock") {
   Report slow = example();
   slow.duration_s = 9;
   slow.plan.add(std::chrono::milliseconds(5));
@@ -102,20 +102,20 @@ TEST_CASE("reports that differ in wall-clock figures only differ under wall_cloc
   CHECK(a == b);
 }
 
-TEST_CASE("the verdict names everything that is wrong in one line, and is empty when nothing is") {
+TEST_CASE("the failure reason lists everything that went wrong in one line, and is empty otherwise") {
   Report report = example();
   CHECK_THAT(summary(report), Catch::EndsWith("failed: 1 of 2 arrived\n"));
-  report.failure = "time limit of 60 s";
+  report.abort_reason = "time limit of 60 s";
   report.contacts = 1;
   report.firmware_violations = 2;
-  CHECK(report.verdict() == "time limit of 60 s, 1 contacts, 2 firmware violations, 1 of 2 arrived");
+  CHECK(report.failure_reason() == "time limit of 60 s, 1 contacts, 2 firmware violations, 1 of 2 arrived");
   Report good = example();
   good.arrived = 2;
-  CHECK(good.verdict().empty());
+  CHECK(good.failure_reason().empty());
   CHECK_THAT(summary(good), Catch::EndsWith("passed\n"));
 }
 
-TEST_CASE("a report is written into a folder that is made for it, or it says why not") {
+TEST_CASE("writing a report creates its folder, or fails with the reason") {
   const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
   const std::string path = (folder / "deep" / "r.json").string();
   write_report(example(), path);
@@ -131,52 +131,53 @@ TEST_CASE("a report is named after scenario and seed, or scenario and time") {
              Catch::Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
 }
 
-TEST_CASE("a crash of a moving robot fails a run, one of a robot at rest is told only") {
+TEST_CASE("a crash of a moving robot fails a run, a crash of a robot at rest is only reported") {
   Report report = example();
   report.arrived = 2;
-  REQUIRE(report.verdict().empty());
+  REQUIRE(report.failure_reason().empty());
   report.crashes = 3;
-  report.crash_speed_mps = 1.5;
-  CHECK(report.verdict().empty());
+  report.max_crash_speed_mps = 1.5;
+  CHECK(report.failure_reason().empty());
   CHECK_THAT(summary(report),
-             Catch::Contains("3 crashes with opponents, 0 of them moving; fastest 1.50 m/s"));
-  report.moving_crashes = 1;
-  CHECK(report.verdict() == "1 crashes of moving robots");
+             Catch::Contains("3 crashes with opponents, 0 of them while the robot moved; maximum closing "
+                             "speed 1.50 m/s"));
+  report.crashes_while_moving = 1;
+  CHECK(report.failure_reason() == "1 crashes of moving robots");
 }
 
-TEST_CASE("what the audit found fails a run, and stands in its report") {
+TEST_CASE("audit violations fail a run and are included in its report") {
   Report report = example();
   report.arrived = report.robots;
   CHECK(nlohmann::json::parse(to_json(report))["audit"].is_null());
   report.audit = AuditTotals{};
-  CHECK(report.verdict().empty());
+  CHECK(report.failure_reason().empty());
   Violation violation;
-  violation.rule = AuditRule::kLate;
+  violation.rule = AuditRule::kLateSwitch;
   violation.robot = 3;
   violation.version = 17;
-  violation.what = "is executed, although";
+  violation.detail = "is executed, although";
   report.audit->violations = 1;
-  report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLate)] = 1;
+  report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLateSwitch)] = 1;
   report.audit->first.push_back(violation);
-  CHECK(report.verdict() == "1 violations found by the audit, first of late");
+  CHECK(report.failure_reason() == "1 audit violations, the first of rule late-switch");
   const auto audit = nlohmann::json::parse(to_json(report))["audit"];
   CHECK(audit["violations"] == 1);
-  CHECK(audit["by_rule"]["late"] == 1);
+  CHECK(audit["by_rule"]["late-switch"] == 1);
   CHECK(audit["first"][0]["robot"] == 3);
-  CHECK(audit["first"][0]["what"] == "is executed, although");
-  CHECK_THAT(summary(report), Catch::Contains("late (firmware, S-05): robot 3 version 17: is executed"));
+  CHECK(audit["first"][0]["detail"] == "is executed, although");
+  CHECK_THAT(summary(report), Catch::Contains("late-switch (firmware, S-05): robot 3 version 17: is executed"));
 }
 
-TEST_CASE("contacts of robots that somebody has just pushed fail no run, others do") {
+TEST_CASE("excused contacts do not fail a run, other contacts do") {
   Report report = example();
   report.arrived = report.robots;
-  report.failure.clear();
+  report.abort_reason.clear();
   report.contacts = 3;
   report.audit = AuditTotals();
-  report.audit->contacts_by_hand = 3;
-  CHECK(report.verdict() == "");
+  report.audit->excused_contacts = 3;
+  CHECK(report.failure_reason() == "");
   report.contacts = 4;
-  CHECK(report.verdict() == "1 contacts");
+  CHECK(report.failure_reason() == "1 contacts");
 }
 
 }  // namespace sidestep

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
 
-/// A file that goes with the test.
+/// A file that is removed at the end of the test.
 struct TemporaryFile {
   std::string path =
       (std::filesystem::temp_directory_path() / ("recording_test_" + std::to_string(::getpid()))).string();
@@ -37,52 +37,52 @@ void write(const std::string& path, const std::vector<char>& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Records the crossing for a while; what the auditor heard meanwhile.
+/// Records the crossing for this long; returns the findings of the live auditor.
 AuditTotals record_run(const std::string& path, Duration duration) {
   const Scenario scenario = load_scenario(kScenario);
-  RecordingHead head = recording_head(scenario.name, kScenario);
-  head.is_complete = true;
-  RecordingWriter writer(path, head);
+  RecordingHeader header = recording_header(scenario.name, kScenario);
+  header.is_complete = true;
+  RecordingWriter writer(path, header);
   SimSystem system(scenario, 3);
   SimBus bus(system.network());
-  bus.listen_aside();
+  bus.become_observer();
   record(bus, scenario, writer);
   system.run_for(duration);
   writer.close();
   return system.auditor().totals();
 }
 
-struct Played {
+struct AuditedPlayback {
   AuditTotals audit;
-  RecordingEnd end;
+  PlaybackResult result;
 };
 
-Played play(const std::string& path) {
+AuditedPlayback play(const std::string& path) {
   PlaybackBus bus(path);
-  const Scenario scenario = parse_scenario(bus.head().text, "crossing.yaml");
-  Auditor auditor(scenario, {bus.head().is_complete, {}});
+  const Scenario scenario = parse_scenario(bus.header().scenario_text, "crossing.yaml");
+  Auditor auditor(scenario, {bus.header().is_complete, {}});
   listen(bus, scenario, auditor);
-  const RecordingEnd end = bus.play();
-  return {auditor.totals(), end};
+  const PlaybackResult result = bus.play();
+  return {auditor.totals(), result};
 }
 
 }  // namespace
 
-TEST_CASE("a recording is heard again as it was") {
+TEST_CASE("a recording plays back the messages of the run") {
   const TemporaryFile file;
   const AuditTotals live = record_run(file.path, 2s);
-  const Played again = play(file.path);
-  CHECK(again.end.damage == "");
-  CHECK(again.end.unreadable == 0);
-  CHECK(again.end.messages > live.heard);  // frames and statuses too
-  CHECK(again.audit.pairs == live.pairs);
+  const AuditedPlayback again = play(file.path);
+  CHECK(again.result.damage == "");
+  CHECK(again.result.unreadable == 0);
+  CHECK(again.result.messages > live.received);  // detection frames and agent status, too
+  CHECK(again.audit.compared_pairs == live.compared_pairs);
   CHECK(again.audit.violations == 0);
-  // But for what was said while the system was made.
-  CHECK(again.audit.heard <= live.heard);
-  CHECK(again.audit.heard + 20 > live.heard);
+  // Messages sent during the construction of the system are not recorded.
+  CHECK(again.audit.received <= live.received);
+  CHECK(again.audit.received + 20 > live.received);
 }
 
-/// Where blocks end: 8 bytes of magic, then blocks of a size, a check sum and so many bytes.
+/// The ends of all blocks. A file is 8 bytes of magic, then blocks of a size, a checksum and `size` bytes.
 std::set<std::size_t> block_ends(const std::vector<char>& whole) {
   std::set<std::size_t> ends;
   for (std::size_t at = 8; at + 8 <= whole.size();) {
@@ -94,26 +94,26 @@ std::set<std::size_t> block_ends(const std::vector<char>& whole) {
   return ends;
 }
 
-TEST_CASE("a recording that ends anywhere is used up to there, and said to be cut off") {
+TEST_CASE("a truncated recording is played up to its last whole block, and the truncation is reported") {
   const TemporaryFile file;
   record_run(file.path, 1s);
   const auto whole = contents(file.path);
   const auto ends = block_ends(whole);
   REQUIRE(ends.contains(whole.size()));
   std::uint64_t before = 0;
-  const std::size_t head = 8 + 8 + 2000;  // magic, frame, and more than the scenario's text would fit
-  for (std::size_t size = whole.size() / 10 + head; size < whole.size(); size += whole.size() / 10 + 1) {
+  const std::size_t header = 8 + 8 + 2000;  // magic, frame, and more than the size of the scenario file
+  for (std::size_t size = whole.size() / 10 + header; size < whole.size(); size += whole.size() / 10 + 1) {
     CAPTURE(size);
     write(file.path, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
-    const Played heard = play(file.path);
-    CHECK(heard.end.messages > before);
-    CHECK(heard.end.damage == (ends.contains(size) ? "" : "it ends in the middle of a block"));
-    CHECK(heard.audit.violations == 0);
-    before = heard.end.messages;
+    const AuditedPlayback played = play(file.path);
+    CHECK(played.result.messages > before);
+    CHECK(played.result.damage == (ends.contains(size) ? "" : "the file ends in the middle of a block"));
+    CHECK(played.audit.violations == 0);
+    before = played.result.messages;
   }
 }
 
-TEST_CASE("whatever is in a file, reading it ends without harm") {
+TEST_CASE("playing a corrupted recording ends without harm") {
   const TemporaryFile file;
   record_run(file.path, 300ms);
   const auto whole = contents(file.path);
@@ -126,15 +126,15 @@ TEST_CASE("whatever is in a file, reading it ends without harm") {
       broken[from + rng.below(broken.size() - from)] = static_cast<char>(rng.bits());
     write(file.path, broken);
     try {
-      const RecordingEnd end = PlaybackBus(file.path).play();
-      CHECK((broken == whole || !end.damage.empty()));
+      const PlaybackResult result = PlaybackBus(file.path).play();
+      CHECK((broken == whole || !result.damage.empty()));
     } catch (const std::runtime_error&) {
-      SUCCEED("its head was refused");
+      SUCCEED("its header was refused");
     }
   }
 }
 
-TEST_CASE("bytes that are no message of their topic are refused") {
+TEST_CASE("bytes that do not decode as a message of their topic are refused") {
   msg::GroundTruth truth;
   truth.robots().resize(3);
   std::vector<std::uint8_t> bytes;
@@ -147,8 +147,8 @@ TEST_CASE("bytes that are no message of their topic are refused") {
   CHECK(read_cdr(topics::kTruth, bytes, use));
   CHECK(read == 1);
   std::vector<std::uint8_t> empty;
-  msg::GroundTruth nobody;
-  append_cdr(topics::kTruth, &nobody, empty);
+  msg::GroundTruth without_robots;
+  append_cdr(topics::kTruth, &without_robots, empty);
   auto hostile = bytes;
   for (std::size_t i = 0; i < 4; ++i) hostile[empty.size() - 4 + i] = 0xff;
   CHECK_FALSE(read_cdr(topics::kTruth, hostile, use));
@@ -159,10 +159,10 @@ TEST_CASE("bytes that are no message of their topic are refused") {
   CHECK(read == 1);
 }
 
-TEST_CASE("what is no recording is refused by name") {
+TEST_CASE("a file that is not a recording is refused with its name") {
   const TemporaryFile file;
   write(file.path, {'n', 'o'});
-  CHECK_THROWS_WITH(PlaybackBus(file.path), Catch::Contains(file.path) && Catch::Contains("is no recording"));
+  CHECK_THROWS_WITH(PlaybackBus(file.path), Catch::Contains(file.path) && Catch::Contains("is not a recording"));
   CHECK_THROWS_WITH(PlaybackBus("/nowhere/at/all"), Catch::Contains("cannot be read"));
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), Catch::Contains("cannot be written"));
 }

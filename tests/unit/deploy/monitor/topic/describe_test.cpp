@@ -30,7 +30,7 @@ std::string without_comments(const std::string& idl) {
   return result;
 }
 
-/// What stands between the braces of "struct NAME {" or "enum NAME {".
+/// The text between the braces of "struct NAME {" or "enum NAME {".
 std::string idl_body(const std::string& idl, const std::string& declaration) {
   const std::size_t begin = idl.find(declaration + " {");
   REQUIRE(begin != std::string::npos);
@@ -38,7 +38,7 @@ std::string idl_body(const std::string& idl, const std::string& declaration) {
   return idl.substr(open + 1, idl.find('}', open) - open - 1);
 }
 
-/// The last word of each piece that ends at the separator, without what stands in square brackets.
+/// The last word of each piece that ends with the separator, without square brackets and their content.
 std::vector<std::string> last_words(const std::string& text, char separator) {
   const std::string blanks = " \n";
   std::istringstream pieces(text);
@@ -68,8 +68,8 @@ std::vector<std::string> keys(const Json& object) {
   return result;
 }
 
-/// "REASON_NOT_TRIED" with prefix "REASON_" as "not tried".
-std::string in_words(std::string enumerator, const std::string& prefix) {
+/// "REASON_NOT_EVALUATED" with prefix "REASON_" as "not evaluated".
+std::string to_lines(std::string enumerator, const std::string& prefix) {
   enumerator.erase(0, prefix.size());
   for (char& c : enumerator) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
   return enumerator;
@@ -77,7 +77,7 @@ std::string in_words(std::string enumerator, const std::string& prefix) {
 
 }  // namespace
 
-TEST_CASE("a description holds the members of each message that the IDL names, in its order") {
+TEST_CASE("a description contains the members of each message in IDL order") {
   const std::string idl = without_comments(idl_text());
   msg::DetectionFrame frame;
   frame.ball_count(1);
@@ -92,7 +92,7 @@ TEST_CASE("a description holds the members of each message that the IDL names, i
   feedback.executing().phase_count(1);
 
   CHECK(keys(describe(frame)) == idl_members(idl, "DetectionFrame"));
-  CHECK(keys(describe(frame)["head"]) == idl_members(idl, "Header"));
+  CHECK(keys(describe(frame)["header"]) == idl_members(idl, "Header"));
   CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
   CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
   CHECK(keys(describe(frame)["obstacles"].at(0)) == idl_members(idl, "ObstacleDetection"));
@@ -106,7 +106,7 @@ TEST_CASE("a description holds the members of each message that the IDL names, i
   CHECK(keys(describe(msg::Command())["fix"]) == idl_members(idl, "PoseFix"));
   CHECK(keys(describe(feedback)) == idl_members(idl, "Feedback"));
   CHECK(keys(describe(feedback)["executing"]) == idl_members(idl, "Version"));
-  CHECK(keys(describe(feedback)["executing"]["phases"].at(0)) == idl_members(idl, "Phase"));
+  CHECK(keys(describe(feedback)["executing"]["phases"].at(0)) == idl_members(idl, "MotionPhase"));
   CHECK(keys(describe(msg::Registration())) == idl_members(idl, "Registration"));
   CHECK(keys(describe(msg::Proposal())) == idl_members(idl, "Proposal"));
   CHECK(keys(describe(msg::Verdict())) == idl_members(idl, "Verdict"));
@@ -114,19 +114,19 @@ TEST_CASE("a description holds the members of each message that the IDL names, i
   CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
   CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
   CHECK(keys(describe(truth)) == idl_members(idl, "GroundTruth"));
-  CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TruthRobot"));
+  CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TrueRobotState"));
 }
 
-TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by its number") {
+TEST_CASE("an enumerator is described by the words of its IDL name, an unknown one by its number") {
   const std::string idl = without_comments(idl_text());
   const auto check = [&](const char* name, const std::string& prefix, auto describe_value) {
     const std::vector<std::string> enumerators = idl_enumerators(idl, name);
     REQUIRE_FALSE(enumerators.empty());
     for (std::uint32_t i = 0; i < enumerators.size(); ++i) {
-      CHECK(describe_value(i) == in_words(enumerators[i], prefix));
+      CHECK(describe_value(i) == to_lines(enumerators[i], prefix));
     }
-    const auto beyond = static_cast<std::uint32_t>(enumerators.size());
-    CHECK(describe_value(beyond) == "unknown " + std::to_string(beyond));
+    const auto beyond_tracking_bound = static_cast<std::uint32_t>(enumerators.size());
+    CHECK(describe_value(beyond_tracking_bound) == "unknown " + std::to_string(beyond_tracking_bound));
     CHECK(describe_value(0xffffffffu) == "unknown 4294967295");
   };
   check("Reason", "REASON_", [](std::uint32_t value) -> std::string {
@@ -151,7 +151,7 @@ TEST_CASE("an enumerator is described by its IDL name's words, an unknown one by
   });
 }
 
-TEST_CASE("a count beyond its array shows the whole array and the count as it came") {
+TEST_CASE("a count beyond its array shows the whole array and the unmodified count") {
   msg::Proposal proposal;
   proposal.candidate_count(255);
   proposal.candidates()[0].phase_count(200);

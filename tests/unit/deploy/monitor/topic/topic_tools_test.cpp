@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 #include <unistd.h>
 
+#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/monitor/topic/rate_meter.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/monitor/topic/topic_table.hpp"
-#include "tests/unit/common/messaging/dds/dds_test_support.hpp"
+#include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep {
 namespace {
@@ -19,8 +19,8 @@ using Catch::Matchers::Contains;
 
 Time at_ms(int ms) { return time_from_ns(std::int64_t{ms} * 1'000'000); }
 
-DdsEndpoint endpoint(const std::string& participant, bool is_writer, bool is_reliable) {
-  DdsEndpoint result;
+DiscoveredEndpoint endpoint(const std::string& participant, bool is_writer, bool is_reliable) {
+  DiscoveredEndpoint result;
   result.participant = participant;
   result.topic = "world";
   result.type = "Type";
@@ -29,7 +29,7 @@ DdsEndpoint endpoint(const std::string& participant, bool is_writer, bool is_rel
   return result;
 }
 
-/// Collects what this process writes on stdout while it lives.
+/// Captures the stdout of this process during its lifetime.
 class CaptureStdout {
  public:
   CaptureStdout() : file_(std::tmpfile()) {
@@ -68,26 +68,27 @@ struct Outcome {
   std::string err;
 };
 
-/// What `sidestep topic ARGUMENTS` would do, in this test's domain.
+/// Runs `sidestep topic ARGUMENTS` in this test's domain.
 Outcome topic(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sidestep", "topic"});
   arguments.insert(arguments.end(), {"--domain", std::to_string(test_settings().domain)});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
-  CLI::App app("test", "sidestep");
+  CommandLine command_line("test", "sidestep");
+  const Command app = command_line.root();
   std::function<int()> action;
   add_topic_command(app, action);
   Outcome outcome{};
   const CaptureStderr err;
   CaptureStdout out;
-  outcome.exit_code = parse_options(app, static_cast<int>(argv.size()), argv.data());
-  if (outcome.exit_code < 0) outcome.exit_code = action();
+  const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());
+  outcome.exit_code = exit_code ? *exit_code : action();
   outcome.out = out.finish();
   outcome.err = err.text();
   return outcome;
 }
 
-/// A process's worth of publishing in a thread of its own.
+/// Publishes world states in a thread of its own.
 class Publisher {
  public:
   Publisher() : bus_(test_settings("vision")), writer_(bus_.advertise(topics::kWorld)) {
@@ -114,10 +115,10 @@ class Publisher {
 
 }  // namespace
 
-TEST_CASE("a rate is gaps per second, and knows its shortest and longest gap") {
+TEST_CASE("a rate is the number of gaps per second, with the shortest and longest gap") {
   RateMeter meter;
   CHECK(meter.total().samples == 0);
-  CHECK_FALSE(meter.total().shortest_gap.has_value());
+  CHECK_FALSE(meter.total().min_gap.has_value());
   meter.add(at_ms(1000), 500);
   CHECK(meter.total().samples == 1);
   CHECK(meter.total().rate_hz == 0);
@@ -126,12 +127,12 @@ TEST_CASE("a rate is gaps per second, and knows its shortest and longest gap") {
   const Rate rate = meter.total();
   CHECK(rate.samples == 3);
   CHECK(rate.rate_hz == Approx(50));
-  CHECK(*rate.shortest_gap == Duration{10'000'000});
-  CHECK(*rate.longest_gap == Duration{30'000'000});
+  CHECK(*rate.min_gap == Duration{10'000'000});
+  CHECK(*rate.max_gap == Duration{30'000'000});
   CHECK(rate.bytes_per_second == Approx(400 / 0.040));
 }
 
-TEST_CASE("a silence that spans two looks is not lost") {
+TEST_CASE("a gap that spans two calls is not lost") {
   RateMeter meter;
   meter.add(at_ms(0), 1);
   meter.add(at_ms(10), 1);
@@ -140,13 +141,13 @@ TEST_CASE("a silence that spans two looks is not lost") {
   meter.add(at_ms(5010), 1);
   const Rate recent = meter.take_recent();
   CHECK(recent.samples == 1);
-  REQUIRE(recent.longest_gap.has_value());
-  CHECK(*recent.longest_gap == Duration{5'000'000'000});
+  REQUIRE(recent.max_gap.has_value());
+  CHECK(*recent.max_gap == Duration{5'000'000'000});
   CHECK(recent.rate_hz == Approx(0.2));
   CHECK(meter.total().samples == 3);
 }
 
-TEST_CASE("samples of one instant have no rate, and nothing is divided by zero") {
+TEST_CASE("samples of one instant have no rate") {
   RateMeter meter;
   meter.add(at_ms(5), 10);
   meter.add(at_ms(5), 10);
@@ -154,8 +155,8 @@ TEST_CASE("samples of one instant have no rate, and nothing is divided by zero")
   CHECK(meter.total().bytes_per_second == 0);
 }
 
-TEST_CASE("the table names a fleet's first members and counts all") {
-  std::vector<DdsEndpoint> endpoints{endpoint("vision", true, false)};
+TEST_CASE("the table names the first members of a fleet and counts all") {
+  std::vector<DiscoveredEndpoint> endpoints{endpoint("vision", true, false)};
   for (int i = 0; i < 22; ++i) endpoints.push_back(endpoint("agent-" + std::to_string(i), false, false));
   const std::string table = topic_table(endpoints);
   CHECK_THAT(table, Contains("1: vision"));
@@ -164,11 +165,12 @@ TEST_CASE("the table names a fleet's first members and counts all") {
   CHECK_THAT(table, !Contains("MISMATCH"));
 }
 
-TEST_CASE("the table shows a mismatch with the pairs that it keeps apart") {
+TEST_CASE("the table shows a mismatch with the affected endpoints") {
   const std::string table = topic_table(
       {endpoint("vision", true, false), endpoint("logger", false, true), endpoint("agent", false, false)});
-  CHECK_THAT(table, Contains("MISMATCH reliability: the reader wants reliable, the writer offers best effort "
-                             "(vision -> logger)"));
+  CHECK_THAT(table,
+             Contains("MISMATCH reliability: the reader requests reliable, the writer offers best effort "
+                      "(vision -> logger)"));
 }
 
 TEST_CASE("topic list finds the topics of a running process") {
@@ -180,7 +182,7 @@ TEST_CASE("topic list finds the topics of a running process") {
              Contains("world") && Contains("sidestep::msg::WorldState") && Contains("1: vision"));
 }
 
-TEST_CASE("topic hz measures a topic, and for one that nobody writes names those that there are") {
+TEST_CASE("topic hz measures a topic, and for a topic without a writer lists the available ones") {
   const Publisher publisher;
   const Outcome measured = topic({"hz", "world", "--seconds", "1"});
   CAPTURE(measured.out, measured.err);
@@ -190,10 +192,11 @@ TEST_CASE("topic hz measures a topic, and for one that nobody writes names those
   const Outcome unknown = topic({"hz", "nothing"});
   CAPTURE(unknown.err);
   CHECK(unknown.exit_code == kExitFailure);
-  CHECK_THAT(unknown.err, Contains("nobody writes topic 'nothing'") && Contains("topics here: world"));
+  CHECK_THAT(unknown.err,
+             Contains("topic 'nothing' has no writer") && Contains("topics in this domain: world"));
 }
 
-TEST_CASE("topic echo prints as many messages as asked for, each a line of JSON") {
+TEST_CASE("topic echo prints the requested number of messages, each as a line of JSON") {
   const Publisher publisher;
   const Outcome outcome = topic({"echo", "world", "--count", "2"});
   CAPTURE(outcome.out, outcome.err);
@@ -206,16 +209,16 @@ TEST_CASE("topic echo prints as many messages as asked for, each a line of JSON"
   CHECK(count == 2);
 }
 
-TEST_CASE("topic echo of a topic that is not ours names those that are") {
+TEST_CASE("topic echo of an unknown topic lists the known ones") {
   for (const char* name : {"nothing", "verdict", "verdict/", "verdict/-1", "verdict/3x", "world/1"}) {
     const Outcome outcome = topic({"echo", name});
     CAPTURE(name, outcome.err);
     CHECK(outcome.exit_code == kExitFailure);
-    CHECK_THAT(outcome.err, Contains("is none of our topics") && Contains("verdict/ROBOT"));
+    CHECK_THAT(outcome.err, Contains("unknown topic") && Contains("verdict/ROBOT"));
   }
 }
 
-TEST_CASE("wrong usage of topic exits with 2") {
+TEST_CASE("wrong usage of sidestep topic exits with code 2") {
   CHECK(topic({}).exit_code == kExitUsage);
   CHECK(topic({"hz"}).exit_code == kExitUsage);
   CHECK(topic({"echo", "world", "--count", "-3"}).exit_code == kExitUsage);

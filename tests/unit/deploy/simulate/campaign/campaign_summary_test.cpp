@@ -5,7 +5,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("the bound on a rate follows from what was seen") {
+TEST_CASE("the upper bound of a rate agrees with tables of the Poisson distribution") {
   // Tables of the Poisson distribution, one-sided 95 %.
   CHECK(upper_bound_95(0, 1) == Approx(2.9957).epsilon(1e-4));
   CHECK(upper_bound_95(1, 1) == Approx(4.7439).epsilon(1e-4));
@@ -13,17 +13,17 @@ TEST_CASE("the bound on a rate follows from what was seen") {
   CHECK(upper_bound_95(0, 3000) == Approx(0.00099857).epsilon(1e-4));
 }
 
-TEST_CASE("a result survives the way through a line of text") {
+TEST_CASE("a trial result survives a round trip through a line of text") {
   TrialResult result;
   result.seed = 18446744073709551615ULL;
   result.failures = {"a \"quoted\" thing", "two\nlines"};
   result.contacts = 3;
   result.robot_s = 1020.5;
-  result.idle = 2;
+  result.stationary = 2;
   result.robots = 17;
   const std::string line = to_line(result);
   CHECK(line.find('\n') == std::string::npos);
-  const TrialResult back = result_from(line);
+  const TrialResult back = parse_trial_result(line);
   CHECK(back.seed == result.seed);
   CHECK(back.failures == result.failures);
   CHECK(back.contacts == 3);
@@ -31,30 +31,30 @@ TEST_CASE("a result survives the way through a line of text") {
   CHECK(to_line(back) == line);
 }
 
-TEST_CASE("a summary does not depend on the order in which trials end") {
-  SearchSummary forwards, backwards;
+TEST_CASE("a summary does not depend on the order of the results") {
+  CampaignSummary forwards, backwards;
   std::vector<TrialResult> results(20);
   for (std::size_t i = 0; i < results.size(); ++i) {
     results[i].seed = i;
     results[i].robots = 10;
     results[i].robot_s = 360;
-    results[i].moved_m = 0.1 * static_cast<double>(i);
+    results[i].distance_m = 0.1 * static_cast<double>(i);
     results[i].proposals = 100;
     results[i].denials = i;
   }
   results[4].contacts = 2;
-  results[7].contacts_by_hand = 3;
+  results[7].excused_contacts = 3;
   results[7].min_clearance_m = -0.002;
   results[4].failures = {"2 contacts"};
   for (const TrialResult& result : results) forwards.add(result);
-  for (auto at = results.rbegin(); at != results.rend(); ++at) backwards.add(*at);
+  for (auto result = results.rbegin(); result != results.rend(); ++result) backwards.add(*result);
   CHECK(forwards.text() == backwards.text());
   CHECK(forwards.json() == backwards.json());
   CHECK(forwards.robot_hours() == Approx(2));
   CHECK(forwards.contacts() == 2);
   CHECK(forwards.failed() == 1);
   CHECK_THAT(forwards.text(), Catch::Contains("20 seeds, 1 failed") &&
-                                  Catch::Contains("most denied, as a share: seed 19 (0.19)"));
-  CHECK_THAT(forwards.text(), Catch::Contains("3 more contacts where robots were pushed"));
-  CHECK_THAT(forwards.text(), Catch::Contains("least clearance, in metres: seed 7 (-0.002)"));
+                                  Catch::Contains("largest share of denied proposals: seed 19 (0.19)"));
+  CHECK_THAT(forwards.text(), Catch::Contains("3 excused contacts of robots that were pushed"));
+  CHECK_THAT(forwards.text(), Catch::Contains("smallest clearance, in metres: seed 7 (-0.002)"));
 }

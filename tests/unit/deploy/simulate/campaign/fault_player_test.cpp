@@ -25,10 +25,10 @@ FaultPlan plan_of(const Scenario& scenario, std::vector<TimedFault> faults, Dura
   return plan;
 }
 
-/// Counts what gets from the coordinator to the agent of robot 0.
+/// Counts the verdicts that the agent of robot 0 receives.
 struct Verdicts {
   explicit Verdicts(SimSystem& system) : bus(system.network()) {
-    bus.listen_aside();
+    bus.become_observer();
     bus.subscribe(topics::kStatus, std::function([this](const msg::AgentStatus& status) {
                     if (status.robot() == 0) answered = status.grants() + status.denials();
                   }));
@@ -39,26 +39,26 @@ struct Verdicts {
 
 }  // namespace
 
-TEST_CASE("a partition cuts links for its time and no longer, also when two overlap") {
+TEST_CASE("a partition cuts links for its duration, also if two overlap") {
   const Scenario scenario = pair_of_robots();
-  const Partition cut{{"coordinator"}, {"agent 0"}, 2s}, longer{{"coordinator"}, {"agent 0"}, 1s};
-  const FaultPlan plan = plan_of(scenario, {{1s, cut}, {2500ms, longer}}, 20s);
+  const Partition first{{"coordinator"}, {"agent 0"}, 2s}, second{{"coordinator"}, {"agent 0"}, 1s};
+  const FaultPlan plan = plan_of(scenario, {{1s, first}, {2500ms, second}}, 20s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
   FaultPlayer player(system, plan);
   player.run_until(1250ms);
   const auto before = verdicts.answered;
   CHECK(before > 10);
-  // The longer one begins within the first and goes on after its end.
+  // The second partition begins during the first one and ends after it.
   player.run_until(3400ms);
   const auto within = verdicts.answered;
   CHECK(within <= before + 3);
-  // Agents that missed verdicts ask less often for a while.
+  // Agents that missed verdicts propose less often for a while.
   player.run_until(5500ms);
   CHECK(verdicts.answered > within + 8);
 }
 
-TEST_CASE("what is killed is dead until it is started, and a twin lives beside its brother") {
+TEST_CASE("a killed process is dead until it is started, and a twin runs beside the first agent") {
   const Scenario scenario = pair_of_robots();
   FaultPlan plan =
       plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
@@ -75,14 +75,14 @@ TEST_CASE("what is killed is dead until it is started, and a twin lives beside i
   CHECK(system.is_alive("agent 1"));
 }
 
-TEST_CASE("when everything heals the weather is gone and partitions end") {
+TEST_CASE("at the end of all faults link qualities recover and partitions end") {
   const Scenario scenario = pair_of_robots();
   LinkQuality terrible;
   terrible.loss = 1;
   const auto processes = SimSystem::process_names(scenario);
   const FaultPlan plan = plan_of(
       scenario,
-      {{0s, WeatherChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);
+      {{0s, LinkChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
   FaultPlayer player(system, plan);
@@ -92,7 +92,7 @@ TEST_CASE("when everything heals the weather is gone and partitions end") {
   CHECK(verdicts.answered > 10);
 }
 
-TEST_CASE("a trial that is run again gives the same result, and another seed another one") {
+TEST_CASE("the same seed gives the same trial result, another seed another one") {
   const auto outcome = [](std::uint64_t seed) {
     Report report;
     run_trial(sample_trial(seed, 10s, std::nullopt), &report);
@@ -103,14 +103,14 @@ TEST_CASE("a trial that is run again gives the same result, and another seed ano
   CHECK(outcome(17) != outcome(18));
 }
 
-TEST_CASE("a system that never gets to drive is stuck, and the trial says so") {
+TEST_CASE("a system that never starts to drive is reported as stuck") {
   const Scenario scenario = pair_of_robots();
   Trial trial{1, scenario, plan_of(scenario, {{0s, Kill{"coordinator"}}}, 1s), 10s};
   const TrialResult dead = run_trial(trial);
   REQUIRE(dead.failures.size() == 3);
-  CHECK(dead.failures[0] == "no coordinator has ever granted");
+  CHECK(dead.failures[0] == "no coordinator ever granted");
   CHECK_THAT(dead.failures[1], Catch::Contains("robots 0, 1 do not drive"));
-  CHECK_THAT(dead.failures[2], Catch::Contains("nobody moves"));
+  CHECK_THAT(dead.failures[2], Catch::Contains("no robot moves"));
   trial.plan.faults.clear();
   CHECK(run_trial(trial).failures.empty());
 }

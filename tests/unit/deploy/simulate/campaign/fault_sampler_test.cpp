@@ -13,29 +13,29 @@
 using namespace sidestep;
 using namespace std::chrono_literals;
 
-TEST_CASE("drawn floors are of the size and density asked for, and no two are alike") {
+TEST_CASE("random scenes have the specified size and density, and no two are alike") {
   std::set<std::string> seen;
-  std::size_t fewest = 100, most = 0;
+  std::size_t min_robots = 100, max_robots = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    const Scenario scenario = sample_scene(rng);  // throws when it is not valid
+    const Scenario scenario = sample_scene(rng);  // throws if it is invalid
     const std::size_t count = scenario.robots.size();
-    fewest = std::min(fewest, count);
-    most = std::max(most, count);
+    min_robots = std::min(min_robots, count);
+    max_robots = std::max(max_robots, count);
     CHECK(count >= 5);
     CHECK(count <= 30);
     const double each_m2 = scenario.field.length_m * scenario.field.width_m / static_cast<double>(count);
     CHECK(each_m2 >= 0.49);
     CHECK(each_m2 <= 3.01);
     CHECK(std::ranges::all_of(scenario.robots, [](const RobotSpec& r) { return r.goals.size() >= 100; }));
-    CHECK(seen.insert(floor_in_words(scenario)).second);
+    CHECK(seen.insert(scene_summary(scenario)).second);
   }
-  CHECK(fewest == 5);
-  CHECK(most == 30);
+  CHECK(min_robots == 5);
+  CHECK(max_robots == 30);
 }
 
-TEST_CASE("drawn faults keep within what is promised, are of every kind, and end before the calm") {
+TEST_CASE("random faults stay within their bounds, include every kind, and end before the fault-free end") {
   std::map<std::size_t, int> kinds;
   int one_way = 0, two_way = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
@@ -50,10 +50,10 @@ TEST_CASE("drawn faults keep within what is promised, are of every kind, and end
       CHECK(timed.at >= Duration{0});
       CHECK(timed.at < plan.healed_at);
       ++kinds[timed.fault.index()];
-      if (const auto* weather = std::get_if<WeatherChange>(&timed.fault)) {
-        CHECK(weather->quality.loss <= 0.3);
-        CHECK(weather->quality.delay_max <= Duration{150ms});
-        CHECK(weather->quality.delay_min <= weather->quality.delay_mean);
+      if (const auto* change = std::get_if<LinkChange>(&timed.fault)) {
+        CHECK(change->quality.loss <= 0.3);
+        CHECK(change->quality.delay_max <= Duration{150ms});
+        CHECK(change->quality.delay_min <= change->quality.delay_mean);
       } else if (const auto* partition = std::get_if<Partition>(&timed.fault)) {
         CHECK(timed.at + partition->duration <= plan.healed_at);
         const bool goes_back = std::ranges::any_of(plan.faults, [&](const TimedFault& other) {
@@ -77,7 +77,7 @@ TEST_CASE("drawn faults keep within what is promised, are of every kind, and end
       });
       CHECK((alive || has_twin || process.ends_with(")")));
     }
-    CHECK(in_words(plan).size() > plan.faults.size());
+    CHECK(to_lines(plan).size() > plan.faults.size());
   }
   CHECK(kinds.size() == std::variant_size_v<Fault>);
   for (const auto& [kind, count] : kinds) CHECK(count > 50);
@@ -85,19 +85,19 @@ TEST_CASE("drawn faults keep within what is promised, are of every kind, and end
   CHECK(two_way > 50);
 }
 
-TEST_CASE("robots' clocks are within the bound of every coordinator's, or far beyond it and named") {
+TEST_CASE("robots' clocks are within the bound of every coordinator's clock, or far beyond it and listed") {
   int with_clocks = 0, beyond = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     const Trial trial = sample_trial(seed, 60s, std::nullopt);
     const auto& clocks = trial.plan.clocks;
     with_clocks += !clocks.empty();
-    beyond += !trial.plan.off_clock.empty();
+    beyond += !trial.plan.robots_out_of_clock_bound.empty();
     for (const RobotSpec& robot : trial.scenario.robots) {
       const Duration robot_s = robot.clock_offset + (clocks.empty() ? Duration{0} : clocks.at("simulator"));
       for (int number = 0; number < trial.scenario.coordinators && !clocks.empty(); ++number) {
         const Duration difference = std::chrono::abs(robot_s - clocks.at(coordinator_process(number)));
-        const bool is_off = std::ranges::find(trial.plan.off_clock, robot.id) != trial.plan.off_clock.end();
+        const bool is_off = std::ranges::find(trial.plan.robots_out_of_clock_bound, robot.id) != trial.plan.robots_out_of_clock_bound.end();
         CAPTURE(robot.id, number, to_seconds(difference));
         CHECK((is_off ? difference > Duration{300ms}
                       : difference < from_seconds(trial.scenario.clock_bound_s)));
@@ -109,10 +109,10 @@ TEST_CASE("robots' clocks are within the bound of every coordinator's, or far be
   CHECK(beyond < 60);
 }
 
-TEST_CASE("the same seed draws the same trial, and the floor does not depend on the length") {
+TEST_CASE("the same seed gives the same trial, and the scene does not depend on the duration") {
   const Trial a = sample_trial(5, 60s, std::nullopt), b = sample_trial(5, 60s, std::nullopt),
               shorter = sample_trial(5, 20s, std::nullopt), other = sample_trial(6, 60s, std::nullopt);
-  CHECK(in_words(a.plan) == in_words(b.plan));
-  CHECK(floor_in_words(a.scenario) == floor_in_words(shorter.scenario));
-  CHECK(floor_in_words(a.scenario) != floor_in_words(other.scenario));
+  CHECK(to_lines(a.plan) == to_lines(b.plan));
+  CHECK(scene_summary(a.scenario) == scene_summary(shorter.scenario));
+  CHECK(scene_summary(a.scenario) != scene_summary(other.scenario));
 }

@@ -30,37 +30,37 @@ void append(const std::string& file, const std::string& text) { std::ofstream(fi
 
 }  // namespace
 
-TEST_CASE("a search's results outlast it, but for a line that was not written to its end") {
+TEST_CASE("results of a campaign are read again, except for an incomplete last line") {
   const Folder folder;
   {
-    ResultsFile results(folder.file(), "seeds of here");
+    ResultsFile results(folder.file(), "campaign A");
     CHECK(results.found().empty());
     for (std::uint64_t seed = 2; seed < 5; ++seed) results.add(result_of(seed));
   }
   append(folder.file(), "{\"seed\": 5, \"failu");
   {
-    ResultsFile results(folder.file(), "seeds of here");
+    ResultsFile results(folder.file(), "campaign A");
     REQUIRE(results.found().size() == 3);
     CHECK(results.found()[1].seed == 3);
     CHECK(results.found()[1].failures == std::vector<std::string>{"stuck: robots 1, 2"});
     CHECK(results.found()[2].robot_s == result_of(4).robot_s);
     results.add(result_of(6));
   }
-  CHECK(ResultsFile(folder.file(), "seeds of here").found().back().seed == 6);
+  CHECK(ResultsFile(folder.file(), "campaign A").found().back().seed == 6);
 }
 
-TEST_CASE("results of another search, and what are no results, are refused with the reason, and are kept") {
+TEST_CASE("a file of another campaign, or without results, is refused with the reason and kept") {
   const Folder folder;
-  { ResultsFile(folder.file(), "seeds of here").add(result_of(1)); }
-  CHECK_THROWS_WITH(ResultsFile(folder.file(), "seeds of there"),
-                    Catch::Contains("results of another search: seeds of here"));
+  { ResultsFile(folder.file(), "campaign A").add(result_of(1)); }
+  CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign B"),
+                    Catch::Contains("results of another campaign: campaign A"));
   append(folder.file(), "something else\n");
-  CHECK_THROWS_WITH(ResultsFile(folder.file(), "seeds of here"), Catch::Contains("results:3: is no result"));
+  CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign A"), Catch::Contains("results:3: not a result"));
   CHECK(std::filesystem::file_size(folder.file()) > 100);
   const std::string picture = (folder.path / "picture").string();
   append(picture, "no line ends here");
-  CHECK_THROWS_WITH(ResultsFile(picture, "seeds of here"), Catch::Contains("holds no results of a search"));
+  CHECK_THROWS_WITH(ResultsFile(picture, "campaign A"), Catch::Contains("not a results file"));
   CHECK(std::filesystem::file_size(picture) == 17);
-  CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "seeds of here"),
+  CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "campaign A"),
                     Catch::Contains("cannot be written"));
 }

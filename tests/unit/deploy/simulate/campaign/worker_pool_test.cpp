@@ -18,8 +18,8 @@ struct Outcome {
 
 Outcome run(int workers, std::uint64_t first, std::uint64_t last, const WorkerPool::Work& work) {
   Outcome outcome;
-  WorkerPool pool(workers, work, [&](std::uint64_t job, const std::string& line, const std::string& died) {
-    (died.empty() ? outcome.lines : outcome.deaths)[job] = died.empty() ? line : died;
+  WorkerPool pool(workers, work, [&](std::uint64_t job, const std::string& line, const std::string& reason) {
+    (reason.empty() ? outcome.lines : outcome.deaths)[job] = reason.empty() ? line : reason;
   });
   std::vector<std::uint64_t> jobs(last - first + 1);
   std::iota(jobs.begin(), jobs.end(), first);
@@ -29,7 +29,7 @@ Outcome run(int workers, std::uint64_t first, std::uint64_t last, const WorkerPo
 
 }  // namespace
 
-TEST_CASE("every job is done once, whatever the number of workers") {
+TEST_CASE("every job is done once, for any number of workers") {
   const auto square = [](std::uint64_t job) {
     return std::to_string(job * job) + std::string(job * 100, '.');
   };
@@ -41,7 +41,7 @@ TEST_CASE("every job is done once, whatever the number of workers") {
   CHECK(five.deaths.empty());
 }
 
-TEST_CASE("a job that kills its worker is named, and the others are done all the same") {
+TEST_CASE("a job that kills its worker is reported, and all other jobs are done") {
   const Outcome outcome = run(2, 1, 20, [](std::uint64_t job) {
     if (job == 5) std::raise(SIGKILL);
     if (job == 11) _exit(3);

@@ -7,13 +7,13 @@
 
 using namespace sidestep;
 
-TEST_CASE("bridges and extensions are compared by their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on bridges and extensions depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return bridges_and_extensions({{1, 8}, {1, 4}, 2, 4}, seed, advance);
   });
 }
 
-TEST_CASE("more bridges make ways shorter for more nodes and more extensions make them longer") {
+TEST_CASE("more bridges shorten paths at the cost of nodes, and more extensions lengthen paths") {
   const auto seed = GENERATE(1u, 40u);
   CAPTURE(seed);
   const auto rows = rows_of(bridges_and_extensions({{1, 32}, {1, 16}, 5, 20}, seed, [](auto, auto) {}));

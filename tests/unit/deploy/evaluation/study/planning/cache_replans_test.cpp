@@ -7,13 +7,13 @@
 
 using namespace sidestep;
 
-TEST_CASE("replans with and without a cache come from their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on caches depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return cache_replans({.replans = 40}, seed, advance);
   });
 }
 
-TEST_CASE("a cache makes replans keep fewer nodes and their ways shorter") {
+TEST_CASE("with a cache replans keep fewer nodes and paths are shorter") {
   const auto seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const auto rows = rows_of(cache_replans({.replans = 800}, seed, [](auto, auto) {}));

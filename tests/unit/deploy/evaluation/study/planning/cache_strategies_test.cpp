@@ -7,13 +7,13 @@
 
 using namespace sidestep;
 
-TEST_CASE("cache strategies are compared by their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on cache strategies depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return cache_strategies({{0, 0.5}, 2, 20}, seed, advance);
   });
 }
 
-TEST_CASE("with each strategy replans keep fewer nodes the more way points they grow towards") {
+TEST_CASE("with each strategy replans keep fewer nodes the more often they grow towards waypoints") {
   const auto seed = GENERATE(1u, 4u);
   CAPTURE(seed);
   const auto rows = rows_of(cache_strategies({{0, 0.2, 0.7}, 2, 200}, seed, [](auto, auto) {}));

@@ -10,33 +10,33 @@
 
 using namespace sidestep;
 
-TEST_CASE("collision structures are compared by their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on collision structures depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return collision_structures({{4, 64}, 500, 2}, seed, advance);
   });
 }
 
-TEST_CASE("all collision structures of the study find the same ways touched and by an exact comparison") {
+TEST_CASE("all collision structures of the study agree with an exact comparison") {
   const auto seed = GENERATE(1u, 2u);
   const std::size_t obstacles = GENERATE(4u, 64u, 1024u);
-  constexpr std::size_t kWays = 1000;
+  constexpr std::size_t kMotions = 1000;
   CAPTURE(seed, obstacles);
-  const CollisionProblem problem(obstacles, kWays, true, seed);
+  const CollisionProblem problem(obstacles, kMotions, true, seed);
   std::size_t touched = 0;
-  for (const Segment& way : problem.ways) {
+  for (const Segment& motion : problem.motions) {
     const double radius2_m2 = problem.radius_m * problem.radius_m;
-    const auto touches = [&](const Shape& shape) { return squared_distance(way, shape) <= radius2_m2; };
+    const auto touches = [&](const Shape& shape) { return squared_distance(motion, shape) <= radius2_m2; };
     touched += std::any_of(problem.shapes.begin(), problem.shapes.end(), touches);
   }
-  const auto rows = rows_of(collision_structures({{obstacles}, kWays, 1}, seed, [](auto, auto) {}));
+  const auto rows = rows_of(collision_structures({{obstacles}, kMotions, 1}, seed, [](auto, auto) {}));
   CHECK(rows.size() == 4);
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("structure"));
-    CHECK(std::stod(row.at("touch_percent")) == Approx(100.0 * double(touched) / kWays));
+    CHECK(std::stod(row.at("touch_percent")) == Approx(100.0 * double(touched) / kMotions));
   }
 }
 
-TEST_CASE("a problem of collisions covers the square alike however many obstacles there are") {
+TEST_CASE("the obstacles of a collision problem cover the same area, whatever their number") {
   const std::size_t obstacles = GENERATE(256u, 4096u);
   CAPTURE(obstacles);
   const CollisionProblem problem(obstacles, 10, true, 3);

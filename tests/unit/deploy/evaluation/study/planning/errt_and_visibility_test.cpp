@@ -7,13 +7,13 @@
 
 using namespace sidestep;
 
-TEST_CASE("trees and visibility graphs are compared by their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on trees and visibility graphs depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return errt_and_visibility({{4, 32}, 2, 4}, seed, advance);
   });
 }
 
-TEST_CASE("visibility graphs find the shortest ways and trees longer ones") {
+TEST_CASE("visibility graphs find the shortest paths and trees longer ones") {
   const auto seed = GENERATE(1u, 11u);
   CAPTURE(seed);
   const auto rows = rows_of(errt_and_visibility({{16, 64}, 2, 25}, seed, [](auto, auto) {}));

@@ -14,7 +14,7 @@ RoadmapConnections sizes(std::size_t worlds, std::size_t queries) {
   settings.sectors = {4, 8};
   settings.neighbours = {4, 12};
   settings.radii_m = {1, 2};
-  settings.moved_m = {0, 0.5};
+  settings.displacements_m = {0, 0.5};
   settings.worlds = worlds;
   settings.queries = queries;
   return settings;
@@ -22,20 +22,20 @@ RoadmapConnections sizes(std::size_t worlds, std::size_t queries) {
 
 }  // namespace
 
-TEST_CASE("the connections of a roadmap are compared by their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the experiment on roadmap connections depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return roadmap_connections(sizes(2, 3), seed, advance);
   });
 }
 
-TEST_CASE("roadmaps with more edges solve more queries and obstacles that move take ways away") {
+TEST_CASE("roadmaps with more edges solve more queries, and fewer after obstacles have moved") {
   const auto seed = GENERATE(1u, 20u);
   CAPTURE(seed);
   const auto rows = rows_of(roadmap_connections(sizes(4, 20), seed, [](auto, auto) {}));
-  const auto of = [&](const char* connection, const char* parameter, const char* moved_m,
+  const auto of = [&](const char* connection, const char* parameter, const char* displacement_m,
                       const char* column) {
-    CAPTURE(connection, parameter, moved_m, column);
-    return number_in(rows, {{"connection", connection}, {"parameter", parameter}, {"moved_m", moved_m}},
+    CAPTURE(connection, parameter, displacement_m, column);
+    return number_in(rows, {{"connection", connection}, {"parameter", parameter}, {"displacement_m", displacement_m}},
                      column);
   };
   struct Method {
@@ -51,7 +51,7 @@ TEST_CASE("roadmaps with more edges solve more queries and obstacles that move t
     CHECK(of(name, many, "0", "queries") == 80);
     CHECK(of(name, many, "0", "median_length") >= 1);
   }
-  // The sectors' edges lead everywhere, and so fewer of them do.
+  // Edges in all directions: fewer of them solve more queries.
   CHECK(of("sectors", "4", "0", "edges_per_node") < of("nearest", "4", "0", "edges_per_node"));
   CHECK(of("sectors", "4", "0", "solved_percent") > of("nearest", "4", "0", "solved_percent"));
 }

@@ -5,7 +5,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("a disc that passes through another one counts depth times time, and one contact") {
+TEST_CASE("a disc that passes through another counts depth times time, and one contact") {
   // At 1 m/s through the centre of a resting one: the depth is 0.2 m less the distance, which is |t| metres,
   // so its integral is 0.2 m times 0.2 s.
   Interpenetration meter(2, 0.1);
@@ -19,7 +19,7 @@ TEST_CASE("a disc that passes through another one counts depth times time, and o
   CHECK(meter.min_clearance_m() == Approx(-0.2).margin(1e-3));
 }
 
-TEST_CASE("discs that come near and part again without touching count nothing but their clearance") {
+TEST_CASE("discs that approach and part without contact count their clearance only") {
   Interpenetration meter(3, 0.1);
   for (const double gap : {0.3, 0.05, 0.3}) {
     const Vec2 positions[] = {{0, 0}, {0.2 + gap, 0}, {5, 5}};

@@ -8,7 +8,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("the quick study shows what the safety search and the margin are good for") {
+TEST_CASE("the quick study shows that the safety search and the margin prevent contacts") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();
@@ -40,7 +40,7 @@ TEST_CASE("the quick study shows what the safety search and the margin are good 
   }
 }
 
-TEST_CASE("robots that nobody holds back traverse as fast as their limits allow") {
+TEST_CASE("robots without safety search traverse as fast as their limits allow") {
   TraversalSettings settings;
   settings.robots = 1;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -48,11 +48,11 @@ TEST_CASE("robots that nobody holds back traverse as fast as their limits allow"
     const Scenario scenario = traversal_scenario(settings, seed);
     const RobotSpec& robot = scenario.robots.front();
     const double path_m = (robot.goals.front().position_m - robot.start_m).norm();
-    // To full speed and back takes (v/F + v/D), and half of v times that as a way.
+    // Accelerating to full speed and braking take v/F + v/D, over half of v times that as distance.
     const double ramps_s = scenario.limits.speed_mps *
                            (1 / scenario.limits.acceleration_mps2 + 1 / scenario.limits.deceleration_mps2);
-    const double straight_s = ramps_s / 2 + path_m / scenario.limits.speed_mps;
-    const auto result = traverse_without_search(scenario, 10 * straight_s);
+    const double straight_line_s = ramps_s / 2 + path_m / scenario.limits.speed_mps;
+    const auto result = traverse_without_search(scenario, 10 * straight_line_s);
     CHECK(result.traversals >= 8);
     CHECK(result.traversals <= 10);
     CHECK(result.reference_error_m < 0.003);
@@ -60,7 +60,7 @@ TEST_CASE("robots that nobody holds back traverse as fast as their limits allow"
   }
 }
 
-TEST_CASE("the same seed gives the same floor, another one another") {
+TEST_CASE("the same seed gives the same floor, and a different seed a different one") {
   const Scenario a = traversal_scenario({}, 5), b = traversal_scenario({}, 5), c = traversal_scenario({}, 6);
   REQUIRE(a.robots.size() == 8);
   std::size_t moved = 0;

@@ -4,43 +4,43 @@
 #include <catch2/catch.hpp>
 
 #include "deploy/evaluation/study/vision/frame_times.hpp"
-#include "deploy/evaluation/study/vision/patch_errors.hpp"
+#include "deploy/evaluation/study/vision/marker_errors.hpp"
 #include "deploy/evaluation/study/vision/recognition.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 using namespace sidestep;
 
-TEST_CASE("what is seen in frames comes from their seed") {
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+TEST_CASE("the results of all experiments depend only on the seed") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return recognition({.frames = 3}, seed, advance);
   });
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
-    return patch_errors({.frames = 3, .noises = {2}}, seed, advance);
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
+    return marker_errors({.frames = 3, .noises = {2}}, seed, advance);
   });
-  check_experiment([](std::uint64_t seed, const StudyAdvance& advance) {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return frame_times({.rounds = 3}, seed, advance);
   });
 }
 
-TEST_CASE("robots in frames are found by their names and where they are") {
+TEST_CASE("robots in frames are identified and located correctly") {
   const auto rows = rows_of(recognition({.frames = 100}, 3, [](auto, auto) {}));
   REQUIRE(rows.size() == 8);
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("colours"), row.at("light"), row.at("robots"));
-    // Light that is dark and coloured wants its own thresholds.
+    // Dark and tinted light needs its own thresholds.
     const bool is_hard = row.at("colours") == "default" && row.at("light") == "both";
     CHECK(std::stod(row.at("found_percent")) >= (is_hard                                ? 85
                                                  : row.at("light") == "one dot covered" ? 99
                                                                                         : 99.5));
-    CHECK(row.at("wrong") == "0");
+    CHECK(row.at("misidentified") == "0");
     CHECK(std::stod(row.at("rms_mm")) < 1.5);
     CHECK(std::stod(row.at("rms_mm")) > 0.1);
-    CHECK(std::stod(row.at("worst_mm")) >= std::stod(row.at("rms_mm")));
+    CHECK(std::stod(row.at("max_mm")) >= std::stod(row.at("rms_mm")));
   }
 }
 
-TEST_CASE("poses are as exact as their dots allow") {
-  const auto rows = rows_of(patch_errors({.frames = 200, .noises = {2, 6}}, 3, [](auto, auto) {}));
+TEST_CASE("pose errors are as large as the errors of the dots predict") {
+  const auto rows = rows_of(marker_errors({.frames = 200, .noises = {2, 6}}, 3, [](auto, auto) {}));
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("noise"));
     CHECK(std::stod(row.at("centroid_mm")) == Approx(std::stod(row.at("predicted_mm"))).epsilon(0.05));
@@ -55,7 +55,7 @@ TEST_CASE("the quick study of vision writes all its tables and pictures") {
   options.seed = 7;
   options.is_quick = true;
   REQUIRE(study_vision(options) == 0);
-  for (const char* name : {"recognition", "patch-errors", "frame-times"}) {
+  for (const char* name : {"recognition", "marker-errors", "frame-times"}) {
     CAPTURE(name);
     CHECK(folder.table("vision", name, 7).size() >= 2);
     CHECK(folder.has_png(name));

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/motion/version.hpp"
+#include "common/time/clock_offset.hpp"
+#include "idl/monitor.h"
+#include "idl/negotiation.h"
+#include "idl/robot.h"
+
+namespace sidestep {
+
+/// Measures the offsets of the robot's clock and of the coordinator's clock from the agent's own, using the
+/// time stamps that their messages echo. Decides whether the safety budget allows the robot to move. That
+/// decision does not depend on the agent's own clock, which may be arbitrarily wrong. All times here are by
+/// the agent's own clock.
+class ClockMonitor {
+ public:
+  /// Older measurements are ignored, because clocks drift.
+  static constexpr Duration kMaxMeasurementAge{2'000'000'000};
+
+  /// `bound`: upper bound of the offset between a robot's clock and the coordinator's.
+  ClockMonitor(RobotId robot, Duration bound) : robot_id_(robot), bound_(bound) {}
+
+  /// Uses the echoed stamp of a command. A robot echoes commands of the agent that it obeys, so the echo is
+  /// ignored unless that agent's incarnation is `own`.
+  void on_feedback(const msg::Feedback& feedback, Incarnation own, Time received);
+  /// Records that a request, which the coordinator will answer, has been sent.
+  void on_request_sent(Time sent);
+  /// A new epoch belongs to another coordinator, with another clock.
+  void on_epoch(Epoch epoch);
+  /// Uses answers of the current epoch to recorded requests.
+  void on_verdict(const msg::Verdict& verdict, Time received);
+
+  /// Both clocks have recent measurements, and an offset within the bound is consistent with them.
+  [[nodiscard]] bool allows_motion(Time now) const;
+  /// Recent measurements prove that the offset exceeds the bound.
+  [[nodiscard]] bool is_beyond_bound(Time now) const;
+  /// The coordinator's clock should be measured again, before the last measurement becomes too old.
+  [[nodiscard]] bool is_measurement_due(Time now) const;
+
+  /// Estimated offset of the robot's clock from the agent's, positive if it is ahead: the offset closest to
+  /// zero that is consistent with the measurements. So it is zero for clocks that agree.
+  Duration robot_offset() const { return robot_offset_; }
+  /// Upper bound of the offset of the robot's clock from the agent's; robot_offset() if there is no recent
+  /// measurement.
+  Duration max_robot_offset(Time now) const;
+  /// Offset of the robot's clock from the coordinator's.
+  std::optional<OffsetInterval> robot_coordinator_offset(Time now) const;
+  /// Fills in the clock fields of a status, and its state if the clocks forbid motion.
+  void fill(msg::AgentStatus& status, Time now) const;
+
+ private:
+  RobotId robot_id_;
+  Duration bound_;
+  ClockOffset robot_, coordinator_;  // offsets from the agent's clock
+  Incarnation robot_incarnation_ = 0;
+  Epoch epoch_ = 0;
+  Duration robot_offset_{0};
+  std::array<Time, 64> requests_{};  // send times of the latest requests: echoes of other stamps are ignored
+  std::size_t request_count_ = 0;
+  std::uint64_t invalid_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Tuning of an agent's planning. Safety does not depend on these values.
+struct PlanningSettings {
+  // Range of other robots' versions that are considered.
+  double max_speed_hold_s = 0.15;  ///< how long a robot may hold maximum speed before braking
+  double max_page_age_s = 0.1;     ///< maximum age of a ledger page at search time
+
+  // Routes around static obstacles, stationary robots and moving obstacles.
+  double extra_clearance_m = 0.03;         ///< preferred clearance beyond the required one
+  Duration stationary_after{500'000'000};  ///< a robot at rest for longer counts as an obstacle
+  std::size_t max_stationary = 8;          ///< number of nearest stationary robots considered
+  std::size_t max_moving = 4;              ///< number of nearest moving obstacles considered
+  double moving_range_m = 1.5;             ///< moving obstacles farther away are ignored
+  double moving_grid_m = 0.05;  ///< grid of their positions and radii: avoids replanning in every cycle
+  Duration moving_horizon{150'000'000};  ///< their motion over this time is added to their radii
+
+  // Goals.
+  double at_goal_m = 0.001;           ///< nearer to its goal, a robot does not move again
+  double neighbour_at_goal_m = 0.02;  ///< a neighbour at rest and nearer to its goal is assumed to stay
+
+  // Observation.
+  Duration max_fix_age{300'000'000};  ///< a robot that vision has not observed for longer stops
+
+  // Right of way, and deadlocks.
+  Duration right_of_way_period{10'000'000'000};  ///< lower and higher ids have priority for this long in turn
+  double standstill_mps = 0.01;                  ///< lower intended speeds mean standing still
+  double waiting_speed_fraction = 0.5;  ///< intended speeds below this fraction of the limit count as waiting
+  double recovery_clear_path_m = 0.5;   ///< length of free path that a recovery direction requires
+  double recovery_hold_s = 0.3;         ///< how long the velocity of a recovery is held
+};
+
+}  // namespace sidestep

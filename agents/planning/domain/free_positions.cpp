@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/domain/free_positions.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+namespace sidestep {
+namespace {
+
+constexpr int kDirections = 64;
+constexpr double kSpacing_rad = 2 * std::numbers::pi / kDirections;
+constexpr int kBisections = 20;
+
+struct Found {
+  Vec2 position_m;
+  double distance_m;
+  double angle_rad;
+};
+
+class DirectionalSearch {
+ public:
+  DirectionalSearch(const Vec2& position_m, double step_m, const std::function<bool(const Vec2&)>& is_free)
+      : position_m_(position_m), step_m_(step_m), is_free_(is_free) {}
+
+  std::optional<Found> search(double angle_rad, double max_distance_m) const {
+    const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
+    double blocked_m = 0, free_m = step_m_;
+    while (!is_free_(position_m_ + free_m * direction)) {
+      if (free_m >= max_distance_m) return std::nullopt;
+      blocked_m = free_m;
+      free_m = std::min(free_m * 1.1 + step_m_, max_distance_m);
+    }
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle_m = (blocked_m + free_m) / 2;
+      (is_free_(position_m_ + middle_m * direction) ? free_m : blocked_m) = middle_m;
+    }
+    return Found{position_m_ + free_m * direction, free_m, angle_rad};
+  }
+
+  /// Searches between the direction and its neighbours.
+  void refine(Found& found) const {
+    for (double step_rad = kSpacing_rad / 2; step_rad > kSpacing_rad / 64; step_rad /= 2) {
+      const double middle_rad = found.angle_rad;
+      for (const double angle : {middle_rad - step_rad, middle_rad + step_rad}) {
+        const auto nearer = search(angle, found.distance_m);
+        if (nearer && nearer->distance_m < found.distance_m) found = *nearer;
+      }
+    }
+  }
+
+ private:
+  Vec2 position_m_;
+  double step_m_;
+  const std::function<bool(const Vec2&)>& is_free_;
+};
+
+}  // namespace
+
+std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m, double max_distance_m,
+                                   const std::function<bool(const Vec2&)>& is_free) {
+  const DirectionalSearch direction_search(position_m, step_m, is_free);
+  std::vector<Found> found;
+  for (int i = 0; i < kDirections; ++i)
+    if (const auto one = direction_search.search(i * kSpacing_rad, max_distance_m)) found.push_back(*one);
+  std::sort(found.begin(), found.end(),
+            [](const Found& a, const Found& b) { return a.distance_m < b.distance_m; });
+  if (!found.empty()) direction_search.refine(found.front());
+  std::vector<Vec2> positions;
+  for (const Found& one : found) positions.push_back(one.position_m);
+  return positions;
+}
+
+}  // namespace sidestep

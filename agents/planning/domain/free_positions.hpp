@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/geometry/vec2.hpp"
+
+namespace sidestep {
+
+/// Finds the nearest free position in each of 64 directions, up to `max_distance_m` away, and returns them by
+/// distance, nearest first. `step_m` is the initial step of the search. The first position is refined between
+/// the directions: it lies within one percent of the nearest free position, unless obstacles are finer than
+/// the directions.
+[[nodiscard]] std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m,
+                                                    double max_distance_m,
+                                                    const std::function<bool(const Vec2&)>& is_free);
+
+}  // namespace sidestep

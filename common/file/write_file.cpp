@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/file/write_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <stdexcept>
+#include <unistd.h>
+
+namespace sidestep {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& reason) {
+  throw std::runtime_error(fmt::format("cannot write {}: {}", path, reason));
+}
+
+/// False with errno set when not all of the text could be written.
+bool write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  return static_cast<bool>(file);
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& text) {
+  std::error_code error;
+  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
+    std::filesystem::create_directories(folder, error);
+  const auto type = std::filesystem::symlink_status(path, error).type();
+  if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::not_found) {
+    if (!write(path, text)) fail(path, std::strerror(errno));
+    return;
+  }
+  const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
+  if (!write(temporary, text)) {
+    const std::string reason = std::strerror(errno);
+    std::filesystem::remove(temporary, error);
+    fail(path, reason);
+  }
+  std::filesystem::rename(temporary, path, error);
+  if (!error) return;
+  const std::string reason = error.message();
+  std::filesystem::remove(temporary, error);
+  fail(path, reason);
+}
+
+}  // namespace sidestep

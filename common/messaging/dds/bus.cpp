@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/bus.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "common/messaging/dds/endpoints.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/images.hpp"
+#include "common/messaging/dds/type_mismatch_listener.hpp"
+
+namespace sidestep {
+
+namespace {
+
+struct Session {
+  explicit Session(const DdsSettings& settings) : participant(settings, &type_mismatches) {}
+
+  TypeMismatchListener type_mismatches;
+  DdsParticipant participant;
+};
+
+}  // namespace
+
+/// Writers share ownership of the participants, so they may outlive the bus.
+struct DdsBus::Impl {
+  explicit Impl(const DdsSettings& with) : settings(with), session(std::make_shared<Session>(with)) {}
+
+  std::shared_ptr<DdsParticipant> participant() { return {session, &session->participant}; }
+
+  /// Faults are injected into UDP only, so a process with faults does not use shared memory.
+  bool shares_memory(const TopicInfo& topic) const { return topic.qos == Qos::kImage && !settings.faults; }
+
+  EventLoop loop;
+  DdsSettings settings;
+  std::shared_ptr<Session> session;
+  std::shared_ptr<DdsParticipant> image_participant;  ///< null until images are written
+  std::vector<std::unique_ptr<DdsReader>> readers;
+  std::vector<std::unique_ptr<DdsImageReader>> image_readers;
+};
+
+DdsBus::DdsBus(const DdsSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+DdsBus::~DdsBus() = default;
+
+Time DdsBus::now() const { return EventLoop::now(); }
+void DdsBus::at(Time when, std::function<void()> callback) { impl_->loop.at(when, std::move(callback)); }
+void DdsBus::watch(int descriptor, std::function<void()> readable) {
+  impl_->loop.watch(descriptor, std::move(readable));
+}
+void DdsBus::run() { impl_->loop.run_until(Time::max()); }
+void DdsBus::run_until(Time when) { impl_->loop.run_until(when); }
+void DdsBus::stop() { impl_->loop.stop(); }
+std::string DdsBus::locators() const {
+  return impl_->readers.empty() ? std::string() : impl_->readers.front()->locators();
+}
+
+void DdsBus::impair(const LinkQuality& quality, std::uint64_t seed) {
+  impl_->session->participant.impair(quality, seed);
+}
+
+std::uint64_t DdsBus::refused() const {
+  std::uint64_t sum = 0;
+  for (const auto& reader : impl_->readers) sum += reader->refused();
+  for (const auto& reader : impl_->image_readers) sum += reader->reader().refused();
+  return sum;
+}
+
+std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std::string& channel) {
+  impl_->session->type_mismatches.expect(channel, topic.type.name);
+  if (!impl_->shares_memory(topic)) return std::make_unique<DdsWriter>(impl_->participant(), topic, channel);
+  if (!impl_->image_participant) impl_->image_participant = image_publisher_participant(impl_->settings);
+  return std::make_unique<DdsWriter>(impl_->image_participant, topic, channel);
+}
+
+void DdsBus::make_reader(const TopicInfo& topic, const std::string& channel,
+                         std::function<void(const void*)> callback) {
+  impl_->session->type_mismatches.expect(channel, topic.type.name);
+  if (impl_->shares_memory(topic)) {
+    impl_->image_readers.push_back(std::make_unique<DdsImageReader>(
+        impl_->loop, impl_->settings, impl_->session->type_mismatches, topic, channel, std::move(callback)));
+  } else {
+    impl_->readers.push_back(
+        std::make_unique<DdsReader>(impl_->loop, impl_->participant(), topic, channel, std::move(callback)));
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+
+namespace sidestep {
+
+struct DdsSettings {
+  int domain = 0;                        ///< 0 .. 99
+  std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": every one
+  std::string participant = "sidestep";  ///< name announced to the domain
+  bool faults = false;                   ///< arriving messages can be impaired, see DdsBus::impair()
+  bool is_operator = false;              ///< messages from this participant are never impaired
+};
+
+struct LinkQuality;
+
+/// The bus over Fast DDS, by UDPv4, with a second participant per process for images by shared memory. All
+/// callbacks are made by the thread that calls run(). Throws std::runtime_error with the reason if a
+/// participant or an endpoint cannot be created.
+class DdsBus : public Bus {
+ public:
+  explicit DdsBus(const DdsSettings& settings);
+  ~DdsBus() override;
+  DdsBus(const DdsBus&) = delete;
+  DdsBus& operator=(const DdsBus&) = delete;
+
+  Time now() const override;
+  void at(Time when, std::function<void()> callback) override;
+
+  /// Calls back whenever the descriptor, e.g. a socket, is readable. It must stay open until the bus has
+  /// stopped.
+  void watch(int descriptor, std::function<void()> readable);
+
+  /// Makes callbacks until stop().
+  void run();
+  /// Makes callbacks until `when` or stop(). For tests and tools that act between callbacks.
+  void run_until(Time when);
+  /// Makes the current and all later calls of run() and run_until() return soon. Thread-safe and
+  /// async-signal-safe.
+  void stop();
+
+  /// The addresses on which this participant listens for messages, for the log; empty before the first
+  /// subscription.
+  std::string locators() const;
+  /// Messages dropped so far because their payload was not of the topic's type.
+  std::uint64_t refused() const;
+
+  /// From now on impairs all arriving messages except an operator's. Precondition: DdsSettings::faults.
+  void impair(const LinkQuality& quality, std::uint64_t seed);
+
+ protected:
+  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
+  void make_reader(const TopicInfo& topic, const std::string& channel,
+                   std::function<void(const void*)> callback) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sidestep

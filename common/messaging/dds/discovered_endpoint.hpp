@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// A writer or reader that a participant of the domain has announced, of any vendor.
+struct DiscoveredEndpoint {
+  enum class Durability : std::uint8_t { kVolatile, kTransientLocal, kTransient, kPersistent };
+  enum class Liveliness : std::uint8_t { kAutomatic, kByParticipant, kByTopic };
+
+  std::string guid;
+  std::string participant;  ///< name of its participant
+  std::string topic;
+  std::string type;
+  bool is_writer = false;
+  bool is_keyed = false;
+  bool is_reliable = false;
+  bool is_exclusive = false;  ///< ownership
+  Durability durability = Durability::kVolatile;
+  Liveliness liveliness = Liveliness::kAutomatic;
+  Duration lease = Duration::max();  ///< of the liveliness
+  Duration deadline = Duration::max();
+  std::vector<std::string> partitions;  ///< empty: the unnamed partition
+};
+
+/// The reasons why this writer and this reader of one topic do not match, in plain words; empty if they
+/// match.
+[[nodiscard]] std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer,
+                                                      const DiscoveredEndpoint& reader);
+
+}  // namespace sidestep

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Watches discovery. Logs endpoints that use one of our channels with another type, because DDS never
+/// matches them and reports nothing. Also records since when each channel has a writer. Thread-safe.
+class TypeMismatchListener : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  /// Registers a channel of ours and its type.
+  void expect(const std::string& channel, const std::string& type);
+  /// When the channel's most recently discovered writer of our type was discovered; nullopt if there is no
+  /// writer.
+  std::optional<Time> latest_writer_since(const std::string& channel) const;
+
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+
+ private:
+  void compare(const char* endpoint, const std::string& channel, const std::string& type);
+
+  mutable std::mutex mutex_;
+  std::map<std::string, std::string> types_;  ///< by channel
+  /// By channel and type, then by the writer's GUID: time of discovery.
+  std::map<std::pair<std::string, std::string>, std::map<std::string, Time>> writers_;
+};
+
+}  // namespace sidestep

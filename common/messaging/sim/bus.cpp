@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/sim/bus.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sidestep {
+
+class SimNetwork::Writer : public RawWriter {
+ public:
+  Writer(SimNetwork& network, ProcessId from, const TopicInfo& topic, Channel& channel)
+      : network_(network), from_(from), topic_(topic), channel_(channel) {}
+  void write(const void* message) override { network_.send(from_, topic_, channel_, message); }
+
+ private:
+  SimNetwork& network_;
+  ProcessId from_;
+  TopicInfo topic_;
+  Channel& channel_;
+};
+
+SimBus::SimBus(SimNetwork& network) : SimBus(network, {network.new_process()}) {}
+
+SimBus::SimBus(SimNetwork& network, const SimProcessSpec& spec)
+    : network_(network),
+      clock_offset_(spec.clock_offset),
+      instance_(&network.instances_.emplace_back()),
+      timers_(&network.subscriptions_.emplace_back(SimSubscription{instance_, nullptr})) {
+  instance_->process = spec.process;
+}
+
+SimBus::~SimBus() {
+  instance_->is_alive = false;
+  for (auto& [name, channel] : network_.channels_) {
+    std::erase_if(channel->subscriptions, [&](const auto* reader) { return reader->instance == instance_; });
+  }
+}
+
+Time SimBus::now() const { return network_.now() + clock_offset_; }
+
+void SimBus::at(Time when, std::function<void()> callback) {
+  network_.events_.push(std::max(when - clock_offset_, network_.now()),
+                        {timers_, network_.timers_.add(std::move(callback)), true, false});
+}
+
+MessageAttachment* SimBus::attachment(const void* message) {
+  if (!network_.delivering_) return nullptr;
+  SimNetwork::SentMessage& sent = network_.sent_[*network_.delivering_];
+  return sent.message.get() == message ? &sent.attachment : nullptr;
+}
+
+void SimBus::become_observer() { instance_->is_observer = true; }
+
+void SimBus::pause(Time until, std::size_t max_queued) {
+  instance_->paused_until = until;
+  instance_->queued = 0;
+  instance_->max_queued = max_queued;
+}
+
+SimNetwork::Channel& SimBus::channel_named(const std::string& name) {
+  auto& slot = network_.channels_[name];
+  if (!slot) slot = std::make_unique<SimNetwork::Channel>();
+  return *slot;
+}
+
+std::unique_ptr<RawWriter> SimBus::make_writer(const TopicInfo& topic, const std::string& channel) {
+  return std::make_unique<SimNetwork::Writer>(network_, instance_->process, topic, channel_named(channel));
+}
+
+void SimBus::make_reader(const TopicInfo&, const std::string& channel,
+                         std::function<void(const void*)> callback) {
+  channel_named(channel).subscriptions.push_back(
+      &network_.subscriptions_.emplace_back(SimSubscription{instance_, std::move(callback)}));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+#include "common/messaging/sim/network.hpp"
+
+namespace sidestep {
+
+/// Identity and clock of a simulated process.
+struct SimProcessSpec {
+  ProcessId process = 0;     ///< identifies its links
+  Duration clock_offset{0};  ///< process's clock - network's time
+};
+
+/// One instance of a simulated process, and its access to a SimNetwork. Destroying it is kill -9: its timers
+/// never fire and messages on their way to it are lost; messages that it has sent still arrive.
+class SimBus : public Bus {
+ public:
+  /// A new process, without link faults.
+  explicit SimBus(SimNetwork& network);
+  SimBus(SimNetwork& network, const SimProcessSpec& spec);
+  ~SimBus() override;
+  SimBus(const SimBus&) = delete;
+  SimBus& operator=(const SimBus&) = delete;
+
+  /// By the process's own clock.
+  Time now() const override;
+  void at(Time when, std::function<void()> callback) override;
+  MessageAttachment* attachment(const void* message) override;
+
+  /// From now on, receives all messages without delay or loss. For audit and metrics, which are not part of
+  /// the system.
+  void become_observer();
+  /// SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are queued.
+  /// Further ones are lost, as when a socket buffer is full. At the end all queued messages and timers are
+  /// delivered at once.
+  void pause(Time until, std::size_t max_queued);
+
+ protected:
+  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
+  void make_reader(const TopicInfo& topic, const std::string& channel,
+                   std::function<void(const void*)> callback) override;
+
+ private:
+  SimNetwork::Channel& channel_named(const std::string& name);
+
+  SimNetwork& network_;
+  Duration clock_offset_;
+  SimProcessInstance* instance_;  // owned by the network, which keeps it after the bus is destroyed
+  SimSubscription* timers_;
+};
+
+}  // namespace sidestep

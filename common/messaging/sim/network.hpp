@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/attachment.hpp"
+#include "common/messaging/sim/event_queue.hpp"
+#include "common/messaging/sim/links.hpp"
+#include "common/messaging/sim/pool.hpp"
+#include "common/messaging/topics.hpp"
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+
+/// The network's state of one process instance. A restarted process is a new instance of the same process.
+struct SimProcessInstance {
+  ProcessId process = 0;
+  bool is_alive = true;
+  bool is_observer = false;
+  Time paused_until = Time::min();
+  std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
+};
+
+/// One subscription of one process instance. A callback-less one owns the instance's timers.
+struct SimSubscription {
+  SimProcessInstance* instance;
+  std::function<void(const void*)> callback;
+  Time last_event{};  ///< arrival of the last kEvent message, which keeps such messages in order
+};
+
+/// Runs many processes in one thread under virtual time: an event queue ordered by (time, order of
+/// scheduling), and a network between the processes that delays, loses, duplicates and reorders messages. The
+/// same seed gives the same run, bit for bit. Channels of kEvent are reliable and in order, as over DDS;
+/// their messages are only delayed.
+class SimNetwork {
+ public:
+  SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network);
+
+  Time now() const { return now_; }
+  /// Runs the next event. If there is none until `limit`, advances now() to the limit and returns false.
+  bool step(Time limit);
+  /// Runs all events until `limit`.
+  void run_until(Time limit) {
+    while (step(limit)) {
+    }
+  }
+
+  /// Allocates the id of another process.
+  ProcessId new_process() { return next_process_++; }
+  /// From now on, `quality` replaces the NetworkSpec for this link.
+  void set_link(ProcessId from, ProcessId to, const LinkQuality& quality) { links_.set(from, to, quality); }
+
+ private:
+  friend class SimBus;
+  class Writer;
+  struct SentMessage {
+    std::shared_ptr<const void> message;
+    std::uint32_t references = 0;  ///< deliveries still to come, plus one while it is being sent
+    MessageAttachment attachment{};
+  };
+  struct Event {
+    SimSubscription* subscription;
+    std::uint32_t index;  ///< in timers_ or sent_
+    bool is_timer;        ///< the subscription then only names the timer's instance
+    bool is_droppable;    ///< counts towards max_queued of a paused process
+  };
+  struct Channel {
+    std::vector<SimSubscription*> subscriptions;
+  };
+
+  void run(const Event& event);
+  /// Discards an event whose process cannot receive it.
+  void drop(const Event& event);
+  void release(std::uint32_t sent);
+  /// Postpones an event to the end of its process's pause.
+  void postpone(const Event& event);
+  void send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message);
+  void send_event(ProcessId from, SimSubscription& subscription, std::uint32_t sent);
+  void deliver(SimSubscription& subscription, Time when, std::uint32_t sent, bool is_droppable);
+  Duration sample_delay();
+
+  Rng rng_;
+  Time now_;
+  NetworkSpec spec_;
+  SimLinks links_;
+  ProcessId next_process_ = 0;
+  EventQueue<Event> events_;
+  Pool<std::function<void()>> timers_;
+  Pool<SentMessage> sent_;
+  std::optional<std::uint32_t> delivering_;  ///< in sent_
+  std::deque<SimProcessInstance> instances_;
+  std::deque<SimSubscription> subscriptions_;
+  std::map<std::string, std::unique_ptr<Channel>> channels_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/geometry/circle.hpp"
+#include "common/geometry/field.hpp"
+#include "common/motion/limits.hpp"
+
+namespace sidestep {
+
+/// The constraints that every version has to satisfy regardless of the other robots.
+struct FloorRules {
+  Field field;
+  std::vector<Circle> obstacles;
+  MotionLimits limits;
+  double radius_m = 0.09;
+  double margin_m = 0.01;
+
+  /// The minimum distance between the centres of two robots without inflation.
+  double min_separation_m() const { return 2 * radius_m + margin_m; }
+};
+
+}  // namespace sidestep

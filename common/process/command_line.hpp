@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace sidestep {
+
+/// The command line is wrong; the message says what and where. Programs exit with kExitUsage.
+class UsageError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A condition on the text of an option's value.
+struct ValueCheck {
+  std::string description;                                  ///< for --help, e.g. "POSITIVE"
+  std::function<std::string(const std::string&)> problem;   ///< what is wrong with a value; empty if nothing is
+};
+[[nodiscard]] ValueCheck in_range(double min, double max);
+[[nodiscard]] ValueCheck positive();
+[[nodiscard]] ValueCheck non_negative();
+[[nodiscard]] ValueCheck one_of(std::vector<std::string> values);
+
+/// Handle of one option. Valid as long as the command line that it belongs to.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option required() const;
+  Option check(const ValueCheck& check) const;
+  Option check(std::function<std::string(const std::string&)> problem) const;
+  /// --help shows the value that the variable has now, or the text.
+  Option show_default() const;
+  Option show_default(const std::string& text) const;
+  /// The value is a comma-separated list, of exactly `count` elements if that is given.
+  Option comma_separated(std::optional<int> count = std::nullopt) const;
+  Option needs(const Option& other) const;
+  Option excludes(const Option& other) const;
+  bool is_given() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// Handle of a command or subcommand, to which options are added. Variables must outlive the parsing.
+class Command {
+ public:
+  explicit Command(CLI::App& app) : app_(&app) {}
+
+  Command add_subcommand(const std::string& name, const std::string& description) const;
+  void require_subcommand() const;
+  /// Text at the end of --help.
+  void add_footer(const std::string& text) const;
+  /// An option if the name begins with dashes, else a positional argument. Value: std::string, bool is a flag,
+  /// any integer or floating-point type, std::optional or std::vector of them.
+  template <typename Value>
+  Option add_option(const std::string& name, Value& value, const std::string& description = {}) const;
+  Option add_flag(const std::string& name, bool& value, const std::string& description = {}) const;
+  /// An option that `take` reads; it throws UsageError for a value that it refuses.
+  Option add_option(const std::string& name, std::function<void(const std::string&)> take,
+                    const std::string& description) const;
+  /// An option whose value may be left out: then it is `default_value`.
+  Option add_optional_value(const std::string& name, std::optional<std::string>& value,
+                            const std::string& default_value, const std::string& description) const;
+  Option option(const std::string& name) const;
+  /// Called once the command line was parsed and contains this command; may throw UsageError.
+  void on_parsed(std::function<void()> callback) const;
+
+ private:
+  CLI::App* app_;
+};
+
+/// A program's command line. The only code that knows CLI11, whose headers take seconds to compile.
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& description, const std::string& program_name);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  Command root() const { return Command(*app_); }
+
+  /// Parses. Returns an exit code when that ends the program (--help: 0, after printing it; wrong usage:
+  /// kExitUsage, after saying on stderr what is wrong), else nothing.
+  [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
+  /// Parses the arguments after the program's name. Throws UsageError.
+  void parse(std::vector<std::string> arguments);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace sidestep

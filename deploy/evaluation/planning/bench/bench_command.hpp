@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+
+/// Adds `bench planning` to a program. When it is parsed, `action` becomes what to run; that returns the exit
+/// code.
+void add_bench_command(const Command& root, std::function<int()>& action);
+
+}  // namespace sidestep

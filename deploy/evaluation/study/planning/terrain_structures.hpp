@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "deploy/evaluation/study/table/study_table.hpp"
+
+namespace sidestep {
+
+struct TerrainStructures {
+  std::vector<std::size_t> squares{4, 8, 16, 32, 64, 128};  ///< of the grid, along each side
+  std::size_t queries = 1000;
+  std::size_t rounds = 9;
+  std::size_t max_linear_triangles = 2048;  ///< larger terrains are not timed with the linear list
+};
+
+/// Structures for the collision of a moving ball with terrain and for its clearance: TerrainTree, FCL's tree
+/// over the same mesh with both of its solvers, and a linear list of triangles, over the number of triangles. Medians of rounds in
+/// which all get the same queries, in shuffled order; answers are compared with the linear list's.
+StudyTable terrain_structures(const TerrainStructures& settings, std::uint64_t seed,
+                              const ProgressCallback& progress);
+
+}  // namespace sidestep

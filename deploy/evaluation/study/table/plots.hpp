@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// The median and the extremes of some trials at one position of the x axis.
+struct PlotPoint {
+  double x = 0;
+  double median = 0, min = 0, max = 0;
+};
+
+struct PlotLine {
+  std::string title;
+  std::vector<PlotPoint> points;
+};
+
+struct Plot {
+  std::string title{}, x_label{}, y_label{};
+  bool has_log_x = false, has_log_y = false;
+  double min_y = 0;  ///< lower end of a y axis that is not logarithmic
+  std::vector<PlotLine> lines{};
+  std::optional<double> marked_x{};  ///< by a vertical line
+};
+
+/// Throws std::runtime_error that says what to install if gnuplot is missing.
+void require_gnuplot();
+
+/// Draws plots side by side into a PNG file with gnuplot. Throws std::runtime_error if that fails.
+void draw(const std::vector<Plot>& plots, const std::string& png_file);
+
+/// A single value.
+inline PlotPoint plot_point(double x, double value) { return {x, value, value, value}; }
+/// The median, the minimum and the maximum of at least one value.
+PlotPoint plot_point(double x, std::vector<double> values);
+
+}  // namespace sidestep

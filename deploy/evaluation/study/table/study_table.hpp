@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <fmt/format.h>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "deploy/evaluation/study/table/plots.hpp"
+
+namespace sidestep {
+
+struct StudyOptions {
+  std::string folder;
+  std::uint64_t seed = 1;
+  int jobs = 2;           ///< parallel processes, where nothing is timed
+  bool is_quick = false;  ///< a small version of every experiment, for tests
+};
+
+/// The measurements of one experiment, and its plots.
+struct StudyTable {
+  std::string name{};                            ///< the stem of its files
+  std::vector<std::string> columns{};            ///< machine-dependent ones end in _us or _ns
+  std::vector<std::vector<std::string>> rows{};  ///< a cell for each column
+  std::vector<Plot> plots{};                     ///< side by side in one picture
+};
+
+/// Values as the cells of a row.
+template <typename... Values>
+std::vector<std::string> cells(const Values&... values) {
+  return {fmt::format("{}", values)...};
+}
+
+/// Receives the progress of an experiment.
+using ProgressCallback = std::function<void(std::size_t done, std::size_t of)>;
+
+/// Shows the progress of an experiment on stderr: a line that is redrawn in a terminal, a line every five
+/// seconds elsewhere.
+class StudyProgress {
+ public:
+  explicit StudyProgress(std::string name) : name_(std::move(name)) {}
+  void operator()(std::size_t done, std::size_t of);
+
+ private:
+  std::string name_;
+  std::chrono::steady_clock::time_point next_{};
+};
+
+/// Makes the folder. Throws std::runtime_error if no file can be written there or plots cannot be drawn, so
+/// that a long study does not fail at its end.
+void require_study_output(const StudyOptions& options);
+
+/// Writes the table as .csv, with the command and the commit in its head, and its picture as .png into the
+/// folder, and prints their names. `study`: the name of the command. Throws std::runtime_error that says what
+/// failed.
+void write_study_table(const StudyTable& table, const std::string& study, const StudyOptions& options);
+
+/// The table with aligned columns, as Markdown.
+std::string markdown_of(const StudyTable& table);
+
+}  // namespace sidestep

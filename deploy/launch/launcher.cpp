@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/launch/launcher.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
+#include <sstream>
+
+#include "common/process/stop_signals.hpp"
+#include "deploy/launch/process_command.hpp"
+#include "deploy/monitor/process_names.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kPollPeriod = 20ms;           // maximum delay before a death is noticed
+constexpr Duration kStartInterval = 100ms;       // simultaneous starts would stall DDS discovery
+constexpr Duration kStartupTimeout = 20s;        // since the last start
+constexpr Duration kSettlingTime = 500ms;        // after all arrivals, for the final status messages
+constexpr Duration kStuckTimeout = 2s;           // since the last death
+constexpr auto kTerminationTimeout = 3000ms;
+constexpr std::size_t kShownLines = 8;
+
+std::vector<std::string> split_words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+}  // namespace
+
+Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
+                   const NamespaceNetwork* network, const std::string& log_path)
+    : options_(options),
+      scenario_(scenario),
+      placement_(placement),
+      network_(network),
+      group_(log_path),
+      bus_(options.dds),
+      metrics_(scenario),
+      auditor_(scenario, {}) {
+  metrics_.set_auditor(auditor_);
+  auditor_.on_violation([this](const Violation& violation) {
+    if (printed_violations_++ < AuditTotals::kMaxKept) print("audit: " + to_line(violation));
+  });
+  listen(bus_, scenario, auditor_);
+  if (!options.recording_file.empty()) {
+    recording_.emplace(options.recording_file, recording_header(scenario.name, options.scenario_file));
+    record(bus_, scenario, *recording_);
+  }
+  listen(bus_, metrics_);
+}
+
+Report Launcher::run() {
+  const StopSignals stop_signals([this] {
+    is_interrupted_ = true;
+    bus_.stop();
+  });
+  const Time begin = bus_.now();
+  if (network_) {
+    print(fmt::format("hosts are network namespaces; to observe them, run: ip netns exec {} sidestep topic list "
+                      "--domain {} --interface {}",
+                      network_->bridge(), options_.dds.domain, options_.dds.interface));
+  }
+  start_core();
+  while (!is_over()) {
+    start_due_agents();
+    bus_.run_until(bus_.now() + kPollPeriod);
+    for (const ChildEvent& event : group_.poll(0ms)) handle(event);
+    display_.update(metrics_, bus_.now());
+  }
+  if (recording_) recording_->close();
+  Report report = metrics_.report();
+  for (const std::string& name : group_.terminate(kTerminationTimeout))
+    print(name + " did not stop in time and was killed");
+  report.program = "run";
+  report.seed = options_.seed;
+  report.abort_reason = abort_reason_;
+  report.duration_s = to_seconds(bus_.now() - begin);
+  return report;
+}
+
+void Launcher::print(const std::string& line) {
+  group_.log(line);
+  display_.print(line);
+}
+
+void Launcher::start(const std::string& name, const std::string& program, bool restart,
+                     const std::vector<std::string>& arguments) {
+  const HostSpec& host = placement_.host_of(name);
+  ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, restart};
+  if (options_.faults) process.arguments.push_back("--faults");
+  const pid_t pid = group_.start(
+      child_spec(process, host, network_ ? network_->full_name(host.target) : host.target));
+  print(fmt::format("started {} as pid {}{}", name, pid,
+                    options_.hosts_file.empty() ? "" : " on host " + host.name));
+  last_start_ = bus_.now();
+}
+
+void Launcher::start_core() {
+  const RestartSpec& restart = scenario_.restart;
+  std::vector<std::string> simulator = split_words(options_.simulator_options);
+  simulator.insert(simulator.begin(), {"--seed", std::to_string(options_.seed)});
+  start("simulator", "sidestep-simulator", false, simulator);
+  start("vision", "sidestep-vision", restart.vision, split_words(options_.vision_options));
+  if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
+  // All begin as standbys, so a restarted coordinator does not take over from the active one.
+  for (int number = 0; number < scenario_.coordinators; ++number) {
+    start(coordinator_process(number), "sidestep-coordinator", restart.coordinator,
+          {"--standby", "--number", std::to_string(number)});
+  }
+}
+
+void Launcher::start_due_agents() {
+  if (agents_started_ == scenario_.robots.size() || bus_.now() < last_start_ + kStartInterval) return;
+  const RobotId robot = scenario_.robots[agents_started_++].id;
+  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents,
+        {"--robot", std::to_string(robot)});
+}
+
+void Launcher::handle(const ChildEvent& event) {
+  if (event.kind == ChildEvent::Kind::kStarted) {
+    print(fmt::format("started {} again as pid {}", event.name, event.pid));
+    return;
+  }
+  const Time now = bus_.now();
+  metrics_.on_death(event.name, event.reason, now, event.will_restart);
+  print(fmt::format("{} (pid {}) died: {}{}", event.name, event.pid, event.reason,
+                    event.will_restart ? "; it will be restarted" : ""));
+  const auto lines = group_.last_lines(event.name);
+  for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
+    display_.print("  " + lines[i]);
+  }
+  if (event.will_restart) return;
+  dead_.insert(event.name);
+  last_death_ = now;
+  if (!is_ready_) abort_reason_ = fmt::format("{} died during startup: {}", event.name, event.reason);
+}
+
+bool Launcher::is_over() {
+  if (is_interrupted_) abort_reason_ = "interrupted";
+  if (!abort_reason_.empty()) return true;
+  return is_ready_ ? is_drive_over() : is_startup_over();
+}
+
+bool Launcher::is_startup_over() {
+  const bool all_started = agents_started_ == scenario_.robots.size();
+  // The coordinator grants only after every agent has registered, so their status need not be awaited.
+  is_ready_ = all_started && metrics_.has_truth() && metrics_.granting_since();
+  if (is_ready_) print("all processes are running and the coordinator grants");
+  if (is_ready_ || !all_started || bus_.now() < last_start_ + kStartupTimeout) return false;
+  abort_reason_ = startup_failure();
+  return true;
+}
+
+std::string Launcher::startup_failure() const {
+  std::vector<std::string> reasons;
+  if (!metrics_.has_truth()) reasons.push_back("no ground truth from the simulator");
+  if (const auto silent = metrics_.silent_agents(); !silent.empty())
+    reasons.push_back(fmt::format("no status from agent {}", fmt::join(silent, ", ")));
+  if (!metrics_.has_coordinator_state())
+    reasons.push_back("no state from the coordinator");
+  else if (!metrics_.granting_since())
+    reasons.push_back(fmt::format("no registration of robot {}", fmt::join(metrics_.unregistered_robots(), ", ")));
+  return fmt::format("not ready after {} s: {}", to_seconds(kStartupTimeout), fmt::join(reasons, "; "));
+}
+
+bool Launcher::is_drive_over() {
+  const Time now = bus_.now();
+  if (!metrics_.all_arrived())
+    arrived_since_.reset();
+  else if (!arrived_since_)
+    arrived_since_ = now;
+  if (arrived_since_ && now - *arrived_since_ >= kSettlingTime) return true;
+
+  const double limit_s = options_.seconds.value_or(scenario_.time_limit_s);
+  if (now - *metrics_.granting_since() > from_seconds(limit_s)) {
+    abort_reason_ = fmt::format("time limit of {} s", limit_s);
+  } else if (is_stuck(now)) {
+    abort_reason_ = fmt::format("{} died", fmt::join(dead_, ", "));
+  }
+  return !abort_reason_.empty();
+}
+
+bool Launcher::is_stuck(Time now) const {
+  if (dead_.empty() || now - last_death_ < kStuckTimeout) return false;
+  const bool is_truth_stale = now - *metrics_.truth_at() > kStuckTimeout;
+  if (!is_truth_stale && !metrics_.all_at_rest()) return false;
+  if (dead_.count("simulator") || dead_.count("vision") || are_all_coordinators_dead()) return true;
+  for (const RobotProgress& row : metrics_.progress()) {
+    if (!row.arrived && !dead_.count(agent_process(row.robot))) return false;
+  }
+  return true;
+}
+
+bool Launcher::are_all_coordinators_dead() const {
+  for (int number = 0; number < scenario_.coordinators; ++number) {
+    if (!dead_.count(coordinator_process(number))) return false;
+  }
+  return true;
+}
+
+}  // namespace sidestep

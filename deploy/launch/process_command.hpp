@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deploy/launch/hosts/hosts_file.hpp"
+#include "deploy/launch/process_group.hpp"
+
+namespace sidestep {
+
+/// A Sidestep program and its arguments.
+struct ProcessSpec {
+  std::string name;     ///< e.g. "agent 3"
+  std::string program;  ///< e.g. "sidestep-agent"
+  std::string scenario_file;
+  int domain = 0;
+  std::vector<std::string> arguments;  ///< besides scenario, domain and interface
+  bool restart = false;
+};
+
+/// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace
+/// `namespace_name`, or ssh. Over ssh the scenario travels along, and the remote process ends with the connection.
+/// Throws std::runtime_error when ip or ssh is missing or the scenario cannot be read.
+[[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std::string& namespace_name);
+
+}  // namespace sidestep

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/launch/run_command.hpp"
+
+#include <memory>
+
+#include "common/process/command_line.hpp"
+#include "common/process/process.hpp"
+#include "deploy/launch/run.hpp"
+
+namespace sidestep {
+
+void add_run_command(const Command& root, std::function<int()>& action) {
+  const auto options = std::make_shared<RunOptions>();
+  options->dds.participant = "sidestep-run";
+  const Command command =
+      root.add_subcommand("run", "Runs a scenario over DDS, with one process for each part of the system");
+  command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
+      .required();
+  command.add_option("--record", options->recording_file, "record all messages to this file");
+  command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
+  command.add_option("--seed", options->seed, "random seed of the simulator's noise")
+      .check(non_negative())
+      .show_default();
+  command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
+  add_dds_options(command, options->dds);
+  command.add_flag("--faults", options->faults,
+                   "let all processes accept `sidestep fault network`; for tests");
+  command.add_option("--simulator", options->simulator_options,
+                     "extra options for sidestep-simulator, e.g. --simulator=\"--ssl-vision\"");
+  command.add_option("--vision", options->vision_options,
+                     "extra options for sidestep-vision, e.g. --vision=\"--tracked --colours hall.yaml\"");
+  command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/launch/README.md")
+      .excludes(command.option("--interface"));
+  command.on_parsed([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+
+/// Adds `sidestep run`. Parsing it sets `action`, which returns and throws as run() does.
+void add_run_command(const Command& root, std::function<int()>& action);
+
+}  // namespace sidestep

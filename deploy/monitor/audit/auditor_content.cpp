@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks of the content of granted versions.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "deploy/monitor/audit/auditor.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kLengthTolerance_m = 2e-6;    // rounding
+constexpr double kContinuityTolerance = 1e-7;  // in m and in m/s
+constexpr double kSpeedTolerance_mps = 1e-5;
+constexpr double kEffortTolerance = 2e-3;
+
+/// The share of the robot's acceleration limit that is used; 1 is the limit: F ahead and sideways, D against
+/// the velocity.
+double effort(const AuditPath::Node& n, const MotionLimits& limits) {
+  const double f = limits.acceleration_mps2, d = limits.deceleration_mps2;
+  const double speed = std::hypot(n.vx, n.vy), acceleration = std::hypot(n.ax, n.ay);
+  if (speed < 1e-6) return acceleration / f;
+  const double along = (n.ax * n.vx + n.ay * n.vy) / speed, across = (n.vx * n.ay - n.vy * n.ax) / speed;
+  if (along >= 0) return acceleration / f;
+  return std::sqrt(along * along / (d * d) + across * across / (f * f));
+}
+
+}  // namespace
+
+void Auditor::check_content(const AuditedRobot& robot, const KnownVersion& known) {
+  check_limits(robot, known);
+  check_field(robot, known);
+  check_obstacles(robot, known);
+  check_base(robot, known);
+}
+
+void Auditor::check_limits(const AuditedRobot& robot, const KnownVersion& known) {
+  for (int i = 0; i <= known.path.phase_count(); ++i) {
+    const AuditPath::Node& n = known.path.phase(i);
+    const double speed = std::hypot(n.vx, n.vy);
+    const bool lasts = i < known.path.phase_count() && known.path.phase(i + 1).elapsed_s > n.elapsed_s;
+    if (speed > scenario_.limits.speed_mps + kSpeedTolerance_mps) {
+      report(AuditRule::kLimits, robot.id, &known, known.granted_in,
+             fmt::format("{:.6f} m/s in phase {}; {:.6f} m/s allowed", speed, i, scenario_.limits.speed_mps));
+    } else if (lasts && effort(n, scenario_.limits) > 1 + kEffortTolerance) {
+      report(AuditRule::kLimits, robot.id, &known, known.granted_in,
+             fmt::format("acceleration ({:.4f}, {:.4f}) m/s2 in phase {} is {:.4f} times the limit", n.ax,
+                         n.ay, i, effort(n, scenario_.limits)));
+    }
+  }
+  const AuditPath::Node& end = known.path.last();
+  if (std::hypot(end.vx, end.vy) > kSpeedTolerance_mps) {
+    report(AuditRule::kRest, robot.id, &known, known.granted_in,
+           fmt::format("ends at {:.6f} m/s", std::hypot(end.vx, end.vy)));
+  }
+}
+
+void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) {
+  const double limit_x_m = scenario_.field.length_m / 2 - scenario_.radius_m + kLengthTolerance_m;
+  const double limit_y_m = scenario_.field.width_m / 2 - scenario_.radius_m + kLengthTolerance_m;
+  const auto distance_outside_m = [&](const AuditPath& path) {
+    double most = 0;
+    // A coordinate is extreme at the end of a phase or where its velocity changes sign.
+    for (int i = 0; i <= path.phase_count(); ++i) {
+      const AuditPath::Node& n = path.phase(i);
+      for (const double turn : {0.0, n.ax != 0 ? -n.vx / n.ax : 0.0, n.ay != 0 ? -n.vy / n.ay : 0.0}) {
+        const bool is_within =
+            turn >= 0 && i < path.phase_count() && n.elapsed_s + turn < path.phase(i + 1).elapsed_s;
+        const AuditPath::Node p = is_within ? path.at_s(n.elapsed_s + turn) : n;
+        most = std::max({most, std::abs(p.x) - limit_x_m, std::abs(p.y) - limit_y_m});
+      }
+    }
+    return most;
+  };
+  // A robot that was pushed out of the field may return in several steps.
+  const KnownVersion* base = robot.find(known.version.base());
+  const double allowed = base && base->has_content ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
+  if (const double most = distance_outside_m(known.path); most > allowed) {
+    report(AuditRule::kField, robot.id, &known, known.granted_in,
+           fmt::format("{:.6f} m outside the field", most));
+  }
+}
+
+void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
+  const KnownVersion* base = robot.find(known.version.base());
+  for (const Circle& obstacle : scenario_.obstacles) {
+    const double required_m = obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
+    const double reach_m = required_m + known.path.reach_m();
+    if (std::hypot(known.version.x_m() - obstacle.centre_m.x(), known.version.y_m() - obstacle.centre_m.y()) >
+        reach_m)
+      continue;
+    const ClosestApproach near = closest_approach(known.path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m);
+    if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) continue;
+    const bool was_near =
+        base && base->has_content &&
+        closest_approach(base->path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m).distance_m <=
+            near.distance_m + 1e-6;
+    if (was_near) continue;
+    report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
+           fmt::format("{:.6f} m from the centre of the obstacle at ({:.3f}, {:.3f}) m, {:.6f} m required",
+                       near.distance_m, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m));
+  }
+}
+
+void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
+  const KnownVersion* base = robot.find(known.version.base());
+  if (known.number <= known.version.base()) {
+    report(AuditRule::kVersionOrder, robot.id, &known, known.granted_in,
+           fmt::format("its base, version {}, has no lower number", known.version.base()));
+  }
+  const bool is_rest_version = known.version.base() == 0 && known.path.reach_m() == 0;
+  const bool is_absent =
+      (robot.fact && robot.fact->is_lifted) || (robot.registered && robot.registered->is_absent);
+  if (is_rest_version && is_absent) return;
+  const bool is_evicted = robot.was_evicted(known.version.base());
+  if (input_.is_complete && !is_evicted && !(base && (base->may_be_in(known.granted_in) || base->is_own_stop))) {
+    report(AuditRule::kBase, robot.id, &known, known.granted_in,
+           fmt::format("its base, version {}, was neither registered nor granted in the epoch", known.version.base()));
+  }
+  if (!base || !base->has_content) return;
+  const AuditPath::Node& from = known.path.first();
+  const AuditPath::Node expected = base->path.at_ns(known.path.start_ns());
+  const double jump_m = std::hypot(from.x - expected.x, from.y - expected.y);
+  const double jump_mps = std::hypot(from.vx - expected.vx, from.vy - expected.vy);
+  const bool is_continuous = jump_m <= kContinuityTolerance && jump_mps <= kContinuityTolerance;
+  if (known.path.start_ns() <= base->path.start_ns() || !is_continuous) {
+    report(AuditRule::kContinuity, robot.id, &known, known.granted_in,
+           fmt::format("starts {:.9f} m and {:.9f} m/s off its base, version {}, {:.6f} s after its base's start",
+                       jump_m, jump_mps, base->number,
+                       static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9));
+  }
+  const bool begins_at_rest = from.vx == 0 && from.vy == 0 && known.version.inflation_m() == 0;
+  if (known.version.inflation_m() != base->version.inflation_m() && !begins_at_rest) {
+    report(AuditRule::kInflation, robot.id, &known, known.granted_in,
+           fmt::format("has an inflation of {:.6f} m; its base has {:.6f} m", known.version.inflation_m(),
+                       base->version.inflation_m()));
+  }
+}
+
+}  // namespace sidestep

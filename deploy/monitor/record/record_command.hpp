@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+
+/// Adds `sidestep record`. Parsing it sets `action`, which returns the exit code and may throw
+/// std::runtime_error.
+void add_record_command(const Command& root, std::function<int()>& action);
+
+}  // namespace sidestep

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/topic/topic_tools.hpp"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <optional>
+#include <vector>
+
+#include "common/messaging/dds/listener.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/monitor/topic/rate_meter.hpp"
+#include "deploy/monitor/topic/topic_table.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kSecond{1'000'000'000};
+constexpr Duration kDiscoveryTimeout = 5 * kSecond;  ///< participants announce themselves once per second
+constexpr Duration kPollPeriod{50'000'000};
+
+DdsSettings settings(const TopicOptions& options) {
+  DdsSettings result = options.dds;
+  result.participant = "sidestep-topic";
+  return result;
+}
+
+/// Waits for a participant that writes the topic.
+std::optional<DiscoveredEndpoint> find_writer(DdsListener& listener, const std::string& topic) {
+  const Time deadline = listener.now() + kDiscoveryTimeout;
+  while (!listener.stopped() && listener.now() < deadline) {
+    for (const DiscoveredEndpoint& endpoint : listener.endpoints()) {
+      if (endpoint.is_writer && endpoint.topic == topic) return endpoint;
+    }
+    listener.run_until(listener.now() + kPollPeriod);
+  }
+  return std::nullopt;
+}
+
+void print_rate(const char* label, const Rate& rate) {
+  if (!rate.min_gap) {
+    fmt::print("{}{} sample(s)\n", label, rate.samples);
+  } else {
+    fmt::print("{}{} samples  {:.2f} Hz  gap min {:.2f} ms  max {:.2f} ms  {:.2f} kB/s\n", label,
+               rate.samples, rate.rate_hz, to_seconds(*rate.min_gap) * 1e3,
+               to_seconds(*rate.max_gap) * 1e3, rate.bytes_per_second * 1e-3);
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int list_topics(const TopicOptions& options) {
+  DdsListener listener(settings(options));
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  listener.run_until(listener.now() + from_seconds(options.seconds));
+  fmt::print("{}", topic_table(listener.endpoints()));
+  return 0;
+}
+
+int measure_rate(const TopicOptions& options) {
+  DdsListener listener(settings(options));
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options.topic);
+  if (!writer) {
+    if (listener.stopped()) return 0;
+    const std::string known = topic_names(listener.endpoints());
+    fmt::print(stderr, "topic '{}' has no writer in domain {}; topics in this domain: {}\n", options.topic,
+               options.dds.domain, known.empty() ? "none" : known);
+    return kExitFailure;
+  }
+  RateMeter meter;
+  listener.listen(*writer, [&meter](const RawSample& s) { meter.add(s.received, s.bytes.size()); });
+  const Time begin = listener.now();
+  const Time end = options.seconds > 0 ? begin + from_seconds(options.seconds) : Time::max();
+  for (Time next = begin; !listener.stopped() && next < end;) {
+    next = std::min(next + kSecond, end);
+    listener.run_until(next);
+    print_rate("", meter.take_recent());
+  }
+  print_rate("total: ", meter.total());
+  return 0;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/messaging/dds/bus.hpp"
+
+namespace sidestep {
+
+struct TopicOptions {
+  DdsSettings dds;
+  std::string topic;        ///< the DDS topic name, e.g. feedback/3
+  double seconds = 0;       ///< 0: until Ctrl-C
+  std::uint64_t count = 0;  ///< 0: until Ctrl-C
+};
+
+/// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit code, and
+/// throws std::runtime_error as DdsBus does.
+int list_topics(const TopicOptions& options);
+int measure_rate(const TopicOptions& options);
+int echo_topic(const TopicOptions& options);
+
+}  // namespace sidestep

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// The outcome of a trial; it passed if `failures` is empty.
+struct TrialResult {
+  std::uint64_t seed = 0;
+  std::vector<std::string> failures;
+  std::uint64_t contacts = 0;          ///< without the excused ones
+  std::uint64_t excused_contacts = 0;  ///< of robots that were disturbed from outside
+  std::uint64_t audit_violations = 0, firmware_violations = 0;
+  std::uint64_t proposals = 0, grants = 0, denials = 0;
+  double robot_s = 0;                    ///< number of robots times simulated time
+  double distance_m = 0;                 ///< sum over all robots
+  double distance_after_recovery_m = 0;  ///< the part of it after the end of all faults and a recovery time
+  int robots = 0;
+  int stationary = 0;  ///< robots that did not move in that part
+  double min_clearance_m = 1e9;
+  double wall_s = 0;
+};
+
+nlohmann::ordered_json to_json(const TrialResult& result);
+
+/// One line of JSON.
+std::string to_line(const TrialResult& result);
+/// The reverse of to_line(); throws nlohmann::json::exception for anything else.
+[[nodiscard]] TrialResult parse_trial_result(const std::string& line);
+
+}  // namespace sidestep

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/simulate_command.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "common/process/command_line.hpp"
+#include "deploy/simulate/campaign/campaign.hpp"
+#include "deploy/simulate/simulate.hpp"
+
+namespace sidestep {
+namespace {
+
+struct Options {
+  std::string faults;
+  SimulateOptions run;
+  CampaignOptions campaign;
+};
+
+/// Reads "FIRST..LAST"; throws UsageError.
+void read_seeds(const std::string& text, CampaignOptions& campaign) {
+  std::size_t first = 0, last = 0;
+  int end = 0;
+  const bool is_range = std::sscanf(text.c_str(), "%zu..%zu%n", &first, &last, &end) == 2;
+  if (!is_range || static_cast<std::size_t>(end) != text.size() || last < first)
+    throw UsageError("expected FIRST..LAST, got \"" + text + "\"");
+  campaign.first_seed = first;
+  campaign.last_seed = last;
+}
+
+int run_seeds(Options& options) {
+  options.campaign.scenario_file = options.run.scenario_file;
+  options.campaign.report_file = options.run.report_file;
+  if (options.run.seconds) options.campaign.duration = from_seconds(*options.run.seconds);
+  return run_campaign(options.campaign);
+}
+
+}  // namespace
+
+void add_simulate_command(const Command& root, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  SimulateOptions& run = options->run;
+  CampaignOptions& campaign = options->campaign;
+  const Command command = root.add_subcommand(
+      "simulate", "Runs a scenario in one process and virtual time; the same seed gives the same run");
+  const Option scenario = command.add_option(
+      "SCENARIO", run.scenario_file,
+      "scenario file, see deploy/scenarios/README.md [with --faults random: a random scene]");
+  command.add_option("--report", run.report_file,
+                     "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
+  const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
+  const Option recording =
+      command.add_option("--record", run.recording_file, "record all messages to this file");
+  const Option seed =
+      command.add_option("--seed", run.seed, "random seed").check(non_negative()).show_default();
+  command
+      .add_option("--seconds", run.seconds,
+                  "time limit [the scenario's]; with --faults random: duration of a run [60]")
+      .check(positive());
+  const Option faults =
+      command
+          .add_option("--faults", options->faults,
+                      "random: the seed determines random faults: network loss, delays, duplicates and "
+                      "partitions, pauses and kills of processes, clock offsets, and disturbances of robots")
+          .check(one_of({"random"}));
+  const Option seeds =
+      command
+          .add_option(
+              "--seeds", [&campaign](const std::string& text) { read_seeds(text, campaign); },
+              "FIRST..LAST: a campaign of one run for each seed, on all cores")
+          .needs(faults)
+          .excludes(seed)
+          .excludes(recording)
+          .excludes(svg);
+  command.add_option("--jobs", campaign.jobs, "parallel processes for --seeds [number of cores]")
+      .check(positive())
+      .needs(seeds);
+  command
+      .add_option("--results", campaign.results_file,
+                  "file with one result per seed; an interrupted campaign resumes from it")
+      .needs(seeds);
+  command.on_parsed([=, &action] {
+    const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
+    if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
+    action = [=] {
+      if (has_seeds) return run_seeds(*options);
+      return has_faults ? simulate_trial(options->run) : simulate(options->run);
+    };
+  });
+}
+
+}  // namespace sidestep

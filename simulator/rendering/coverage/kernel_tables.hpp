@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "simulator/rendering/coverage/kernels.hpp"
+
+namespace sidestep::coverage {
+
+// The kernels of each instruction set. dispatch.cpp lists those that the machine can run.
+extern const Kernels kBaselineKernels;
+#ifdef __x86_64__
+extern const Kernels kAvx2Kernels, kAvx512Kernels;
+#endif
+
+}  // namespace sidestep::coverage

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "simulator/rendering/coverage/sample_pattern.hpp"
+
+namespace sidestep::coverage {
+
+/// The cross-section of a vertical body: a disc about the origin, cut off at x = front.
+struct CrossSection {
+  float radius = 0;
+  float front = 0;
+};
+
+/// Viewing rays between the planes of a body's top and of the floor, projected onto the floor. A ray that
+/// meets the plane of the top at p meets the floor at p + parallax (p - nadir); the nadir is the point below
+/// the camera.
+struct ViewingRays {
+  float parallax = 0;
+  float nadir_x = 0, nadir_y = 0;
+};
+
+/// The sample points of a pixel, as offsets from its centre.
+struct PixelSamples {
+  float x = 0, y = 0;
+  const Points* offsets = nullptr;
+};
+
+/// Counts of a pixel's samples by where they lie. All instruction sets give the same counts.
+struct Kernels {
+  const char* name;
+  /// In a disc about (x, y).
+  int (*count_in_disc)(const PixelSamples& samples, float x, float y, float radius);
+  int (*count_in_cross_section)(const PixelSamples& samples, const CrossSection& section);
+  /// On rays that meet the cross-section. The rays begin at the samples; their directions are those of the
+  /// rays at `still_offsets` from the pixel's centre, the samples before any shift by the body's motion.
+  int (*count_rays_hitting)(const Points& still_offsets, const PixelSamples& samples, const ViewingRays& rays,
+                            const CrossSection& section);
+};
+
+/// The kernels that this machine can run, the fastest last.
+const std::vector<Kernels>& available_kernels();
+const Kernels& best_kernels();
+
+}  // namespace sidestep::coverage

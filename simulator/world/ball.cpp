@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/ball.hpp"
+
+namespace sidestep {
+
+void Ball::step(const Field& field, std::span<const Circle> obstacles, std::span<const Body> robots,
+                double robot_radius_m) {
+  ball_.roll(kPhysicsStepSeconds);
+  for (const Circle& obstacle : obstacles) ball_.bounce_off(obstacle);
+  for (const Body& robot : robots) {
+    if (robot.is_on_floor())
+      ball_.bounce_off_robot({robot.position_m(), robot_radius_m}, robot.velocity_mps());
+  }
+  ball_.bounce_off_walls(field);
+}
+
+}  // namespace sidestep

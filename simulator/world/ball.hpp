@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "common/motion/rolling_ball.hpp"
+#include "simulator/world/body.hpp"
+
+namespace sidestep {
+
+/// A ball that rolls and bounces off the field's walls and obstacles. Robots push it without feeling any
+/// reaction.
+class Ball {
+ public:
+  Ball(const State& state, const BallSettings& settings) : ball_(state, settings) {}
+
+  /// Advances by kPhysicsStep. Robots are discs of robot_radius_m.
+  void step(const Field& field, std::span<const Circle> obstacles, std::span<const Body> robots,
+            double robot_radius_m);
+
+  const State& state() const { return ball_.state(); }
+
+ private:
+  RollingBall ball_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/cameras.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/topics.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kMinRadius_m = 0.001;
+// Slightly below pi, so that no heading wraps.
+constexpr double kMaxGhostHeading_rad = 3.14159265358979;
+
+double confidence(Rng& rng) { return rng.uniform(0.8, 1.0); }
+
+}  // namespace
+
+Cameras::Cameras(const Scenario& scenario, Time begin, std::uint64_t seed)
+    : spec_(scenario.vision), period_(from_seconds(1 / scenario.vision.rate_hz)), rng_(seed) {
+  for (const RobotSpec& robot : scenario.robots) ids_.push_back(robot.id);
+  const Vec2 corner(-scenario.field.length_m / 2, -scenario.field.width_m / 2);
+  const Vec2 share(scenario.field.length_m / spec_.columns, scenario.field.width_m / spec_.rows);
+  const Vec2 overlap = Vec2::Constant(spec_.overlap_m);
+  const int count = spec_.columns * spec_.rows;
+  for (int camera = 0; camera < count; ++camera) {
+    const Vec2 low = corner + share.cwiseProduct(Vec2(camera % spec_.columns, camera / spec_.columns));
+    views_.push_back({low - overlap, low + share + overlap});
+    due_.push_back(begin + period_ * (camera + 1) / count);
+  }
+}
+
+void Cameras::select_next_camera() {
+  next_ = static_cast<std::size_t>(std::min_element(due_.begin(), due_.end()) - due_.begin());
+}
+
+void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFrame& frame) {
+  const std::span<const Body> robots = objects.robots;
+  const Vec2* const ball_m = objects.ball_m;
+  const std::size_t camera = next_;
+  const CameraView& view = views_[camera];
+  do {
+    due_[camera] += period_;
+  } while (due_[camera] <= now);
+  select_next_camera();
+
+  frame.camera(static_cast<std::uint32_t>(camera));
+  frame.captured_at_ns(to_ns(now));
+  frame.robots().clear();
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!robots[i].is_on_floor() || !view.sees(robots[i].position_m()) || rng_.chance(spec_.miss_probability)) continue;
+    msg::RobotDetection seen;
+    seen.robot(ids_[i]);
+    seen.x_m(robots[i].position_m().x() + spec_.position_noise_m * rng_.normal());
+    seen.y_m(robots[i].position_m().y() + spec_.position_noise_m * rng_.normal());
+    seen.heading_rad(wrapped_rad(robots[i].heading_rad() + spec_.heading_noise_rad * rng_.normal()));
+    seen.confidence(confidence(rng_));
+    frame.robots().push_back(seen);
+  }
+  if (rng_.chance(spec_.ghost_probability) && frame.robots().size() < topics::kDetections.type.max_elements) {
+    add_ghost(view, frame);
+  }
+
+  frame.ball_count(0);
+  if (ball_m && view.sees(*ball_m) && !rng_.chance(spec_.miss_probability)) {
+    msg::BallDetection& seen = frame.balls()[0];
+    seen.x_m(ball_m->x() + spec_.position_noise_m * rng_.normal());
+    seen.y_m(ball_m->y() + spec_.position_noise_m * rng_.normal());
+    seen.confidence(confidence(rng_));
+    frame.ball_count(1);
+  }
+  detect_opponents(view, objects.opponents, frame);
+}
+
+void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> opponents,
+                            msg::DetectionFrame& frame) {
+  std::uint8_t count = 0;
+  for (const Circle& opponent : opponents) {
+    if (count == msg::MAX_OBSTACLES) break;
+    if (!view.sees(opponent.centre_m) || rng_.chance(spec_.miss_probability)) continue;
+    msg::ObstacleDetection& seen = frame.obstacles()[count++];
+    seen.x_m(opponent.centre_m.x() + spec_.position_noise_m * rng_.normal());
+    seen.y_m(opponent.centre_m.y() + spec_.position_noise_m * rng_.normal());
+    seen.radius_m(std::max(kMinRadius_m, opponent.radius_m + spec_.position_noise_m * rng_.normal()));
+  }
+  frame.obstacle_count(count);
+}
+
+void Cameras::add_ghost(const CameraView& view, msg::DetectionFrame& frame) {
+  msg::RobotDetection ghost;
+  // Half of the ghosts take the id of an existing robot, which makes them harder to reject.
+  const bool is_known = !ids_.empty() && rng_.chance(0.5);
+  ghost.robot(is_known ? ids_[rng_.below(ids_.size())] : static_cast<RobotId>(rng_.below(kMaxRobots)));
+  ghost.x_m(rng_.uniform(view.low_m.x(), view.high_m.x()));
+  ghost.y_m(rng_.uniform(view.low_m.y(), view.high_m.y()));
+  ghost.heading_rad(rng_.uniform(-kMaxGhostHeading_rad, kMaxGhostHeading_rad));
+  ghost.confidence(confidence(rng_));
+  frame.robots().push_back(ghost);
+}
+
+}  // namespace sidestep

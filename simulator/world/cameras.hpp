@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/random/rng.hpp"
+#include "idl/vision.h"
+#include "simulator/world/body.hpp"
+
+namespace sidestep {
+
+/// The part of the floor that a camera sees.
+struct CameraView {
+  Vec2 low_m;
+  Vec2 high_m;
+  bool sees(const Vec2& p) const {
+    return (p.array() >= low_m.array()).all() && (p.array() <= high_m.array()).all();
+  }
+};
+
+/// The objects on the floor that cameras may detect.
+struct VisibleObjects {
+  std::span<const Body> robots;  ///< in the scenario's order
+  const Vec2* ball_m = nullptr;
+  std::span<const Circle> opponents{};
+};
+
+/// The cameras over the field. They capture in turn, each once per period, and detect robots, ball and
+/// opponents with the noise and dropouts of the scenario's VisionSpec.
+class Cameras {
+ public:
+  Cameras(const Scenario& scenario, Time begin, std::uint64_t seed);
+
+  /// When the next frame is due.
+  Time next_capture() const { return due_[next_]; }
+  /// Captures that frame from the given objects and drops the camera's overdue frames. Sets everything but
+  /// the header.
+  void capture(Time now, const VisibleObjects& objects, msg::DetectionFrame& frame);
+
+  std::span<const CameraView> views() const { return views_; }
+
+ private:
+  void detect_opponents(const CameraView& view, std::span<const Circle> opponents, msg::DetectionFrame& frame);
+  void add_ghost(const CameraView& view, msg::DetectionFrame& frame);
+  void select_next_camera();
+
+  VisionSpec spec_;
+  std::vector<RobotId> ids_;
+  std::vector<CameraView> views_;
+  std::vector<Time> due_;
+  std::size_t next_ = 0;
+  Duration period_;
+  Rng rng_;
+};
+
+}  // namespace sidestep

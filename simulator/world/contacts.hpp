@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/geometry/circle.hpp"
+#include "idl/monitor.h"
+#include "simulator/world/body.hpp"
+
+namespace sidestep {
+
+/// A body's index, and either another body's index or the number of bodies + an obstacle's index.
+struct ContactPair {
+  std::uint32_t first = 0, second = 0;
+};
+
+struct ContactTotals {
+  std::uint64_t contacts = 0;  ///< number of times that a pair began to touch
+  /// The latest contacts: the k-th, counted from 0, at k % MAX_CONTACTS.
+  std::array<ContactPair, msg::MAX_CONTACTS> recent_contacts{};
+  double penetration_m_s = 0;  ///< penetration depth x time
+  double min_clearance_m = 1;  ///< smallest distance between edges; distances above 1 m are not tracked
+};
+
+/// Detects, counts and resolves contacts of robots with each other and with obstacles. A pair is counted
+/// again only after its clearance has exceeded kContactHysteresis_m. Bodies off the floor touch nothing.
+/// Between two searches for neighbours, only pairs near enough to meet before the next search are checked.
+class Contacts {
+ public:
+  Contacts(std::span<const Circle> obstacles, double robot_radius_m, double speed_limit_mps);
+
+  /// Checks the bodies after a physics step and separates those that touch, without restitution.
+  void step(std::span<Body> bodies);
+
+  /// Call when bodies have been lifted, put down or moved: the next step searches for near pairs again.
+  void invalidate_near_pairs() { steps_to_next_search_ = 0; }
+
+  const ContactTotals& totals() const { return totals_; }
+
+  static constexpr double kContactHysteresis_m = 0.001;
+
+ private:
+  struct Pair {
+    std::uint32_t first;
+    std::uint32_t second;  ///< as in ContactPair
+    bool is_touching;
+  };
+  struct Overlap {
+    std::uint32_t first, second;
+    Vec2 normal;  ///< unit vector from the second to the first
+    double depth_m;
+  };
+  void find_near_pairs(std::span<const Body> bodies);
+  void save_touching_pairs();
+  void check_pair(Pair& pair, std::span<const Body> bodies);
+  static void separate(const Overlap& overlap, std::span<Body> bodies);
+
+  std::vector<Circle> obstacles_;
+  double radius_m_;
+  double speed_limit_mps_;
+  std::vector<Pair> near_pairs_;
+  std::vector<Pair> touching_pairs_;
+  std::vector<Overlap> overlaps_;
+  std::vector<std::uint32_t> by_x_;
+  int steps_to_next_search_ = 0;
+  ContactTotals totals_;
+};
+
+}  // namespace sidestep

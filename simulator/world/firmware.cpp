@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/firmware.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kMaxCoordinate_m = 1e4;  // beyond any floor
+constexpr double kMaxInflation_m = 1;
+// Higher values would leave no numbers for later incarnations and versions.
+constexpr Incarnation kMaxIncarnation = Incarnation{1} << 62;
+constexpr VersionNumber kMaxVersionNumber = VersionNumber{1} << 63;
+
+struct CheckedCommand {
+  Incarnation incarnation;
+  Epoch epoch;
+  std::optional<Version> version;
+};
+
+bool is_sane(const msg::PoseFix& fix) {
+  return std::abs(fix.x_m()) < kMaxCoordinate_m && std::abs(fix.y_m()) < kMaxCoordinate_m &&
+         std::isfinite(fix.heading_rad());
+}
+
+// nullopt if any part of the command is invalid for this robot.
+std::optional<CheckedCommand> check(const msg::Command& command, RobotId robot) {
+  CheckedCommand checked{command.header().incarnation(), command.epoch(), std::nullopt};
+  if (command.robot() != robot || command.header().sender() != robot) return std::nullopt;
+  if (checked.incarnation == 0 || checked.incarnation > kMaxIncarnation) return std::nullopt;
+  if (checked.epoch > kMaxEpoch || !std::isfinite(command.desired_heading_rad())) return std::nullopt;
+  if (command.has_fix() && !is_sane(command.fix())) return std::nullopt;
+  if (command.has_version()) {
+    checked.version = decode(command.version());
+    if (!checked.version || checked.version->robot != robot) return std::nullopt;
+    if (checked.version->number == 0 || checked.version->number > kMaxVersionNumber) return std::nullopt;
+    if (checked.version->incarnation > checked.incarnation) return std::nullopt;
+  }
+  return checked;
+}
+
+}  // namespace
+
+Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
+                   const FirmwareSettings& settings)
+    : robot_(robot),
+      executing_{robot, 0, 0, 0, Trajectory::resting(Time{}, start_m)},
+      settings_(settings),
+      decay_(std::exp(-kPhysicsStepSeconds / settings.body.lag_s)),
+      // A command holds for a whole period and so acts half a period late on average.
+      look_ahead_(from_seconds(settings.body.lag_s) + kPhysicsStep / 2),
+      max_position_error_m_(settings.body.acceleration_mps2 *
+                   std::pow(settings.velocity_gain_ps / settings.position_gain_ps2, 2)),
+      estimator_(start_m, heading_rad, now, settings.estimator),
+      target_heading_rad_(heading_rad) {}
+
+void Firmware::on_command(const msg::Command& command, Time now) {
+  while (switch_next(now)) {
+  }
+  const auto checked = check(command, robot_);
+  if (!checked) {
+    ++counts_.refused_malformed;
+    return;
+  }
+  highest_seen_ = std::max({highest_seen_, checked->incarnation, checked->version ? checked->version->number : 0});
+  if (checked->incarnation < obeyed_) {
+    ++counts_.refused_fenced;
+    return;
+  }
+  obey(checked->incarnation);
+  command_stamp_ns_ = command.header().stamp_ns();
+  command_received_at_ = now;
+  // A new agent may not know the epoch that an earlier one has brought. Feedback tells it; until then its
+  // versions are refused.
+  const bool is_old_epoch = checked->epoch < obeyed_epoch_;
+  obeyed_epoch_ = std::max(obeyed_epoch_, checked->epoch);
+  target_heading_rad_ = wrapped_rad(command.desired_heading_rad());
+  if (command.has_fix()) {
+    const auto& fix = command.fix();
+    estimator_.correct(time_from_ns(fix.captured_at_ns()), {fix.x_m(), fix.y_m()}, fix.heading_rad());
+  }
+  if (!checked->version) return;
+  if (is_old_epoch) {
+    ++counts_.refused_fenced;
+  } else {
+    take(*checked->version, now);
+  }
+}
+
+void Firmware::obey(Incarnation incarnation) {
+  if (incarnation == obeyed_) return;
+  obeyed_ = incarnation;
+  for (int i = pending_count_ - 1; i >= 0; --i) {
+    if (pending_[static_cast<std::size_t>(i)].incarnation < obeyed_) {
+      remove_pending(i);
+      ++counts_.refused_fenced;
+    }
+  }
+}
+
+void Firmware::take(const Version& version, Time now) {
+  if (holds(version.number)) return;
+  if (version.incarnation < obeyed_) {
+    ++counts_.refused_fenced;
+  } else if (version.trajectory.start() <= now) {
+    ++counts_.refused_late;
+  } else if (!may_take(version)) {
+    ++counts_.refused_base;  // its base is older than the version being executed
+  } else {
+    insert(version);
+  }
+}
+
+bool Firmware::may_take(const Version& version) const {
+  if (version.number <= highest_executed_) return false;
+  const Trajectory& trajectory = version.trajectory;
+  const bool is_rest_version = trajectory.phases().empty() && trajectory.at_start().velocity_mps.isZero(0);
+  return !is_lifted_ || (version.base == 0 && is_rest_version);
+}
+
+void Firmware::insert(const Version& version) {
+  const auto later = [](const Version& a, const Version& b) {
+    if (a.trajectory.start() != b.trajectory.start()) return a.trajectory.start() > b.trajectory.start();
+    return a.number > b.number;
+  };
+  if (pending_count_ == kMaxPending) {
+    ++counts_.refused_base;
+    if (!later(pending_.back(), version)) return;
+    --pending_count_;
+  }
+  int place = pending_count_;
+  for (; place > 0 && later(pending_[static_cast<std::size_t>(place - 1)], version); --place) {
+    pending_[static_cast<std::size_t>(place)] = pending_[static_cast<std::size_t>(place - 1)];
+  }
+  pending_[static_cast<std::size_t>(place)] = version;
+  ++pending_count_;
+}
+
+void Firmware::remove_pending(int index) {
+  std::move(pending_.begin() + index + 1, pending_.begin() + pending_count_, pending_.begin() + index);
+  --pending_count_;
+}
+
+bool Firmware::holds(VersionNumber number) const {
+  return number == executing_.number ||
+         std::any_of(pending_.begin(), pending_.begin() + pending_count_,
+                     [number](const Version& held) { return held.number == number; });
+}
+
+bool Firmware::switch_next(Time now) {
+  while (pending_count_ > 0 && pending_[0].trajectory.start() <= now) {
+    const Version due = pending_[0];
+    remove_pending(0);
+    if (due.base == executing_.number && due.number > highest_executed_) {
+      executing_ = due;
+      highest_executed_ = due.number;
+      is_off_reference_ = false;
+      ++counts_.activated;
+      return true;
+    }
+    ++counts_.refused_base;
+  }
+  return false;
+}
+
+const Trajectory& Firmware::planned(Time t) const {
+  const Version* planned = &executing_;
+  for (int i = 0; i < pending_count_; ++i) {
+    const Version& held = pending_[static_cast<std::size_t>(i)];
+    if (held.trajectory.start() > t) break;
+    if (held.base == planned->number) planned = &held;
+  }
+  return planned->trajectory;
+}
+
+Actuation Firmware::tick(Time now, const Odometry& odometry) {
+  while (switch_next(now)) {
+  }
+  auto& modelled = modelled_.acceleration_mps2;
+  auto& modelled_angular = modelled_.angular_acceleration_radps2;
+  modelled = last_actuation_.acceleration_mps2 + (modelled - last_actuation_.acceleration_mps2) * decay_;
+  modelled_angular = last_actuation_.angular_acceleration_radps2 +
+                     (modelled_angular - last_actuation_.angular_acceleration_radps2) * decay_;
+  estimator_.advance(now, odometry, modelled, modelled_angular);
+
+  if (is_lifted_) return last_actuation_ = {};
+  const bool may_stop = now > last_fact_ && now > executing_.trajectory.start();
+  if (is_rebooting_ && may_stop) restart(now);
+
+  State reference = executing_.trajectory.state_at(now);
+  if (must_stop(estimator_.position_m() - reference.position_m, now) && may_stop) {
+    start_own_stop(now);
+    reference = executing_.trajectory.at_start();
+  }
+
+  // With a motor lag T, p + T v and v + T a respond to the commanded acceleration as a double integrator
+  // without lag.
+  const double lag = settings_.body.lag_s;
+  const Motion ahead = planned(now + look_ahead_).motion_at(now + look_ahead_);
+  Vec2 position_error = reference.position_m + lag * reference.velocity_mps -
+                       (estimator_.position_m() + lag * estimator_.velocity_mps());
+  // With these gains both the speed of the approach and its deceleration are proportional to the distance.
+  // The distance is clamped so that the motors can provide that deceleration; without the clamp a robot far
+  // from its reference would overshoot and oscillate about it.
+  if (position_error.squaredNorm() > max_position_error_m_ * max_position_error_m_)
+    position_error *= max_position_error_m_ / position_error.norm();
+  const Vec2 velocity_error = ahead.state.velocity_mps - (estimator_.velocity_mps() + lag * modelled);
+  Vec2 acceleration = ahead.acceleration_mps2 + settings_.position_gain_ps2 * position_error +
+                settings_.velocity_gain_ps * velocity_error;
+  const double max_acceleration = settings_.body.acceleration_mps2;
+  if (acceleration.squaredNorm() > max_acceleration * max_acceleration) acceleration *= max_acceleration / acceleration.norm();
+
+  double heading_error = target_heading_rad_ - estimator_.heading_rad();
+  if (std::abs(heading_error) > 3) heading_error = wrapped_rad(heading_error);
+  const double turn_rate = std::clamp(settings_.heading_gain_ps * heading_error, -settings_.turning_speed_radps,
+                                 settings_.turning_speed_radps);
+  const double max_angular = settings_.body.angular_acceleration_radps2;
+  last_actuation_ = {acceleration, std::clamp(settings_.turning_gain_ps * (turn_rate - estimator_.angular_radps()),
+                                   -max_angular, max_angular)};
+  return last_actuation_;
+}
+
+// The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
+// because no camera sees it.
+bool Firmware::is_beyond_bound(const Vec2& error_m) const {
+  const double half = 0.5 * settings_.tracking_bound_m;
+  if (error_m.squaredNorm() < half * half) return false;
+  const double allowed = settings_.tracking_bound_m + executing_.inflation_m;
+  return error_m.norm() + std::min(2 * estimator_.position_error_rms_m(), half) > allowed;
+}
+
+// A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
+// the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
+// control cannot correct in time.
+bool Firmware::must_stop(const Vec2& error_m, Time now) {
+  if (!is_beyond_bound(error_m)) {
+    out_of_bound_since_ = Time::max();
+    return false;
+  }
+  out_of_bound_since_ = std::min(out_of_bound_since_, now);
+  return now - out_of_bound_since_ >= kMaxRecovery || estimator_.jump_m() > 0 ||
+         error_m.norm() > 2 * settings_.tracking_bound_m + executing_.inflation_m;
+}
+
+void Firmware::start_own_stop(Time now) {
+  out_of_bound_since_ = Time::max();
+  Version stop;
+  stop.robot = robot_;
+  stop.incarnation = obeyed_;
+  highest_seen_ = std::max(highest_seen_, highest_executed_) + kOwnNumberGap;
+  stop.number = highest_seen_;
+  stop.base = executing_.number;
+  stop.trajectory = Trajectory(now, {estimator_.position_m(), estimator_.velocity_mps()});
+  append_stop(stop.trajectory, settings_.deceleration_mps2);
+  // The cause of the displacement may act again before the next fix.
+  stop.inflation_m = std::min(2 * estimator_.position_error_rms_m() + estimator_.jump_m(), kMaxInflation_m);
+  executing_ = stop;
+  highest_executed_ = stop.number;
+  is_off_reference_ = true;
+  pending_count_ = 0;
+  ++counts_.own_stops;
+}
+
+void Firmware::lift(Time now) {
+  is_lifted_ = true;
+  is_rebooting_ = false;
+  is_off_reference_ = false;
+  pending_count_ = 0;
+  executing_ = {robot_, 0, 0, 0, Trajectory::resting(now, estimator_.position_m()), 0};
+}
+
+void Firmware::put_down(double heading_rad, Time now) {
+  is_lifted_ = false;
+  target_heading_rad_ = heading_rad;
+  estimator_ = PoseEstimator(executing_.trajectory.rest_position_m(), heading_rad, now, settings_.estimator);
+  last_actuation_ = modelled_ = {};
+}
+
+void Firmware::restart(Time now) {
+  Firmware again(robot_, estimator_.position_m(), estimator_.heading_rad(), now, settings_);
+  again.estimator_ = estimator_;
+  again.obeyed_ = obeyed_;
+  again.obeyed_epoch_ = obeyed_epoch_;
+  again.highest_seen_ = highest_seen_;
+  again.highest_executed_ = highest_executed_;
+  again.executing_ = executing_;
+  again.last_fact_ = last_fact_;
+  *this = again;
+  start_own_stop(now);
+}
+
+msg::Feedback Firmware::feedback(Time now) {
+  while (switch_next(now)) {
+  }
+  last_fact_ = std::max(last_fact_, now);
+  const Vec2 position =
+      estimator_.position_m() + estimator_.velocity_mps() * to_seconds(now - estimator_.time());
+  const Vec2 reference = executing_.trajectory.state_at(now).position_m;
+  msg::Feedback facts;
+  facts.robot(robot_);
+  facts.obeyed_incarnation(obeyed_);
+  facts.obeyed_epoch(obeyed_epoch_);
+  facts.valid_at_ns(to_ns(now));
+  facts.executing(encode(executing_));
+  facts.is_off_reference(is_off_reference_);
+  facts.is_lifted(is_lifted_);
+  facts.command_stamp_ns(command_stamp_ns_);
+  facts.command_received_at_ns(to_ns(command_received_at_));
+  facts.x_m(position.x());
+  facts.y_m(position.y());
+  facts.vx_mps(estimator_.velocity_mps().x());
+  facts.vy_mps(estimator_.velocity_mps().y());
+  facts.heading_rad(wrapped_rad(estimator_.heading_rad()));
+  facts.tracking_error_m((position - reference).norm());
+  facts.position_error_rms_m(estimator_.position_error_rms_m());
+  facts.odometry_scale_stddev(estimator_.odometry_scale_stddev());
+  facts.activated(counts_.activated);
+  facts.refused_late(counts_.refused_late);
+  facts.refused_base(counts_.refused_base);
+  facts.refused_fenced(counts_.refused_fenced);
+  facts.refused_malformed(counts_.refused_malformed);
+  return facts;
+}
+
+}  // namespace sidestep

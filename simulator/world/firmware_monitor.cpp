@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/firmware_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+constexpr double kMaxInflation_m = 1;
+
+// Commands with higher numbers are refused as malformed.
+std::uint64_t acceptable_number(std::uint64_t number) { return number <= std::uint64_t{1} << 62 ? number : 0; }
+
+}  // namespace
+
+void FirmwareMonitor::command_arrived(const msg::Command& command, Time now) {
+  const auto& version = command.version();
+  highest_seen_ = std::max(highest_seen_, acceptable_number(command.header().incarnation()));
+  if (command.has_version()) highest_seen_ = std::max(highest_seen_, acceptable_number(version.version_number()));
+  const bool is_old_epoch = command.epoch() < acknowledged_epoch_;
+  if (!command.has_version() || is_old_epoch || version.start_ns() <= to_ns(now)) return;
+  const Arrival arrival{version.version_number(), version.base(), version.incarnation(),
+                        time_from_ns(version.start_ns())};
+  if (arrival.number <= highest_arrived_ && arrived_in_time(arrival)) return;
+  highest_arrived_ = std::max(highest_arrived_, arrival.number);
+  arrivals_[static_cast<std::size_t>(arrival_count_++ % arrivals_.size())] = arrival;
+}
+
+bool FirmwareMonitor::arrived_in_time(const Arrival& wanted) const {
+  // From the latest backwards, since nearly always the latest matches.
+  for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(arrival_count_, arrivals_.size()); ++back) {
+    if (arrivals_[static_cast<std::size_t>((arrival_count_ - back) % arrivals_.size())] == wanted)
+      return true;
+  }
+  return false;
+}
+
+void FirmwareMonitor::switched(const Version& to) {
+  check_rule(to.base == executing_.number);
+  check_rule(to.number > highest_executed_);
+  check_rule(arrived_in_time({to.number, to.base, to.incarnation, to.trajectory.start()}));
+  check_rule(to.incarnation >= executing_.incarnation && to.incarnation >= acknowledged_);
+  check_rule(to.trajectory.start() > last_fact_);
+  const State& begin = to.trajectory.at_start();
+  if (is_lifted_) {
+    // A single rest version, at the place where the robot will be put down.
+    check_rule(executing_.number == 0 && to.trajectory.phases().empty() && begin.velocity_mps.norm() == 0);
+  } else {
+    const State previous = executing_.trajectory.state_at(to.trajectory.start());
+    check_rule((begin.position_m - previous.position_m).norm() <= kMaxPositionJump_m &&
+            (begin.velocity_mps - previous.velocity_mps).norm() <= kMaxVelocityJump_mps);
+  }
+  executing_ = to;
+  highest_executed_ = to.number;
+  is_own_ = false;
+}
+
+bool FirmwareMonitor::is_own_stop(const Trajectory& stop) const {
+  const Vec2& velocity = stop.at_start().velocity_mps;
+  if (stop.phases().empty()) return velocity.norm() < 1e-9;
+  if (stop.phases().size() > 1) return false;
+  const Vec2& braking = stop.phases()[0].acceleration_mps2;
+  return std::abs(cross(velocity, braking)) <= 1e-9 * velocity.norm() && velocity.dot(braking) < 0 &&
+         std::abs(braking.norm() - deceleration_mps2_) <= 1e-3 * deceleration_mps2_ &&
+         stop.residual_speed_mps() < 1e-6;
+}
+
+void FirmwareMonitor::started_own_stop(const Version& to) {
+  check_rule(!is_lifted_);
+  check_rule(to.base == executing_.number);
+  check_rule(to.number > highest_executed_ && to.number > highest_seen_);
+  check_rule(to.incarnation >= acknowledged_ && to.incarnation <= highest_seen_);
+  check_rule(to.trajectory.start() > last_fact_ && to.trajectory.start() > executing_.trajectory.start());
+  check_rule(is_own_stop(to.trajectory));
+  check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
+  // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the bound.
+  const State reference = executing_.trajectory.state_at(to.trajectory.start());
+  const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
+  check_rule(expects_reboot_stop_ || error_m >= 0.5 * tracking_bound_m_ + executing_.inflation_m);
+  expects_reboot_stop_ = false;
+  executing_ = to;
+  highest_executed_ = to.number;
+  is_own_ = true;
+}
+
+void FirmwareMonitor::lifted() {
+  executing_ = Version{};
+  is_lifted_ = true;
+  is_own_ = false;
+}
+
+void FirmwareMonitor::put_down() {
+  check_rule(is_lifted_ && executing_.number > 0);
+  is_lifted_ = false;
+}
+
+void FirmwareMonitor::reported(const msg::Feedback& fact) {
+  check_rule(fact.executing().version_number() == executing_.number);
+  check_rule(fact.is_off_reference() == is_own_ && fact.is_lifted() == is_lifted_);
+  check_rule(fact.obeyed_incarnation() >= acknowledged_ && fact.obeyed_epoch() >= acknowledged_epoch_);
+  check_rule(is_lifted_ || executing_.trajectory.start() <= time_from_ns(fact.valid_at_ns()));
+  check_rule(fact.command_received_at_ns() <= fact.valid_at_ns());
+  acknowledged_ = std::max(acknowledged_, static_cast<Incarnation>(fact.obeyed_incarnation()));
+  acknowledged_epoch_ = std::max(acknowledged_epoch_, static_cast<Epoch>(fact.obeyed_epoch()));
+  last_fact_ = std::max(last_fact_, time_from_ns(fact.valid_at_ns()));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/motion/limits.hpp"
+#include "common/motion/safety_budget.hpp"
+#include "common/motion/version.hpp"
+#include "idl/robot.h"
+
+namespace sidestep {
+
+/// Observes one robot's firmware from outside and counts the rules that it breaks (coordinator/PROTOCOL.md,
+/// "Roles"). Shares no code with the firmware: it is told of commands received, versions begun and
+/// facts reported. All times are by the robot's clock.
+class FirmwareMonitor {
+ public:
+  explicit FirmwareMonitor(const Version& initial, double tracking_bound_m = SafetyBudget{}.tracking_bound_m,
+                           double deceleration_mps2 = MotionLimits{}.deceleration_mps2)
+      : executing_(initial), tracking_bound_m_(tracking_bound_m), deceleration_mps2_(deceleration_mps2) {}
+
+  void command_arrived(const msg::Command& command, Time now);
+  void switched(const Version& to);
+  /// The firmware executes a stop of its own.
+  void started_own_stop(const Version& to);
+  void reported(const msg::Feedback& fact);
+  /// Disturbances of the robot.
+  void lifted();
+  void put_down();
+  void rebooted() { expects_reboot_stop_ = true; }
+
+  std::uint64_t violations() const { return violations_; }
+
+  static constexpr double kMaxPositionJump_m = 0.001;
+  static constexpr double kMaxVelocityJump_mps = 0.05;
+
+ private:
+  struct Arrival {
+    VersionNumber number = 0;
+    VersionNumber base = 0;
+    Incarnation incarnation = 0;
+    Time start{};
+    bool operator==(const Arrival&) const = default;
+  };
+  bool arrived_in_time(const Arrival& wanted) const;
+  bool is_own_stop(const Trajectory& stop) const;
+  void check_rule(bool is_kept) { violations_ += is_kept ? 0 : 1; }
+
+  Version executing_;
+  bool is_own_ = false;  ///< executing a stop of its own
+  bool is_lifted_ = false;
+  bool expects_reboot_stop_ = false;  ///< rebooted, with the stop of its own still to come
+  VersionNumber highest_executed_ = 0;
+  std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
+  Incarnation acknowledged_ = 0;    ///< highest reported in a fact
+  Epoch acknowledged_epoch_ = 0;
+  Time last_fact_ = Time::min();
+  std::array<Arrival, 64> arrivals_{};  ///< ring buffer of versions that arrived before their start
+  std::uint64_t arrival_count_ = 0;
+  VersionNumber highest_arrived_ = 0;
+  std::uint64_t violations_ = 0;
+  double tracking_bound_m_;
+  double deceleration_mps2_;
+};
+
+}  // namespace sidestep

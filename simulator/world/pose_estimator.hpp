@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/vec2.hpp"
+#include "common/time/time.hpp"
+#include "simulator/world/body.hpp"
+
+namespace sidestep {
+
+/// The wheel encoders' measurement over the last control period, in the world frame.
+struct Odometry {
+  Vec2 velocity_mps{0, 0};
+  double angular_radps = 0;
+};
+
+/// The robot's sensor model; all values are standard deviations.
+struct EstimatorSettings {
+  double velocity_noise_mps = 0.01;  ///< of one odometry measurement, per axis
+  double scale_error = 0.005;        ///< of the odometry's constant relative error
+  double fix_noise_m = 0.0005;       ///< of a fix, per axis
+};
+
+/// A robot's estimate of its own pose: dead reckoning from the last fix, with a Kalman filter over position
+/// and odometry scale that is updated at the fixes' capture times. Starts from the true pose, since robots
+/// begin at known positions.
+class PoseEstimator {
+ public:
+  PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings);
+
+  /// Integrates the measurement over the control period that ends now; the accelerations are those of the
+  /// motor model. A gap in time clears the history, so that fixes from before it are refused.
+  void advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
+               double angular_acceleration_radps2);
+
+  /// Corrects the estimate with a fix from vision. False, and nothing changes, if the fix is not finite, from
+  /// the future, older than kHistoryPeriods, or not newer than the last one.
+  ///
+  /// Fixes that agree with each other but not with the odometry show that the robot was displaced without its
+  /// wheels measuring it; the estimate then follows the fixes.
+  bool correct(Time captured_at, const Vec2& position_m, double heading_rad);
+
+  Time time() const { return time_; }
+  Vec2 position_m() const { return anchor_m_ + (odometry_m_ - anchor_odometry_m_) * (1 - scale_); }
+  const Vec2& velocity_mps() const { return velocity_mps_; }
+  /// Unwrapped: counts full turns.
+  double heading_rad() const { return heading_anchor_rad_ + turned_rad_; }
+  double angular_radps() const { return angular_radps_; }
+  /// Estimated relative error of the odometry, whose measurements are approximately (1 + scale_error) x
+  /// truth.
+  double scale_error() const { return scale_; }
+  /// The filter's estimate of the root mean square distance from the truth.
+  double position_error_rms_m() const;
+  /// The filter's estimate of scale_error()'s standard deviation.
+  double odometry_scale_stddev() const { return std::sqrt(std::max(0.0, covariance_(2, 2))); }
+  /// The displacement, unmeasured by the wheels, that the last fix showed; 0 if none.
+  double jump_m() const { return jump_m_; }
+
+  static constexpr std::int64_t kHistoryPeriods = 512;
+
+ private:
+  struct Sample {
+    Vec2 odometry_m{0, 0};  ///< integrated since the creation
+    double turned_rad = 0;  ///< the same
+  };
+  /// A fix's difference from the prediction.
+  struct Innovation {
+    Vec2 offset_m{0, 0};
+    double variance_m2 = 0;  ///< expected, per axis
+  };
+  bool detect_displacement(const Innovation& latest);
+  Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
+
+  std::vector<Sample> history_;  ///< ring buffer with one sample per control period
+  std::int64_t count_ = 0;    ///< samples since the creation or the last gap
+
+  Time time_;
+  Vec2 odometry_m_{0, 0};
+  double turned_rad_ = 0;
+  Vec2 velocity_mps_{0, 0};
+  double angular_radps_ = 0;
+
+  Time anchor_time_;  ///< capture of the last fix
+  Vec2 anchor_m_;
+  Vec2 anchor_odometry_m_{0, 0};
+  double scale_ = 0;
+  Eigen::Matrix3d covariance_;  ///< of position at the anchor and scale
+  double heading_anchor_rad_;   ///< heading when turned_rad_ was 0
+  double jump_m_ = 0;
+  std::array<Innovation, 3> recent_innovations_;  ///< latest first, before clamping
+  EstimatorSettings settings_;
+};
+
+}  // namespace sidestep

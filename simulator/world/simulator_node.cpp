@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/simulator_node.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/senders.hpp"
+#include "simulator/world/disturbance_check.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kWakePeriod = milliseconds(4);
+constexpr Duration kTruthPeriod{16'666'667};
+// After a longer delay of this process all robots have come to rest: time beyond it is skipped.
+constexpr Duration kMaxCatchUp = milliseconds(5000);
+constexpr Duration kFrameExpiry = milliseconds(200);
+// Version starts farther ahead than this get no timer; the periodic wake-up handles them.
+constexpr Duration kMaxTimerAhead = milliseconds(200);
+
+}  // namespace
+
+SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed)
+    : bus_(bus),
+      cycle_(scenario.cycle),
+      delay_(scenario.vision.delay),
+      command_loss_(scenario.command_loss),
+      publishes_detections_(!scenario.vision.images),
+      field_(scenario.field),
+      radius_m_(scenario.radius_m),
+      incarnation_(incarnation),
+      clock_(bus.now()),
+      world_(scenario, bus.now(), seed),
+      cameras_(scenario, bus.now(), Rng(seed + 1).bits()),
+      radio_rng_(Rng(seed + 2).bits()),
+      detections_(bus.advertise(topics::kDetections)),
+      truth_(bus.advertise(topics::kTruth)),
+      truth_due_(bus.now()) {
+  const Time begin = bus.now();
+  const std::size_t count = world_.robot_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    robot_index_[world_.id(i)] = i;
+    watched_start_.push_back(begin);
+    feedback_.push_back(bus.advertise(topics::kFeedback, world_.id(i)));
+    feedback_due_.push_back(begin +
+                            cycle_ * static_cast<Duration::rep>(i) / static_cast<Duration::rep>(count));
+    bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
+                                [this, i](const msg::Command& command) { on_command(i, command); });
+  }
+  bus.subscribe<msg::Disturbance>(topics::kDisturbance,
+                                  [this](const msg::Disturbance& disturbance) { on_disturbance(disturbance); });
+  bus.at(begin, [this] { wake(); });
+}
+
+// Never goes back, although a host's clock may: reported facts stay true.
+Time SimulatorNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
+
+void SimulatorNode::wake() {
+  const Time now = clock();
+  advance(now);
+  for (std::size_t i = 0; i < feedback_.size(); ++i) {
+    if (feedback_due_[i] <= now) publish_feedback(i, now);
+  }
+  if (truth_due_ <= now) publish_truth(now);
+  publish_frames();
+  bus_.at(bus_.now() + kWakePeriod, [this] { wake(); });
+}
+
+void SimulatorNode::advance(Time now) {
+  if (now - world_.time() > kMaxCatchUp) {
+    world_.advance(world_.time() + kMaxCatchUp);
+    world_.skip_to(now);
+  }
+  while (cameras_.next_capture() <= now) {
+    world_.advance(cameras_.next_capture());
+    capture_frame(now);
+  }
+  world_.advance(now);
+  publish_pending_feedback(now);
+}
+
+void SimulatorNode::on_command(std::size_t robot, const msg::Command& command) {
+  if (radio_rng_.chance(command_loss_)) return;
+  const Time now = clock();
+  advance(now);
+  world_.on_command(robot, command, now);
+  publish_pending_feedback(now);
+  watch_start(robot, now);
+}
+
+void SimulatorNode::on_disturbance(const msg::Disturbance& disturbance) {
+  const Time now = clock();
+  advance(now);
+  const auto robot = robot_index_.find(disturbance.robot());
+  if (robot == robot_index_.end() || !is_valid(disturbance, field_, radius_m_) ||
+      !world_.disturb(robot->second, disturbance, now)) {
+    ++disturbances_refused_;
+    return;
+  }
+  publish_pending_feedback(now);
+  watch_start(robot->second, now);
+}
+
+void SimulatorNode::watch_start(std::size_t robot, Time now) {
+  const Time start = world_.next_start(robot);
+  if (start == watched_start_[robot] || start - now > kMaxTimerAhead) return;
+  watched_start_[robot] = start;
+  bus_.at(start, [this, robot] { on_start(robot); });
+}
+
+void SimulatorNode::on_start(std::size_t robot) {
+  const Time now = clock();
+  advance(now);
+  if (world_.next_start(robot) > now) return;
+  publish_feedback(robot, now);
+}
+
+void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
+  msg::Feedback facts = world_.feedback(robot, now);
+  facts.header().sender(world_.id(robot));
+  facts.header().incarnation(incarnation_);
+  feedback_[robot].publish(facts, now);
+  feedback_due_[robot] = now + cycle_;
+  world_.clear_pending_feedback(robot);
+  watch_start(robot, now);
+}
+
+void SimulatorNode::publish_pending_feedback(Time now) {
+  while (!world_.pending_feedback().empty()) publish_feedback(world_.pending_feedback().back(), now);
+}
+
+void SimulatorNode::publish_truth(Time now) {
+  world_.fill(truth_message_);
+  truth_message_.simulator(static_cast<std::uint32_t>(Sender::kSimulator));
+  truth_message_.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
+  truth_message_.header().incarnation(incarnation_);
+  truth_.publish(truth_message_, now);
+  truth_due_ = std::max(truth_due_ + kTruthPeriod, now);
+}
+
+void SimulatorNode::capture_frame(Time now) {
+  auto slot = std::find_if(frames_.begin(), frames_.end(), [](const PendingFrame& f) { return !f.is_waiting; });
+  if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
+  const Time captured_at = world_.time();
+  const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
+  cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs()}, slot->message);
+  slot->publish_at = captured_at + delay_;
+  if (slot->publish_at + kFrameExpiry < now) return;
+  if (capture_listener_) capture_listener_(slot->message.camera(), captured_at);
+  slot->is_waiting = true;
+  bus_.at(slot->publish_at, [this] { publish_frames(); });
+}
+
+void SimulatorNode::publish_frames() {
+  const Time now = clock();
+  for (PendingFrame& frame : frames_) {
+    if (!frame.is_waiting || frame.publish_at > now) continue;
+    frame.message.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
+    frame.message.header().incarnation(incarnation_);
+    if (publishes_detections_) detections_.publish(frame.message, now);
+    if (detection_listener_) detection_listener_(frame.message);
+    frame.is_waiting = false;
+  }
+}
+
+}  // namespace sidestep

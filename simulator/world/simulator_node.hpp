@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/random/rng.hpp"
+#include "simulator/world/cameras.hpp"
+#include "simulator/world/world.hpp"
+
+namespace sidestep {
+
+/// The simulator on a bus. It receives commands over a lossy radio and disturbances, advances the world to
+/// the bus's time, and publishes robots' feedback, ground truth for metrics and audit, and detections unless
+/// the scenario asks for images. The bus must make no callback after the node's destruction.
+class SimulatorNode {
+ public:
+  SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed);
+  SimulatorNode(const SimulatorNode&) = delete;
+  SimulatorNode& operator=(const SimulatorNode&) = delete;
+
+  const World& world() const { return world_; }
+  const Cameras& cameras() const { return cameras_; }
+  /// Sets a callback for the moment at which a camera captures a frame; the world is then in the captured
+  /// state.
+  void set_capture_listener(std::function<void(std::uint32_t camera, Time captured_at)> listener) {
+    capture_listener_ = std::move(listener);
+  }
+  /// Sets a callback for each frame's detections when they are due, whether the node publishes them or not.
+  void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
+    detection_listener_ = std::move(listener);
+  }
+  /// Number of disturbances that were invalid or that the robot's state did not allow.
+  std::uint64_t disturbances_refused() const { return disturbances_refused_; }
+
+ private:
+  struct PendingFrame {
+    bool is_waiting = false;
+    Time publish_at{};
+    msg::DetectionFrame message;
+  };
+  Time clock();
+  void wake();
+  void advance(Time now);
+  void on_command(std::size_t robot, const msg::Command& command);
+  void on_disturbance(const msg::Disturbance& disturbance);
+  void watch_start(std::size_t robot, Time now);
+  void on_start(std::size_t robot);
+  void publish_feedback(std::size_t robot, Time now);
+  void publish_pending_feedback(Time now);
+  void publish_truth(Time now);
+  void capture_frame(Time now);
+  void publish_frames();
+
+  Bus& bus_;
+  Duration cycle_;
+  Duration delay_;
+  double command_loss_;
+  bool publishes_detections_;
+  Field field_;
+  double radius_m_;
+  Incarnation incarnation_;
+  Time clock_;
+  World world_;
+  Cameras cameras_;
+  Rng radio_rng_;
+  std::uint64_t disturbances_refused_ = 0;
+
+  std::unordered_map<RobotId, std::size_t> robot_index_;
+  std::vector<Writer<msg::Feedback>> feedback_;
+  std::vector<Time> feedback_due_;
+  std::vector<Time> watched_start_;  ///< per robot, the version start for which a timer is set
+  Writer<msg::DetectionFrame> detections_;
+  std::vector<PendingFrame> frames_;
+  std::function<void(const msg::DetectionFrame&)> detection_listener_;
+  std::function<void(std::uint32_t, Time)> capture_listener_;
+  Writer<msg::GroundTruth> truth_;
+  msg::GroundTruth truth_message_;
+  Time truth_due_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/world.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+FirmwareSettings firmware_settings(const Scenario& scenario) {
+  FirmwareSettings settings;
+  settings.estimator.velocity_noise_mps = scenario.odometry.velocity_noise_mps;
+  settings.estimator.scale_error = scenario.odometry.scale_error;
+  settings.estimator.fix_noise_m = scenario.vision.position_noise_m;
+  settings.tracking_bound_m = scenario.tracking_bound_m;
+  settings.deceleration_mps2 = scenario.limits.deceleration_mps2;
+  return settings;
+}
+
+// Approximately standard normal, from one random number: the sum of four uniform ones (Irwin-Hall
+// distribution). Integrating the odometry hides the shape of its distribution, and this takes a tenth of
+// Rng::normal()'s time.
+double approximately_normal(Rng& rng) {
+  const std::uint64_t bits = rng.bits();
+  const std::uint64_t sum = (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
+  return (static_cast<double>(sum) - 2 * 65535.0) * (1.7320508075688772 / 65536);
+}
+
+}  // namespace
+
+World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
+    : field_(scenario.field),
+      obstacles_(scenario.obstacles),
+      radius_m_(scenario.radius_m),
+      velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
+      time_(begin),
+      contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps),
+      opponents_(scenario.opponents, scenario.radius_m, BodySettings{}.speed_mps) {
+  Rng rng(seed);
+  const FirmwareSettings settings = firmware_settings(scenario);
+  bodies_.reserve(scenario.robots.size());
+  robots_.reserve(scenario.robots.size());
+  pending_feedback_.reserve(scenario.robots.size());
+  for (const RobotSpec& spec : scenario.robots) {
+    bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
+    const Time clock = begin + spec.clock_offset;
+    Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, clock, settings);
+    const FirmwareMonitor monitor(firmware.executing(), settings.tracking_bound_m, settings.deceleration_mps2);
+    Rng noise = rng.fork();
+    const double scale = 1 + scenario.odometry.scale_error * noise.normal();
+    robots_.push_back({spec.id,
+                       std::move(firmware),
+                       monitor,
+                       noise,
+                       scale,
+                       {},
+                       spec.start_m,
+                       spec.start_heading_rad,
+                       spec.clock_offset,
+                       clock});
+    if (spec.is_absent) lift(robots_.size() - 1, begin);
+  }
+  if (scenario.ball)
+    ball_.emplace(State{scenario.ball->position_m, scenario.ball->velocity_mps}, BallSettings{});
+}
+
+void World::advance(Time to) {
+  while (to - time_ >= kPhysicsStep) step();
+}
+
+void World::step() {
+  time_ += kPhysicsStep;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].actuation);
+  contacts_.step(bodies_);
+  if (!opponents_.empty()) opponents_.step(bodies_);
+  if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
+  if (!active_disturbances_.empty()) end_disturbances();
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    Robot& robot = robots_[i];
+    const Time now = robot_time(i, time_);
+    switch_versions(i, now);
+    robot.actuation = robot.firmware.tick(now, measure(i));
+    if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.last_own_stop) {
+      robot.last_own_stop = robot.firmware.executing().number;
+      robot.monitor.started_own_stop(robot.firmware.executing());
+      request_feedback(i);
+    }
+  }
+}
+
+// A clock that is set back stands still until the new time has caught up with it, so that reported facts stay
+// true.
+Time World::robot_time(std::size_t index, Time now) {
+  Robot& robot = robots_[index];
+  return robot.clock = std::max(robot.clock, now + robot.clock_offset);
+}
+
+Time World::next_start(std::size_t index) const {
+  const Time start = robots_[index].firmware.next_start();
+  return start == Time::max() ? start : start - robots_[index].clock_offset;
+}
+
+Odometry World::measure(std::size_t index) {
+  Robot& robot = robots_[index];
+  const Body& body = bodies_[index];
+  const Vec2 rolled_position = body.rolled_position_m();
+  const Vec2 velocity = (rolled_position - robot.last_position_m) / kPhysicsStepSeconds;
+  const double angular = (body.heading_rad() - robot.last_heading_rad) / kPhysicsStepSeconds;
+  robot.last_position_m = rolled_position;
+  robot.last_heading_rad = body.heading_rad();
+  const double x_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
+  const double y_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
+  // The wheels are at the rim, where a rotation with this noise moves them as fast as the noise of the
+  // velocity.
+  const double angular_noise = velocity_noise_mps_ / radius_m_ * approximately_normal(robot.noise);
+  return {robot.odometry_scale * velocity + Vec2(x_noise, y_noise),
+          robot.odometry_scale * angular + angular_noise};
+}
+
+void World::switch_versions(std::size_t index, Time now) {
+  Robot& robot = robots_[index];
+  if (robot.firmware.next_start() > now) return;
+  while (robot.firmware.switch_next(now)) {
+    robot.monitor.switched(robot.firmware.executing());
+    request_feedback(index);
+  }
+}
+
+void World::request_feedback(std::size_t index) {
+  if (robots_[index].has_pending_feedback) return;
+  robots_[index].has_pending_feedback = true;
+  pending_feedback_.push_back(static_cast<std::uint32_t>(index));
+}
+
+void World::clear_pending_feedback(std::size_t index) {
+  if (!robots_[index].has_pending_feedback) return;
+  robots_[index].has_pending_feedback = false;
+  std::erase(pending_feedback_, static_cast<std::uint32_t>(index));
+}
+
+void World::on_command(std::size_t index, const msg::Command& command, Time now) {
+  Robot& robot = robots_[index];
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  robot.monitor.command_arrived(command, clock);
+  const Incarnation obeyed = robot.firmware.obeyed_incarnation();
+  const Epoch epoch = robot.firmware.obeyed_epoch();
+  robot.firmware.on_command(command, clock);
+  if (robot.firmware.obeyed_incarnation() != obeyed || robot.firmware.obeyed_epoch() != epoch)
+    request_feedback(index);
+}
+
+msg::Feedback World::feedback(std::size_t index, Time now) {
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  msg::Feedback facts = robots_[index].firmware.feedback(clock);
+  robots_[index].monitor.reported(facts);
+  return facts;
+}
+
+std::uint64_t World::firmware_violations() const {
+  std::uint64_t sum = 0;
+  for (const Robot& robot : robots_) sum += robot.monitor.violations();
+  return sum;
+}
+
+double World::reference_error_m(std::size_t index) const {
+  const Robot& robot = robots_[index];
+  if (robot.firmware.is_lifted()) return 0;
+  const Time now = std::max(robot.clock, time_ + robot.clock_offset);
+  const State reference = robot.firmware.executing().trajectory.state_at(now);
+  return (bodies_[index].position_m() - reference.position_m).norm();
+}
+
+void World::fill(msg::GroundTruth& truth) const {
+  truth.valid_at_ns(to_ns(time_));
+  truth.contacts(contacts().contacts);
+  for (std::size_t i = 0; i < std::min<std::size_t>(contacts().contacts, msg::MAX_CONTACTS); ++i) {
+    const ContactPair& contact = contacts().recent_contacts[i];
+    truth.recent_contacts()[i].first(robots_[contact.first].id);
+    truth.recent_contacts()[i].second(contact.second < robots_.size() ? robots_[contact.second].id : msg::NO_ROBOT);
+  }
+  truth.penetration_m_s(contacts().penetration_m_s);
+  truth.min_clearance_m(contacts().min_clearance_m);
+  truth.firmware_violations(firmware_violations());
+  const CrashTotals& crashes = opponents_.totals();
+  truth.crashes(crashes.crashes);
+  truth.crashes_while_moving(crashes.crashes_while_moving);
+  truth.max_crash_speed_mps(crashes.max_crash_speed_mps);
+  truth.max_robot_crash_speed_mps(crashes.max_robot_crash_speed_mps);
+  const Vec2 ball = ball_ ? ball_->state().position_m : Vec2(0, 0);
+  truth.ball_x_m(ball.x());
+  truth.ball_y_m(ball.y());
+  std::size_t count = 0;
+  truth.robots().resize(robots_.size());
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    if (!bodies_[i].is_on_floor()) continue;
+    msg::TrueRobotState& robot = truth.robots()[count++];
+    robot.robot(robots_[i].id);
+    robot.x_m(bodies_[i].position_m().x());
+    robot.y_m(bodies_[i].position_m().y());
+    robot.heading_rad(wrapped_rad(bodies_[i].heading_rad()));
+    robot.vx_mps(bodies_[i].velocity_mps().x());
+    robot.vy_mps(bodies_[i].velocity_mps().y());
+    robot.reference_error_m(reference_error_m(i));
+    const std::optional<Time> end = disturbance_end(i);
+    robot.disturbance_end_ns(end ? to_ns(*end) : -1);
+  }
+  truth.robots().resize(count);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/random/rng.hpp"
+#include "idl/disturbance.h"
+#include "idl/monitor.h"
+#include "idl/robot.h"
+#include "simulator/world/ball.hpp"
+#include "simulator/world/body.hpp"
+#include "simulator/world/contacts.hpp"
+#include "simulator/world/firmware.hpp"
+#include "simulator/world/firmware_monitor.hpp"
+#include "simulator/world/opponents.hpp"
+
+namespace sidestep {
+
+/// The simulated floor: all bodies with their firmware, the ball, the obstacles and the opponents, in steps
+/// of kPhysicsStep. Robots are addressed by their index in the scenario. Times are by the host's clock; each
+/// robot's own clock is ahead of it by an offset that only a disturbance changes.
+class World {
+ public:
+  World(const Scenario& scenario, Time begin, std::uint64_t seed);
+
+  /// Steps for as long as a whole step fits before `to`.
+  void advance(Time to);
+  /// Skips time without simulating it; pose estimators then discard their odometry history.
+  void skip_to(Time to) { time_ = std::max(time_, to); }
+  /// The time of the last step.
+  Time time() const { return time_; }
+
+  /// Applies a disturbance; false if the robot's state does not allow it. Precondition: is_valid() (see
+  /// disturbance_check.hpp).
+  [[nodiscard]] bool disturb(std::size_t robot, const msg::Disturbance& disturbance, Time now);
+
+  /// A command reaches a robot. Precondition: time() <= now < time() + kPhysicsStep.
+  void on_command(std::size_t robot, const msg::Command& command, Time now);
+  /// The robot's facts, without the header.
+  msg::Feedback feedback(std::size_t robot, Time now);
+
+  /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
+  /// clear_pending_feedback(); each listed once.
+  std::span<const std::uint32_t> pending_feedback() const { return pending_feedback_; }
+  void clear_pending_feedback(std::size_t robot);
+
+  std::size_t robot_count() const { return robots_.size(); }
+  RobotId id(std::size_t robot) const { return robots_[robot].id; }
+  const Firmware& firmware(std::size_t robot) const { return robots_[robot].firmware; }
+  /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.
+  Time next_start(std::size_t robot) const;
+  std::span<const Body> bodies() const { return bodies_; }
+  const std::optional<Ball>& ball() const { return ball_; }
+  const ContactTotals& contacts() const { return contacts_.totals(); }
+  const Opponents& opponents() const { return opponents_; }
+  std::uint64_t firmware_violations() const;
+  /// Distance of a body from the version that it executes, by the robot's clock; 0 off the floor.
+  double reference_error_m(std::size_t robot) const;
+
+  /// Fills in everything but the header. For metrics and audit only.
+  void fill(msg::GroundTruth& truth) const;
+
+ private:
+  struct Robot {
+    RobotId id;
+    Firmware firmware;
+    FirmwareMonitor monitor;
+    Rng noise;
+    double odometry_scale;
+    Actuation actuation;
+    Vec2 last_position_m;  ///< without slip, for the odometry
+    double last_heading_rad;
+    Duration clock_offset;  ///< of the robot's clock, ahead of the host's
+    Time clock;             ///< the latest reading; the clock never goes back
+    VersionNumber last_own_stop = 0;
+    std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; those still active may end later
+    bool has_pending_feedback = false;
+  };
+  /// A disturbance with a duration, or a placement that waits for its rest version.
+  struct ActiveDisturbance {
+    std::size_t robot;
+    msg::DisturbanceKind kind;
+    Time end;
+    Vec2 place_m;
+    double heading_rad;
+  };
+  void step();
+  void end_disturbances();
+  bool try_put_down(const ActiveDisturbance& request);
+  void record_disturbance(std::size_t robot, Time at);
+  /// When the last disturbance of the robot's body ends or has ended.
+  std::optional<Time> disturbance_end(std::size_t robot) const;
+  void start_disturbance(const ActiveDisturbance& disturbance);
+  void cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind);
+  void lift(std::size_t robot, Time now);
+  Time robot_time(std::size_t robot, Time now);
+  void switch_versions(std::size_t robot, Time now);
+  void request_feedback(std::size_t robot);
+  Odometry measure(std::size_t robot);
+
+  Field field_;
+  std::vector<Circle> obstacles_;
+  double radius_m_;
+  double velocity_noise_mps_;
+  Time time_;
+  std::vector<Body> bodies_;
+  std::vector<Robot> robots_;
+  std::optional<Ball> ball_;
+  Contacts contacts_;
+  Opponents opponents_;
+  std::vector<std::uint32_t> pending_feedback_;
+  std::vector<ActiveDisturbance> active_disturbances_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "simulator/world/world.hpp"
+
+namespace sidestep {
+namespace {
+
+// A robot is put down at its rest version if that is within this distance of the requested place.
+constexpr double kPlaceTolerance_m = 0.005;
+
+}  // namespace
+
+bool World::disturb(std::size_t index, const msg::Disturbance& disturbance, Time now) {
+  Robot& robot = robots_[index];
+  Body& body = bodies_[index];
+  const auto kind = disturbance.disturbance_kind();
+  const Time end = now + Duration{disturbance.duration_ns()};
+  switch (kind) {
+    case msg::DISTURBANCE_PUSH:
+      if (!body.is_on_floor()) return false;
+      body.push({disturbance.vx_mps(), disturbance.vy_mps()});
+      record_disturbance(index, now);
+      return true;
+    case msg::DISTURBANCE_SLIP:
+      body.set_grip(disturbance.grip());
+      start_disturbance({index, kind, end, Vec2(0, 0), 0});
+      record_disturbance(index, now);
+      return true;
+    case msg::DISTURBANCE_BLOCK:
+      body.set_blocked(disturbance.heading_rad());
+      start_disturbance({index, kind, end, Vec2(0, 0), 0});
+      record_disturbance(index, now);
+      return true;
+    case msg::DISTURBANCE_LIFT:
+      lift(index, now);
+      return true;
+    case msg::DISTURBANCE_PLACE:
+      if (body.is_on_floor()) return false;
+      start_disturbance({index, kind, Time::max(), {disturbance.x_m(), disturbance.y_m()}, disturbance.heading_rad()});
+      return true;
+    case msg::DISTURBANCE_REBOOT:
+      if (!body.is_on_floor()) {
+        lift(index, now);
+      } else {
+        robot.firmware.reboot();
+        robot.monitor.rebooted();
+      }
+      record_disturbance(index, now);
+      return true;
+    case msg::DISTURBANCE_CLOCK:
+      robot_time(index, now);
+      robot.clock_offset = Duration{disturbance.clock_offset_ns()};
+      return true;
+  }
+  return false;
+}
+
+void World::lift(std::size_t index, Time now) {
+  cancel_disturbances(index, msg::DISTURBANCE_PLACE);
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  bodies_[index].lift();
+  robots_[index].firmware.lift(clock);
+  robots_[index].monitor.lifted();
+  robots_[index].actuation = {};
+  contacts_.invalidate_near_pairs();
+  opponents_.invalidate_near_pairs();
+  record_disturbance(index, now);
+  request_feedback(index);
+}
+
+void World::record_disturbance(std::size_t index, Time at) {
+  std::optional<Time>& last = robots_[index].last_disturbance;
+  last = std::max(last.value_or(at), at);
+}
+
+std::optional<Time> World::disturbance_end(std::size_t index) const {
+  std::optional<Time> last = robots_[index].last_disturbance;
+  for (const ActiveDisturbance& active : active_disturbances_) {
+    if (active.robot == index && active.kind != msg::DISTURBANCE_PLACE)
+      last = std::max(last.value_or(active.end), active.end);
+  }
+  return last;
+}
+
+void World::start_disturbance(const ActiveDisturbance& disturbance) {
+  cancel_disturbances(disturbance.robot, disturbance.kind);
+  active_disturbances_.push_back(disturbance);
+}
+
+void World::cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind) {
+  std::erase_if(active_disturbances_,
+                [&](const ActiveDisturbance& active) { return active.robot == robot && active.kind == kind; });
+}
+
+void World::end_disturbances() {
+  std::erase_if(active_disturbances_, [this](const ActiveDisturbance& active) {
+    if (active.kind == msg::DISTURBANCE_PLACE) return try_put_down(active);
+    if (active.end > time_) return false;
+    record_disturbance(active.robot, active.end);
+    if (active.kind == msg::DISTURBANCE_SLIP)
+      bodies_[active.robot].set_grip(1);
+    else
+      bodies_[active.robot].set_blocked(std::nullopt);
+    return true;
+  });
+}
+
+bool World::try_put_down(const ActiveDisturbance& request) {
+  Robot& robot = robots_[request.robot];
+  const Version& rest_version = robot.firmware.executing();
+  const Vec2 place_m = rest_version.trajectory.rest_position_m();
+  if (rest_version.number == 0 || (place_m - request.place_m).norm() > kPlaceTolerance_m) return false;
+  bodies_[request.robot].put_down(place_m, request.heading_rad);
+  robot.firmware.put_down(request.heading_rad, robot_time(request.robot, time_));
+  robot.monitor.put_down();
+  record_disturbance(request.robot, time_);
+  robot.last_position_m = bodies_[request.robot].rolled_position_m();
+  robot.last_heading_rad = request.heading_rad;
+  contacts_.invalidate_near_pairs();
+  opponents_.invalidate_near_pairs();
+  request_feedback(request.robot);
+  return true;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/clock_monitor.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr RobotId kRobot = 3;
+constexpr Incarnation kSelf = 1000;
+constexpr Epoch kEpoch = 7;
+const Duration kBound = from_seconds(0.0005);
+constexpr double kCycle_s = 1.0 / 60;
+
+Time at_s(double seconds) { return time_from_ns(1'000'000'000'000'000) + from_seconds(seconds); }
+
+/// An agent with a robot and a coordinator whose clocks are ahead of the agent's by `robot_s` and
+/// `coordinator_s`. The network's delays are uniform over 0.2 ms to 0.2 ms + `spread_s`.
+struct ClockFixture {
+  double robot_s = 0, coordinator_s = 0, spread_s = 0.0002;
+  Rng rng{1};
+  ClockMonitor clocks{kRobot, kBound};
+
+  ClockFixture() { clocks.on_epoch(kEpoch); }
+  double delay() { return 0.0002 + rng.uniform(0, spread_s); }
+  msg::Feedback feedback(double sent) {
+    const double received = sent + delay(), answered = received + 0.003;
+    msg::Feedback f;
+    f.robot(kRobot);
+    f.header().incarnation(5);
+    f.obeyed_incarnation(kSelf);
+    f.command_stamp_ns(to_ns(at_s(sent)));
+    f.command_received_at_ns(to_ns(at_s(received + robot_s)));
+    f.valid_at_ns(to_ns(at_s(answered + robot_s)));
+    return f;
+  }
+  msg::Verdict verdict(double asked) {
+    clocks.on_request_sent(at_s(asked));
+    msg::Verdict v;
+    v.robot(kRobot);
+    v.epoch(kEpoch);
+    v.request_stamp_ns(to_ns(at_s(asked)));
+    v.header().stamp_ns(to_ns(at_s(asked + delay() + coordinator_s)));
+    return v;
+  }
+  void measure_robot(double sent) {
+    const msg::Feedback f = feedback(sent);
+    const Time answered = time_from_ns(f.valid_at_ns()) - from_seconds(robot_s);
+    clocks.on_feedback(f, kSelf, answered + from_seconds(delay()));
+  }
+  void measure_coordinator(double asked) {
+    const msg::Verdict v = verdict(asked);
+    const Time answered = time_from_ns(v.header().stamp_ns()) - from_seconds(coordinator_s);
+    clocks.on_verdict(v, answered + from_seconds(delay()));
+  }
+  std::uint64_t invalid(double now) const {
+    msg::AgentStatus status;
+    clocks.fill(status, at_s(now));
+    return status.invalid();
+  }
+  void measure_both(double from, int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      measure_robot(from + i * kCycle_s);
+      measure_coordinator(from + i * kCycle_s);
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("motion requires recent measurements of both clocks") {
+  ClockFixture f;
+  CHECK_FALSE(f.clocks.allows_motion(at_s(0)));
+  CHECK(f.clocks.is_measurement_due(at_s(0)));
+  f.measure_robot(0);
+  CHECK_FALSE(f.clocks.allows_motion(at_s(0.01)));
+  CHECK_FALSE(f.clocks.is_beyond_bound(at_s(0.01)));
+  msg::AgentStatus status;
+  f.clocks.fill(status, at_s(0.01));
+  CHECK(status.clock_uncertainty_s() < 0);
+  f.measure_coordinator(0);
+  CHECK(f.clocks.allows_motion(at_s(0.01)));
+  f.clocks.fill(status, at_s(0.01));
+  CHECK(status.clock_uncertainty_s() > 0);
+  CHECK_FALSE(f.clocks.is_measurement_due(at_s(0.9)));
+  CHECK(f.clocks.is_measurement_due(at_s(1.1)));
+  f.measure_robot(2.5);
+  CHECK_FALSE(f.clocks.allows_motion(at_s(2.6)));
+  f.measure_coordinator(2.6);
+  CHECK(f.clocks.allows_motion(at_s(2.7)));
+  CHECK_FALSE(f.clocks.allows_motion(at_s(5)));
+}
+
+TEST_CASE(
+    "a robot whose clock is within the bound of the coordinator's may move, for any clock of the agent") {
+  const double own_s = GENERATE(0.0, 0.1, -3600.0, 5.0);
+  const double offset_s = GENERATE(0.0, 0.0004, -0.0004);
+  CAPTURE(own_s, offset_s);
+  ClockFixture f;
+  f.coordinator_s = own_s;
+  f.robot_s = own_s + offset_s;
+  f.measure_both(0, 60);
+  CHECK(f.clocks.allows_motion(at_s(1)));
+  const auto known = f.clocks.robot_coordinator_offset(at_s(1));
+  REQUIRE(known);
+  CHECK(known->low <= from_seconds(offset_s));
+  CHECK(known->high >= from_seconds(offset_s));
+  // The agent's estimate of its robot's clock.
+  CHECK(to_seconds(f.clocks.robot_offset()) == Approx(f.robot_s).margin(0.0006));
+  CHECK(f.clocks.max_robot_offset(at_s(1)) >= from_seconds(f.robot_s) - Duration{1000});
+  if (own_s == 0 && offset_s == 0) CHECK(f.clocks.robot_offset() == Duration{0});
+}
+
+TEST_CASE("an offset beyond the bound by more than the fastest round trips is detected, in both directions") {
+  const double offset_s = GENERATE(0.0011, -0.0011, 0.02, -0.02, 3600.0);
+  CAPTURE(offset_s);
+  ClockFixture f;
+  f.robot_s = offset_s;
+  f.measure_both(0, 60);
+  CHECK(f.clocks.is_beyond_bound(at_s(1)));
+  CHECK_FALSE(f.clocks.allows_motion(at_s(1)));
+  msg::AgentStatus status;
+  status.agent_state(msg::AGENT_WAITING);
+  f.clocks.fill(status, at_s(1));
+  CHECK(status.agent_state() == msg::AGENT_CLOCK_OUT_OF_BOUND);
+  CHECK(std::abs(status.clock_offset_s() - offset_s) <= status.clock_uncertainty_s());
+  // The clock is corrected.
+  f.robot_s = 0;
+  f.measure_both(1, 10);
+  CHECK(f.clocks.allows_motion(at_s(1 + 10 * kCycle_s)));
+}
+
+TEST_CASE("a clock jump while the robot drives is detected within two cycles") {
+  ClockFixture f;
+  f.measure_both(0, 60);
+  REQUIRE(f.clocks.allows_motion(at_s(1)));
+  f.robot_s = 0.05;
+  f.measure_both(1, 2);
+  CHECK(f.clocks.is_beyond_bound(at_s(1 + 2 * kCycle_s)));
+}
+
+TEST_CASE("clock measurements start anew with a new epoch and with a restarted robot") {
+  ClockFixture f;
+  f.measure_both(0, 10);
+  REQUIRE(f.clocks.allows_motion(at_s(0.2)));
+  f.clocks.on_epoch(kEpoch + 1);
+  CHECK_FALSE(f.clocks.allows_motion(at_s(0.2)));
+  msg::Verdict late = f.verdict(0.2);
+  f.clocks.on_verdict(late, at_s(0.201));
+  CHECK_FALSE(f.clocks.allows_motion(at_s(0.21)));
+  late = f.verdict(0.22);
+  late.epoch(kEpoch + 1);
+  f.clocks.on_verdict(late, at_s(0.221));
+  CHECK(f.clocks.allows_motion(at_s(0.23)));
+
+  msg::Feedback rebooted = f.feedback(0.24);
+  rebooted.header().incarnation(6);
+  rebooted.command_stamp_ns(0);
+  f.clocks.on_feedback(rebooted, kSelf, at_s(0.245));
+  CHECK(f.clocks.allows_motion(at_s(0.25)));
+  f.robot_s = 0.3;
+  rebooted = f.feedback(0.26);
+  rebooted.header().incarnation(6);
+  f.clocks.on_feedback(rebooted, kSelf, at_s(0.265));
+  CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
+}
+
+TEST_CASE("echoes of other senders' messages and impossible stamps are ignored") {
+  ClockFixture f;
+  f.measure_robot(0);
+  msg::Verdict foreign = f.verdict(0.01);
+  foreign.request_stamp_ns(foreign.request_stamp_ns() + 1);
+  f.clocks.on_verdict(foreign, at_s(0.011));
+  foreign = f.verdict(0.01);
+  foreign.robot(kRobot + 1);
+  f.clocks.on_verdict(foreign, at_s(0.011));
+  foreign = f.verdict(0.01);
+  foreign.request_stamp_ns(0);
+  f.clocks.on_verdict(foreign, at_s(0.011));
+  CHECK_FALSE(f.clocks.allows_motion(at_s(0.02)));
+  CHECK(f.invalid(0.02) == 0);
+  f.measure_coordinator(0.02);
+  REQUIRE(f.clocks.allows_motion(at_s(0.03)));
+
+  constexpr std::int64_t kHostile[] = {-1, std::numeric_limits<std::int64_t>::max(),
+                                       std::numeric_limits<std::int64_t>::min()};
+  const auto before = f.clocks.robot_coordinator_offset(at_s(0.03));
+  std::uint64_t refused = 0;
+  for (const std::int64_t stamp : kHostile) {
+    msg::Verdict v = f.verdict(0.03);
+    v.header().stamp_ns(stamp);
+    f.clocks.on_verdict(v, at_s(0.031));
+    msg::Feedback hostile = f.feedback(0.03);
+    hostile.command_stamp_ns(stamp);
+    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
+    hostile = f.feedback(0.03);
+    hostile.command_received_at_ns(stamp);
+    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
+    hostile = f.feedback(0.03);
+    hostile.valid_at_ns(stamp);
+    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
+    refused += 4;
+  }
+  msg::Feedback other = f.feedback(0.03);
+  other.obeyed_incarnation(kSelf + 1);
+  other.valid_at_ns(1);
+  f.clocks.on_feedback(other, kSelf, at_s(0.034));
+  other = f.feedback(0.03);
+  other.robot(kRobot + 1);
+  f.clocks.on_feedback(other, kSelf, at_s(0.034));
+  CHECK(f.invalid(0.04) == refused);
+  const auto after = f.clocks.robot_coordinator_offset(at_s(0.03));
+  REQUIRE(after);
+  CHECK(after->low == before->low);
+  CHECK(after->high == before->high);
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <optional>
+#include <vector>
+
+#include "agents/agent/negotiation.hpp"
+#include "common/messaging/codec.hpp"
+
+namespace sidestep {
+
+inline constexpr RobotId kRobot = 3;
+inline constexpr Incarnation kSelf = 1000;
+inline constexpr Epoch kEpoch = 50;
+
+inline Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
+
+inline msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf,
+                          Epoch epoch = kEpoch) {
+  msg::Feedback feedback;
+  feedback.robot(kRobot);
+  feedback.valid_at_ns(to_ns(at_s(at)));
+  feedback.obeyed_incarnation(obeyed);
+  feedback.obeyed_epoch(epoch);
+  feedback.executing(encode(executing));
+  return feedback;
+}
+
+inline msg::CoordinatorState coordinator_state(Epoch epoch, const std::vector<std::uint32_t>& missing = {}) {
+  msg::CoordinatorState state;
+  state.epoch(epoch);
+  state.coordinator_mode(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
+  state.missing(missing);
+  return state;
+}
+
+/// One agent's negotiation, with the messages that its robot and the coordinator send.
+struct NegotiationFixture {
+  Negotiation n{kRobot, kSelf, from_seconds(1.0 / 60)};
+  Version initial{kRobot, 0, 0, 0, Trajectory::resting(at_s(0), {0, 0})};
+
+  void become_ready() {
+    n.on_feedback(fact(initial, 0.5));
+    n.on_coordinator_state(coordinator_state(kEpoch), at_s(0.9));
+    (void)n.registration();
+    REQUIRE(n.may_propose(at_s(0.95)));
+  }
+  msg::Proposal propose(double start, double now) {
+    const Version& base = n.base_at(at_s(start));
+    Trajectory trajectory(at_s(start), base.trajectory.state_at(at_s(start)));
+    trajectory.append(from_seconds(0.1), {1, 0});
+    append_stop(trajectory, 5);
+    return n.propose({&trajectory, 1}, base.number, at_s(now));
+  }
+  std::optional<Version> grant(const msg::Proposal& proposal, double now, Epoch epoch = kEpoch) {
+    msg::Verdict verdict;
+    verdict.robot(kRobot);
+    verdict.epoch(epoch);
+    verdict.proposal_number(proposal.candidates()[0].version_number());
+    verdict.granted_version(proposal.candidates()[0].version_number());
+    return n.on_verdict(verdict, at_s(now)).granted;
+  }
+};
+
+}  // namespace sidestep

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/dead_reckoning.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+TEST_CASE("after the maximum dead reckoning distance one robot in 370 exceeds the bound") {
+  const double bound_m = 0.003;
+  const LocalisationUncertainty known{0.0006, 0.002};
+  const double path_m = max_dead_reckoning_m(known, bound_m);
+  Rng rng(5);
+  CAPTURE(path_m);
+  int beyond = 0;
+  constexpr int kRobots = 100'000;
+  for (int i = 0; i < kRobots; ++i) {
+    const double error_m = known.position_error_rms_m * rng.normal() + known.odometry_scale_stddev * rng.normal() * path_m;
+    beyond += std::abs(error_m) > bound_m;
+  }
+  CHECK(beyond > kRobots / 500);
+  CHECK(beyond < kRobots / 300);
+}
+
+TEST_CASE("accurate odometry allows long distances, and a poorly localised robot has to wait") {
+  CHECK(max_dead_reckoning_m({0, 0.005}, 0.003) == Approx(0.2));
+  CHECK(max_dead_reckoning_m({0.0002, 0}, 0.003) > 100);
+  CHECK(max_dead_reckoning_m({0.001, 0.001}, 0.003) == 0);
+  CHECK(max_dead_reckoning_m({0.01, 0}, 0.003) == 0);
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/route_planner.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <queue>
+
+#include "common/random/rng.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr double kRadius_m = 0.09, kMargin_m = 0.02;
+const Field kField{4, 4};
+
+/// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm, whose paths are at most 8.3 % longer
+/// than the shortest.
+double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal, double inflation) {
+  const int n = 200;
+  const double step = 4.0 / n;
+  const auto cell = [&](const Vec2& p) {
+    return std::pair{static_cast<int>((p.x() + 2) / step), static_cast<int>((p.y() + 2) / step)};
+  };
+  std::vector<double> length(n * n, std::numeric_limits<double>::infinity());
+  const auto at = [&](int x, int y) -> double& { return length[static_cast<std::size_t>(x * n + y)]; };
+  using Item = std::tuple<double, int, int>;
+  std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
+  const auto [sx, sy] = cell(start);
+  at(sx, sy) = 0;
+  open.push({0, sx, sy});
+  while (!open.empty()) {
+    const auto [d, x, y] = open.top();
+    open.pop();
+    if (d > at(x, y)) continue;
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const int i = x + dx, j = y + dy;
+        if (i < 0 || j < 0 || i >= n || j >= n) continue;
+        const Vec2 p(-2 + (i + 0.5) * step, -2 + (j + 0.5) * step);
+        bool free = kField.contains(p, kRadius_m);
+        for (const Circle& o : obstacles) free = free && (p - o.centre_m).norm() > o.radius_m + inflation;
+        const double next = d + step * std::hypot(dx, dy);
+        if (!free || next >= at(i, j)) continue;
+        at(i, j) = next;
+        open.push({next, i, j});
+      }
+    }
+  }
+  const auto [gx, gy] = cell(goal);
+  return at(gx, gy);
+}
+
+}  // namespace
+
+TEST_CASE("without obstacles the route is straight") {
+  RoutePlanner planner({}, kField, kRadius_m, kMargin_m, 0, {1, 1});
+  const auto route = planner.route_from({-1, -1});
+  REQUIRE(route);
+  CHECK(route->waypoint_m == Vec2(1, 1));
+  CHECK(route->length_m == Approx(2 * std::sqrt(2.0)));
+}
+
+TEST_CASE("a route avoids obstacles with its margin and is no longer than on a fine grid") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u, 6u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  std::vector<Circle> obstacles;
+  for (int i = 0; i < 12; ++i) {
+    const Vec2 centre(rng.uniform(-1.2, 1.2), rng.uniform(-1.2, 1.2));
+    obstacles.push_back({centre, rng.uniform(0.05, 0.25)});
+  }
+  const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
+  RoutePlanner planner(obstacles, kField, kRadius_m, kMargin_m, 0, goal);
+  const double reference = grid_length(obstacles, start, goal, kRadius_m + kMargin_m + 0.02);
+  REQUIRE(reference < 20);
+  Vec2 here = start;
+  double travelled = 0;
+  auto route = planner.route_from(here);
+  REQUIRE(route);
+  CHECK(route->length_m <= reference);
+  const double promised = route->length_m;
+  for (int leg = 0; leg < 50 && (here - goal).norm() > 1e-9; ++leg) {
+    route = planner.route_from(here);
+    REQUIRE(route);
+    for (int k = 0; k <= 100; ++k) {
+      const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
+      for (const Circle& o : obstacles)
+        REQUIRE((p - o.centre_m).norm() >= o.radius_m + kRadius_m + kMargin_m - 1e-9);
+    }
+    travelled += (route->waypoint_m - here).norm();
+    here = route->waypoint_m;
+  }
+  CHECK(travelled == Approx(promised));
+}
+
+TEST_CASE("there is no route to an enclosed goal") {
+  std::vector<Circle> ring;
+  for (int i = 0; i < 12; ++i) ring.push_back({0.5 * Vec2(std::cos(i * 0.5236), std::sin(i * 0.5236)), 0.15});
+  RoutePlanner planner(ring, kField, kRadius_m, kMargin_m, 0, {0, 0});
+  CHECK_FALSE(planner.route_from({1.5, 0}));
+}
+
+TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
+  RoutePlanner planner({{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
+  const Vec2 near(-0.25, 0);
+  const auto route = planner.route_from(near);
+  REQUIRE(route);
+  CHECK(route->waypoint_m != Vec2(1, 0));
+  CHECK((route->waypoint_m - near).dot(near) >= 0);
+}
+
+TEST_CASE("of two equally long routes the robot keeps one while it drifts sideways") {
+  const Circle middle{{0, 0}, 0.3};
+  RoutePlanner planner({middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  Vec2 here(-1.5, 1e-3);
+  const auto first = planner.route_from(here);
+  REQUIRE(first);
+  const double side = first->waypoint_m.y();
+  REQUIRE(side != 0);
+  double length = first->length_m;
+  while ((here - Vec2(1.5, 0)).norm() > 0.05) {
+    const auto route = planner.route_from(here);
+    REQUIRE(route);
+    CHECK(route->waypoint_m.y() * side >= 0);
+    CHECK(route->length_m < length + 0.05);
+    length = route->length_m;
+    const Vec2 ahead = (route->waypoint_m - here).normalized();
+    // At first the robot drifts back and forth across the line on which both routes are equally long.
+    const double deviation = here.x() < -0.8 ? -0.004 * std::copysign(1.0, here.y()) : 0;
+    here += 0.02 * ahead + Vec2(0, deviation);
+  }
+}
+
+TEST_CASE("a robot that was pushed off its route replans") {
+  RoutePlanner planner({{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  const auto above = planner.route_from({-0.5, 0.3});
+  REQUIRE(above);
+  CHECK(above->waypoint_m.y() > 0);
+  const auto below = planner.route_from({-0.5, -0.3});
+  REQUIRE(below);
+  CHECK(below->waypoint_m.y() < 0);
+}
+
+TEST_CASE("routes keep the extra clearance where it exists and do without where it does not") {
+  const double extra_clearance = 0.05;
+  const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
+  RoutePlanner generous(pair, kField, kRadius_m, kMargin_m, extra_clearance, {1.5, 0.3});
+  const auto wide_route = generous.route_from({-1.5, 0.3});
+  REQUIRE(wide_route);
+  CHECK((wide_route->waypoint_m - pair[0].centre_m).norm() >= 0.2 + kRadius_m + kMargin_m + extra_clearance);
+
+  // The gap in the wall of discs is too narrow for the extra clearance.
+  std::vector<Circle> wall;
+  for (int i = -4; i <= 4; ++i) {
+    if (i != 0) wall.push_back({{0, 0.45 * i + std::copysign(0.08, i)}, 0.3});
+  }
+  const double gap = 2 * (0.45 + 0.08 - 0.3);
+  REQUIRE(gap / 2 > kRadius_m + kMargin_m);
+  REQUIRE(gap / 2 < kRadius_m + kMargin_m + 0.15);
+  RoutePlanner wall_planner(wall, kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
+  const auto narrow_route = wall_planner.route_from({-1.5, 0.2});
+  REQUIRE(narrow_route);
+  for (const Circle& disc : wall)
+    CHECK((narrow_route->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
+}

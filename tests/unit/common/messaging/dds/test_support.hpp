@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "common/messaging/dds/bus.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/random/rng.hpp"
+#include "tests/test_domain.hpp"
+
+namespace sidestep {
+
+/// Enough for a machine that is busy with other tests. Only a failing test waits this long.
+inline constexpr Duration kDeadline{30'000'000'000};
+inline constexpr Duration kStep{2'000'000};
+
+/// Settings for a domain that only this test process uses, on the loopback interface.
+inline DdsSettings test_settings(const std::string& participant = "test") {
+  static const TestDomain domain;
+  return domain.settings(participant);
+}
+
+/// Runs the buses in turn until the condition holds; false if it does not before the deadline.
+template <typename Condition, typename... Buses>
+bool run_until(Condition condition, Buses&... buses) {
+  const Time deadline = EventLoop::now() + kDeadline;
+  while (!condition()) {
+    (buses.run_until(buses.now() + kStep), ...);
+    if (EventLoop::now() > deadline) return condition();
+  }
+  return true;
+}
+
+/// A payload without encapsulation header from which any message type can be decoded: bytes of 0 and 1, so
+/// booleans are valid and numbers finite.
+inline std::vector<char> random_body(Rng& rng, std::size_t size) {
+  std::vector<char> result(size);
+  for (char& byte : result) byte = static_cast<char>(rng.bits() & 1);
+  return result;
+}
+
+/// A message with random members, and `elements` elements in its final sequence, if it has one.
+template <typename Message>
+Message random_message(Rng& rng, bool has_sequence, std::uint32_t elements) {
+  const std::size_t fixed = Message::getCdrSerializedSize(Message());
+  std::vector<char> body = random_body(rng, fixed + elements * 512);
+  if (has_sequence) std::memcpy(body.data() + fixed - sizeof elements, &elements, sizeof elements);
+  eprosima::fastcdr::FastBuffer buffer(body.data(), body.size());
+  eprosima::fastcdr::Cdr cdr(buffer);
+  Message message;
+  message.deserialize(cdr);
+  return message;
+}
+
+/// Captures stderr of this process during its lifetime.
+class CaptureStderr {
+ public:
+  CaptureStderr() : file_(std::tmpfile()), saved_(dup(2)) {
+    std::fflush(stderr);
+    dup2(fileno(file_), 2);
+  }
+  ~CaptureStderr() {
+    std::fflush(stderr);
+    dup2(saved_, 2);
+    close(saved_);
+    std::fclose(file_);
+  }
+  CaptureStderr(const CaptureStderr&) = delete;
+  CaptureStderr& operator=(const CaptureStderr&) = delete;
+
+  std::string text() const {
+    std::string result(1 << 16, '\0');
+    const ssize_t size = pread(fileno(file_), result.data(), result.size(), 0);
+    result.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return result;
+  }
+  bool has(const std::string& words) const { return text().find(words) != std::string::npos; }
+
+ private:
+  std::FILE* file_;
+  int saved_;
+};
+
+}  // namespace sidestep

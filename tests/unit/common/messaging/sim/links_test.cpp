@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/sim/links.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/messaging/sim/bus.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+using namespace std::chrono_literals;
+const Time kBegin = time_from_ns(1'000'000'000);
+
+/// Three processes; the first sends numbered messages to the others, a millisecond apart.
+struct Rig {
+  SimNetwork network{1, kBegin, {}};
+  ProcessId ids[3] = {network.new_process(), network.new_process(), network.new_process()};
+  SimBus sender{network, {ids[0]}}, near{network, {ids[1]}}, far{network, {ids[2]}};
+  Writer<msg::CoordinatorState> writer = sender.advertise(topics::kCoordinator);
+  std::vector<std::uint64_t> near_received, far_received;
+  std::vector<double> far_delays_s;
+
+  Rig() {
+    near.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& s) {
+                     near_received.push_back(s.epoch());
+                   }));
+    far.subscribe(topics::kCoordinator, std::function([this](const msg::CoordinatorState& s) {
+                    far_received.push_back(s.epoch());
+                    far_delays_s.push_back(to_seconds(network.now() - time_from_ns(s.header().stamp_ns())));
+                  }));
+  }
+  void send(std::uint64_t count) {
+    const Time from = network.now();
+    for (std::uint64_t n = 1; n <= count; ++n) {
+      sender.at(from + Duration{1ms} * n, [this, n] {
+        msg::CoordinatorState state;
+        state.epoch(n);
+        writer.publish(state, sender.now());
+      });
+    }
+    network.run_until(from + Duration{1ms} * count + 2s);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a link has the specified loss and mean burst length") {
+  struct Specified {
+    double loss, mean_burst;
+  };
+  const auto [loss, mean_burst] = GENERATE(Specified{0.3, 1}, Specified{0.3, 10}, Specified{0.05, 25});
+  CAPTURE(loss, mean_burst);
+  SimLinks links;
+  LinkQuality quality;
+  quality.loss = loss;
+  quality.mean_burst = mean_burst;
+  links.set(0, 1, quality);
+  Rng rng(7);
+  constexpr int kMessages = 400'000;
+  int lost = 0, bursts = 0;
+  bool was_lost = false;
+  for (int i = 0; i < kMessages; ++i) {
+    const bool is_lost = links.send(0, 1, rng).count == 0;
+    lost += is_lost;
+    bursts += is_lost && !was_lost;
+    was_lost = is_lost;
+  }
+  CHECK(lost == Approx(kMessages * loss).epsilon(0.05));
+  CHECK(static_cast<double>(lost) / bursts == Approx(mean_burst).epsilon(0.05));
+}
+
+TEST_CASE("delays of a link are right-skewed, within their bounds, with about the specified mean") {
+  SimLinks links;
+  LinkQuality quality{0, 1, 0.5, 1ms, 11ms, 150ms, false};
+  links.set(2, 0, quality);
+  Rng rng(3);
+  double total_s = 0;
+  int above_mean = 0, count = 0, messages = 100'000;
+  for (int i = 0; i < messages; ++i) {
+    const MessageCopies copies = links.send(2, 0, rng);
+    for (std::size_t c = 0; c < copies.count; ++c) {
+      CHECK(copies.delays[c] >= Duration{1ms});
+      CHECK(copies.delays[c] <= Duration{150ms});
+      total_s += to_seconds(copies.delays[c]);
+      above_mean += copies.delays[c] > Duration{11ms};
+      ++count;
+    }
+  }
+  CHECK(count == Approx(1.5 * messages).epsilon(0.02));
+  CHECK(total_s / count == Approx(0.011).epsilon(0.03));
+  // The fraction of an exponential distribution above its mean is 1/e.
+  CHECK(static_cast<double>(above_mean) / count == Approx(0.368).epsilon(0.05));
+}
+
+TEST_CASE("a cut affects one direction of one link, and can be ended") {
+  Rig rig;
+  LinkQuality cut;
+  cut.is_cut = true;
+  rig.network.set_link(rig.ids[0], rig.ids[2], cut);
+  rig.network.set_link(rig.ids[2], rig.ids[0], {});
+  rig.send(50);
+  CHECK(rig.near_received.size() == 50);
+  CHECK(rig.far_received.empty());
+  rig.network.set_link(rig.ids[0], rig.ids[2], {});
+  rig.send(50);
+  CHECK(rig.far_received.size() == 50);
+}
+
+TEST_CASE("links can be set in any order and keep their qualities as more are added") {
+  SimLinks links;
+  CHECK_FALSE(links.any());
+  LinkQuality slow;
+  slow.delay_min = 5ms;
+  links.set(1, 0, slow);
+  links.set(9, 3, {});
+  CHECK(links.any());
+  REQUIRE(links.find(1, 0));
+  CHECK(*links.find(1, 0) == slow);
+  CHECK(links.find(9, 3));
+  CHECK_FALSE(links.find(0, 1));
+  CHECK_FALSE(links.find(3, 20));
+}
+
+TEST_CASE("a paused process does nothing, then handles everything at once and in order") {
+  Rig rig;
+  int fired = 0;
+  rig.far.at(kBegin + 100ms, [&] { ++fired; });
+  rig.far.pause(kBegin + 500ms, 1000);
+  rig.sender.at(kBegin + 499ms, [&] {
+    CHECK(rig.far_received.empty());
+    CHECK(fired == 0);
+  });
+  rig.send(50);
+  CHECK(fired == 1);
+  REQUIRE(rig.far_received.size() == 50);
+  CHECK(std::ranges::is_sorted(rig.far_received));
+  CHECK(rig.far_delays_s.back() == Approx(0.45).margin(0.002));
+  CHECK(rig.near_received.size() == 50);
+}
+
+TEST_CASE("a paused process queues a limited number of messages, and a restarted one is not paused") {
+  Rig rig;
+  rig.far.pause(kBegin + 500ms, 10);
+  rig.send(50);
+  CHECK(rig.far_received.size() == 10);
+  CHECK(rig.far_received.back() == 10);
+  rig.send(50);
+  CHECK(rig.far_received.size() == 60);
+
+  rig.far.pause(rig.network.now() + 60s, 10);
+  SimBus restarted(rig.network, {rig.ids[2]});
+  int received = 0;
+  restarted.subscribe(topics::kCoordinator, std::function([&](const msg::CoordinatorState&) { ++received; }));
+  rig.send(50);
+  CHECK(received == 50);
+}
+
+TEST_CASE("a process has its own clock, and its timers follow that clock") {
+  SimNetwork network(1, kBegin, {});
+  SimBus ahead(network, {network.new_process(), 30ms}), behind(network, {network.new_process(), -30ms});
+  CHECK(ahead.now() == kBegin + 30ms);
+  CHECK(behind.now() == kBegin - 30ms);
+  Time ahead_fired{}, behind_fired{};
+  ahead.at(kBegin + 100ms, [&] { ahead_fired = network.now(); });
+  behind.at(kBegin + 100ms, [&] { behind_fired = network.now(); });
+  network.run_until(kBegin + 1s);
+  CHECK(ahead_fired == kBegin + 70ms);
+  CHECK(behind_fired == kBegin + 130ms);
+}
+
+TEST_CASE("an observer receives every message without delay on a bad network") {
+  SimNetwork network(1, kBegin, {0.9, 0, 100ms, 200ms});
+  SimBus sender(network), observer(network);
+  observer.become_observer();
+  std::uint64_t received = 0;
+  observer.subscribe(topics::kCoordinator, std::function([&](const msg::CoordinatorState& s) {
+                       CHECK(s.epoch() == ++received);
+                       CHECK(to_ns(network.now()) == s.header().stamp_ns());
+                     }));
+  auto writer = sender.advertise(topics::kCoordinator);
+  for (std::uint64_t n = 1; n <= 100; ++n) {
+    sender.at(kBegin + Duration{1ms} * n, [&, n] {
+      msg::CoordinatorState state;
+      state.epoch(n);
+      writer.publish(state, sender.now());
+    });
+  }
+  network.run_until(kBegin + 1s);
+  CHECK(received == 100);
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/planning/bench/replan_bench.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace sidestep;
+
+TEST_CASE("replans of planners are valid among circles that move") {
+  CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache"}, 60, 1).empty());
+}
+
+TEST_CASE("planners that keep a world are not asked in one that moves") {
+  CHECK(bench_replanning({"visibility", "prm"}, 10, 1).empty());
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/ball.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+namespace sidestep {
+namespace {
+
+void roll(Ball& ball, int steps, const Field& field, std::span<const Circle> obstacles = {},
+          std::span<const Body> robots = {}) {
+  for (int i = 0; i < steps; ++i) ball.step(field, obstacles, robots, 0.09);
+}
+
+TEST_CASE("a ball rolls v^2 / 2a and then rests") {
+  Ball ball({{-4, 0}, {1.2, 0.9}}, {});
+  roll(ball, 6000, {20, 20});
+  CHECK((ball.state().position_m - Vec2(-4 + 0.8 * 3.75, 0.6 * 3.75)).norm() < 1e-6);
+  CHECK(ball.state().velocity_mps.norm() == 0);
+}
+
+TEST_CASE("a ball bounces off every wall with less speed and never leaves the field") {
+  const Vec2 direction = GENERATE(Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1), Vec2(0.6, 0.8));
+  const BallSettings settings;
+  const Field field{2, 1};
+  Ball ball({{0, 0}, 3 * direction}, settings);
+  double speed = 3;
+  bool has_bounced = false;
+  for (int i = 0; i < 5000; ++i) {
+    roll(ball, 1, field);
+    REQUIRE(field.contains(ball.state().position_m, settings.radius_m - 1e-12));
+    REQUIRE(ball.state().velocity_mps.norm() <= speed);
+    speed = ball.state().velocity_mps.norm();
+    has_bounced = has_bounced || ball.state().velocity_mps.dot(direction) < 0;
+  }
+  CHECK(has_bounced);
+}
+
+TEST_CASE("a ball bounces off an obstacle") {
+  const Circle obstacle{{1, 0}, 0.1};
+  Ball ball({{0, 0}, {2, 0}}, {});
+  roll(ball, 1000, {9, 6}, {&obstacle, 1});
+  CHECK(ball.state().velocity_mps.x() < 0);
+  CHECK(ball.state().position_m.x() < 1 - 0.1 - 0.0215);
+}
+
+TEST_CASE("a robot pushes a ball ahead of it") {
+  std::vector<Body> robots(1, Body({0, 0}, 0, {}));
+  const BallSettings settings;
+  Ball ball({{0.3, 0}, {0, 0}}, settings);
+  for (int i = 0; i < 600; ++i) {
+    robots[0].step({Vec2(2, 0), 0});
+    ball.step({9, 6}, {}, robots, 0.09);
+    const double apart = (ball.state().position_m - robots[0].position_m()).norm();
+    REQUIRE(apart >= 0.09 + settings.radius_m - 1e-9);
+  }
+  CHECK(ball.state().position_m.x() > 0.3);
+  CHECK(ball.state().velocity_mps.x() >= robots[0].velocity_mps().x() - 0.01);
+}
+
+TEST_CASE("a ball exactly below a robot's centre is moved out on one side") {
+  const std::vector<Body> robots(1, Body({0, 0}, 0, {}));
+  Ball ball({{0, 0}, {0, 0}}, {});
+  roll(ball, 1, {9, 6}, {}, robots);
+  CHECK(ball.state().position_m.norm() == Approx(0.09 + 0.0215));
+}
+
+}  // namespace
+}  // namespace sidestep

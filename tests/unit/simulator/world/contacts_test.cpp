@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/contacts.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kRadius_m = 0.09;
+
+// Checks every pair in every step.
+struct BruteForce {
+  std::vector<Circle> obstacles;
+  ContactTotals totals;
+  std::map<std::pair<std::size_t, std::size_t>, bool> touching;
+
+  void check(std::size_t a, std::size_t b, double clearance) {
+    totals.min_clearance_m = std::min(totals.min_clearance_m, clearance);
+    bool& touches = touching[{a, b}];
+    if (clearance < 0) {
+      if (!touches) ++totals.contacts;
+      touches = true;
+      totals.penetration_m_s -= clearance * kPhysicsStepSeconds;
+    } else if (clearance > Contacts::kContactHysteresis_m) {
+      touches = false;
+    }
+  }
+
+  void step(const std::vector<Body>& bodies) {
+    for (std::size_t a = 0; a < bodies.size(); ++a) {
+      for (std::size_t b = a + 1; b < bodies.size(); ++b) {
+        check(a, b, (bodies[a].position_m() - bodies[b].position_m()).norm() - 2 * kRadius_m);
+      }
+      for (std::size_t k = 0; k < obstacles.size(); ++k) {
+        check(a, bodies.size() + k,
+             (bodies[a].position_m() - obstacles[k].centre_m).norm() - kRadius_m - obstacles[k].radius_m);
+      }
+    }
+  }
+};
+
+TEST_CASE("contacts, penetration and clearance match a check of every pair in every step") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const double side = seed % 2 == 0 ? 4 : 12;
+  std::vector<Body> bodies;
+  const auto is_free = [&bodies](const Vec2& p) {
+    for (const Body& other : bodies) {
+      if ((other.position_m() - p).norm() < 0.3) return false;
+    }
+    return true;
+  };
+  while (bodies.size() < 25) {
+    const Vec2 p(rng.uniform(-side / 2, side / 2), rng.uniform(-side / 2, side / 2));
+    if (is_free(p)) bodies.emplace_back(p, 0.0, BodySettings{});
+  }
+  BruteForce slow{{{{side, side}, 0.2}, {{-side / 2 - 0.5, 0}, 0.3}}, {}, {}};
+  Contacts contacts(slow.obstacles, kRadius_m, BodySettings{}.speed_mps);
+  std::vector<Vec2> desired_accelerations(bodies.size(), Vec2(0, 0));
+  for (int step = 0; step < 3000; ++step) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (step % 100 == 0) desired_accelerations[i] = rotated(Vec2(6, 0), rng.uniform(-3.14, 3.14));
+      if (bodies[i].position_m().norm() > side) desired_accelerations[i] = -6 * bodies[i].position_m().normalized();
+      bodies[i].step({desired_accelerations[i], 0});
+    }
+    slow.step(bodies);
+    contacts.step(bodies);
+    REQUIRE(contacts.totals().min_clearance_m == Approx(slow.totals.min_clearance_m).margin(1e-12));
+  }
+  CHECK(contacts.totals().contacts == slow.totals.contacts);
+  CHECK(contacts.totals().penetration_m_s == Approx(slow.totals.penetration_m_s));
+  if (side == 4) CHECK(slow.totals.contacts > 4);
+}
+
+TEST_CASE("two robots that drive at each other touch once and do not pass through each other") {
+  std::vector<Body> bodies{Body({-1, 0}, 0, {}), Body({1, 0}, 0, {})};
+  Contacts contacts({}, kRadius_m, BodySettings{}.speed_mps);
+  for (int step = 0; step < 3000; ++step) {
+    bodies[0].step({Vec2(3, 0), 0});
+    bodies[1].step({Vec2(-3, 0), 0});
+    contacts.step(bodies);
+    REQUIRE((bodies[0].position_m() - bodies[1].position_m()).norm() > 2 * kRadius_m - 0.006);
+    REQUIRE(bodies[0].position_m().x() < bodies[1].position_m().x());
+  }
+  CHECK(contacts.totals().contacts == 1);
+  CHECK(contacts.totals().penetration_m_s > 0);
+  CHECK(contacts.totals().min_clearance_m < 0);
+}
+
+TEST_CASE("robots that separate and meet again touch twice") {
+  std::vector<Body> bodies{Body({-0.2, 0}, 0, {}), Body({0.2, 0}, 0, {})};
+  Contacts contacts({}, kRadius_m, BodySettings{}.speed_mps);
+  for (const double direction : {1.0, -1.0, 1.0}) {
+    for (int step = 0; step < (direction > 0 ? 1500 : 1000); ++step) {
+      bodies[0].step({Vec2(2 * direction, 0), 0});
+      bodies[1].step({Vec2(-2 * direction, 0), 0});
+      contacts.step(bodies);
+    }
+    for (int step = 0; step < 2000; ++step) {
+      for (Body& body : bodies) body.step({-10 * body.velocity_mps(), 0});
+      contacts.step(bodies);
+    }
+  }
+  CHECK(contacts.totals().contacts == 2);
+  for (std::size_t i : {0, 1}) {
+    CHECK(contacts.totals().recent_contacts[i].first == 0);
+    CHECK(contacts.totals().recent_contacts[i].second == 1);
+  }
+}
+
+TEST_CASE("an obstacle stops a robot and does not move") {
+  const Circle obstacle{{1, 0}, 0.25};
+  std::vector<Body> bodies{Body({0, 0}, 0, {})};
+  Contacts contacts({&obstacle, 1}, kRadius_m, BodySettings{}.speed_mps);
+  for (int step = 0; step < 3000; ++step) {
+    bodies[0].step({Vec2(3, 0), 0});
+    contacts.step(bodies);
+  }
+  CHECK(contacts.totals().contacts == 1);
+  CHECK(contacts.totals().recent_contacts[0].first == 0);
+  CHECK(contacts.totals().recent_contacts[0].second == bodies.size());
+  CHECK(bodies[0].position_m().x() == Approx(1 - 0.25 - kRadius_m).margin(1e-3));
+}
+
+TEST_CASE("the smallest clearance is retained although the robots separate again") {
+  std::vector<Body> bodies{Body({-0.5, 0}, 0, {}), Body({0, 0.4}, 0, {})};
+  Contacts contacts({}, kRadius_m, BodySettings{}.speed_mps);
+  for (int step = 0; step < 2000; ++step) {
+    bodies[0].step({Vec2(2, 0), 0});
+    contacts.step(bodies);
+  }
+  CHECK(contacts.totals().contacts == 0);
+  CHECK(contacts.totals().min_clearance_m == Approx(0.4 - 2 * kRadius_m).margin(1e-4));
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "simulator/world/cameras.hpp"
+#include "simulator/world/disturbance_check.hpp"
+#include "tests/unit/simulator/world/commands.hpp"
+#include "tests/unit/simulator/world/ideal_agent.hpp"
+#include "tests/unit/simulator/world/random_drive.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+using test::disturbance;
+using test::IdealAgent;
+using test::separated_robots;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+msg::Disturbance place(RobotId robot, const Vec2& at_m, double heading_rad) {
+  auto message = disturbance(robot, msg::DISTURBANCE_PLACE);
+  message.x_m(at_m.x());
+  message.y_m(at_m.y());
+  message.heading_rad(heading_rad);
+  return message;
+}
+
+msg::Command rest_version(RobotId robot, VersionNumber number, Time start, const Vec2& at_m) {
+  return test::command_with({robot, 1, number, 0, Trajectory::resting(start, at_m)});
+}
+
+bool truth_has(const World& world, RobotId robot) {
+  msg::GroundTruth truth;
+  world.fill(truth);
+  return std::any_of(truth.robots().begin(), truth.robots().end(),
+                     [robot](const msg::TrueRobotState& seen) { return seen.robot() == robot; });
+}
+
+TEST_CASE("a lifted robot is no obstacle, invisible, and executes nothing") {
+  Scenario scenario = separated_robots(2);
+  scenario.field = {4, 4};
+  scenario.robots[0].start_m = Vec2(0, 0);
+  scenario.robots[1].start_m = Vec2(1, 0);
+  World world(scenario, kBegin, 1);
+  Time now = kBegin + milliseconds(30);
+  world.advance(now);
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+  CHECK(world.pending_feedback().size() == 1);
+  CHECK_FALSE(truth_has(world, 0));
+  CHECK(truth_has(world, 1));
+  const msg::Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_lifted());
+  CHECK(facts.executing().version_number() == 0);
+  Cameras cameras(scenario, kBegin, 1);
+  msg::DetectionFrame frame;
+  cameras.capture(cameras.next_capture(), {world.bodies()}, frame);
+  for (const auto& seen : frame.robots()) CHECK(seen.robot() == 1);
+  // The other robot drives through the lifted robot's former position.
+  Trajectory dash(now + milliseconds(10), {{1, 0}, {0, 0}});
+  dash.append(milliseconds(500), Vec2(-3, 0));
+  append_stop(dash, 5);
+  world.on_command(1, test::command_with({1, 1, 1, 0, dash}), now);
+  world.advance(now + milliseconds(2000));
+  CHECK(world.bodies()[1].position_m().x() < 0.5);
+  CHECK(world.contacts().contacts == 0);
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("a lifted robot is put down at the requested place once it executes a rest version there") {
+  Scenario scenario = separated_robots(1);
+  const bool begins_absent = GENERATE(false, true);
+  CAPTURE(begins_absent);
+  scenario.robots[0].is_absent = begins_absent;
+  World world(scenario, kBegin, 1);
+  Time now = kBegin;
+  const auto run = [&](int ms) { world.advance(now += milliseconds(ms)); };
+  run(10);
+  if (!begins_absent) {
+    CHECK_FALSE(world.disturb(0, place(0, {1, 1}, 0), now));
+    REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+  }
+  CHECK_FALSE(truth_has(world, 0));
+  REQUIRE(world.disturb(0, place(0, {3, -2}, 1.5), now));
+  run(50);
+  CHECK_FALSE(truth_has(world, 0));
+  SECTION("at the requested place") {
+    world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.001, -2}), now);
+    run(9);
+    CHECK(world.feedback(0, now).executing().version_number() == 0);
+    run(3);
+    const msg::Feedback facts = world.feedback(0, now);
+    CHECK(facts.executing().version_number() == 10);
+    CHECK_FALSE(facts.is_lifted());
+    CHECK(facts.x_m() == Approx(3.001));
+    CHECK(truth_has(world, 0));
+    CHECK((world.bodies()[0].position_m() - Vec2(3.001, -2)).norm() < 1e-6);
+    CHECK(world.bodies()[0].heading_rad() == Approx(1.5));
+    // It drives on from there.
+    Trajectory dash(now + milliseconds(10), {{3.001, -2}, {0, 0}});
+    dash.append(milliseconds(200), Vec2(-3, 0));
+    append_stop(dash, 5);
+    world.on_command(0, test::command_with({0, 1, 11, 10, dash}), now);
+    run(1000);
+    CHECK(world.reference_error_m(0) < 0.003);
+    CHECK(world.firmware(0).executing().number == 11);
+    CHECK(world.firmware(0).counts().own_stops == 0);
+  }
+  SECTION("not at another place") {
+    world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.01, -2}), now);
+    run(100);
+    CHECK_FALSE(truth_has(world, 0));
+    CHECK(world.feedback(0, now).is_lifted());
+    CHECK(world.feedback(0, now).executing().version_number() == 10);
+    // Only lifting the robot again voids the first rest version and permits another.
+    world.on_command(0, rest_version(0, 11, now + milliseconds(10), {3, -2}), now);
+    run(100);
+    CHECK_FALSE(truth_has(world, 0));
+    REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+    REQUIRE(world.disturb(0, place(0, {3, -2}, 1.5), now));
+    world.on_command(0, rest_version(0, 12, now + milliseconds(10), {3, -2}), now);
+    run(100);
+    CHECK(truth_has(world, 0));
+  }
+  SECTION("not with a version that moves") {
+    Trajectory dash(now + milliseconds(10), {{3, -2}, {1, 0}});
+    append_stop(dash, 5);
+    world.on_command(0, test::command_with({0, 1, 10, 0, dash}), now);
+    run(100);
+    CHECK(world.feedback(0, now).executing().version_number() == 0);
+    CHECK(world.firmware(0).counts().refused_base == 1);
+  }
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("a version from before the robot was lifted is never executed afterwards") {
+  const Scenario scenario = separated_robots(1);
+  World world(scenario, kBegin, 1);
+  const Vec2 mark = scenario.robots[0].start_m;
+  world.on_command(0, rest_version(0, 5, kBegin + milliseconds(5), mark), kBegin);
+  world.advance(kBegin + milliseconds(10));
+  REQUIRE(world.firmware(0).executing().number == 5);
+  Time now = kBegin + milliseconds(10);
+  world.on_command(0, test::command_with({0, 1, 6, 5, Trajectory::resting(now + milliseconds(20), mark)}),
+                   now);
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+  world.on_command(0, rest_version(0, 4, now + milliseconds(20), mark), now);
+  world.advance(now += milliseconds(50));
+  CHECK(world.feedback(0, now).executing().version_number() == 0);
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same agent as before") {
+  const Scenario scenario = separated_robots(1);
+  World world(scenario, kBegin, 1);
+  Trajectory dash(kBegin + milliseconds(10), {scenario.robots[0].start_m, {0, 0}});
+  dash.append(milliseconds(500), Vec2(3, 0));
+  append_stop(dash, 5);
+  auto command = test::command_with({0, 3, 10, 0, dash});
+  command.epoch(7);
+  world.on_command(0, command, kBegin);
+  const bool moves = GENERATE(false, true);
+  Time now = kBegin + milliseconds(moves ? 400 : 2000);
+  world.advance(now);
+  const Vec2 before = world.bodies()[0].velocity_mps();
+  const msg::Feedback last = world.feedback(0, now);
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_REBOOT), now));
+  world.advance(now += milliseconds(2));
+  const msg::Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_off_reference());
+  CHECK(facts.executing().base() == 10);
+  CHECK(facts.executing().version_number() > 10);
+  CHECK(facts.executing().incarnation() == 3);
+  CHECK(facts.executing().start_ns() > last.valid_at_ns());
+  CHECK(std::abs(facts.executing().vx_mps() - before.x()) < 0.05);
+  CHECK(facts.obeyed_incarnation() == 3);
+  CHECK(facts.obeyed_epoch() == 7);
+  CHECK(facts.activated() == 0);
+  CHECK(facts.command_stamp_ns() == 0);
+  world.advance(now + milliseconds(1000));
+  CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
+  CHECK(world.reference_error_m(0) < 0.003);
+  // In motion it may lose the new reference once more, until its motor model has converged.
+  CHECK(world.firmware(0).counts().own_stops <= (moves ? 2 : 1));
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("a robot's facts are by its own clock, which stands still after being set back") {
+  Scenario scenario = separated_robots(1);
+  scenario.robots[0].clock_offset = milliseconds(7);
+  World world(scenario, kBegin, 1);
+  Time now = kBegin + milliseconds(10);
+  world.advance(now);
+  auto command = rest_version(0, 5, now + milliseconds(20), scenario.robots[0].start_m);
+  command.header().stamp_ns(12345);
+  world.on_command(0, command, now);
+  msg::Feedback facts = world.feedback(0, now);
+  CHECK(facts.valid_at_ns() == to_ns(now + milliseconds(7)));
+  CHECK(facts.command_stamp_ns() == 12345);
+  CHECK(facts.command_received_at_ns() == facts.valid_at_ns());
+  CHECK(world.next_start(0) == now + milliseconds(13));
+  world.advance(now += milliseconds(12));
+  CHECK(world.firmware(0).executing().number == 0);
+  world.advance(now += milliseconds(1));
+  CHECK(world.firmware(0).executing().number == 5);
+
+  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
+  clock.clock_offset_ns(Duration(milliseconds(-30)).count());
+  REQUIRE(world.disturb(0, clock, now));
+  const Time frozen_at = now + milliseconds(7);
+  world.advance(now += milliseconds(20));
+  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == frozen_at);
+  world.advance(now += milliseconds(30));
+  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == now - milliseconds(30));
+  clock.clock_offset_ns(Duration(milliseconds(400)).count());
+  REQUIRE(world.disturb(0, clock, now));
+  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == now + milliseconds(400));
+  world.advance(now += milliseconds(500));
+  CHECK(world.firmware(0).counts().own_stops == 0);
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("ground truth reports when a robot's disturbance ends") {
+  World world(separated_robots(1), kBegin, 1);
+  Time now = kBegin;
+  const auto disturbance_end_ns = [&] {
+    msg::GroundTruth truth;
+    world.fill(truth);
+    return truth.robots().at(0).disturbance_end_ns();
+  };
+  world.advance(now += milliseconds(100));
+  CHECK(disturbance_end_ns() < 0);
+  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);  // does not affect the body
+  clock.clock_offset_ns(Duration(milliseconds(5)).count());
+  REQUIRE(world.disturb(0, clock, now));
+  CHECK(disturbance_end_ns() < 0);
+  auto slip = disturbance(0, msg::DISTURBANCE_SLIP);
+  slip.duration_ns(Duration(milliseconds(500)).count());
+  REQUIRE(world.disturb(0, slip, now));
+  CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
+  CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
+  slip.duration_ns(Duration(milliseconds(200)).count());  // replaces the first
+  REQUIRE(world.disturb(0, slip, now));
+  const Time end = now + milliseconds(200);
+  CHECK(disturbance_end_ns() == to_ns(end));
+  world.advance(now += milliseconds(600));
+  CHECK(disturbance_end_ns() == to_ns(end));
+  auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
+  block.duration_ns(Duration(milliseconds(100)).count());
+  REQUIRE(world.disturb(0, block, now));
+  CHECK(disturbance_end_ns() == to_ns(now + milliseconds(100)));
+  world.advance(now += milliseconds(600));
+  for (const auto kind : {msg::DISTURBANCE_PUSH, msg::DISTURBANCE_REBOOT}) {
+    REQUIRE(world.disturb(0, disturbance(0, kind), now));
+    CHECK(disturbance_end_ns() == to_ns(now));
+    world.advance(now += milliseconds(600));
+  }
+}
+
+TEST_CASE("an invalid disturbance is refused") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Field field{9, 6};
+  const auto valid = [&](const msg::Disturbance& message) { return is_valid(message, field, 0.09); };
+  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  push.x_m(nan);  // not used by a push
+  CHECK(valid(push));
+  push.vx_mps(nan);
+  CHECK_FALSE(valid(push));
+  push.vx_mps(-11);
+  CHECK_FALSE(valid(push));
+  for (const auto kind : {msg::DISTURBANCE_SLIP, msg::DISTURBANCE_BLOCK}) {
+    auto lasting = disturbance(0, kind);
+    CHECK(valid(lasting));
+    lasting.duration_ns(-1);
+    CHECK_FALSE(valid(lasting));
+    lasting.duration_ns(std::numeric_limits<std::int64_t>::max());
+    CHECK_FALSE(valid(lasting));
+    lasting.duration_ns(1000);
+    lasting.grip(nan);
+    lasting.heading_rad(nan);
+    CHECK_FALSE(valid(lasting));
+    lasting.grip(1.1);
+    lasting.heading_rad(1e9);
+    CHECK_FALSE(valid(lasting));
+  }
+  CHECK(valid(place(0, {4.4, 2.9}, 3)));
+  CHECK_FALSE(valid(place(0, {4.42, 0}, 0)));
+  CHECK_FALSE(valid(place(0, {nan, 0}, 0)));
+  CHECK_FALSE(valid(place(0, {0, 0}, nan)));
+  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
+  clock.clock_offset_ns(Duration(std::chrono::hours(-1)).count());
+  CHECK(valid(clock));
+  clock.clock_offset_ns(std::numeric_limits<std::int64_t>::min());
+  CHECK_FALSE(valid(clock));
+  CHECK_FALSE(valid(disturbance(0, static_cast<msg::DisturbanceKind>(7))));
+  CHECK_FALSE(valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
+  CHECK(valid(disturbance(0, msg::DISTURBANCE_LIFT)));
+  CHECK(valid(disturbance(0, msg::DISTURBANCE_REBOOT)));
+}
+
+// Any disturbance at any time: the firmware keeps its rules, facts stay true, numbers are never reused, and
+// in the end every robot is within the error that it reports.
+TEST_CASE("under any disturbance the firmware keeps its rules and ends where it reports to be") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
+  CAPTURE(seed);
+  Scenario scenario = separated_robots(4);
+  World world(scenario, kBegin, seed);
+  Rng rng(seed);
+  std::vector<IdealAgent> agents;
+  for (std::size_t i = 0; i < world.robot_count(); ++i) {
+    agents.emplace_back(scenario, world, i, 10 * seed + i);
+    agents.back().place_m = scenario.robots[i].start_m;
+  }
+  struct Fact {
+    Time at;
+    VersionNumber executing;
+  };
+  std::vector<std::map<VersionNumber, msg::Version>> known(world.robot_count());
+  std::vector<Fact> latest(world.robot_count(), Fact{Time::min(), 0});
+  for (Time now = kBegin; now < kBegin + std::chrono::seconds(8);) {
+    now += kPhysicsStep;
+    world.advance(now);
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+      agents[i].act(now);
+      const msg::Feedback facts = world.feedback(i, now);
+      const auto number = facts.executing().version_number();
+      const auto [same, is_new] = known[i].emplace(number, facts.executing());
+      if (!is_new && number > 0) REQUIRE(same->second == facts.executing());
+      REQUIRE(time_from_ns(facts.valid_at_ns()) >= latest[i].at);
+      if (!facts.is_lifted() && number != latest[i].executing && latest[i].executing > 0) {
+        REQUIRE(facts.executing().start_ns() > to_ns(latest[i].at));
+        REQUIRE(number > latest[i].executing);
+      }
+      latest[i] = {time_from_ns(facts.valid_at_ns()), number};
+    }
+    if (now > kBegin + std::chrono::seconds(6) || !rng.chance(0.005)) continue;
+    const std::size_t robot = rng.below(world.robot_count());
+    msg::Disturbance message = disturbance(world.id(robot), static_cast<msg::DisturbanceKind>(rng.below(7)));
+    message.vx_mps(rng.uniform(-2, 2));
+    message.vy_mps(rng.uniform(-2, 2));
+    message.grip(rng.uniform());
+    message.duration_ns(static_cast<std::int64_t>(rng.below(500'000'000)));
+    message.heading_rad(rng.uniform(-3, 3));
+    message.x_m(agents[robot].place_m.x());
+    message.y_m(agents[robot].place_m.y());
+    message.clock_offset_ns(static_cast<std::int64_t>(rng.below(6'000'000)) - 3'000'000);
+    REQUIRE(is_valid(message, scenario.field, scenario.radius_m));
+    (void)world.disturb(robot, message, now);
+    if (now > kBegin + std::chrono::seconds(5)) {
+      for (IdealAgent& agent : agents) agent.drives = false;
+    }
+  }
+  CHECK(world.firmware_violations() == 0);
+  for (std::size_t i = 0; i < world.robot_count(); ++i) {
+    CAPTURE(i);
+    CHECK(world.reference_error_m(i) <
+          scenario.tracking_bound_m + world.firmware(i).executing().inflation_m + 0.002 * agents[i].drives);
+  }
+}
+
+}  // namespace
+}  // namespace sidestep

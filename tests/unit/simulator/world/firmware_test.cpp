@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/firmware.hpp"
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "common/random/rng.hpp"
+#include "simulator/world/firmware_monitor.hpp"
+#include "tests/unit/simulator/world/commands.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+using test::bare_command;
+using test::command_with;
+
+constexpr RobotId kRobot = 7;
+constexpr Incarnation kFirst = 100;
+constexpr Incarnation kSecond = 200;
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+const Vec2 kStart(1, -2);
+
+Time at(int ms) { return kBegin + milliseconds(ms); }
+
+Version version(VersionNumber number, VersionNumber base, int start_ms, Incarnation incarnation = kFirst) {
+  return {kRobot, incarnation, number, base, Trajectory::resting(at(start_ms), kStart)};
+}
+
+Firmware firmware() { return {kRobot, kStart, 0.5, kBegin, {}}; }
+
+TEST_CASE("a robot without commands executes version 0 at rest at its start position") {
+  auto robot = firmware();
+  const auto facts = robot.feedback(at(5));
+  CHECK(facts.robot() == kRobot);
+  CHECK(facts.obeyed_incarnation() == 0);
+  CHECK(facts.executing().version_number() == 0);
+  CHECK(facts.executing().x_m() == kStart.x());
+  CHECK(facts.executing().y_m() == kStart.y());
+  CHECK(facts.executing().phase_count() == 0);
+  CHECK(facts.heading_rad() == 0.5);
+}
+
+TEST_CASE("a version based on the executed one is switched to at its start time, not earlier") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(101, 0, 20)), at(5));
+  CHECK(robot.feedback(at(19)).executing().version_number() == 0);
+  CHECK(robot.feedback(at(20)).executing().version_number() == 101);
+  CHECK(robot.counts().activated == 1);
+}
+
+TEST_CASE("an own stop does not contradict a fact reported for the same time") {
+  const Time begin = time_from_ns(1'000'000'000), reported = begin + std::chrono::milliseconds(10);
+  Firmware firmware(0, {0, 0}, 0, begin, {});
+  firmware.reboot();
+  REQUIRE(firmware.feedback(reported).executing().version_number() == 0);
+  firmware.tick(reported, Odometry{});
+  CHECK(firmware.executing().number == 0);
+  firmware.tick(reported + kPhysicsStep, Odometry{});
+  CHECK(firmware.is_off_reference());
+}
+
+TEST_CASE("a version that arrives after its start time is refused") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(101, 0, 20)), at(21));
+  robot.on_command(command_with(version(102, 0, 22)), at(22));
+  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.counts().refused_late == 2);
+  CHECK(robot.counts().activated == 0);
+}
+
+TEST_CASE("a version on another base is refused") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(103, 102, 20)), at(5));
+  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.counts().refused_base == 1);
+}
+
+TEST_CASE("the base of a version may arrive after it") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(102, 101, 40)), at(5));
+  robot.on_command(command_with(version(101, 0, 20)), at(6));
+  CHECK(robot.feedback(at(39)).executing().version_number() == 101);
+  CHECK(robot.feedback(at(40)).executing().version_number() == 102);
+}
+
+TEST_CASE("of two versions on one base only one is executed") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(102, 0, 30)), at(5));
+  robot.on_command(command_with(version(101, 0, 20)), at(6));
+  CHECK(robot.feedback(at(50)).executing().version_number() == 101);
+  CHECK(robot.counts().activated == 1);
+  CHECK(robot.counts().refused_base == 1);
+}
+
+TEST_CASE("a version older than the executed one is never executed") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(105, 0, 20)), at(5));
+  REQUIRE(robot.switch_next(at(20)));
+  robot.on_command(command_with(version(104, 105, 40)), at(25));
+  CHECK(robot.feedback(at(50)).executing().version_number() == 105);
+  CHECK(robot.counts().refused_base == 1);
+}
+
+TEST_CASE("a repeated version is switched to once and never refused") {
+  auto robot = firmware();
+  for (int ms = 5; ms < 30; ++ms) robot.on_command(command_with(version(101, 0, 20)), at(ms));
+  CHECK(robot.counts().activated == 1);
+  CHECK(robot.counts().refused_late == 0);
+  CHECK(robot.counts().refused_base == 0);
+}
+
+TEST_CASE("a chain of versions that are due at the same time is executed in order of start") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(103, 102, 30)), at(1));
+  robot.on_command(command_with(version(101, 0, 10)), at(2));
+  robot.on_command(command_with(version(102, 101, 20)), at(3));
+  CHECK(robot.feedback(at(100)).executing().version_number() == 103);
+  CHECK(robot.counts().activated == 3);
+}
+
+TEST_CASE("an older incarnation is fenced") {
+  auto robot = firmware();
+  robot.on_command(bare_command(kRobot, kSecond), at(1));
+  robot.on_command(command_with(version(101, 0, 20, kFirst)), at(2));
+  const auto facts = robot.feedback(at(30));
+  CHECK(facts.obeyed_incarnation() == kSecond);
+  CHECK(facts.executing().version_number() == 0);
+  CHECK(facts.refused_fenced() == 1);
+}
+
+TEST_CASE("a fence without a version drops pending versions of the older incarnation") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
+  robot.on_command(bare_command(kRobot, kSecond), at(2));
+  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.counts().refused_fenced == 1);
+}
+
+TEST_CASE("a fence does not affect the executed version") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
+  robot.on_command(bare_command(kRobot, kSecond), at(20));
+  const auto facts = robot.feedback(at(30));
+  CHECK(facts.executing().version_number() == 101);
+  CHECK(facts.executing().incarnation() == kFirst);
+  CHECK(facts.obeyed_incarnation() == kSecond);
+}
+
+TEST_CASE("a new incarnation cannot forward an older one's version") {
+  auto robot = firmware();
+  auto command = command_with(version(101, 0, 20, kFirst));
+  command.header().incarnation(kSecond);
+  robot.on_command(command, at(1));
+  CHECK(robot.obeyed_incarnation() == kSecond);
+  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.counts().refused_fenced == 1);
+}
+
+TEST_CASE(
+    "a version under an older epoch is refused from any agent, and the robot reports the epoch that it obeys") {
+  auto robot = firmware();
+  auto later = bare_command(kRobot, kFirst);
+  later.epoch(9);
+  robot.on_command(later, at(1));
+  CHECK(robot.feedback(at(2)).obeyed_epoch() == 9);
+  auto old = command_with(version(101, 0, 20, kFirst));
+  old.epoch(8);
+  robot.on_command(old, at(3));
+  auto successor = command_with(version(201, 0, 20, kSecond));
+  successor.epoch(8);
+  robot.on_command(successor, at(4));
+  const auto facts = robot.feedback(at(30));
+  CHECK(facts.executing().version_number() == 0);
+  CHECK(facts.obeyed_epoch() == 9);
+  // The successor's incarnation is obeyed, but not its version.
+  CHECK(facts.obeyed_incarnation() == kSecond);
+  CHECK(facts.refused_fenced() == 2);
+}
+
+TEST_CASE("a fenced agent cannot raise the epoch") {
+  auto robot = firmware();
+  robot.on_command(bare_command(kRobot, kSecond), at(1));
+  auto zombie = bare_command(kRobot, kFirst);
+  zombie.epoch(9);
+  robot.on_command(zombie, at(2));
+  CHECK(robot.feedback(at(3)).obeyed_epoch() == 0);
+}
+
+TEST_CASE("a new incarnation continues from the executed version") {
+  auto robot = firmware();
+  robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
+  robot.on_command(bare_command(kRobot, kSecond), at(25));
+  robot.on_command(command_with(version(201, 101, 40, kSecond)), at(30));
+  CHECK(robot.feedback(at(40)).executing().version_number() == 201);
+}
+
+TEST_CASE("a due switch is made before a fact is reported") {
+  SECTION("by a report") {
+    auto robot = firmware();
+    robot.on_command(command_with(version(101, 0, 20)), at(5));
+    const auto facts = robot.feedback(at(20));
+    CHECK(facts.executing().version_number() == 101);
+    CHECK(facts.activated() == 1);
+  }
+  SECTION("by a command") {
+    auto robot = firmware();
+    robot.on_command(command_with(version(101, 0, 20)), at(5));
+    robot.on_command(bare_command(kRobot, kSecond), at(20));
+    CHECK(robot.executing().number == 101);
+  }
+  SECTION("by the control loop") {
+    auto robot = firmware();
+    robot.on_command(command_with(version(101, 0, 20)), at(5));
+    for (int ms = 1; ms <= 20; ++ms) robot.tick(at(ms), {});
+    CHECK(robot.executing().number == 101);
+  }
+}
+
+TEST_CASE("hostile commands change nothing and are counted") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  const std::vector<std::function<void(msg::Command&)>> corruptions{
+      [](auto& c) { c.robot(kRobot + 1); },
+      [](auto& c) { c.header().sender(kRobot + 1); },
+      [](auto& c) { c.header().incarnation(0); },
+      [nan](auto& c) { c.desired_heading_rad(nan); },
+      [infinite](auto& c) { c.desired_heading_rad(infinite); },
+      [](auto& c) { c.version().robot(kRobot + 1); },
+      [](auto& c) { c.version().version_number(0); },
+      [](auto& c) { c.version().incarnation(kSecond + 1); },
+      [nan](auto& c) { c.version().x_m(nan); },
+      [infinite](auto& c) { c.version().vy_mps(infinite); },
+      [](auto& c) { c.version().phase_count(5); },
+      [](auto& c) { c.version().phase_count(255); },
+      [](auto& c) {
+        c.version().phase_count(1);
+        c.version().phases()[0].duration_ns(-1);
+      },
+      [nan](auto& c) {
+        c.version().phase_count(1);
+        c.version().phases()[0].ax_mps2(nan);
+      },
+      [nan](auto& c) {
+        c.has_fix(true);
+        c.fix().x_m(nan);
+      },
+      [](auto& c) {
+        c.has_fix(true);
+        c.fix().y_m(1e300);
+      },
+      [infinite](auto& c) {
+        c.has_fix(true);
+        c.fix().heading_rad(infinite);
+      }};
+  for (std::size_t i = 0; i < corruptions.size(); ++i) {
+    CAPTURE(i);
+    auto robot = firmware();
+    robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
+    auto command = command_with(version(102, 0, 10, kSecond));
+    corruptions[i](command);
+    robot.on_command(command, at(5));
+    CHECK(robot.counts().refused_malformed == 1);
+    CHECK(robot.obeyed_incarnation() == kFirst);
+    CHECK(robot.feedback(at(15)).executing().version_number() == 0);
+    const auto facts = robot.feedback(at(20));
+    CHECK(facts.executing().version_number() == 101);
+    CHECK(facts.x_m() == kStart.x());
+    CHECK(facts.tracking_error_m() == 0);
+  }
+}
+
+TEST_CASE("versions that start far ahead do not displace an earlier one") {
+  auto robot = firmware();
+  for (VersionNumber n = 0; n < 50; ++n) robot.on_command(command_with(version(200 + n, 0, 100'000)), at(1));
+  robot.on_command(command_with(version(101, 0, 20)), at(2));
+  CHECK(robot.feedback(at(20)).executing().version_number() == 101);
+}
+
+TEST_CASE("a robot turns to the commanded heading and holds it") {
+  auto robot = firmware();
+  Body body(kStart, 0.5, {});
+  double before = 0.5;
+  const auto run = [&](int from_ms, int to_ms) {
+    for (int ms = from_ms + 1; ms <= to_ms; ++ms) {
+      const double turning = wrapped_rad(body.heading_rad() - before) / kPhysicsStepSeconds;
+      before = body.heading_rad();
+      body.step(robot.tick(at(ms), {Vec2(0, 0), turning}));
+    }
+  };
+  run(0, 1000);
+  CHECK(std::abs(body.heading_rad() - 0.5) < 1e-6);
+  auto command = bare_command(kRobot, kFirst);
+  command.desired_heading_rad(-2.5);
+  robot.on_command(command, at(1000));
+  run(1000, 3000);
+  CHECK(std::abs(wrapped_rad(body.heading_rad() + 2.5)) < 0.01);
+}
+
+// Random commands: late, duplicated, out of order, of several incarnations. All versions rest at the start
+// position, so that any may follow any other and only the rules decide.
+TEST_CASE("the monitor finds no broken rule under any commands") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 40));
+  CAPTURE(seed);
+  Rng rng(seed);
+  auto robot = firmware();
+  FirmwareMonitor monitor(robot.executing());
+  const auto switch_due = [&](Time now) {
+    while (robot.switch_next(now)) monitor.switched(robot.executing());
+  };
+  VersionNumber newest = 100;
+  std::uint64_t taken = 0;
+  for (int us = 0; us < 3'000'000; us += static_cast<int>(1 + rng.below(4000))) {
+    const Time now = kBegin + std::chrono::microseconds(us);
+    if (rng.chance(0.5)) {
+      const Incarnation incarnation = 100 + static_cast<Incarnation>(us / 500'000) - rng.below(2);
+      const VersionNumber number = newest - rng.below(4);
+      newest += rng.below(3);
+      const VersionNumber base = rng.chance(0.6) ? robot.executing().number : newest - rng.below(6);
+      Version v = version(number, base, us / 1000 + static_cast<int>(rng.below(20)) - 4, incarnation);
+      auto command = rng.chance(0.9) ? command_with(v) : bare_command(kRobot, incarnation);
+      switch_due(now);
+      monitor.command_arrived(command, now);
+      robot.on_command(command, now);
+    } else {
+      switch_due(now);
+      const auto facts = robot.feedback(now);
+      monitor.reported(facts);
+      taken = facts.activated();
+    }
+  }
+  CHECK(monitor.violations() == 0);
+  CHECK(taken > 20);
+  CHECK(robot.counts().refused_late > 0);
+  CHECK(robot.counts().refused_base > 0);
+  CHECK(robot.counts().refused_fenced > 0);
+}
+
+}  // namespace
+}  // namespace sidestep

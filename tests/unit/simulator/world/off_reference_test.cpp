@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "tests/unit/simulator/world/ideal_agent.hpp"
+#include "tests/unit/simulator/world/random_drive.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+using test::disturbance;
+using test::IdealAgent;
+using test::separated_robots;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+Scenario noisy(Scenario scenario) {
+  scenario.vision.position_noise_m = 0.0015;
+  scenario.vision.delay = milliseconds(35);
+  scenario.tracking_bound_m = 0.005;
+  return scenario;
+}
+
+struct Floor {
+  Floor(const Scenario& s, std::uint64_t seed) : scenario(s), world(scenario, kBegin, seed) {
+    for (std::size_t i = 0; i < world.robot_count(); ++i)
+      agents.emplace_back(scenario, world, i, 100 * seed + i);
+  }
+  void run_for(Duration duration) {
+    for (const Time end = now + duration; now < end;) {
+      now += kPhysicsStep;
+      world.advance(now);
+      for (IdealAgent& agent : agents) agent.act(now);
+    }
+  }
+  std::uint64_t own_stops(std::size_t robot) const { return world.firmware(robot).counts().own_stops; }
+  std::uint64_t own_stops() const {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < world.robot_count(); ++i) sum += own_stops(i);
+    return sum;
+  }
+  // The time to the robot's next own stop; one second if there is none.
+  Duration until_own_stop(std::size_t robot) {
+    const std::uint64_t before = own_stops(robot);
+    const Time since = now;
+    while (own_stops(robot) == before && now - since < milliseconds(1000)) run_for(kPhysicsStep);
+    return now - since;
+  }
+
+  Scenario scenario;
+  World world;
+  std::vector<IdealAgent> agents;
+  Time now = kBegin;
+};
+
+TEST_CASE("an undisturbed robot never makes an own stop") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  const bool is_noisy = GENERATE(false, true);
+  CAPTURE(seed, is_noisy);
+  Floor floor(is_noisy ? noisy(separated_robots(20)) : separated_robots(20), seed);
+  floor.run_for(std::chrono::seconds(20));
+  CHECK(floor.own_stops() == 0);
+  CHECK(floor.world.firmware_violations() == 0);
+  for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
+    CAPTURE(floor.world.firmware(i).counts().refused_late, floor.world.firmware(i).counts().refused_base,
+            floor.world.firmware(i).counts().refused_malformed);
+    CHECK(floor.world.firmware(i).counts().activated > 1000);
+  }
+}
+
+TEST_CASE("a robot that is seen rarely and late returns to its reference without an own stop") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  CAPTURE(seed);
+  Scenario scenario = separated_robots(20);
+  scenario.vision.delay = milliseconds(120);
+  scenario.vision.miss_probability = 0.6;
+  Floor floor(scenario, seed);
+  floor.run_for(std::chrono::seconds(10));
+  CHECK(floor.own_stops() == 0);
+}
+
+TEST_CASE("a pushed robot makes an own stop when the second frame after the push arrives") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  const bool drives = GENERATE(false, true);
+  CAPTURE(seed, drives);
+  Floor floor(separated_robots(1), seed);
+  floor.agents[0].drives = drives;
+  floor.run_for(milliseconds(2000));
+  REQUIRE(floor.own_stops() == 0);
+  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  const Vec2 change = rotated(Vec2(0.3, 0), static_cast<double>(seed));
+  push.vx_mps(change.x());
+  push.vy_mps(change.y());
+  REQUIRE(floor.world.disturb(0, push, floor.now));
+  const Duration delay = floor.until_own_stop(0);
+  // It slides for 50 ms. Frames are captured every 17 ms and arrive 10 ms later.
+  INFO("own stop after " << to_seconds(delay) * 1e3 << " ms");
+  CHECK(delay < milliseconds(75));
+  const Version stop = floor.world.firmware(0).executing();
+  CHECK(floor.world.firmware(0).is_off_reference());
+  CHECK(stop.incarnation == 1);
+  CHECK(stop.inflation_m > 0);
+  CHECK(stop.trajectory.residual_speed_mps() < 1e-9);
+  CHECK((floor.world.bodies()[0].position_m() - stop.trajectory.at_start().position_m).norm() <
+        floor.scenario.tracking_bound_m + stop.inflation_m);
+}
+
+TEST_CASE("two noisy frames reveal to a robot that it was displaced by a centimetre") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  CAPTURE(seed);
+  // The robot is at rest; then the fixes shift by a centimetre without any odometry.
+  PoseEstimator still({0, 0}, 0, kBegin, {0.01, 0.005, 0.0015});
+  Rng rng(seed);
+  Time now = kBegin;
+  const auto frame = [&](double x_m) {
+    for (int i = 0; i < 17; ++i) still.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+    REQUIRE(still.correct(now, {x_m + 0.0015 * rng.normal(), 0.0015 * rng.normal()}, 0));
+  };
+  for (int i = 0; i < 200; ++i) {
+    frame(0);
+    REQUIRE(still.jump_m() == 0);
+  }
+  frame(0.01);
+  const double at_first_m = still.jump_m();
+  frame(0.01);
+  CHECK(std::max(at_first_m, still.jump_m()) > 0.005);
+  CHECK((still.position_m() - Vec2(0.01, 0)).norm() < 0.006);
+  CHECK(still.position_error_rms_m() > 0.001);
+}
+
+TEST_CASE("a robot that slips makes an own stop, and once at rest is within the error that it reports") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
+  CAPTURE(seed);
+  Floor floor(seed % 2 == 0 ? noisy(separated_robots(6)) : separated_robots(6), seed);
+  floor.run_for(milliseconds(1000));
+  for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
+    auto slip = disturbance(static_cast<RobotId>(i), msg::DISTURBANCE_SLIP);
+    slip.grip(0.1);
+    slip.duration_ns(Duration(milliseconds(300)).count());
+    REQUIRE(floor.world.disturb(i, slip, floor.now));
+  }
+  floor.run_for(milliseconds(400));
+  CHECK(floor.own_stops() >= 4);  // the robots that accelerated enough to leave their references
+  for (IdealAgent& agent : floor.agents) agent.drives = false;
+  floor.run_for(milliseconds(1500));
+  for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
+    CAPTURE(i);
+    CHECK(floor.world.reference_error_m(i) <
+          floor.scenario.tracking_bound_m + floor.world.firmware(i).executing().inflation_m);
+    CHECK(floor.world.bodies()[i].velocity_mps().norm() < 0.02);
+  }
+  CHECK(floor.world.firmware_violations() == 0);
+}
+
+TEST_CASE("a robot far from its reference returns to it without oscillating") {
+  const Scenario scenario = separated_robots(1);
+  World world(scenario, kBegin, 1);
+  const Vec2 mark = scenario.robots[0].start_m;
+  Time now = kBegin;
+  const auto send_fix = [&](const Vec2& position_m) {
+    now += milliseconds(17);
+    world.advance(now);
+    msg::Command command;
+    command.header().incarnation(1);
+    command.has_fix(true);
+    command.fix().captured_at_ns(to_ns(now));
+    command.fix().x_m(position_m.x());
+    command.fix().y_m(position_m.y());
+    world.on_command(0, command, now);
+  };
+  // Wrong fixes make it believe that it was displaced: it stops at the estimated position, with a large
+  // inflation.
+  for (int i = 0; i < 10; ++i) send_fix(mark);
+  for (int i = 0; i < 3; ++i) send_fix(mark + Vec2(0.15, 0));
+  const Version stop = world.firmware(0).executing();
+  REQUIRE(stop.inflation_m > 0.1);
+  REQUIRE((world.bodies()[0].position_m() - stop.trajectory.rest_position_m()).norm() > 0.1);
+
+  double max_speed_mps = 0, overshoot_m = 0;
+  for (int i = 0; i < 60 * 3; ++i) {
+    send_fix(world.bodies()[0].position_m());
+    max_speed_mps = std::max(max_speed_mps, world.bodies()[0].velocity_mps().norm());
+    overshoot_m = std::max(overshoot_m, world.bodies()[0].position_m().x() - stop.trajectory.rest_position_m().x());
+  }
+  CHECK(world.firmware(0).executing().number == stop.number);
+  CHECK(world.reference_error_m(0) < scenario.tracking_bound_m);
+  CHECK(overshoot_m < scenario.tracking_bound_m);
+  CHECK(max_speed_mps < 0.2);
+}
+
+TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
+  Floor floor(separated_robots(1), 1);
+  floor.agents[0].drives = false;
+  Trajectory dash(floor.now + milliseconds(10), {floor.scenario.robots[0].start_m, {0, 0}});
+  dash.append(milliseconds(500), Vec2(3, 0));
+  append_stop(dash, 5);
+  Version version{0, 1, 5, 0, dash};
+  msg::Command command;
+  command.header().incarnation(1);
+  command.has_version(true);
+  command.version(encode(version));
+  floor.world.on_command(0, command, floor.now);
+  floor.run_for(milliseconds(400));
+  REQUIRE(floor.world.bodies()[0].velocity_mps().x() > 1);
+  auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
+  block.heading_rad(0);
+  block.duration_ns(Duration(milliseconds(500)).count());
+  REQUIRE(floor.world.disturb(0, block, floor.now));
+  CHECK(floor.until_own_stop(0) <= milliseconds(10));
+  floor.run_for(milliseconds(450));
+  CHECK(floor.world.bodies()[0].velocity_mps().norm() < 0.02);
+  CHECK(floor.world.firmware_violations() == 0);
+}
+
+TEST_CASE("a version that continues the robot's own stop brings it back on reference") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 6));
+  CAPTURE(seed);
+  Floor floor(separated_robots(1), seed);
+  floor.run_for(milliseconds(1000));
+  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  push.vy_mps(1);
+  REQUIRE(floor.world.disturb(0, push, floor.now));
+  REQUIRE(floor.until_own_stop(0) < milliseconds(100));
+  floor.run_for(milliseconds(1000));
+  CHECK_FALSE(floor.world.firmware(0).is_off_reference());
+  CHECK(floor.world.reference_error_m(0) < floor.scenario.tracking_bound_m);
+  CHECK(floor.world.firmware_violations() == 0);
+}
+
+TEST_CASE("the number of a robot's own stop is above all received numbers, pending or refused") {
+  Floor floor(separated_robots(1), 1);
+  floor.agents[0].drives = false;
+  const Vec2 mark = floor.scenario.robots[0].start_m;
+  const auto send = [&](VersionNumber number, VersionNumber base, Incarnation incarnation, Duration ahead) {
+    msg::Command command;
+    command.header().incarnation(incarnation);
+    command.has_version(true);
+    command.version(encode({0, incarnation, number, base, Trajectory::resting(floor.now + ahead, mark)}));
+    floor.world.on_command(0, command, floor.now);
+  };
+  send(7, 0, 1, milliseconds(2));
+  floor.run_for(milliseconds(100));
+  send(5'000'000'000, 7, 1, std::chrono::seconds(10));
+  send(9'000'000'000, 77, 1, -milliseconds(10));
+  REQUIRE(floor.world.firmware(0).executing().number == 7);
+  REQUIRE(floor.world.next_start(0) < Time::max());
+  REQUIRE(floor.world.disturb(0, disturbance(0, msg::DISTURBANCE_REBOOT), floor.now));
+  floor.run_for(milliseconds(5));
+  const Version& stop = floor.world.firmware(0).executing();
+  CHECK(stop.number > 9'000'000'000);
+  CHECK(stop.base == 7);
+  CHECK(floor.world.next_start(0) == Time::max());
+  CHECK(floor.world.firmware_violations() == 0);
+}
+
+}  // namespace
+}  // namespace sidestep

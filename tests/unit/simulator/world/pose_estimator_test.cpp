@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/world/pose_estimator.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+// A robot on a circle whose odometry has a constant scale error, with delayed fixes.
+struct Circling {
+  explicit Circling(std::uint64_t seed, double scale_error)
+      : rng(seed), scale(1 + scale_error), estimator({1, 0}, 0, kBegin, {0.01, 0.005, 0.0015}) {}
+
+  Vec2 position(Time t) const { return rotated(Vec2(1, 0), 1.5 * to_seconds(t - kBegin)); }
+
+  void step() {
+    const Vec2 before = position(now);
+    now += kPhysicsStep;
+    const Vec2 velocity = (position(now) - before) / kPhysicsStepSeconds;
+    const Vec2 acceleration = -1.5 * 1.5 * position(now);
+    estimator.advance(now, {velocity * scale + 0.01 * Vec2(rng.normal(), rng.normal()), 0.1 * rng.normal()},
+                      acceleration, 0);
+    if (++steps % 17 == 0) {
+      waiting.push_back({now, position(now) + 0.0015 * Vec2(rng.normal(), rng.normal())});
+    }
+    if (!waiting.empty() && waiting.front().first + milliseconds(35) <= now) {
+      REQUIRE(estimator.correct(waiting.front().first, waiting.front().second, 0.005 * rng.normal()));
+      waiting.pop_front();
+    }
+  }
+
+  Rng rng;
+  double scale;
+  PoseEstimator estimator;
+  Time now = kBegin;
+  int steps = 0;
+  std::deque<std::pair<Time, Vec2>> waiting;
+};
+
+TEST_CASE("late and noisy fixes keep the estimate within a fraction of their noise") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(seed);
+  Circling run(seed, 0.01);
+  double sum = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    run.step();
+    if (i >= 5000) sum += (run.estimator.position_m() - run.position(run.now)).squaredNorm();
+  }
+  CHECK(std::sqrt(sum / 25'000) < 0.0007);
+  CHECK(std::abs(run.estimator.scale_error() - 0.01) < 0.001);
+  CHECK(std::abs(run.estimator.heading_rad()) < 0.01);
+  CHECK((run.estimator.velocity_mps() - 1.5 * left_of(run.position(run.now))).norm() < 0.02);
+}
+
+TEST_CASE("a fix is compared with the estimate at its capture, not with the current one") {
+  PoseEstimator estimator({0, 0}, 0, kBegin, {});
+  Time now = kBegin;
+  for (int i = 0; i < 100; ++i) estimator.advance(now += kPhysicsStep, {{2, 0}, 0}, {0, 0}, 0);
+  REQUIRE(estimator.correct(kBegin + milliseconds(40), {0.08, 0}, 0));
+  CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
+  // The same between two control periods.
+  REQUIRE(estimator.correct(kBegin + std::chrono::microseconds(60'250), {0.1205, 0}, 0));
+  CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
+}
+
+TEST_CASE("an invalid fix changes nothing") {
+  PoseEstimator estimator({0, 0}, 0, kBegin, {});
+  Time now = kBegin;
+  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPhysicsStep, {{1, 0}, 0}, {0, 0}, 0);
+  REQUIRE(estimator.correct(now - milliseconds(30), {0.97, 0}, 0));
+  const Vec2 before = estimator.position_m();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(estimator.correct(now - milliseconds(10), {nan, 0}, 0));
+  CHECK_FALSE(estimator.correct(now - milliseconds(10), {0, std::numeric_limits<double>::infinity()}, 0));
+  CHECK_FALSE(estimator.correct(now - milliseconds(10), {0, 0}, nan));
+  CHECK_FALSE(estimator.correct(now + milliseconds(1), {5, 5}, 0));
+  CHECK_FALSE(estimator.correct(now - milliseconds(30), {5, 5}, 0));
+  CHECK_FALSE(estimator.correct(now - milliseconds(31), {5, 5}, 0));
+  CHECK_FALSE(estimator.correct(Time::min(), {5, 5}, 0));
+  CHECK_FALSE(estimator.correct(Time::max(), {5, 5}, 0));
+  CHECK(estimator.position_m() == before);
+}
+
+TEST_CASE("a fix older than the history is refused, and one within it is used") {
+  PoseEstimator estimator({0, 0}, 0, kBegin, {});
+  Time now = kBegin;
+  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  CHECK_FALSE(estimator.correct(now - milliseconds(512), {0, 0}, 0));
+  CHECK(estimator.correct(now - milliseconds(500), {0, 0}, 0));
+}
+
+TEST_CASE("after a gap in time, fixes from before it are refused") {
+  PoseEstimator estimator({0, 0}, 0, kBegin, {});
+  Time now = kBegin;
+  for (int i = 0; i < 100; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  now += milliseconds(10);
+  for (int i = 0; i < 20; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  CHECK_FALSE(estimator.correct(now - milliseconds(25), {0, 0}, 0));
+  CHECK(estimator.correct(now - milliseconds(15), {0, 0}, 0));
+}
+
+TEST_CASE("a single outlier moves the estimate only slightly") {
+  Circling run(5, 0);
+  for (int i = 0; i < 5000; ++i) run.step();
+  REQUIRE(run.estimator.correct(run.now, {50, 50}, 0));
+  CHECK((run.estimator.position_m() - run.position(run.now)).norm() < 0.003);
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/vision_node.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/messaging/senders.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "tests/unit/vision/tracker_fixture.hpp"
+
+using namespace sidestep;
+using namespace sidestep::test;
+
+namespace {
+
+Scenario scenario_of(RobotId robots) {
+  Scenario scenario;
+  scenario.vision.position_noise_m = 0.0015;
+  scenario.vision.delay = 35 * kMs;
+  for (RobotId id = 0; id < robots; ++id) {
+    RobotSpec robot;
+    robot.id = id;
+    scenario.robots.push_back(robot);
+  }
+  return scenario;
+}
+
+/// Two cameras over one robot, each publishing detections captured 35 ms ago.
+class Cameras {
+ public:
+  Cameras(Bus& bus, const TrueMotion& motion, Rng rng)
+      : bus_(bus), motion_(motion), rng_(rng), writer_(bus.advertise(topics::kDetections)) {
+    bus_.at(kBegin + 40 * kMs, [this] { publish(); });
+  }
+
+ private:
+  void publish() {
+    const Time captured = bus_.now() - 35 * kMs;
+    for (std::uint32_t camera = 0; camera < 2; ++camera) {
+      msg::DetectionFrame frame = frame_message(camera, captured);
+      if (!rng_.chance(0.02)) add_noisy_robot(frame, 0, motion_.at(captured), {}, rng_);
+      writer_.publish(frame, bus_.now());
+    }
+    bus_.at(bus_.now() + kFrame, [this] { publish(); });
+  }
+
+  Bus& bus_;
+  const TrueMotion& motion_;
+  Rng rng_;
+  Writer<msg::DetectionFrame> writer_;
+};
+
+std::vector<msg::WorldState> worlds_of_a_run(std::uint64_t seed, const NetworkSpec& network,
+                                             const TrueMotion& motion) {
+  SimNetwork net(seed, kBegin, network);
+  SimBus camera_bus(net), vision_bus(net), listener_bus(net);
+  std::vector<msg::WorldState> worlds;
+  listener_bus.subscribe<msg::WorldState>(topics::kWorld,
+                                          [&](const msg::WorldState& world) { worlds.push_back(world); });
+  Cameras cameras(camera_bus, motion, Rng(seed + 1));
+  VisionNode node(vision_bus, scenario_of(1), 77);
+  net.run_until(after_s(5));
+  return worlds;
+}
+
+}  // namespace
+
+TEST_CASE("the node publishes worlds at the cameras' rate, valid at their publication") {
+  Rng rng(301);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
+  const auto worlds = worlds_of_a_run(301, {}, motion);
+  CHECK(worlds.size() == Approx(300).margin(3));
+  std::uint64_t number = 0;
+  for (const auto& world : worlds) {
+    CHECK(world.vision() == 0);
+    CHECK(world.header().sender() == static_cast<std::uint32_t>(Sender::kVision));
+    CHECK(world.header().incarnation() == 77);
+    CHECK(world.header().message_number() == ++number);
+    CHECK(world.valid_at_ns() == world.header().stamp_ns());
+    if (world.valid_at_ns() < to_ns(after_s(0.3))) continue;
+    REQUIRE(world.robots().size() == 1);
+    const auto& robot = world.robots()[0];
+    CHECK((position_of(robot) - motion.at(time_from_ns(world.valid_at_ns())).position_m).norm() < 0.03);
+    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() < 0.008);
+    CHECK(world.valid_at_ns() - robot.observed_at_ns() < 150'000'000);
+  }
+}
+
+TEST_CASE("the world remains usable when the network loses, delays, duplicates and reorders frames") {
+  const std::uint64_t seed = GENERATE(311u, 312u, 313u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
+  NetworkSpec network;
+  network.loss = 0.3;
+  network.duplicate = 0.1;
+  network.delay_min = Duration{0};
+  network.delay_max = 150 * kMs;
+  const auto worlds = worlds_of_a_run(seed, network, motion);
+  int with_robot = 0;
+  for (const auto& world : worlds) {
+    if (world.valid_at_ns() < to_ns(after_s(0.5))) continue;
+    REQUIRE(world.robots().size() == 1);
+    const auto& robot = world.robots()[0];
+    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() < 0.008);
+    const double error =
+        (position_of(robot) - motion.at(time_from_ns(world.valid_at_ns())).position_m).norm();
+    CHECK(error < 6 * std::sqrt(robot.position_variance_m2()));
+    ++with_robot;
+  }
+  CHECK(with_robot > 150);
+}
+
+TEST_CASE("the same seed gives the same worlds") {
+  Rng rng(321);
+  const TrueMotion motion = TrueMotion::driving(rng, 6);
+  NetworkSpec network;
+  network.loss = 0.1;
+  network.delay_max = 50 * kMs;
+  CHECK(worlds_of_a_run(321, network, motion) == worlds_of_a_run(321, network, motion));
+}
+
+TEST_CASE("the node publishes worlds even if no frame arrives") {
+  SimNetwork net(331, kBegin, {});
+  SimBus vision_bus(net), listener_bus(net);
+  int count = 0;
+  listener_bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState& world) {
+    CHECK(world.robots().empty());
+    CHECK_FALSE(world.ball().is_visible());
+    CHECK(world.frames() == 0);
+    ++count;
+  });
+  VisionNode node(vision_bus, scenario_of(3), 1);
+  net.run_until(after_s(1));
+  CHECK(count >= 58);
+}
+
+TEST_CASE("a node with frames from its caller ignores the bus and calls its listener with every world") {
+  SimNetwork net(341, kBegin, {});
+  SimBus camera_bus(net), vision_bus(net);
+  VisionNode node(vision_bus, scenario_of(2), 1, FrameSource::kCaller);
+  msg::WorldState latest;
+  int worlds = 0;
+  node.set_listener([&](const msg::WorldState& world) {
+    latest = world;
+    ++worlds;
+  });
+  Rng rng(341);
+  const TrueMotion motion = TrueMotion::driving(rng, 2);
+  Cameras cameras(camera_bus, motion, Rng(342));
+  for (int i = 0; i < 60; ++i) {
+    net.run_until(kBegin + kFrame * (i + 1));
+    msg::DetectionFrame frame = frame_message(0, net.now());
+    add_robot(frame, 1, {1, 2});
+    node.add_frame(frame);
+  }
+  CHECK(worlds >= 58);
+  REQUIRE(latest.robots().size() == 1);
+  CHECK(latest.robots()[0].robot() == 1);
+  CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
+}

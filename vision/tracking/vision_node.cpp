@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/vision_node.hpp"
+
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source)
+    : bus_(bus),
+      period_(from_seconds(1 / scenario.vision.rate_hz)),
+      next_(bus.now() + period_),
+      tracker_(tracker_settings(scenario), roster_of(scenario)),
+      writer_(bus.advertise(topics::kWorld)) {
+  world_.vision(0);
+  world_.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  world_.header().incarnation(incarnation);
+  world_.robots().reserve(scenario.robots.size());
+  if (source == FrameSource::kBus) {
+    bus_.subscribe<msg::DetectionFrame>(topics::kDetections,
+                                        [this](const msg::DetectionFrame& message) { add_frame(message); });
+  }
+  bus_.at(next_, [this] { publish(); });
+}
+
+void VisionNode::add_frame(const msg::DetectionFrame& message) {
+  frame_.assign(message, bus_.now());
+  tracker_.update(frame_);
+}
+
+void VisionNode::publish() {
+  const Time now = bus_.now();
+  tracker_.world_at(now, world_);
+  writer_.publish(world_, now);
+  if (listener_) listener_(world_);
+  next_ += period_;
+  if (next_ < now) next_ = now + period_;
+  bus_.at(next_, [this] { publish(); });
+}
+
+}  // namespace sidestep
