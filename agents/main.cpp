@@ -25,8 +25,8 @@ int main(int argc, char** argv) {
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
     auto node = std::make_shared<AgentNode>(bus, scenario, robot, incarnation,
                                             std::make_shared<PlanningScratch>(scenario));
-    // The process keeps running: a supervisor would restart it, and it would take the robot from the later
-    // agent.
+    // The process keeps running: if it exited, a supervisor would restart it, and the new instance would take
+    // the robot from the later agent.
     node->on_superseded([robot] {
       fmt::print(stderr, "agent-{}: superseded: a later agent drives this robot; this one stays silent\n",
                  robot);

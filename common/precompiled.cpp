@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source of the targets that precompile headers; they need one.
+// Empty source file for the CMake targets that precompile headers, because a target needs one.

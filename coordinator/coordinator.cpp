@@ -76,8 +76,8 @@ msg::Reason Coordinator::register_agent(const msg::Registration& registration) {
     record.registered = true;
     --unregistered_count_;
   } else {
-    // A new agent of a registered robot: its robot's versions are in the ledger already, and nothing may be
-    // added without checks.
+    // A new agent of a registered robot: the ledger already contains the robot's versions, and no others may
+    // be added without checks.
     const auto known = [&](const Version& v) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });

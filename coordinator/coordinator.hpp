@@ -15,14 +15,14 @@ namespace sidestep {
 /// no clock. Messages may be late, repeated, wrong or hostile; an invalid one changes nothing.
 class Coordinator {
  public:
-  /// With epoch 0 it stands by and answers no messages.
+  /// In epoch 0 the coordinator stands by and answers no messages.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
 
-  /// Clears all state and begins an epoch, or stands by with 0.
+  /// Clears all state and begins an epoch, or stands by if `epoch` is 0.
   void begin_epoch(Epoch epoch);
 
-  /// The answer to a proposal; nullopt while standing by, or if its robot is not its sender or not on the
-  /// roster.
+  /// The answer to a proposal. nullopt while standing by, or if the proposal's robot is not its sender or is
+  /// not on the roster.
   [[nodiscard]] std::optional<msg::Verdict> on_proposal(const msg::Proposal& proposal);
   /// The answer to a registration, with proposal_number 0 and REASON_GRANTED if the agent is registered now;
   /// nullopt as for on_proposal().

@@ -22,13 +22,13 @@ class CoordinatorNode {
  private:
   template <typename Message>
   void publish(Writer<Message>& writer, Message& message);
-  /// Notes the epoch that the sender obeys.
+  /// Records the epoch that the sender obeys.
   template <typename Message>
   void observe_epoch(const Message& message, Epoch epoch);
   void on_registration(const msg::Registration& registration);
   void on_feedback(const msg::Feedback& feedback);
   void on_proposal(const msg::Proposal& proposal);
-  /// Adopts the epoch of failover_, or stands by with it, and publishes the new state.
+  /// Adopts the epoch of failover_, or stands by if failover_ does, and publishes the new state.
   void apply_epoch();
   void update_failover();
   void publish_state();

@@ -18,7 +18,8 @@ constexpr Duration kStartTimeoutStagger{200'000'000};
 // After a pause of this length, unprocessed heartbeats may be queued.
 constexpr Duration kPauseThreshold{60'000'000};
 constexpr int kMaxBackoffExponent = 5;
-// Two instances of one number that begin above the same epoch choose different ones, by their incarnations.
+// Two instances with the same number that begin above one known epoch choose different epochs, because each
+// adds its incarnation modulo this spread.
 constexpr Epoch kEpochSpread = 1'000'003;
 
 }  // namespace
@@ -63,7 +64,7 @@ void Failover::on_coordinator_state(const msg::CoordinatorState& state, Time now
   }
   if (state.epoch() < highest_) return;
   if (is_active() && state.epoch() == epoch_) {
-    // Two instances of one number share an epoch, so the grants of neither can be trusted.
+    // Two instances with the same number share an epoch, so the grants of neither can be trusted.
     if (header.incarnation() < self_.incarnation) return begin_epoch(now);
     return stand_by(now);
   }
@@ -82,8 +83,8 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now) {
     return;
   }
   highest_ = epoch;
-  // A coordinator that grants nothing yet begins again above that epoch. One that grants was superseded by a
-  // coordinator whose heartbeats do not arrive: it yields, for twice as long each time.
+  // A coordinator that is not granting yet begins a new epoch above the obeyed one. A granting one has been
+  // superseded by one whose heartbeats do not arrive: it stands by, each time for twice as long.
   if (is_active() && !is_granting) return begin_epoch(now);
   if (is_active()) backoff_exponent_ = std::min(backoff_exponent_ + 1, kMaxBackoffExponent);
   stand_by(now);

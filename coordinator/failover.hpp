@@ -29,7 +29,7 @@ class Failover {
   /// Period of update().
   static constexpr Duration kUpdatePeriod{5'000'000};
 
-  /// A standby waits a second for other coordinators; any other begins an epoch immediately.
+  /// A standby waits at least a second for other coordinators; otherwise an epoch begins immediately.
   Failover(const CoordinatorIdentity& self, bool is_standby, Time now);
 
   /// A heartbeat of any coordinator, including this one.

@@ -18,7 +18,7 @@ bool is_rest_version(const Version& version) {
          version.trajectory.residual_speed_mps() == 0;
 }
 
-/// A version has its base's inflation, or 0 if it begins at rest.
+/// A version must have its base's inflation, or 0 if it begins at rest.
 bool is_inflation_allowed(const Version& candidate, const Version& base) {
   if (candidate.inflation_m == base.inflation_m) return true;
   return candidate.inflation_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;

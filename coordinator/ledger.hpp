@@ -52,7 +52,7 @@ class Ledger {
   /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
   [[nodiscard]] Ruling grant(const Version& candidate);
 
-  /// Rules 2, 3 and 6, for the fact "executing f at time t". Off its reference, a robot executes a stop of
+  /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes a stop of
   /// its own, which replaces all older versions without checks.
   [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference);
   /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
@@ -76,8 +76,8 @@ class Ledger {
   /// Recomputes the bounding discs of the robot's versions.
   void update_bounds(std::size_t index);
   msg::Reason refusal_reason(const Version& candidate, const Version* base) const;
-  /// Whether the candidate is clear of `other`, or allowed by the escape rule for its base (null: no escape
-  /// rule).
+  /// Whether the candidate is clear of `other`, or is allowed by the escape rule with respect to `base`;
+  /// if `base` is null, the escape rule does not apply.
   bool are_compatible(const Version& candidate, const Version* base, const Version& other) const;
   std::optional<RobotId> find_blocker(const Version& candidate, const Version* base);
   bool are_in_conflict(const Entry& a, const Entry& b) const;

@@ -20,7 +20,7 @@
 
 namespace {
 
-/// Replaces this process by the program of studies and benchmarks, which needs more libraries.
+/// Replaces this process with the program for studies and benchmarks, which needs more libraries.
 int exec_evaluation(char** argv) {
   const std::string program = sidestep::sibling_program_path("sidestep-evaluation");
   if (!std::filesystem::exists(program)) {

@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// A DDS domain that no other test on this machine uses during the lifetime of this object; guarded by a file lock.
+/// A DDS domain that no other test on this machine uses during the lifetime of this object; guarded by a file
+/// lock.
 class TestDomain {
  public:
   TestDomain() {

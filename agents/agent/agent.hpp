@@ -20,7 +20,7 @@
 
 namespace sidestep {
 
-/// A desired motion: the query for the safety search, and what is proposed along with its result.
+/// A desired motion: the query for the safety search, and the base and intent to propose with its result.
 struct MotionPlan {
   SearchQuery query;
   VersionNumber base = 0;  ///< the version that the motion continues
@@ -28,10 +28,10 @@ struct MotionPlan {
 };
 
 /// The decisions of one robot, once per cycle: from observations and messages to proposals and commands. All
-/// times are by the robot's clock, as far as the caller knows it.
+/// times are by the robot's clock, as estimated by the caller.
 class Agent {
  public:
-  /// What a verdict leads to.
+  /// The consequences of a verdict.
   struct VerdictResult {
     std::optional<msg::Command> command;  ///< forwards the granted version
     std::optional<Duration> round_trip;   ///< from the proposal to its verdict
@@ -41,8 +41,8 @@ class Agent {
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
         std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings = {});
 
-  /// Returns whether the agent should propose again at once, because the robot does not execute the version
-  /// that the last proposal was based on.
+  /// Returns whether the agent should propose again immediately, because the robot does not execute the
+  /// version that the last proposal was based on.
   bool on_feedback(const msg::Feedback& feedback);
   /// `now`: upper bound of the time by the robot's clock.
   void on_world(const msg::WorldState& world, Time now);
@@ -52,7 +52,7 @@ class Agent {
   void on_disturbance(const msg::Disturbance& disturbance);
   void on_coordinator_state(const msg::CoordinatorState& state, Time now);
   VerdictResult on_verdict(const msg::Verdict& verdict, Time now);
-  /// Closes the cycle that ends now: proposals for it without a verdict are given up.
+  /// Closes the cycle that ends now: abandons its proposals that have no verdict.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
 
   // State of the negotiation; see Negotiation.
@@ -89,7 +89,7 @@ class Agent {
   msg::AgentStatus status(Time now) const;
 
  private:
-  /// Takes over the robot's own estimate; false if the feedback is invalid or another robot's.
+  /// Stores the robot's own state estimate. Returns false if the feedback is invalid or another robot's.
   bool update_estimate(const msg::Feedback& feedback);
   /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
   void update_goal(const msg::Feedback& feedback);
@@ -100,7 +100,8 @@ class Agent {
   std::vector<Circle> moving_obstacles(Time now);
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
-  /// Inflation of a version on this base: the base's, until vision has observed the robot at rest.
+  /// Inflation of a version that continues `base`: the base's inflation, or 0 once vision has observed the
+  /// robot at rest.
   double inflation_from(const Version& base, Time start) const;
   /// Versions that start farther apart than this cannot conflict.
   double search_horizon_m() const;
@@ -116,7 +117,7 @@ class Agent {
   const PlanningSettings settings_;
   const std::shared_ptr<PlanningScratch> scratch_;
   const FloorRules& rules_;
-  const Duration max_clock_difference_;  // between any two clocks within the bound
+  const Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
   const Duration cycle_;
   const double tracking_bound_m_;
   const double goal_tolerance_m_;
@@ -131,7 +132,7 @@ class Agent {
   DeadlockRecovery recovery_;
   bool arrived_ = false;
   State estimate_;                   // the robot's own
-  double max_dead_reckoning_m_ = 0;  // path from estimate_ that the robot may drive without being observed
+  double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed
   std::optional<msg::PoseFix> fix_;  // observed, not yet forwarded
   std::int64_t last_fix_ns_ = 0;
   std::size_t world_index_ = 0;  // of the robot in the last world that contained it

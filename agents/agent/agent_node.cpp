@@ -105,7 +105,7 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& state) {
   const bool could_propose = agent_.may_propose(robot_now());
   agent_.on_coordinator_state(state, robot_now());
   if (agent_.is_superseded()) return;
-  // A new epoch is forwarded at once, because robots stand still until all of them have acknowledged it.
+  // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(robot_now());
   register_if_due();
   if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))

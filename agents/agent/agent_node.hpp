@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// Connects an agent to the bus and runs its control cycle. The cycles of all robots are spread evenly over
-/// the cycle time, so that their proposals do not arrive at once. Versions start and end by the robot's
+/// the cycle time, so that their proposals do not coincide. Versions start and end by the robot's
 /// clock, so the agent uses the robot's time: the bus's time plus the measured offset.
 class AgentNode {
  public:
@@ -18,8 +18,7 @@ class AgentNode {
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 
-  /// Sets a callback for the moment when the robot obeys a later agent. It is called once; the node is silent
-  /// afterwards.
+  /// Sets a callback that is called once, when the robot obeys a later agent. Afterwards the node is silent.
   void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
 
  private:

@@ -26,7 +26,7 @@ bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
   return (other < self) == is_low_first;
 }
 
-/// The remaining intent of a version's robot at a time; nullopt if the robot will stay at its goal.
+/// What remains of a version's intent at a time; nullopt if the robot will stay at its goal.
 std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m) {
   if (!version.intent) return std::nullopt;
   const bool is_at_rest = t >= version.trajectory.end();
@@ -80,7 +80,7 @@ std::vector<Circle> Agent::temporary_obstacles(Time now) {
                                                           estimate_.position_m, settings_.max_stationary)) {
     found.push_back({position, rules_.radius_m});
   }
-  // What covers the goal does not block the route to it.
+  // Ignore obstacles that cover the goal: no route around them could reach it.
   std::erase_if(found, [&](const Circle& circle) {
     return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_separation_m();
   });

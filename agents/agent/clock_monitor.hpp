@@ -27,7 +27,7 @@ class ClockMonitor {
   /// Uses the echoed stamp of a command. A robot echoes commands of the agent that it obeys, so the echo is
   /// ignored unless that agent's incarnation is `own`.
   void on_feedback(const msg::Feedback& feedback, Incarnation own, Time received);
-  /// Records that a request, which the coordinator will answer, has been sent.
+  /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
   /// A new epoch belongs to another coordinator, with another clock.
   void on_epoch(Epoch epoch);
@@ -41,8 +41,8 @@ class ClockMonitor {
   /// The coordinator's clock should be measured again, before the last measurement becomes too old.
   [[nodiscard]] bool is_measurement_due(Time now) const;
 
-  /// Estimated offset of the robot's clock from the agent's, positive if it is ahead: the offset closest to
-  /// zero that is consistent with the measurements. So it is zero for clocks that agree.
+  /// Estimated offset of the robot's clock from the agent's, positive if the robot's clock is ahead: the
+  /// offset closest to zero that is consistent with the measurements. It is zero for clocks that agree.
   Duration robot_offset() const { return robot_offset_; }
   /// Upper bound of the offset of the robot's clock from the agent's; robot_offset() if there is no recent
   /// measurement.

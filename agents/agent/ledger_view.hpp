@@ -13,7 +13,7 @@ namespace sidestep {
 /// agents, so the agents of one process can share it.
 struct LedgerView {
   struct Entry {
-    Vec2 position_m;  ///< start of the version, as the page says
+    Vec2 position_m;  ///< start position of the version, as stated on the page
     RobotId robot;
     bool is_valid;  ///< if false, the version could not be decoded
   };

@@ -61,8 +61,8 @@ void Negotiation::apply_fact(const msg::Feedback& feedback, const Version& execu
     return rebase(executing);
   }
   latest_fact_ = std::max(latest_fact_, at);
-  // Removed versions are the one executed so far, if the robot has advanced, and versions that the robot can
-  // no longer take.
+  // If the robot has advanced, one removed version is the one that it executed before. All others were lost:
+  // the robot can no longer switch to them.
   for (std::size_t gone = before - held_.versions().size(); gone > (has_advanced ? 1 : 0); --gone) {
     ++counts_.lost;
     pacing_.on_version_late();
@@ -123,8 +123,8 @@ void Negotiation::on_coordinator_state(const msg::CoordinatorState& state, Time 
     return;
   }
   if (state.epoch() < epoch_) {
-    // This coordinator does not know the highest epoch, and no other one is alive: the registration reports
-    // it.
+    // This coordinator does not know the highest epoch, and no other one is alive: a registration tells it
+    // the epoch.
     if (now - last_state_at_ > kCoordinatorTimeout) registration_pending_ = true;
     return;
   }

@@ -61,7 +61,7 @@ class Negotiation {
   std::optional<Time> retry_start(Time now) const;
   /// Number of cycles ahead to propose, and upper bound of the cycles for which to hold an acceleration.
   int lead() const { return pacing_.lead(); }
-  /// Since the last proposal, the robot has turned out not to execute the version that the agent had assumed.
+  /// Feedback since the last proposal shows that the robot does not execute the version that was assumed.
   bool is_contradicted() const { return contradicted_; }
 
   msg::Registration registration();
@@ -70,14 +70,13 @@ class Negotiation {
   const Version& base_at(Time start) const;
   /// The version that the robot executed by its latest fact. Precondition: is_fenced() and not is_absent().
   const Version& executing() const { return *held_.find(executing_); }
-  /// Precondition: 1 to MAX_CANDIDATES candidates with the same start, which all continue `base`. For an
-  /// absent robot: a rest version on base 0. `inflation_m` is the base's, or 0 from rest.
+  /// Precondition: 1 to MAX_CANDIDATES candidates with the same start, which all continue `base`; for an
+  /// absent robot, a rest version on base 0. `inflation_m` is the base's, or 0 if they begin at rest.
   [[nodiscard]] msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
                                       double inflation_m = 0,
                                       const std::optional<Intent>& intent = std::nullopt);
 
-  /// Closes the cycle that ends now: gives up proposals for it that have no verdict, and counts them as
-  /// missed.
+  /// Closes the cycle that ends now: abandons its proposals that have no verdict, and counts them as missed.
   void close_cycle(Time now);
 
   const Counts& counts() const { return counts_; }
@@ -89,7 +88,7 @@ class Negotiation {
     Time proposed_at{};
     int lead = 1;
     bool answered = true;
-    bool open = false;  // a grant would be forwarded
+    bool open = false;  // a grant would still be forwarded
 
     VersionNumber number() const { return candidates.front().number; }
     Time start() const { return candidates.front().trajectory.start(); }

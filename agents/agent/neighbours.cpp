@@ -16,7 +16,7 @@ bool is_far(const msg::LedgerPage& page, const Vec2& centre, double horizon) {
          page.min_y_m() - centre.y() > horizon || centre.y() - page.max_y_m() > horizon;
 }
 
-/// Takes over the view in the attachment if there is one. Otherwise decodes the page, reusing the old view's
+/// Adopts the view in the attachment if it holds one. Otherwise decodes the page, reusing the old view's
 /// memory if it has no other readers.
 void update_view(const msg::LedgerPage& page, std::shared_ptr<LedgerView>& view,
                  MessageAttachment* attachment) {

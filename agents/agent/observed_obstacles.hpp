@@ -12,8 +12,8 @@ namespace sidestep {
 
 /// The latest observations of obstacles that do not take part in the protocol. An observation is kept until a
 /// newer one of the same track replaces it, because an occluded obstacle may still approach. It is dropped
-/// after kMaxObservationAge: by then its reach covers half a field, vision has seen the field some sixty
-/// times without it, and a false track must not stop all robots.
+/// after kMaxObservationAge, because a false track must not stop all robots: by then its reach covers half a
+/// field, and about sixty frames of vision have not confirmed it.
 class ObservedObstacles {
  public:
   static constexpr std::size_t kCapacity = 2 * msg::MAX_OBSTACLES;

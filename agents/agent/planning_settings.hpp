@@ -23,15 +23,15 @@ struct PlanningSettings {
   Duration moving_horizon{150'000'000};  ///< their motion over this time is added to their radii
 
   // Goals.
-  double at_goal_m = 0.001;           ///< nearer to its goal, a robot does not move again
-  double neighbour_at_goal_m = 0.02;  ///< a neighbour at rest and nearer to its goal is assumed to stay
+  double at_goal_m = 0.001;           ///< a robot whose version ends this close to its goal stays there
+  double neighbour_at_goal_m = 0.02;  ///< a neighbour at rest this close to its goal is assumed to stay
 
   // Observation.
-  Duration max_fix_age{300'000'000};  ///< a robot that vision has not observed for longer stops
+  Duration max_fix_age{300'000'000};  ///< a robot stops if vision has not observed it for longer
 
   // Right of way, and deadlocks.
-  Duration right_of_way_period{10'000'000'000};  ///< lower and higher ids have priority for this long in turn
-  double standstill_mps = 0.01;                  ///< lower intended speeds mean standing still
+  Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long
+  double standstill_mps = 0.01;                  ///< intended speeds below this count as standing still
   double waiting_speed_fraction = 0.5;  ///< intended speeds below this fraction of the limit count as waiting
   double recovery_clear_path_m = 0.5;   ///< length of free path that a recovery direction requires
   double recovery_hold_s = 0.3;         ///< how long the velocity of a recovery is held

@@ -33,7 +33,7 @@ class ProposalPacing {
   Duration cycle_;
   std::array<Duration, kHistorySize> round_trips_{};
   std::size_t count_ = 0;
-  Duration slow_round_trip_{0};  // exceeded by one in eight round trips at most; 0 before the first
+  Duration slow_round_trip_{0};  // at most one in eight round trips is longer; 0 before the first
   int taken_in_a_row_ = 0, late_in_a_row_ = 0;
   int spare_cycles_ = 0;
   int lead_ = 1;

@@ -94,7 +94,7 @@ void roll_out(const DrivingSettings& s, const CourseBlock& c, std::size_t at, Pr
   Rollout r{
       load(c.x_m, at), load(c.y_m, at), load(c.vx_mps, at), load(c.vy_mps, at), zero, zero, zero, zero, zero};
   r.past_waypoint = leg < broadcast(kEpsilon) ? broadcast(1) : zero;
-  // Time at which the remaining motion is a plain trapezoid, and the state then.
+  // Time from which the remaining motion is a plain trapezoidal profile, and the state at that time.
   Vector braking_s = broadcast(-1);
   Rollout braking = r;
   const Number braking_distance_m = s.speed_mps * s.speed_mps / (2 * kBrakingShare * s.deceleration_mps2);

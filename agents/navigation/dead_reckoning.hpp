@@ -5,8 +5,8 @@ namespace sidestep {
 
 /// A robot's own estimate of how accurately it is localised.
 struct LocalisationUncertainty {
-  double position_error_rms_m = 0;    ///< root mean square error of its position estimate
-  double odometry_scale_stddev = 0;   ///< standard deviation of its odometry's relative error
+  double position_error_rms_m = 0;   ///< root mean square error of its position estimate
+  double odometry_scale_stddev = 0;  ///< standard deviation of its odometry's relative error
 };
 
 /// How far a robot may drive without being observed before three standard deviations of its position error

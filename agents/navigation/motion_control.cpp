@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2& velocity_mps, const MotionLimits& limits,
-                         Duration min_hold, Duration max_hold) {
+AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2& velocity_mps,
+                                         const MotionLimits& limits, Duration min_hold, Duration max_hold) {
   const TrapezoidalProfile2d profile(displacement_m, velocity_mps, limits);
   const Duration hold = std::clamp(from_seconds(profile.along().first_phase_s()), min_hold, max_hold);
   const double seconds = to_seconds(hold);

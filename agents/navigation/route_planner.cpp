@@ -6,9 +6,10 @@
 namespace sidestep {
 namespace {
 
-// A route whose remaining length exceeds its minimum so far by more than this is replanned.
+// A route is replanned if its remaining length exceeds the smallest one so far by more than this.
 constexpr double kReplanIncrease_m = 0.05;
-// Enough for some hundred obstacles. Without a route the robot heads straight for its goal as far as is safe.
+// Enough for about a hundred obstacles. Without a route the robot heads straight for its goal while that is
+// safe.
 constexpr std::size_t kMaxSamples = 5000;
 
 std::vector<Shape> inflated(const std::vector<Circle>& obstacles, double inflation_m) {
@@ -20,8 +21,8 @@ std::vector<Shape> inflated(const std::vector<Circle>& obstacles, double inflati
 
 }  // namespace
 
-RoutePlanner::RoutePlanner(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
-           double extra_clearance_m, const Vec2& goal_m)
+RoutePlanner::RoutePlanner(const std::vector<Circle>& obstacles, const Field& field, double radius_m,
+                           double margin_m, double extra_clearance_m, const Vec2& goal_m)
     : preferred_world_(inflated(obstacles, margin_m + extra_clearance_m)),
       required_world_(inflated(obstacles, margin_m)),
       field_(field),
@@ -56,16 +57,19 @@ std::optional<Route> RoutePlanner::route_from(const Vec2& start) {
 
 std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
   if (next_waypoint_ >= waypoints_.size()) return std::nullopt;
-  while (next_waypoint_ + 1 < waypoints_.size() && is_line_free(start, waypoints_[next_waypoint_ + 1])) ++next_waypoint_;
+  while (next_waypoint_ + 1 < waypoints_.size() && is_line_free(start, waypoints_[next_waypoint_ + 1]))
+    ++next_waypoint_;
   const double length = remaining_length_m(start);
-  if (length > min_remaining_m_ + kReplanIncrease_m || !is_line_free(start, waypoints_[next_waypoint_])) return std::nullopt;
+  if (length > min_remaining_m_ + kReplanIncrease_m || !is_line_free(start, waypoints_[next_waypoint_]))
+    return std::nullopt;
   min_remaining_m_ = std::min(min_remaining_m_, length);
   return Route{waypoints_[next_waypoint_], length};
 }
 
 double RoutePlanner::remaining_length_m(const Vec2& start) const {
   double length = (waypoints_[next_waypoint_] - start).norm();
-  for (std::size_t i = next_waypoint_ + 1; i < waypoints_.size(); ++i) length += (waypoints_[i] - waypoints_[i - 1]).norm();
+  for (std::size_t i = next_waypoint_ + 1; i < waypoints_.size(); ++i)
+    length += (waypoints_[i] - waypoints_[i - 1]).norm();
   return length;
 }
 

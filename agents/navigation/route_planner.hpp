@@ -45,17 +45,17 @@ class RoutePlanner {
   std::optional<Route> continued_from(const Vec2& start_m);
   double remaining_length_m(const Vec2& start_m) const;
 
-  ObstacleWorld preferred_world_;                    // obstacles inflated by margin and extra clearance
-  ObstacleWorld required_world_;                     // obstacles inflated by the margin
-  const ObstacleWorld* world_ = &preferred_world_;   // of the last route
+  ObstacleWorld preferred_world_;                   // obstacles inflated by margin and extra clearance
+  ObstacleWorld required_world_;                    // obstacles inflated by the margin
+  const ObstacleWorld* world_ = &preferred_world_;  // of the last route
   Field field_;
   double radius_m_;
   Vec2 goal_m_;
   LazyVisibility planner_;
-  Rng rng_{0};                    // required by the planner interface; never sampled
-  std::vector<Vec2> waypoints_;   // of the last route
+  Rng rng_{0};                   // required by the planner interface; never sampled
+  std::vector<Vec2> waypoints_;  // of the last route
   std::size_t next_waypoint_ = 0;
-  double min_remaining_m_ = 0;    // smallest remaining length of the last route so far
+  double min_remaining_m_ = 0;  // smallest remaining length of the last route so far
 };
 
 }  // namespace sidestep

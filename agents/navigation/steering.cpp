@@ -14,16 +14,16 @@ using batch::kPredictionSamples;
 
 constexpr int kTurnsPerSide = 9;
 constexpr double kTurn_rad = 12 * std::numbers::pi / 180;
-// How long candidate velocities are held. With kSlowDuration_s, a slow velocity is also tried.
+// How long candidate velocities are held. For kSlowDuration_s, slow velocities are candidates too.
 constexpr std::array kDurations_s{0.18, 0.37, 0.87};
 constexpr double kSlowDuration_s = kDurations_s[1];
 constexpr double kSlowFraction = 0.38;  // of the speed limit
 // Via points lie at these fractions of the distance to the goal, along the line to it and to either side.
 constexpr std::array kViaAlong{0.3, 0.5, 0.7};
 constexpr std::array kViaLateral{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
-// A nearer via point would be passed at once.
+// A via point nearer than this would count as passed immediately.
 constexpr double kMinViaDistance_m = 1.25 * batch::kWaypointRadius_m;
-// Danger later than this after a robot's arrival is ignored.
+// Danger that occurs later than this after a robot's arrival is ignored.
 constexpr float kAfterArrival_s = 0.2F;
 // Being this far outside the field is as dangerous as sharing another robot's position.
 constexpr float kFullDangerOutside_m = 0.1F;
@@ -42,8 +42,9 @@ Steering::Steering(const Field& field, double radius_m, const MotionLimits& limi
   for (std::size_t i = 0; i < kPredictionSamples; ++i) {
     const double remaining = 1 - static_cast<double>(i) / static_cast<double>(batch::kPredictionSteps);
     const double final_fraction = settings_.final_danger_fraction;
-    weights_[i] =
-        static_cast<float>(settings_.danger_s * (final_fraction + (1 - final_fraction) * std::pow(remaining, settings_.danger_decay_exponent)));
+    weights_[i] = static_cast<float>(
+        settings_.danger_s *
+        (final_fraction + (1 - final_fraction) * std::pow(remaining, settings_.danger_decay_exponent)));
   }
 }
 
@@ -107,7 +108,7 @@ void Steering::add_candidate(const State& at, const Intent& intent, double extra
 }
 
 void Steering::add_last_choice(const State& at, const Vec2& waypoint, const Vec2& goal, double elapsed_s,
-                          const LastChoice& last) {
+                               const LastChoice& last) {
   if (!last.detour) return;
   Intent again = *last.detour;
   again.goal_m = goal;
@@ -157,7 +158,7 @@ std::size_t Steering::first_reachable_sample(const Other& other, const Vec2& fro
   // nearer than it is at that sample.
   const auto max_reach_m = [&] { return other.min_separation_m + step_m * static_cast<double>(i + 2); };
   while (i < batch::kPredictionSteps && std::hypot(other.prediction.x_m[i + 1] - from_m.x(),
-                                                 other.prediction.y_m[i + 1] - from_m.y()) > max_reach_m())
+                                                   other.prediction.y_m[i + 1] - from_m.y()) > max_reach_m())
     ++i;
   return i;
 }
@@ -167,12 +168,12 @@ void Steering::evaluate(const Vec2& at) {
   candidates_.predict();
   const std::size_t blocks = candidates_.block_count();
   dangers_.assign(blocks, batch::PredictionRow{});
-  kernels.add_outside_danger(half_length_m_, half_width_m_, kFullDangerOutside_m, weights_, candidates_.blocks(), blocks,
-                dangers_.data());
+  kernels.add_outside_danger(half_length_m_, half_width_m_, kFullDangerOutside_m, weights_,
+                             candidates_.blocks(), blocks, dangers_.data());
   for (const Other& other : others_) {
     const std::size_t from = first_reachable_sample(other, at);
-    kernels.add_proximity_danger(other.prediction, from, static_cast<float>(other.min_separation_m), weights_, kAfterArrival_s,
-                 candidates_.blocks(), blocks, dangers_.data());
+    kernels.add_proximity_danger(other.prediction, from, static_cast<float>(other.min_separation_m), weights_,
+                                 kAfterArrival_s, candidates_.blocks(), blocks, dangers_.data());
   }
 }
 

@@ -12,7 +12,7 @@ namespace sidestep {
 
 /// Costs in seconds, added to the predicted time to the goal, and preferred clearances.
 struct SteeringSettings {
-  double danger_s = 1;                  ///< of sharing a robot's position for one prediction step, at once
+  double danger_s = 1;                  ///< of sharing a robot's position during the first prediction step
   double final_danger_fraction = 0.08;  ///< danger at the end of the prediction, as a fraction of `danger_s`
   double danger_decay_exponent = 1.75;  ///< shape of the decay in between
   double left_turn_penalty_s = 0.16;    ///< of turning left: robots that all turn right pass each other

@@ -7,7 +7,8 @@
 namespace sidestep {
 
 template <typename Add>
-void TrapezoidalProfile::for_each_phase(double distance, double velocity, const MotionLimits& limits, Add add) {
+void TrapezoidalProfile::for_each_phase(double distance, double velocity, const MotionLimits& limits,
+                                        Add add) {
   const auto append = [&](double seconds, double acceleration) {
     if (seconds > 0) add(seconds, acceleration);
   };
@@ -30,7 +31,9 @@ void TrapezoidalProfile::for_each_phase(double distance, double velocity, const 
       std::max(0.0, 2 * accelerate * brake * (d + v * v / (2 * accelerate)) / (accelerate + brake)));
   double cruise_s = 0;
   if (peak > max_speed) {
-    cruise_s = (d - (max_speed * max_speed - v * v) / (2 * accelerate) - max_speed * max_speed / (2 * brake)) / max_speed;
+    cruise_s =
+        (d - (max_speed * max_speed - v * v) / (2 * accelerate) - max_speed * max_speed / (2 * brake)) /
+        max_speed;
     peak = max_speed;
   }
   append((peak - v) / accelerate, sign * accelerate);
@@ -38,7 +41,8 @@ void TrapezoidalProfile::for_each_phase(double distance, double velocity, const 
   append(peak / brake, -sign * brake);
 }
 
-TrapezoidalProfile::TrapezoidalProfile(double distance, double velocity, const MotionLimits& limits) : velocity_(velocity) {
+TrapezoidalProfile::TrapezoidalProfile(double distance, double velocity, const MotionLimits& limits)
+    : velocity_(velocity) {
   for_each_phase(distance, velocity, limits, [this](double seconds, double acceleration) {
     phases_[static_cast<std::size_t>(count_++)] = {seconds, acceleration};
   });
@@ -94,7 +98,8 @@ Vec2 direction_of(const Vec2& displacement, const Vec2& velocity) {
 
 }  // namespace
 
-TrapezoidalProfile2d::TrapezoidalProfile2d(const Vec2& displacement, const Vec2& velocity, const MotionLimits& limits)
+TrapezoidalProfile2d::TrapezoidalProfile2d(const Vec2& displacement, const Vec2& velocity,
+                                           const MotionLimits& limits)
     : direction_(direction_of(displacement, velocity)), along_(0, 0, limits), across_(0, 0, limits) {
   const double distance = displacement.norm();
   const double v_along = velocity.dot(direction_), v_across = velocity.dot(left_of(direction_));

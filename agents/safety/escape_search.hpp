@@ -6,10 +6,10 @@
 
 namespace sidestep {
 
-/// Searches candidates for a robot whose base is in conflict: too near to another robot's version or to an
-/// obstacle, or off the field. Candidates come no nearer than the base does. The desired acceleration comes
-/// first, then accelerations away from the conflicts. Returns no candidates if the base is free of conflicts:
-/// that case is the safety search's.
+/// Finds candidates for a robot whose base is in conflict: too near to another robot's version or to an
+/// obstacle, or off the field. Candidates come no nearer than the base. The desired acceleration comes
+/// first, then accelerations away from the conflicts. Returns no candidates if the base is free of conflicts,
+/// because SafetySearch handles that case.
 [[nodiscard]] SearchResult search_escape(const SearchQuery& query, const Version& base,
                                          const TrajectoryIndex& others, const FloorRules& rules);
 

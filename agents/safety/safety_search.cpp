@@ -34,8 +34,8 @@ double max_stop_s(const SearchQuery& query, const MotionLimits& limits) {
 }
 
 /// Upper bound of the distance between two candidates per m/s² of difference between their accelerations.
-/// They diverge while the accelerations are held. While both stop, a velocity difference adds at most itself
-/// times the longer stopping time.
+/// They diverge while the accelerations are held. While both stop, their difference in velocity adds at most
+/// its magnitude times the longer stopping time.
 double deviation_per_mps2(const SearchQuery& query, const MotionLimits& limits) {
   const double hold_s = to_seconds(query.hold_time);
   return kRoundingFactor * hold_s * (0.5 * hold_s + max_stop_s(query, limits));

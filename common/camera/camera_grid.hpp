@@ -14,7 +14,7 @@ namespace sidestep {
 /// does.
 std::vector<CameraModel> camera_grid(const Field& field, const VisionSpec& spec,
                                      const OverheadCamera& prototype);
-/// The same with the images of the scenario.
+/// The camera grid of a scenario, with its images.
 std::vector<CameraModel> camera_grid(const Scenario& scenario);
 
 /// An overhead camera with the image size, height and distortion of a scenario's images.

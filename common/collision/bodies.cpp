@@ -68,7 +68,7 @@ void Bodies::write_record(Slot slot) {
   const Shape& shape = shapes_[slot];
   const Box box = bounds(shape);
   max_coordinate_m_ = std::max({max_coordinate_m_, (box.min_m - origin_m_).cwiseAbs().maxCoeff(),
-                          (box.max_m - origin_m_).cwiseAbs().maxCoeff()});
+                                (box.max_m - origin_m_).cwiseAbs().maxCoeff()});
   if (const auto* circle = std::get_if<Circle>(&shape)) {
     const Vec2 centre = circle->centre_m - origin_m_;
     records_[slot] = {static_cast<float>(centre.x()), static_cast<float>(centre.y()),

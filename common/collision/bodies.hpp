@@ -38,7 +38,7 @@ class Bodies {
   /// Upper bound of all slots, in use or not.
   Slot end() const { return static_cast<Slot>(shapes_.size()); }
   const Vec2& origin_m() const { return origin_m_; }
-  /// A box that contains all obstacles, past ones included.
+  /// A box that contains all obstacles, including removed ones.
   Box bounds_m() const { return inflated({origin_m_, origin_m_}, max_coordinate_m_); }
 
   /// The comparison in double precision.

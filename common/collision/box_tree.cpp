@@ -36,7 +36,8 @@ bool equal(const FloatBox& a, const FloatBox& b) {
 
 BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), locations_(bodies.end()) {
   std::vector<Item> slots;
-  for (const Slot slot : bodies.slots()) slots.push_back({rounded_outwards(bounds(bodies.shape(slot))), slot});
+  for (const Slot slot : bodies.slots())
+    slots.push_back({rounded_outwards(bounds(bodies.shape(slot))), slot});
   root_ = build(slots);
 }
 

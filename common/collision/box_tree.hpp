@@ -13,7 +13,7 @@ struct FloatBox {
   float min_x_m, min_y_m, max_x_m, max_y_m;
 };
 
-/// A tree of axis-aligned boxes in a flat array. Up to sixteen boxes per node are compared at once. It is
+/// A tree of axis-aligned boxes in a flat array. A node's boxes, up to sixteen, are compared together. It is
 /// built top-down by the surface area heuristic (MacDonald and Booth 1990) on half perimeters, and updated
 /// like an R-tree (Guttman 1984), with the same heuristic for splitting full nodes.
 class BoxTree {
@@ -72,7 +72,7 @@ class BoxTree {
   void insert(const Item& slot);
   void append(NodeId node, const Item& item);
   void split(NodeId node, const Item& extra);
-  /// Updates the boxes of a node in all its ancestors.
+  /// Updates the box of a node in its parent, and so on up to the root.
   void refit(NodeId node);
   void erase(Slot slot);
   void collect(NodeId node, std::vector<Item>& slots);

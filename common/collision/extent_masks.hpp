@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// Extent masks (Bruce 2006, chapter 3) with four look-ups per query. For each bucket of an axis, one bit
-/// mask marks the obstacles that begin before its end, another the obstacles that do not end before it. The
+/// mask marks the obstacles that begin in or before it, and another those that end in or after it. The
 /// intersection of the masks for the four bounds of a query's box contains all obstacles whose boxes it
 /// overlaps. Unlike the sorted end points of the original, buckets have equal width: finding one takes a
 /// multiplication, and moving an obstacle changes only its own bits. Obstacles outside the range of the

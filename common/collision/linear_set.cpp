@@ -56,7 +56,8 @@ void LinearSet::remove(Slot slot) {
   const Location location = locations_[slot];
   auto& slots = location.is_circle ? circle_slots_ : box_slots_;
   const Location last{static_cast<std::uint32_t>(slots.size() - 1), location.is_circle};
-  const std::size_t block = location.lane / kLanes, lane = location.lane % kLanes, last_lane = last.lane % kLanes;
+  const std::size_t block = location.lane / kLanes, lane = location.lane % kLanes,
+                    last_lane = last.lane % kLanes;
   if (location.is_circle)
     copy_lane(circles_.back(), last_lane, circles_[block], lane);
   else

@@ -32,7 +32,7 @@ class LinearSet {
   std::vector<collision::CircleBlock> circles_;
   std::vector<collision::BoxBlock> boxes_;
   std::vector<Slot> circle_slots_, box_slots_;  // by lane
-  std::vector<Location> locations_;                   // by slot
+  std::vector<Location> locations_;             // by slot
 };
 
 }  // namespace sidestep

@@ -29,9 +29,9 @@ using Sets = std::variant<LinearSet, ExtentMasks, BoxTree>;
 Sets set_of(const Bodies& bodies, Structure structure) {
   const std::size_t size = bodies.slots().size();
   if (structure == Structure::kAutomatic)
-    structure = size <= kMaxLinear    ? Structure::kLinear
+    structure = size <= kMaxLinear  ? Structure::kLinear
                 : size <= kMaxMasks ? Structure::kMasks
-                                       : Structure::kTree;
+                                    : Structure::kTree;
   if (structure == Structure::kLinear) return LinearSet(bodies);
   if (structure == Structure::kMasks) return ExtentMasks(bodies);
   return BoxTree(bodies);

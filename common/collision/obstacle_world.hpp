@@ -28,7 +28,7 @@ struct Nearest {
 
 /// The first contact of a moving disc.
 struct Contact {
-  double fraction = 0;  ///< of the path that is free, 0 to 1
+  double fraction = 0;  ///< free fraction of the path, 0 to 1
   ObstacleId obstacle = kNoObstacle;
 };
 

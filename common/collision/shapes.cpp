@@ -24,7 +24,8 @@ void check_corners(const std::vector<Vec2>& corners) {
     require(turn_rad >= 0, "a polygon is not convex, or its corners are clockwise");
     total_turn_rad += turn_rad;
   }
-  require(total_turn_rad > std::numbers::pi && total_turn_rad < 3 * std::numbers::pi, "a polygon's boundary has to go around exactly once");
+  require(total_turn_rad > std::numbers::pi && total_turn_rad < 3 * std::numbers::pi,
+          "a polygon's boundary has to go around exactly once");
 }
 
 }  // namespace
@@ -47,7 +48,8 @@ void check(const Shape& shape) {
 }
 
 bool is_in_range(const Box& bounds) {
-  return (bounds.min_m.array() >= -kMaxCoordinate_m).all() && (bounds.max_m.array() <= kMaxCoordinate_m).all();
+  return (bounds.min_m.array() >= -kMaxCoordinate_m).all() &&
+         (bounds.max_m.array() <= kMaxCoordinate_m).all();
 }
 
 Box bounds(const Shape& shape) {

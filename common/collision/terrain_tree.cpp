@@ -90,7 +90,8 @@ struct TerrainTree::QuerySegment {
     if (slope_end <= 0) return offset_outside(node, 1).squaredNorm();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const double plane : {node.min_m[axis], node.max_m[axis]}) {
-        const double fraction = displacement_m[axis] != 0 ? (plane - from_m[axis]) / displacement_m[axis] : begin;
+        const double fraction =
+            displacement_m[axis] != 0 ? (plane - from_m[axis]) / displacement_m[axis] : begin;
         if (!(fraction > begin && fraction < end)) continue;
         const double slope_here = slope(fraction);
         (slope_here < 0 ? begin : end) = fraction;
@@ -127,9 +128,9 @@ double TerrainTree::height_above(const QuerySegment& segment, const Triangle& t)
     double ground = 0;
     for (std::size_t i = 0; i < 3; ++i)
       ground += (at_begin[i] + fraction * (at_end[i] - at_begin[i])) * (i == 0   ? t.a_m
-                                                                    : i == 1 ? t.b_m
-                                                                             : t.c_m)
-                                                                       .z();
+                                                                        : i == 1 ? t.b_m
+                                                                                 : t.c_m)
+                                                                           .z();
     return segment.at(fraction).z() - ground;
   };
   return std::min(height(begin), height(end));
@@ -200,7 +201,8 @@ bool TerrainTree::touches(const Vec3& from, const Vec3& to, double radius) const
   return nearest2 <= radius * radius;
 }
 
-void TerrainTree::find_nearest(std::uint32_t id, const QuerySegment& segment, double sufficient2, double& nearest2) const {
+void TerrainTree::find_nearest(std::uint32_t id, const QuerySegment& segment, double sufficient2,
+                               double& nearest2) const {
   const Node& node = nodes_[id];
   if (node.second_child == 0) {
     for (std::uint32_t i = node.first; i < node.first + node.count && nearest2 > sufficient2; ++i)
@@ -226,7 +228,8 @@ double TerrainTree::min_height_m(const Vec3& from, const Vec3& to) const {
 void TerrainTree::find_min_height(std::uint32_t id, const QuerySegment& segment, double& min_height) const {
   const Node& node = nodes_[id];
   const auto [begin, end] = segment.interval_over(node);
-  if (begin > end || std::min(segment.at(begin).z(), segment.at(end).z()) - node.max_m.z() >= min_height) return;
+  if (begin > end || std::min(segment.at(begin).z(), segment.at(end).z()) - node.max_m.z() >= min_height)
+    return;
   if (node.second_child != 0) {
     find_min_height(id + 1, segment, min_height);
     find_min_height(node.second_child, segment, min_height);

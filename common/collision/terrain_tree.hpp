@@ -56,7 +56,8 @@ class TerrainTree {
              std::vector<std::uint32_t>& order);
   Triangle triangle(std::uint32_t at) const;
   static double height_above(const QuerySegment& segment, const Triangle& triangle);
-  void find_nearest(std::uint32_t node, const QuerySegment& segment, double sufficient2_m2, double& nearest2_m2) const;
+  void find_nearest(std::uint32_t node, const QuerySegment& segment, double sufficient2_m2,
+                    double& nearest2_m2) const;
   void find_min_height(std::uint32_t node, const QuerySegment& segment, double& min_height_m) const;
 
   std::vector<Vec3> points_m_;

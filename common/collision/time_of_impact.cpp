@@ -11,7 +11,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// The fraction of the displacement after which a point outside a disc enters it.
 double entry(const Vec2& from, const Vec2& displacement, const Circle& disc) {
   const Vec2 off = from - disc.centre_m;
-  const double a = displacement.squaredNorm(), b = off.dot(displacement), c = off.squaredNorm() - disc.radius_m * disc.radius_m;
+  const double a = displacement.squaredNorm(), b = off.dot(displacement),
+               c = off.squaredNorm() - disc.radius_m * disc.radius_m;
   const double under_root = b * b - a * c;
   if (b >= 0 || under_root < 0) return kInfinite;
   return std::max(0.0, c / (std::sqrt(under_root) - b));
@@ -19,7 +20,8 @@ double entry(const Vec2& from, const Vec2& displacement, const Circle& disc) {
 
 /// The fraction after which a point farther than `reach` from an edge comes that near.
 double entry(const Vec2& from, const Vec2& displacement, const Segment& edge, double reach) {
-  double first = std::min(entry(from, displacement, {edge.from_m, reach}), entry(from, displacement, {edge.to_m, reach}));
+  double first = std::min(entry(from, displacement, {edge.from_m, reach}),
+                          entry(from, displacement, {edge.to_m, reach}));
   const Vec2 along = edge.to_m - edge.from_m, off = from - edge.from_m;
   const double length = along.norm();
   if (length == 0) return first;

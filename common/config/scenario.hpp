@@ -29,7 +29,7 @@ struct RobotSpec {
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
   std::vector<Goal> goals;   ///< visited in order; at least one
-  Duration clock_offset{0};  ///< of the robot's clock ahead of the host's
+  Duration clock_offset{0};  ///< robot's clock - host's clock
   bool is_absent = false;    ///< not on the floor at the start; start_m is then the robot's own estimate
 };
 
@@ -37,7 +37,7 @@ struct RobotSpec {
 struct OpponentSpec {
   double radius_m = 0.09;
   double speed_mps = 1;
-  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or a loop if the last point is the first
+  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or in a loop if both ends coincide
 };
 
 struct BallSpec {
@@ -59,7 +59,7 @@ struct VisionSpec {
   double rate_hz = 60;
   int columns = 2;                   ///< cameras along the length
   int rows = 1;                      ///< cameras along the width
-  double overlap_m = 0.5;            ///< of the view of a camera beyond its grid cell
+  double overlap_m = 0.5;            ///< how far a camera's view extends beyond its grid cell
   double position_noise_m = 0.0005;  ///< standard deviation per axis
   double heading_noise_rad = 0.005;  ///< standard deviation
   Duration delay{10'000'000};        ///< from capture to publication
@@ -82,8 +82,8 @@ struct NetworkSpec {
       600'000};  ///< uniformly random and independent per message, so messages are reordered too
 };
 
-/// The processes that `sidestep run` restarts when they die. The simulator cannot be: it holds the ground
-/// truth.
+/// The processes that `sidestep run` restarts when they die. The simulator is never restarted, because it
+/// holds the ground truth.
 struct RestartSpec {
   bool agents = false;
   bool coordinator = false;
@@ -101,7 +101,7 @@ struct Scenario {
   std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Circle> obstacles;
   std::vector<OpponentSpec> opponents;
-  double max_opponent_speed_mps = 1.5;  ///< that agents assume
+  double max_opponent_speed_mps = 1.5;  ///< upper bound that agents assume
   std::optional<BallSpec> ball;
   MotionLimits limits;
   double radius_m = 0.09;
@@ -110,7 +110,7 @@ struct Scenario {
   double clock_bound_s = SafetyBudget{}.clock_bound_s;
   Duration cycle{16'666'667};
   double goal_tolerance_m = 0.02;
-  double time_limit_s = 60;  ///< for all robots to arrive, from the time the coordinator starts to grant
+  double time_limit_s = 60;  ///< for all robots to arrive, counted from when the coordinator starts to grant
   VisionSpec vision;
   OdometrySpec odometry;
   double command_loss = 0;  ///< probability that the radio link between agent and robot drops a command

@@ -56,7 +56,7 @@ void read_opponents(YamlMap& map, Scenario& scenario) {
   const YAML::Node node = map.find("opponents");
   if (!node.IsDefined()) return;
   const YamlLocation location = map.location_of("opponents");
-  // The capacity of the messages about detections.
+  // Detection messages hold at most MAX_OBSTACLES.
   for (const YAML::Node& element : list_from(node, location, msg::MAX_OBSTACLES)) {
     YamlMap inner(element, location.of(element, fmt::format("opponents[{}]", scenario.opponents.size())));
     scenario.opponents.push_back(read_opponent(inner, scenario.max_opponent_speed_mps));

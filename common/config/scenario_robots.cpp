@@ -90,8 +90,9 @@ void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
   }
 }
 
-/// Robots in a square grid, one per cell, in alternating pairs that drive along x and along y; every other
-/// lane runs in the opposite direction. Goals lie on cells of the same kind, so no goal blocks another robot.
+/// Robots in a square grid, one per cell. In each row, pairs that drive along x alternate with pairs that
+/// drive along y; every other lane runs in the opposite direction. Goals lie on cells of the same kind as the
+/// starts, so no goal blocks another robot.
 void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
   const YAML::Node node = map.find("streams");
   if (!node.IsDefined()) return;

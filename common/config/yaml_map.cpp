@@ -134,7 +134,7 @@ YAML::Node YamlMap::require(const std::string& key) {
 YamlLocation YamlMap::location_of(const std::string& key) {
   const std::string name = location_.what.empty() ? key : location_.what + "." + key;
   for (const auto& entry : node_) {
-    // The mark of an empty value is that of the next token.
+    // For an empty value, yaml-cpp reports the position of the next token.
     if (entry.first.Scalar() == key)
       return location_.of(entry.second.IsNull() ? entry.first : entry.second, name);
   }

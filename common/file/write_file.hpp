@@ -6,8 +6,8 @@
 namespace sidestep {
 
 /// Writes a text file as a whole and creates its folder: readers see the old content or the new one, never a
-/// part. A path that is no regular file, such as /dev/stdout or a symbolic link, is written in place. Throws
-/// std::runtime_error ("cannot write PATH: reason"); the old content then remains.
+/// part. A path that is not a regular file, such as /dev/stdout or a symbolic link, is written in place.
+/// Throws std::runtime_error ("cannot write PATH: reason"); the old content then remains.
 void write_file(const std::string& path, const std::string& text);
 
 }  // namespace sidestep

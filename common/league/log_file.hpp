@@ -35,14 +35,14 @@ enum class LogStatus {
   kReading,
   kComplete,   ///< the file ends after a complete record
   kTruncated,  ///< the file ends within a record, for example because its writer died
-  kCorrupt     ///< the next bytes are no record
+  kCorrupt     ///< the next bytes are not a record
 };
 
 /// Reads a log of version 1 sequentially. Accepts arbitrary content: an invalid record ends the reading, and
 /// the records before it are valid.
 class LogReader {
  public:
-  /// Throws std::runtime_error if the file cannot be read or is no log of this version.
+  /// Throws std::runtime_error if the file cannot be read or is not a log of this version.
   explicit LogReader(const std::string& path);
   /// The same from a seekable stream; `name` prefixes error messages.
   LogReader(std::unique_ptr<std::istream> stream, std::string name);

@@ -114,11 +114,11 @@ bool MulticastSender::send(std::span<const std::byte> datagram) {
 MulticastReceiver::MulticastReceiver(const Endpoint& group, const std::string& interface)
     : group_(group), socket_(udp_socket(group)), buffer_(kMaxDatagramSize) {
   const ip_mreq membership{{htonl(group.address)}, {htonl(interface_address(interface))}};
-  constexpr int kBufferSize = 1 << 20;  // a second of eight cameras
+  constexpr int kBufferSize = 1 << 20;  // holds one second of packets from eight cameras
   set(socket_, SOL_SOCKET, SO_REUSEADDR, 1, group, "share the port");
   set(socket_, SOL_SOCKET, SO_RCVBUF, kBufferSize, group, "set the size of the receive buffer");
-  // Without the next two, datagrams of groups that other processes have joined and unicast datagrams would be
-  // received too.
+  // Without IP_MULTICAST_ALL = 0 and binding to the group's address, the socket would also receive unicast
+  // datagrams, and datagrams of groups that other processes have joined.
   set(socket_, IPPROTO_IP, IP_MULTICAST_ALL, 0, group, "receive this group only");
   const sockaddr_in address = socket_address(group);
   if (bind(socket_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {

@@ -67,7 +67,7 @@ class MulticastSender {
 };
 
 /// Receives the datagrams of a multicast group over one interface, and no others. Several receivers on a
-/// machine may share a group. The constructor throws as that of MulticastSender.
+/// machine may share a group. The constructor throws as MulticastSender's does.
 class MulticastReceiver {
  public:
   /// Called with a datagram and its source.

@@ -31,7 +31,7 @@ struct DetectedRobot {
   std::optional<double> height_m;  ///< of the top
 };
 
-/// SSL_DetectionFrame: the detections in one image. Times are of the sender's clock, whose epoch is
+/// SSL_DetectionFrame: the detections in one image. Times are by the sender's clock, whose epoch is
 /// arbitrary: 1970 for some senders, the start of a simulation for others.
 struct DetectionFrame {
   std::uint32_t frame_number = 0;

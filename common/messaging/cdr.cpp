@@ -15,7 +15,7 @@ using eprosima::fastcdr::FastBuffer;
 
 Cdr cdr_over(FastBuffer& buffer) { return Cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::CORBA_CDR); }
 
-/// Whether the generated code can read the bytes without harm. A type's sequence is its last member, so an
+/// Whether the generated code can read the bytes safely. A type's sequence is its last member, so an
 /// empty message ends with the sequence's count. A count beyond the bound would make the generated code
 /// allocate that much memory.
 template <typename Message>

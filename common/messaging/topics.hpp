@@ -59,7 +59,7 @@ inline std::string channel_name(const TopicInfo& topic, std::uint32_t robot) {
   return topic.per_robot ? std::string(topic.name) + "/" + std::to_string(robot) : topic.name;
 }
 
-/// As the templates of these names, for the topic's message type.
+/// These call the templates of the same names in cdr.hpp for the topic's message type.
 inline void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {
   topic.type.append_cdr(message, bytes);
 }

@@ -8,10 +8,10 @@ namespace sidestep {
 /// The computed clearance is at most this far below the true one, and never above it.
 inline constexpr double kClearanceTolerance_m = 1e-9;
 
-/// The clearance of two robots, the only such function of the system: the minimum distance between their
+/// The clearance of two robots, the only such function in the system: the minimum distance between their
 /// trajectories at equal times from the later start on, less `min_separation_m` (both radii and the margin).
 /// Negative if the robots come too close. Before the later start, at least one robot executes another
-/// version, which has to be checked itself.
+/// version, which has to be checked separately.
 ///
 /// The relative motion is piecewise quadratic, so the squared distance is a quartic on each piece. Its minima
 /// are bracketed by the extrema of its derivative, which finds all of them.

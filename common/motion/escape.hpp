@@ -10,8 +10,8 @@ namespace sidestep {
 Trajectory remaining_trajectory(const Trajectory& trajectory, Time from);
 
 /// The distance that a version which continues `base` at `from` has to keep from another trajectory:
-/// min_separation_m, or the smallest distance of the base itself from then on where that is less. So two
-/// robots that an outside event brought too close may part, and neither comes closer than by braking alone
+/// min_separation_m, or the base's own smallest distance from then on if that is less. Thus two robots that
+/// an external event brought too close may separate, and neither comes closer than it would by braking alone
 /// (coordinator/PROTOCOL.md, rule 4).
 double relaxed_separation_m(const Trajectory& base, Time from, const Trajectory& other,
                             double min_separation_m);

@@ -6,7 +6,7 @@
 namespace sidestep {
 
 /// What a robot intends beyond its version: hold a velocity from the version's start on, then drive to its
-/// goal via a waypoint. Other robots use it for planning only; safety does not rely on it.
+/// goal via a waypoint. Other robots use it for prediction only; safety does not rely on it.
 struct Intent {
   Vec2 velocity_mps{0, 0};
   double velocity_duration_s = 0;

@@ -6,7 +6,7 @@ namespace sidestep {
 /// The limits that a robot's reference motion obeys.
 struct MotionLimits {
   double acceleration_mps2 = 3;  ///< F: ahead and sideways
-  double deceleration_mps2 = 5;  ///< D: guaranteed against the velocity
+  double deceleration_mps2 = 5;  ///< D: guaranteed when braking against the velocity
   double speed_mps = 2;
 };
 

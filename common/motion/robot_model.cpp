@@ -13,7 +13,7 @@ constexpr double kAtRest_mps = 1e-6;
 double squared(double x) { return x * x; }
 
 // The square of the norm whose unit ball is A(v): 1 on its boundary. The batch kernels compute the same,
-// operation by operation (batch::Kernels::limit).
+// operation by operation (batch::ChoiceKernels::limit).
 double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double sideways_and_ahead2 =
       (a.x() * a.x() + a.y() * a.y()) * (1 / squared(limits.acceleration_mps2));
@@ -44,7 +44,8 @@ Vec2 limit_acceleration(const Vec2& acceleration, const Vec2& velocity, const Mo
   const Vec2 after = velocity + seconds * acceleration;
   const double speed2 = after.x() * after.x() + after.y() * after.y();
   if (speed2 <= squared(limits.speed_mps)) return scaled_to_admissible(acceleration, velocity, limits);
-  // Scaling towards zero afterwards keeps the speed limit, because both ends of the scale are within it.
+  // Scaling this acceleration towards zero keeps the speed limit, because the speeds that result from it and
+  // from zero acceleration are both within the limit.
   const Vec2 slowed = (after * (limits.speed_mps / std::sqrt(speed2)) - velocity) * (1 / seconds);
   return scaled_to_admissible(slowed, velocity, limits);
 }

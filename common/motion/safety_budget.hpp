@@ -11,8 +11,8 @@ struct SafetyBudget {
   double clock_bound_s = 0.0005;    ///< maximum offset of a robot's clock from the coordinator's
   double speed_mps = 2;             ///< maximum speed of a robot
 
-  /// Each robot has its tracking error, and two clocks differ by up to twice the bound while the robots
-  /// approach each other at up to twice the speed.
+  /// Both robots have a tracking error. Their clocks differ by up to twice the clock bound, while they
+  /// approach each other at up to twice the maximum speed.
   constexpr double required_margin_m() const {
     return 2 * tracking_bound_m + 2 * clock_bound_s * 2 * speed_mps;
   }

@@ -64,8 +64,8 @@ class Trajectory {
 
   /// The state at a time: at rest from end() on, and the start state before the start.
   State state_at(Time t) const { return motion_at(t).state; }
-  /// The state and the acceleration at a time: that of the later phase at a boundary, and zero from end() on
-  /// and before the start.
+  /// The state and the acceleration at a time. At a phase boundary, the acceleration is the later phase's; it
+  /// is zero before the start and from end() on.
   Motion motion_at(Time t) const;
   Vec2 rest_position_m() const;
   /// The speed at the end of the last phase; zero but for rounding in a valid trajectory.

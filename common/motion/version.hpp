@@ -11,8 +11,8 @@ namespace sidestep {
 
 using RobotId = std::uint32_t;
 using VersionNumber = std::uint64_t;
-/// One life of a process: the process's clock at its start in nanoseconds, so a later life has a higher
-/// number.
+/// Identifies one run of a process: the process's clock at its start in nanoseconds, so a later run has a
+/// higher number.
 using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
 /// Higher epochs are invalid.
@@ -30,7 +30,7 @@ inline constexpr RobotId kMaxRobots = 1024;
 
 /// One trajectory of one robot. An agent numbers its versions upwards from its incarnation, so that the
 /// numbers increase over the robot's life across restarts of its agent. Version 0 is the rest version with
-/// which a robot starts; no agent makes it.
+/// which a robot starts; no agent creates it.
 struct Version {
   RobotId robot = 0;
   Incarnation incarnation = 0;

@@ -23,8 +23,8 @@ class UsageError : public std::invalid_argument {
 
 /// A condition on the text of an option's value.
 struct ValueCheck {
-  std::string description;                                  ///< for --help, e.g. "POSITIVE"
-  std::function<std::string(const std::string&)> problem;   ///< what is wrong with a value; empty if nothing is
+  std::string description;                                 ///< for --help, e.g. "POSITIVE"
+  std::function<std::string(const std::string&)> problem;  ///< what is wrong with a value; empty if valid
 };
 [[nodiscard]] ValueCheck in_range(double min, double max);
 [[nodiscard]] ValueCheck positive();
@@ -39,10 +39,10 @@ class Option {
   Option required() const;
   Option check(const ValueCheck& check) const;
   Option check(std::function<std::string(const std::string&)> problem) const;
-  /// --help shows the value that the variable has now, or the text.
+  /// Makes --help show the variable's current value, or `text`.
   Option show_default() const;
   Option show_default(const std::string& text) const;
-  /// The value is a comma-separated list, of exactly `count` elements if that is given.
+  /// The value is a comma-separated list, with exactly `count` elements if `count` is given.
   Option comma_separated(std::optional<int> count = std::nullopt) const;
   Option needs(const Option& other) const;
   Option excludes(const Option& other) const;
@@ -61,26 +61,26 @@ class Command {
   void require_subcommand() const;
   /// Text at the end of --help.
   void add_footer(const std::string& text) const;
-  /// An option if the name begins with dashes, else a positional argument. Value: std::string, bool is a flag,
-  /// any integer or floating-point type, std::optional or std::vector of them.
+  /// An option if the name begins with dashes, else a positional argument. `Value` is std::string, bool (a
+  /// flag), any integer or floating-point type, or std::optional or std::vector of one of these.
   template <typename Value>
   Option add_option(const std::string& name, Value& value, const std::string& description = {}) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description = {}) const;
-  /// An option that `take` reads; it throws UsageError for a value that it refuses.
+  /// An option whose value is passed to `take`, which throws UsageError if it rejects the value.
   Option add_option(const std::string& name, std::function<void(const std::string&)> take,
                     const std::string& description) const;
-  /// An option whose value may be left out: then it is `default_value`.
+  /// An option whose value may be omitted; it is then `default_value`.
   Option add_optional_value(const std::string& name, std::optional<std::string>& value,
                             const std::string& default_value, const std::string& description) const;
   Option option(const std::string& name) const;
-  /// Called once the command line was parsed and contains this command; may throw UsageError.
+  /// `callback` is called after parsing if the command line contains this command; it may throw UsageError.
   void on_parsed(std::function<void()> callback) const;
 
  private:
   CLI::App* app_;
 };
 
-/// A program's command line. The only code that knows CLI11, whose headers take seconds to compile.
+/// A program's command line. Only its implementation uses CLI11, whose headers take seconds to compile.
 class CommandLine {
  public:
   explicit CommandLine(const std::string& description, const std::string& program_name);
@@ -90,8 +90,8 @@ class CommandLine {
 
   Command root() const { return Command(*app_); }
 
-  /// Parses. Returns an exit code when that ends the program (--help: 0, after printing it; wrong usage:
-  /// kExitUsage, after saying on stderr what is wrong), else nothing.
+  /// Parses the program's arguments. Returns an exit code if the program should end: 0 after printing --help,
+  /// or kExitUsage after reporting wrong usage on stderr. Otherwise returns nullopt.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
   /// Parses the arguments after the program's name. Throws UsageError.
   void parse(std::vector<std::string> arguments);

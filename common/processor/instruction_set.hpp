@@ -9,9 +9,9 @@ namespace sidestep {
 /// The instruction sets that kernels are compiled for; each includes the preceding ones.
 enum class InstructionSet {
   kBaseline,    ///< common to all processors of the architecture
-  kAvx2,        ///< and FMA, BMI 1 and 2, POPCNT
-  kAvx512,      ///< F, DQ and VL
-  kAvx512Bytes  ///< BW and VBMI
+  kAvx2,        ///< AVX2, FMA, BMI 1 and 2, POPCNT
+  kAvx512,      ///< AVX-512 F, DQ and VL
+  kAvx512Bytes  ///< AVX-512 BW and VBMI
 };
 
 /// The best instruction set that this processor and its operating system support. Code compiled for an

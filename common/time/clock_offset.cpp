@@ -6,7 +6,8 @@
 namespace sidestep {
 namespace {
 
-// An interval is of no use for longer, and the product below does not overflow.
+// Ages are clamped to this bound, at which an interval is too wide to be useful, so that the product below
+// does not overflow.
 constexpr Duration kMaxAge = std::chrono::hours(24);
 
 bool is_time(Time t) { return to_ns(t) > 0 && t <= kMaxTime; }

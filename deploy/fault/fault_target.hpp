@@ -15,7 +15,8 @@ struct FaultTarget {
   std::string participant;               ///< name of the DDS participant; empty: every process
 };
 
-/// Parses "all", "agent 3", "coordinator", "coordinator 1", "vision" or "simulator"; nullopt for anything else.
+/// Parses "all", "agent 3", "coordinator", "coordinator 1", "vision" or "simulator"; nullopt for anything
+/// else.
 [[nodiscard]] std::optional<FaultTarget> parse_fault_target(const std::string& text);
 
 }  // namespace sidestep

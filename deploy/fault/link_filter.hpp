@@ -12,9 +12,9 @@ struct LinkFault {
   double loss_out = 0;  ///< probability that an outgoing packet is dropped
 };
 
-/// The namespaces of a host, given by its namespace's name in the hosts file of a running system, by the full name of
-/// the namespace, or as "all" for every host of the only run. Throws std::runtime_error when the host is unknown,
-/// when several runs have it, and without root.
+/// The namespaces of a host. `host` is the namespace's name in the hosts file of a running system, its full
+/// name, or "all" for every host of the only run. Throws std::runtime_error when the host is unknown, when
+/// several runs have a host of that name, and without root.
 [[nodiscard]] std::vector<std::string> namespaces_of_host(const std::string& host);
 
 /// Replaces the namespace's filter. Throws std::runtime_error.

@@ -16,9 +16,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kDiscoveryTimeout = 5s;    ///< longer than the period of participant announcements
+constexpr Duration kDiscoveryTimeout = 5s;       ///< longer than the period of participant announcements
 constexpr Duration kDiscoverySettling = 1500ms;  ///< without new subscribers, all are known after this time
-constexpr Duration kLeaseSlack = 2s;  ///< a dead participant is removed at most this long after its lease expires
+constexpr Duration kLeaseSlack =
+    2s;  ///< a dead participant is removed at most this long after its lease expires
 constexpr auto kPollPeriod = 10ms;
 
 template <typename Condition>

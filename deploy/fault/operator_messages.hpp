@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Waits until this participant subscribes to the channel or, for an empty name, until there are subscribers and no
-/// new ones appear. On timeout throws std::runtime_error that names the subscribers found.
+/// Waits until this participant subscribes to the channel or, for an empty name, until there are subscribers
+/// and no new ones appear. On timeout throws std::runtime_error that names the subscribers found.
 void wait_for_subscriber(OperatorChannel& channel, const std::string& participant);
 /// Waits until the topic has a writer; on timeout throws std::runtime_error with this message.
 void wait_for_writer(OperatorChannel& channel, const std::string& topic, const std::string& error);

@@ -15,11 +15,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPollPeriod = 20ms;           // maximum delay before a death is noticed
-constexpr Duration kStartInterval = 100ms;       // simultaneous starts would stall DDS discovery
-constexpr Duration kStartupTimeout = 20s;        // since the last start
-constexpr Duration kSettlingTime = 500ms;        // after all arrivals, for the final status messages
-constexpr Duration kStuckTimeout = 2s;           // since the last death
+constexpr Duration kPollPeriod = 20ms;      // maximum delay before a death is noticed
+constexpr Duration kStartInterval = 100ms;  // simultaneous starts would stall DDS discovery
+constexpr Duration kStartupTimeout = 20s;   // since the last start
+constexpr Duration kSettlingTime = 500ms;   // after all arrivals, for the final status messages
+constexpr Duration kStuckTimeout = 2s;      // since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 
@@ -59,9 +59,10 @@ Report Launcher::run() {
   });
   const Time begin = bus_.now();
   if (network_) {
-    print(fmt::format("hosts are network namespaces; to observe them, run: ip netns exec {} sidestep topic list "
-                      "--domain {} --interface {}",
-                      network_->bridge(), options_.dds.domain, options_.dds.interface));
+    print(fmt::format(
+        "hosts are network namespaces; to observe them, run: ip netns exec {} sidestep topic list "
+        "--domain {} --interface {}",
+        network_->bridge(), options_.dds.domain, options_.dds.interface));
   }
   start_core();
   while (!is_over()) {
@@ -91,8 +92,8 @@ void Launcher::start(const std::string& name, const std::string& program, bool r
   const HostSpec& host = placement_.host_of(name);
   ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, restart};
   if (options_.faults) process.arguments.push_back("--faults");
-  const pid_t pid = group_.start(
-      child_spec(process, host, network_ ? network_->full_name(host.target) : host.target));
+  const pid_t pid =
+      group_.start(child_spec(process, host, network_ ? network_->full_name(host.target) : host.target));
   print(fmt::format("started {} as pid {}{}", name, pid,
                     options_.hosts_file.empty() ? "" : " on host " + host.name));
   last_start_ = bus_.now();
@@ -115,8 +116,7 @@ void Launcher::start_core() {
 void Launcher::start_due_agents() {
   if (agents_started_ == scenario_.robots.size() || bus_.now() < last_start_ + kStartInterval) return;
   const RobotId robot = scenario_.robots[agents_started_++].id;
-  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents,
-        {"--robot", std::to_string(robot)});
+  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, {"--robot", std::to_string(robot)});
 }
 
 void Launcher::handle(const ChildEvent& event) {
@@ -162,7 +162,8 @@ std::string Launcher::startup_failure() const {
   if (!metrics_.has_coordinator_state())
     reasons.push_back("no state from the coordinator");
   else if (!metrics_.granting_since())
-    reasons.push_back(fmt::format("no registration of robot {}", fmt::join(metrics_.unregistered_robots(), ", ")));
+    reasons.push_back(
+        fmt::format("no registration of robot {}", fmt::join(metrics_.unregistered_robots(), ", ")));
   return fmt::format("not ready after {} s: {}", to_seconds(kStartupTimeout), fmt::join(reasons, "; "));
 }
 

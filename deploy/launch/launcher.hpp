@@ -24,7 +24,8 @@ namespace sidestep {
 /// Starts the processes of one run, monitors them until the run is over, and stops them.
 class Launcher {
  public:
-  /// All arguments must outlive the launcher. `network` is null unless this process created the hosts' namespaces.
+  /// All arguments must outlive the launcher. `network` is null unless this process created the hosts'
+  /// namespaces.
   Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
            const NamespaceNetwork* network, const std::string& log_path);
 

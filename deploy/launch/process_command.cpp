@@ -13,9 +13,9 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// The shell script on the remote host. Its stdin carries the scenario and reaches its end when the connection ends
-/// for any reason. Descriptor 3 preserves stdin, because a shell replaces it for background processes. HUP and PIPE
-/// are ignored so that the script can clean up after the connection is lost.
+/// The shell script on the remote host. Its stdin carries the scenario and reaches its end when the
+/// connection ends for any reason. Descriptor 3 preserves stdin, because a shell replaces it for background
+/// processes. HUP and PIPE are ignored so that the script can clean up after the connection is lost.
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
@@ -49,15 +49,16 @@ void append(Arguments& arguments, const Arguments& more) {
 Arguments ssh_arguments(const ProcessSpec& process, const HostSpec& host, const std::string& program,
                         std::size_t scenario_size, const Arguments& options) {
   Arguments remote{"sh",
-               "-c",
-               kRemoteScript,
-               "sidestep",
-               std::to_string(scenario_size),
-               std::filesystem::path(process.scenario_file).filename().string(),
-               program};
+                   "-c",
+                   kRemoteScript,
+                   "sidestep",
+                   std::to_string(scenario_size),
+                   std::filesystem::path(process.scenario_file).filename().string(),
+                   program};
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
-  // A hanging connection ends within seconds here, and at the remote end if its server is configured alike.
+  // A hanging connection ends within seconds here, and on the remote host if its server is configured
+  // likewise.
   return {find_program("ssh"),
           "-oBatchMode=yes",
           "-oServerAliveInterval=1",

@@ -20,8 +20,9 @@ struct ProcessSpec {
 };
 
 /// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace
-/// `namespace_name`, or ssh. Over ssh the scenario travels along, and the remote process ends with the connection.
-/// Throws std::runtime_error when ip or ssh is missing or the scenario cannot be read.
-[[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std::string& namespace_name);
+/// `namespace_name`, or ssh. Over ssh the scenario travels along, and the remote process ends with the
+/// connection. Throws std::runtime_error when ip or ssh is missing or the scenario cannot be read.
+[[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host,
+                                   const std::string& namespace_name);
 
 }  // namespace sidestep

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-// glibc 2.36 declares it without C linkage.
+// glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
 #include <sys/pidfd.h>
 }
@@ -50,7 +50,7 @@ std::string reason_of(int status) {
   dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
-  close_range(3, ~0U, 0);  // above all the parent's sockets
+  close_range(3, ~0U, 0);  // inherited descriptors, above all the parent's sockets
   execv(argv[0], argv);
   const char* const reason = strerrordesc_np(errno);
   for (const char* part :

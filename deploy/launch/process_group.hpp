@@ -20,7 +20,7 @@ struct ChildSpec {
   std::string input = {};
 };
 
-/// A child started again or died.
+/// A child was restarted or died.
 struct ChildEvent {
   enum class Kind { kStarted, kDied } kind;
   std::string name;
@@ -29,8 +29,9 @@ struct ChildEvent {
   bool will_restart = false;
 };
 
-/// Supervises and logs child processes. The kernel kills the children when this process ends, however it ends. Use
-/// it only from one thread that lives as long as the program, because the kernel monitors the thread that forked.
+/// Supervises and logs child processes. The kernel kills the children when this process ends, however it
+/// ends. Use it only from one thread that lives as long as the program, because the kernel monitors the
+/// thread that forked.
 class ProcessGroup {
  public:
   using SteadyTime = std::chrono::steady_clock::time_point;
@@ -48,12 +49,12 @@ class ProcessGroup {
   pid_t start(const ChildSpec& spec);
   /// Waits for events of children, at most for the timeout, and returns them. Restarts children that are due.
   std::vector<ChildEvent> poll(Milliseconds timeout);
-  /// Asks all children to end, kills those that have not ended after the timeout, and waits for all. Returns the
-  /// names of the killed children.
+  /// Asks all children to end, kills those that have not ended after the timeout, and waits for all. Returns
+  /// the names of the killed children.
   std::vector<std::string> terminate(Milliseconds timeout);
 
   std::size_t running() const;
-  /// The last lines that a child printed, also after its end.
+  /// The last lines that a child printed, even after its end.
   std::vector<std::string> last_lines(const std::string& name) const;
   /// Writes a line to the log.
   void log(const std::string& line);

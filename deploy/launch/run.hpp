@@ -15,16 +15,16 @@ struct RunOptions {
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
   DdsSettings dds;
-  std::uint64_t seed = 1;                        ///< of the simulator's noise
-  std::optional<double> seconds;                 ///< overrides the scenario's time limit
-  bool faults = false;                           ///< processes accept `sidestep fault network`
+  std::uint64_t seed = 1;                         ///< of the simulator's noise
+  std::optional<double> seconds;                  ///< overrides the scenario's time limit
+  bool faults = false;                            ///< processes accept `sidestep fault network`
   std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
 };
 
-/// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed or the
-/// user interrupts, stops them, and writes the report. Returns the exit code: 0 only if all robots arrived without
-/// contact and the auditor found no violation. Throws ConfigError, and std::runtime_error when a process cannot be
-/// started or a file cannot be written.
+/// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
+/// or the user interrupts, stops them, and writes the report. Returns the exit code: 0 only if all robots
+/// arrived without contact and the auditor found no violation. Throws ConfigError, and std::runtime_error
+/// when a process cannot be started or a file cannot be written.
 int run(const RunOptions& options);
 
 }  // namespace sidestep

@@ -36,7 +36,8 @@ std::string path_of(const OpponentSpec& opponent) {
 
 void RunPicture::add(const msg::GroundTruth& truth) {
   for (const msg::TrueRobotState& robot : truth.robots()) {
-    tracks_[robot.robot()].push_back({static_cast<double>(truth.valid_at_ns()) * 1e-9, {robot.x_m(), robot.y_m()}});
+    tracks_[robot.robot()].push_back(
+        {static_cast<double>(truth.valid_at_ns()) * 1e-9, {robot.x_m(), robot.y_m()}});
   }
 }
 

@@ -9,13 +9,13 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/process.hpp"
-#include "deploy/simulate/run_picture.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
-#include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
+#include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
+#include "deploy/simulate/run_picture.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -62,8 +62,8 @@ std::string run_until_arrived(SimSystem& system, double limit_s) {
   return system.metrics().all_arrived() ? "" : fmt::format("time limit of {} s", limit_s);
 }
 
-/// Records all messages of a system if a file is given. The recording counts as complete although it misses the
-/// construction of the system: no message about versions is sent during that.
+/// Records all messages of a system if a file is given. The recording counts as complete although it misses
+/// the construction of the system: during construction no message about versions is sent.
 class SimRecorder {
  public:
   SimRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options) : bus_(network) {
@@ -88,7 +88,7 @@ class SimRecorder {
 
 /// Completes, writes and prints the report, and returns the exit code.
 int finish(const SimulateOptions& options, Report& report, const RunPicture& picture,
-             steady_clock::time_point begin) {
+           steady_clock::time_point begin) {
   report.program = "simulate";
   report.seed = options.seed;
   report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
@@ -133,8 +133,7 @@ int simulate(const SimulateOptions& options) {
   if (!options.picture_file.empty())
     system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
   SimRecorder recorder(system.network(), scenario, options);
-  const std::string abort_reason =
-      run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
+  const std::string abort_reason = run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
   recorder.close();
   Report report = system.metrics().report();
   report.abort_reason = abort_reason;

@@ -16,12 +16,13 @@ struct SimulateOptions {
   std::optional<double> seconds;  ///< overrides the scenario's time limit
 };
 
-/// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the exit
-/// code as run() does. Throws ConfigError, and std::runtime_error when a file cannot be written.
+/// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the
+/// exit code as run() does. Throws ConfigError, and std::runtime_error when a file cannot be written.
 int simulate(const SimulateOptions& options);
 
-/// Runs the trial of one seed of a campaign (deploy/simulate/campaign), prints its scene and faults, and writes the
-/// report. Without a scenario file the scene is random, too. Returns and throws as simulate() does.
+/// Runs the trial of one seed of a campaign (deploy/simulate/campaign), prints its scene and faults, and
+/// writes the report. Without a scenario file the scene is random, too. Returns and throws as simulate()
+/// does.
 int simulate_trial(const SimulateOptions& options);
 
 }  // namespace sidestep

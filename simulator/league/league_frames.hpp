@@ -26,7 +26,8 @@ class LeagueFrames {
   league::VisionPacket geometry() const;
 
  private:
-  void add(const msg::RobotDetection& robot, const CameraModel& camera, league::DetectionFrame& detection) const;
+  void add(const msg::RobotDetection& robot, const CameraModel& camera,
+           league::DetectionFrame& detection) const;
 
   Scenario scenario_;
   std::vector<CameraModel> cameras_;

@@ -25,8 +25,8 @@ LeagueOutput::LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& si
 void LeagueOutput::send(const league::VisionPacket& packet) {
   if (sender_.send(encode(packet)) || sender_.failed() < next_report_) return;
   next_report_ *= 10;
-  fmt::print(stderr, "sidestep-simulator: {} league packet(s) not sent so far; last error: {}\n", sender_.failed(),
-             std::strerror(errno));
+  fmt::print(stderr, "sidestep-simulator: {} league packet(s) not sent so far; last error: {}\n",
+             sender_.failed(), std::strerror(errno));
 }
 
 void LeagueOutput::send_geometry() {

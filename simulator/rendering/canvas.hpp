@@ -11,7 +11,7 @@ namespace sidestep {
 /// The ideal image before blur and noise: RGB, 8 bits per channel.
 using Canvas = cv::Mat3b;
 
-/// An illuminated colour; 0 to 255, but may exceed 255.
+/// An illuminated colour on a scale from 0 to 255, which strong light may exceed.
 using Light = Eigen::Vector3f;
 
 /// A colour under light with a gain per channel.

@@ -27,7 +27,9 @@ class FloorCoverage {
     surface_ = {-half, half};
   }
 
-  Coverage at_point(const Vec2& p) const { return at_point(lines_.distance_m(p), signed_distance(p, surface_)); }
+  Coverage at_point(const Vec2& p) const {
+    return at_point(lines_.distance_m(p), signed_distance(p, surface_));
+  }
 
   Coverage at_pixel(const CameraModel& camera, const Vec2& p) const {
     const double line_m = lines_.distance_m(p), surface_m = signed_distance(p, surface_);

@@ -7,9 +7,9 @@
 #include "common/geometry/box.hpp"
 #include "common/geometry/field.hpp"
 #include "common/random/rng.hpp"
-#include "simulator/world/field_marking.hpp"
 #include "simulator/rendering/canvas.hpp"
 #include "simulator/rendering/render_spec.hpp"
+#include "simulator/world/field_marking.hpp"
 
 namespace sidestep {
 
@@ -25,7 +25,7 @@ class FieldLines {
   std::array<Box, std::tuple_size_v<decltype(FieldMarking::lines)>> lines_;  ///< without width
 };
 
-/// The share of full light at a point of the floor; beyond the field's far end as at the far end.
+/// The share of full light at a point of the floor; beyond the field's far end the same as at that end.
 double light_at(const RenderSpec& spec, const Field& field, const Vec2& p);
 
 /// A camera's view of the empty floor under neutral light: the field surface with its lines, its texture and

@@ -46,9 +46,8 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
       spec_(spec),
       rng_(rng),
       noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
-  // Three standard deviations to the outer edge of the last pixel.
-  if (spec_.blur_px > kMinBlur_px)
-    blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
+  // The outer edge of the kernel's last pixel is three standard deviations from its centre.
+  if (spec_.blur_px > kMinBlur_px) blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
   render_empty_floor();
 }
 
@@ -141,7 +140,7 @@ void FrameRenderer::blur(const cv::Rect& rect) {
   for (int y = rect.y; y < rect.br().y; ++y) {
     std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
     convert_pixels(spec_.format, blurred[y - around.y][rect.x - around.x].val, rect.width,
-                 row + rect.x * bytes_per_pixel(spec_.format));
+                   row + rect.x * bytes_per_pixel(spec_.format));
   }
 }
 

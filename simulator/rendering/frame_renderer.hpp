@@ -17,7 +17,7 @@
 namespace sidestep {
 
 /// Renders the frames of one camera. The empty floor is drawn, blurred and converted once; the cost of a
-/// frame is that of its objects, and one pass over its bytes that adds the noise.
+/// frame is that of drawing its objects, plus one pass over its bytes that adds the noise.
 class FrameRenderer {
  public:
   /// The state of `rng` determines the frames. Throws std::invalid_argument if the width is odd with kYuv422.
@@ -46,7 +46,7 @@ class FrameRenderer {
   cv::Rect draw_robot(const SceneRobot& robot);
   cv::Rect draw_cylinder(const SceneCylinder& cylinder);
   Eigen::Vector3d gain_at(const Vec2& p) const;
-  /// Applies the lens blur to the canvas and converts the result into the clean frame.
+  /// Applies the lens blur to this part of the canvas and converts the result into the clean frame.
   void blur(const cv::Rect& rect);
   void restore(const cv::Rect& rect);
   std::size_t row_bytes() const { return ImageView{spec_.format, canvas_.cols, 1}.row_bytes(); }

@@ -30,7 +30,8 @@ class BallView {
   float share(const Vec2& place_m) const {
     const Vec2 offset_m = place_m - centre_m_.head<2>();
     const Vec2 ray = (Vec3(place_m.x(), place_m.y(), centre_m_.z()) - camera_m_).normalized().head<2>();
-    const double distance_m = std::sqrt(std::max(0.0, offset_m.squaredNorm() - std::pow(offset_m.dot(ray), 2)));
+    const double distance_m =
+        std::sqrt(std::max(0.0, offset_m.squaredNorm() - std::pow(offset_m.dot(ray), 2)));
     if (distance_m - kBallRadius_m > reach_m_) return 0;
     if (kBallRadius_m - distance_m > reach_m_) return 1;
     const float x = static_cast<float>(offset_m.x()), y = static_cast<float>(offset_m.y());

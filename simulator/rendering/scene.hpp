@@ -20,7 +20,8 @@ struct SceneRobot {
   double heading_rad = 0;
   Vec2 velocity_mps{0, 0};
   double angular_radps = 0;
-  std::uint32_t hidden_dots = 0;  ///< bit 0: the centre dot is covered; bit 1 + i: the layout's dot i is covered
+  std::uint32_t hidden_dots =
+      0;  ///< bit 0: the centre dot is covered; bit 1 + i: the layout's dot i is covered
 };
 
 /// A round object other than a marked robot: an obstacle, an opponent or a person.

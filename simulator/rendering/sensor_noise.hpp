@@ -14,7 +14,7 @@ namespace sidestep {
 /// position.
 class SensorNoise {
  public:
-  /// `sd` is the standard deviation of each of red, green and blue, of 255.
+  /// `sd` is the standard deviation in each of red, green and blue, in levels of 255.
   SensorNoise(PixelFormat format, double sd, int width_px, Rng& rng);
 
   /// out = clean + noise, clamped to 0..255. Both images have the constructor's format and width.

@@ -13,14 +13,15 @@ namespace {
 constexpr int kMaxSquare_px = 16;
 constexpr float kAllSamples = static_cast<float>(kSamples);
 
-/// The maximum distance of any point of a body from its position at the time of capture, during the exposure.
+/// The maximum distance, during the exposure, of any point of a body from its position at the time of
+/// capture.
 double motion_reach_m(const VerticalBody& body, double exposure_s) {
   return (body.velocity_mps.norm() + std::abs(body.angular_radps) * body.radius_m) * exposure_s / 2;
 }
 
 /// A camera's view of a body. A viewing ray that meets the plane of the top at p meets the floor at p +
-/// parallax (p - nadir). It shows the body if its projection between the two meets the cross-section, and the
-/// top if p lies in it.
+/// parallax (p - nadir). The ray shows the body if its projection between these two points meets the
+/// cross-section, and the top if p lies in the cross-section.
 class BodyView {
  public:
   BodyView(const VerticalBody& body, const CameraModel& camera, const Eigen::Matrix2d& metres_per_pixel,
@@ -82,10 +83,13 @@ class BodyView {
     // The number of samples in a shape with the given signed distance from the pixel's centre. Samples are
     // counted one by one only if the shape's edge is within `max_m` of the centre.
     const auto count = [](double distance_m, double max_m, auto count_samples) {
-      return distance_m > max_m ? 0.0F : distance_m < -max_m ? kAllSamples : static_cast<float>(count_samples());
+      return distance_m > max_m    ? 0.0F
+             : distance_m < -max_m ? kAllSamples
+                                   : static_cast<float>(count_samples());
     };
-    const float on_body = count(body_distance_m(p), ray_reach_m(reach_m),
-                                [&] { return kernels_.count_rays_hitting(offsets_, samples, rays_, section_); });
+    const float on_body = count(body_distance_m(p), ray_reach_m(reach_m), [&] {
+      return kernels_.count_rays_hitting(offsets_, samples, rays_, section_);
+    });
     const float on_top =
         count(top_distance_m(p), reach_m, [&] { return kernels_.count_in_cross_section(samples, section_); });
     const float on_side = std::max(0.0F, on_body - on_top);
@@ -94,7 +98,7 @@ class BodyView {
       const double dot_m = (p - dot.position_m).norm() - dot.radius_m;
       const float on_dot = count(dot_m, reach_m, [&] {
         return kernels_.count_in_disc(samples, float(dot.position_m.x()), float(dot.position_m.y()),
-                                float(dot.radius_m));
+                                      float(dot.radius_m));
       });
       if (on_dot > 0) light += on_dot * (dot.light - body_.top);
     }
@@ -114,20 +118,20 @@ class BodyView {
     return std::max(p.norm() - body_.radius_m, p.x() - body_.front_m);
   }
 
-  /// Signed distance from the body's silhouette, negative inside, in metres at the height of the top. Never
-  /// farther from the edge than the true distance.
+  /// Signed distance from the body's silhouette, negative inside, in metres at the height of the top. Its
+  /// magnitude never exceeds the true distance.
   double body_distance_m(const Vec2& p) const {
     const Vec2 ray = parallax_ * (p - nadir_m_), end = p + ray;
     const double square = ray.squaredNorm();
     const Vec2 nearest = p + (square > 0 ? std::clamp(-p.dot(ray) / square, 0.0, 1.0) : 0.0) * ray;
-    // A point of the ray that is this deep in the cross-section is as deep in the silhouette.
+    // If a point of the ray is this deep in the cross-section, p is at least as deep in the silhouette.
     const double inside_m = std::min({top_distance_m(p), top_distance_m(end), top_distance_m(nearest)});
     if (inside_m < 0) return inside_m;
     const double ahead_m = std::min(p.x(), end.x()) - body_.front_m;
     return std::max({0.0, nearest.norm() - body_.radius_m, ahead_m});
   }
 
-  /// Transforms a pixel's samples to the body's frame at their times of the exposure.
+  /// Transforms a pixel's samples to the body's frame at their times within the exposure.
   void move(const coverage::PixelSamples& samples, Points& moved) const {
     for (std::size_t i = 0; i < kSamples; ++i) {
       const float x = offsets_.x[i] + shifts_.x[i], y = offsets_.y[i] + shifts_.y[i];
@@ -140,7 +144,7 @@ class BodyView {
   const VerticalBody& body_;
   Vec2 position_m_;
   Eigen::Matrix2d heading_;  ///< rotation from the world to the body's frame
-  Vec2 nadir_m_;              ///< of the camera, in the body's frame
+  Vec2 nadir_m_;             ///< of the camera, in the body's frame
   double parallax_ = 0;
   double pixel_reach_m_ = 0;
   double motion_m_ = 0;
@@ -196,7 +200,8 @@ cv::Rect draw(const VerticalBody& body, const CameraModel& camera, double exposu
   const double reach_m = body.radius_m + motion_reach_m(body, exposure_s);
   const auto rect = footprint(camera, body.position_m, reach_m, 0, body.height_m);
   if (rect.empty()) return {};
-  const auto slope = camera.projection_jacobian(Vec3(body.position_m.x(), body.position_m.y(), body.height_m));
+  const auto slope =
+      camera.projection_jacobian(Vec3(body.position_m.x(), body.position_m.y(), body.height_m));
   if (!slope) return {};
   const BodyView view(body, camera, slope->leftCols<2>().inverse(), exposure_s);
   Painter painter(view, camera, body.height_m, rect, canvas);

@@ -20,7 +20,8 @@ struct VerticalBody {
   Vec2 position_m;
   double heading_rad = 0;
   double radius_m = 0.09;
-  double front_m = 1e3;  ///< distance of the flat front from the centre; beyond radius_m there is no flat front
+  double front_m =
+      1e3;  ///< distance of the flat front from the centre; beyond radius_m there is no flat front
   double height_m = 0.15;
   Light top, side;
   std::span<const TopDot> dots;  ///< without overlaps, within the top

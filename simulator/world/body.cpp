@@ -47,8 +47,8 @@ void Body::roll(const Actuation& command) {
       limited(command.angular_acceleration_radps2, settings_.angular_acceleration_radps2);
   const double angular_residual = angular_acceleration_radps2_ - angular_target;
   const double before = angular_radps_;
-  angular_radps_ =
-      limited(before + angular_target * dt + angular_residual * (lag * gained), settings_.angular_speed_radps);
+  angular_radps_ = limited(before + angular_target * dt + angular_residual * (lag * gained),
+                           settings_.angular_speed_radps);
   angular_acceleration_radps2_ = angular_target + angular_residual * decay_;
   heading_rad_ += 0.5 * (before + angular_radps_) * dt;
 }
@@ -58,7 +58,7 @@ void Body::displace(const Vec2& shift_m, const Vec2& velocity_change_mps) {
   state_.velocity_mps = limited(state_.velocity_mps + velocity_change_mps, settings_.speed_mps);
 }
 
-// The wheels follow the command. The grip scales the share of the wheels' acceleration, and of friction, that
+// The wheels follow the command. The grip is the share of the wheels' acceleration and of friction that
 // reaches the body.
 void Body::slide(const Actuation& command) {
   constexpr double dt = kPhysicsStepSeconds;

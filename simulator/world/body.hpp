@@ -45,10 +45,10 @@ class Body {
   /// Changes the body's velocity but not that of its wheels: the body slips until friction has brought it
   /// back to the wheels' velocity.
   void push(const Vec2& velocity_change_mps);
-  /// Sets the share, 0 to 1, of every acceleration that reaches the floor.
+  /// Sets the grip: the share, 0 to 1, of the wheels' acceleration and of friction that reaches the body.
   void set_grip(double share);
-  /// Blocks a wheel: the wheels do not roll along a direction, given as an angle from the heading. Without a
-  /// direction all wheels turn.
+  /// Blocks a wheel: the wheels do not roll along a direction, given as an angle from the heading. nullopt:
+  /// no wheel is blocked.
   void set_blocked(std::optional<double> direction_rad);
   /// Takes the body off the floor, where it does not move.
   void lift();

@@ -48,7 +48,8 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
   frame.captured_at_ns(to_ns(now));
   frame.robots().clear();
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    if (!robots[i].is_on_floor() || !view.sees(robots[i].position_m()) || rng_.chance(spec_.miss_probability)) continue;
+    if (!robots[i].is_on_floor() || !view.sees(robots[i].position_m()) || rng_.chance(spec_.miss_probability))
+      continue;
     msg::RobotDetection seen;
     seen.robot(ids_[i]);
     seen.x_m(robots[i].position_m().x() + spec_.position_noise_m * rng_.normal());
@@ -73,7 +74,7 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
 }
 
 void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> opponents,
-                            msg::DetectionFrame& frame) {
+                               msg::DetectionFrame& frame) {
   std::uint8_t count = 0;
   for (const Circle& opponent : opponents) {
     if (count == msg::MAX_OBSTACLES) break;

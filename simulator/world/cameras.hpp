@@ -43,7 +43,8 @@ class Cameras {
   std::span<const CameraView> views() const { return views_; }
 
  private:
-  void detect_opponents(const CameraView& view, std::span<const Circle> opponents, msg::DetectionFrame& frame);
+  void detect_opponents(const CameraView& view, std::span<const Circle> opponents,
+                        msg::DetectionFrame& frame);
   void add_ghost(const CameraView& view, msg::DetectionFrame& frame);
   void select_next_camera();
 

@@ -50,10 +50,10 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
       executing_{robot, 0, 0, 0, Trajectory::resting(Time{}, start_m)},
       settings_(settings),
       decay_(std::exp(-kPhysicsStepSeconds / settings.body.lag_s)),
-      // A command holds for a whole period and so acts half a period late on average.
+      // A command is held for a whole period and so acts half a period late on average.
       look_ahead_(from_seconds(settings.body.lag_s) + kPhysicsStep / 2),
       max_position_error_m_(settings.body.acceleration_mps2 *
-                   std::pow(settings.velocity_gain_ps / settings.position_gain_ps2, 2)),
+                            std::pow(settings.velocity_gain_ps / settings.position_gain_ps2, 2)),
       estimator_(start_m, heading_rad, now, settings.estimator),
       target_heading_rad_(heading_rad) {}
 
@@ -65,7 +65,8 @@ void Firmware::on_command(const msg::Command& command, Time now) {
     ++counts_.refused_malformed;
     return;
   }
-  highest_seen_ = std::max({highest_seen_, checked->incarnation, checked->version ? checked->version->number : 0});
+  highest_seen_ =
+      std::max({highest_seen_, checked->incarnation, checked->version ? checked->version->number : 0});
   if (checked->incarnation < obeyed_) {
     ++counts_.refused_fenced;
     return;
@@ -73,8 +74,8 @@ void Firmware::on_command(const msg::Command& command, Time now) {
   obey(checked->incarnation);
   command_stamp_ns_ = command.header().stamp_ns();
   command_received_at_ = now;
-  // A new agent may not know the epoch that an earlier one has brought. Feedback tells it; until then its
-  // versions are refused.
+  // A new agent may not know the latest epoch that the robot learned from an earlier agent. Its versions are
+  // refused until it learns that epoch from feedback.
   const bool is_old_epoch = checked->epoch < obeyed_epoch_;
   obeyed_epoch_ = std::max(obeyed_epoch_, checked->epoch);
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad());
@@ -201,7 +202,7 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   const double lag = settings_.body.lag_s;
   const Motion ahead = planned(now + look_ahead_).motion_at(now + look_ahead_);
   Vec2 position_error = reference.position_m + lag * reference.velocity_mps -
-                       (estimator_.position_m() + lag * estimator_.velocity_mps());
+                        (estimator_.position_m() + lag * estimator_.velocity_mps());
   // With these gains both the speed of the approach and its deceleration are proportional to the distance.
   // The distance is clamped so that the motors can provide that deceleration; without the clamp a robot far
   // from its reference would overshoot and oscillate about it.
@@ -209,17 +210,19 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
     position_error *= max_position_error_m_ / position_error.norm();
   const Vec2 velocity_error = ahead.state.velocity_mps - (estimator_.velocity_mps() + lag * modelled);
   Vec2 acceleration = ahead.acceleration_mps2 + settings_.position_gain_ps2 * position_error +
-                settings_.velocity_gain_ps * velocity_error;
+                      settings_.velocity_gain_ps * velocity_error;
   const double max_acceleration = settings_.body.acceleration_mps2;
-  if (acceleration.squaredNorm() > max_acceleration * max_acceleration) acceleration *= max_acceleration / acceleration.norm();
+  if (acceleration.squaredNorm() > max_acceleration * max_acceleration)
+    acceleration *= max_acceleration / acceleration.norm();
 
   double heading_error = target_heading_rad_ - estimator_.heading_rad();
   if (std::abs(heading_error) > 3) heading_error = wrapped_rad(heading_error);
-  const double turn_rate = std::clamp(settings_.heading_gain_ps * heading_error, -settings_.turning_speed_radps,
-                                 settings_.turning_speed_radps);
+  const double turn_rate = std::clamp(settings_.heading_gain_ps * heading_error,
+                                      -settings_.turning_speed_radps, settings_.turning_speed_radps);
   const double max_angular = settings_.body.angular_acceleration_radps2;
-  last_actuation_ = {acceleration, std::clamp(settings_.turning_gain_ps * (turn_rate - estimator_.angular_radps()),
-                                   -max_angular, max_angular)};
+  last_actuation_ = {acceleration,
+                     std::clamp(settings_.turning_gain_ps * (turn_rate - estimator_.angular_radps()),
+                                -max_angular, max_angular)};
   return last_actuation_;
 }
 
@@ -255,7 +258,7 @@ void Firmware::start_own_stop(Time now) {
   stop.base = executing_.number;
   stop.trajectory = Trajectory(now, {estimator_.position_m(), estimator_.velocity_mps()});
   append_stop(stop.trajectory, settings_.deceleration_mps2);
-  // The cause of the displacement may act again before the next fix.
+  // Includes the last displacement, because its cause may act again before the next fix.
   stop.inflation_m = std::min(2 * estimator_.position_error_rms_m() + estimator_.jump_m(), kMaxInflation_m);
   executing_ = stop;
   highest_executed_ = stop.number;

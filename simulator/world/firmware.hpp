@@ -53,10 +53,11 @@ class Firmware {
   /// How long the control may take to return to the reference before the firmware makes a stop of its own.
   static constexpr Duration kMaxRecovery = std::chrono::milliseconds(25);
   /// Gap between the numbers that have reached the robot and the number of a stop of its own: versions that
-  /// it has not seen may have been granted and be on their way.
+  /// it has not received yet may already be granted and in transit.
   static constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 20;
 
-  Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now, const FirmwareSettings& settings);
+  Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
+           const FirmwareSettings& settings);
 
   /// Obeys a command, or refuses and counts it. A malformed command changes nothing; a non-finite heading
   /// makes it malformed. A fix that is too old, repeated or from the future is ignored without refusing the
@@ -72,7 +73,7 @@ class Firmware {
   Actuation tick(Time now, const Odometry& odometry);
 
   /// The robot has been lifted off the floor: discards the executed version and all pending ones. Called
-  /// again, it also discards a rest version taken since.
+  /// again, it also discards a rest version accepted since.
   void lift(Time now);
   /// The lifted robot has been put down at the rest version that it executes. Precondition:
   /// executing().number > 0.
@@ -82,7 +83,7 @@ class Firmware {
   /// number seen.
   void reboot() { is_rebooting_ = true; }
 
-  /// The facts at a time not before the last call's, without the header.
+  /// The facts at this time, without the header. Precondition: time never goes back between calls.
   msg::Feedback feedback(Time now);
 
   const Version& executing() const { return executing_; }
@@ -118,7 +119,7 @@ class Firmware {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   Time last_fact_ = Time::min();
-  Time out_of_bound_since_ = Time::max();  ///< by the tracking bound
+  Time out_of_bound_since_ = Time::max();  ///< Time::max(): within the tracking bound
   std::int64_t command_stamp_ns_ = 0;
   Time command_received_at_{};
   std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
@@ -128,7 +129,8 @@ class Firmware {
   FirmwareSettings settings_;
   double decay_;
   Duration look_ahead_;
-  double max_position_error_m_;  ///< at which the tracking control's approach brakes as hard as the motors can
+  double
+      max_position_error_m_;  ///< at which the tracking control's approach brakes as hard as the motors can
   PoseEstimator estimator_;
   Actuation last_actuation_;
   Actuation modelled_;  ///< current accelerations, by the motor model

@@ -10,14 +10,17 @@ namespace {
 constexpr double kMaxInflation_m = 1;
 
 // Commands with higher numbers are refused as malformed.
-std::uint64_t acceptable_number(std::uint64_t number) { return number <= std::uint64_t{1} << 62 ? number : 0; }
+std::uint64_t acceptable_number(std::uint64_t number) {
+  return number <= std::uint64_t{1} << 62 ? number : 0;
+}
 
 }  // namespace
 
 void FirmwareMonitor::command_arrived(const msg::Command& command, Time now) {
   const auto& version = command.version();
   highest_seen_ = std::max(highest_seen_, acceptable_number(command.header().incarnation()));
-  if (command.has_version()) highest_seen_ = std::max(highest_seen_, acceptable_number(version.version_number()));
+  if (command.has_version())
+    highest_seen_ = std::max(highest_seen_, acceptable_number(version.version_number()));
   const bool is_old_epoch = command.epoch() < acknowledged_epoch_;
   if (!command.has_version() || is_old_epoch || version.start_ns() <= to_ns(now)) return;
   const Arrival arrival{version.version_number(), version.base(), version.incarnation(),
@@ -28,7 +31,7 @@ void FirmwareMonitor::command_arrived(const msg::Command& command, Time now) {
 }
 
 bool FirmwareMonitor::arrived_in_time(const Arrival& wanted) const {
-  // From the latest backwards, since nearly always the latest matches.
+  // Searches backwards, because nearly always the latest one matches.
   for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(arrival_count_, arrivals_.size()); ++back) {
     if (arrivals_[static_cast<std::size_t>((arrival_count_ - back) % arrivals_.size())] == wanted)
       return true;
@@ -49,7 +52,7 @@ void FirmwareMonitor::switched(const Version& to) {
   } else {
     const State previous = executing_.trajectory.state_at(to.trajectory.start());
     check_rule((begin.position_m - previous.position_m).norm() <= kMaxPositionJump_m &&
-            (begin.velocity_mps - previous.velocity_mps).norm() <= kMaxVelocityJump_mps);
+               (begin.velocity_mps - previous.velocity_mps).norm() <= kMaxVelocityJump_mps);
   }
   executing_ = to;
   highest_executed_ = to.number;

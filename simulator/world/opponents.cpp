@@ -18,7 +18,8 @@ Opponents::Opponents(std::span<const OpponentSpec> specs, double robot_radius_m,
     : radius_m_(robot_radius_m), speed_limit_mps_(robot_speed_limit_mps) {
   for (const OpponentSpec& spec : specs) {
     Route route{.waypoints_m = spec.path_m, .speed_mps = spec.speed_mps, .is_loop = false};
-    if (route.waypoints_m.size() > 2 && (route.waypoints_m.back() - route.waypoints_m.front()).norm() < kSamePoint_m) {
+    if (route.waypoints_m.size() > 2 &&
+        (route.waypoints_m.back() - route.waypoints_m.front()).norm() < kSamePoint_m) {
       route.is_loop = true;
       route.waypoints_m.pop_back();
     }

@@ -14,11 +14,11 @@ struct CrashTotals {
   std::uint64_t crashes = 0;               ///< number of times that a robot and an opponent began to touch
   std::uint64_t crashes_while_moving = 0;  ///< those in which the robot was not at rest
   double max_crash_speed_mps = 0;          ///< largest closing speed along the line of centres at a crash
-  double max_robot_crash_speed_mps = 0;    ///< largest contribution of the robot to it
+  double max_robot_crash_speed_mps = 0;    ///< largest contribution of the robot to the closing speed
 };
 
-/// Opponents move on the floor without negotiating. Each follows its route at constant speed and ignores
-/// everything on it: back and forth, or round if the route ends where it begins. Crashes with robots are
+/// Opponents move on the floor without negotiating. Each follows its route at constant speed, back and forth,
+/// or round if the route ends where it begins, and ignores everything in its way. Crashes with robots are
 /// counted but have no physical effect, since the protocol promises nothing about the motion after one. A
 /// pair is counted again only after its clearance has exceeded kContactHysteresis_m. Between two searches for
 /// neighbours, only pairs near enough to meet before the next search are checked.

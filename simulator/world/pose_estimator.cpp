@@ -13,9 +13,11 @@ constexpr double kHeadingGain = 0.05;   // of a heading fix
 constexpr double kStartDeviation_m = 0.0005;
 constexpr double kSlipVariance_m2ps = 1e-8;  // of wheels that roll imperfectly
 constexpr double kScaleDriftPerSqrtSecond = 2e-5;
-constexpr double kExtraFixNoise_m = 0.0005;  // for the correlation that vision's filter introduces between fixes
+constexpr double kExtraFixNoise_m =
+    0.0005;  // for the correlation that vision's filter introduces between fixes
 constexpr double kOutlierDeviations = 4;
-// By chance a sum of two or three innovations exceeds this once in a thousand robot-hours.
+// By chance, a sum of two or three innovations exceeds this many standard deviations once in a thousand
+// robot-hours.
 constexpr double kJumpDeviations = 5;
 // Minimum projection of an innovation on the previous one, relative to the longer of the two.
 constexpr double kMinAgreement = 0.35;
@@ -73,7 +75,8 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   const double elapsed_s = to_seconds(captured_at - anchor_time_);
   covariance_ = covariance_after(elapsed_s, moved);
 
-  const double fix_variance = settings_.fix_noise_m * settings_.fix_noise_m + kExtraFixNoise_m * kExtraFixNoise_m;
+  const double fix_variance =
+      settings_.fix_noise_m * settings_.fix_noise_m + kExtraFixNoise_m * kExtraFixNoise_m;
   const Vec2 predicted = anchor_m_ + moved * (1 - scale_);
   Vec2 innovation = position_m - predicted;
   jump_m_ = 0;
@@ -121,8 +124,9 @@ bool PoseEstimator::detect_displacement(const Innovation& latest) {
   recent_innovations_[0] = latest;
   Innovation sum = latest;
   for (std::size_t count = 1; count < recent_innovations_.size(); ++count) {
-    // A single outlier is not believed: another fix has to confirm it.
-    const Vec2 &later = recent_innovations_[count - 1].offset_m, &earlier = recent_innovations_[count].offset_m;
+    // A single outlier is not trusted: another fix must confirm it.
+    const Vec2 &later = recent_innovations_[count - 1].offset_m,
+               &earlier = recent_innovations_[count].offset_m;
     const double larger = std::max(later.squaredNorm(), earlier.squaredNorm());
     if (later.dot(earlier) < kMinAgreement * larger) return false;
     sum.offset_m += earlier;

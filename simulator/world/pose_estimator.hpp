@@ -78,7 +78,7 @@ class PoseEstimator {
   Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
 
   std::vector<Sample> history_;  ///< ring buffer with one sample per control period
-  std::int64_t count_ = 0;    ///< samples since the creation or the last gap
+  std::int64_t count_ = 0;       ///< samples since the creation or the last gap
 
   Time time_;
   Vec2 odometry_m_{0, 0};
@@ -90,7 +90,7 @@ class PoseEstimator {
   Vec2 anchor_m_;
   Vec2 anchor_odometry_m_{0, 0};
   double scale_ = 0;
-  Eigen::Matrix3d covariance_;  ///< of position at the anchor and scale
+  Eigen::Matrix3d covariance_;  ///< of the position at the anchor and of the scale
   double heading_anchor_rad_;   ///< heading when turned_rad_ was 0
   double jump_m_ = 0;
   std::array<Innovation, 3> recent_innovations_;  ///< latest first, before clamping

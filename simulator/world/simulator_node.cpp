@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration kWakePeriod = milliseconds(4);
 constexpr Duration kTruthPeriod{16'666'667};
-// After a longer delay of this process all robots have come to rest: time beyond it is skipped.
+// After a longer delay of this process all robots have come to rest, so the rest of the delay is skipped.
 constexpr Duration kMaxCatchUp = milliseconds(5000);
 constexpr Duration kFrameExpiry = milliseconds(200);
 // Version starts farther ahead than this get no timer; the periodic wake-up handles them.
@@ -48,12 +48,12 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
     bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
                                 [this, i](const msg::Command& command) { on_command(i, command); });
   }
-  bus.subscribe<msg::Disturbance>(topics::kDisturbance,
-                                  [this](const msg::Disturbance& disturbance) { on_disturbance(disturbance); });
+  bus.subscribe<msg::Disturbance>(
+      topics::kDisturbance, [this](const msg::Disturbance& disturbance) { on_disturbance(disturbance); });
   bus.at(begin, [this] { wake(); });
 }
 
-// Never goes back, although a host's clock may: reported facts stay true.
+// Never goes back, even if the host's clock is set back, so that reported facts stay true.
 Time SimulatorNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
 
 void SimulatorNode::wake() {
@@ -140,7 +140,8 @@ void SimulatorNode::publish_truth(Time now) {
 }
 
 void SimulatorNode::capture_frame(Time now) {
-  auto slot = std::find_if(frames_.begin(), frames_.end(), [](const PendingFrame& f) { return !f.is_waiting; });
+  auto slot =
+      std::find_if(frames_.begin(), frames_.end(), [](const PendingFrame& f) { return !f.is_waiting; });
   if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
   const Time captured_at = world_.time();
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;

@@ -44,7 +44,8 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
     bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
     const Time clock = begin + spec.clock_offset;
     Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, clock, settings);
-    const FirmwareMonitor monitor(firmware.executing(), settings.tracking_bound_m, settings.deceleration_mps2);
+    const FirmwareMonitor monitor(firmware.executing(), settings.tracking_bound_m,
+                                  settings.deceleration_mps2);
     Rng noise = rng.fork();
     const double scale = 1 + scenario.odometry.scale_error * noise.normal();
     robots_.push_back({spec.id,
@@ -109,8 +110,7 @@ Odometry World::measure(std::size_t index) {
   robot.last_heading_rad = body.heading_rad();
   const double x_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
   const double y_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
-  // The wheels are at the rim, where a rotation with this noise moves them as fast as the noise of the
-  // velocity.
+  // The wheels are at the rim, where this angular noise equals the velocity noise.
   const double angular_noise = velocity_noise_mps_ / radius_m_ * approximately_normal(robot.noise);
   return {robot.odometry_scale * velocity + Vec2(x_noise, y_noise),
           robot.odometry_scale * angular + angular_noise};
@@ -177,7 +177,8 @@ void World::fill(msg::GroundTruth& truth) const {
   for (std::size_t i = 0; i < std::min<std::size_t>(contacts().contacts, msg::MAX_CONTACTS); ++i) {
     const ContactPair& contact = contacts().recent_contacts[i];
     truth.recent_contacts()[i].first(robots_[contact.first].id);
-    truth.recent_contacts()[i].second(contact.second < robots_.size() ? robots_[contact.second].id : msg::NO_ROBOT);
+    truth.recent_contacts()[i].second(contact.second < robots_.size() ? robots_[contact.second].id
+                                                                      : msg::NO_ROBOT);
   }
   truth.penetration_m_s(contacts().penetration_m_s);
   truth.min_clearance_m(contacts().min_clearance_m);

@@ -27,7 +27,7 @@ class World {
  public:
   World(const Scenario& scenario, Time begin, std::uint64_t seed);
 
-  /// Steps for as long as a whole step fits before `to`.
+  /// Advances in whole steps, the last of which ends no later than `to`.
   void advance(Time to);
   /// Skips time without simulating it; pose estimators then discard their odometry history.
   void skip_to(Time to) { time_ = std::max(time_, to); }
@@ -77,7 +77,7 @@ class World {
     Duration clock_offset;  ///< of the robot's clock, ahead of the host's
     Time clock;             ///< the latest reading; the clock never goes back
     VersionNumber last_own_stop = 0;
-    std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; those still active may end later
+    std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later
     bool has_pending_feedback = false;
   };
   /// A disturbance with a duration, or a placement that waits for its rest version.

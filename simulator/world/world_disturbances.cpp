@@ -37,7 +37,8 @@ bool World::disturb(std::size_t index, const msg::Disturbance& disturbance, Time
       return true;
     case msg::DISTURBANCE_PLACE:
       if (body.is_on_floor()) return false;
-      start_disturbance({index, kind, Time::max(), {disturbance.x_m(), disturbance.y_m()}, disturbance.heading_rad()});
+      start_disturbance(
+          {index, kind, Time::max(), {disturbance.x_m(), disturbance.y_m()}, disturbance.heading_rad()});
       return true;
     case msg::DISTURBANCE_REBOOT:
       if (!body.is_on_floor()) {
@@ -90,8 +91,9 @@ void World::start_disturbance(const ActiveDisturbance& disturbance) {
 }
 
 void World::cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind) {
-  std::erase_if(active_disturbances_,
-                [&](const ActiveDisturbance& active) { return active.robot == robot && active.kind == kind; });
+  std::erase_if(active_disturbances_, [&](const ActiveDisturbance& active) {
+    return active.robot == robot && active.kind == kind;
+  });
 }
 
 void World::end_disturbances() {

@@ -28,8 +28,8 @@ struct MeasuredStructure {
 };
 
 template <typename World>
-MeasuredStructure measured_structure(std::string name, bool is_ours, const CollisionProblem& problem, World& world,
-          double tolerance_m = 1e-9) {
+MeasuredStructure measured_structure(std::string name, bool is_ours, const CollisionProblem& problem,
+                                     World& world, double tolerance_m = 1e-9) {
   const auto ask = [&world, radius_m = problem.radius_m](const Segment& path) {
     return world.touches(path.from_m, path.to_m, radius_m);
   };
@@ -51,7 +51,9 @@ double median(std::vector<double> values) {
 std::size_t count_wrong(const CollisionProblem& problem, const std::vector<MeasuredStructure>& structures) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < kQueries; ++i) {
-    const auto disagrees = [&](const MeasuredStructure& other) { return other.answers[i] != structures[0].answers[i]; };
+    const auto disagrees = [&](const MeasuredStructure& other) {
+      return other.answers[i] != structures[0].answers[i];
+    };
     if (std::none_of(structures.begin(), structures.end(), disagrees)) continue;
     double nearest2_m2 = 1;
     for (const Shape& shape : problem.shapes)
@@ -73,11 +75,13 @@ void print(std::size_t count, const std::vector<MeasuredStructure>& structures) 
     best_counted = std::min(best_counted, median(structure.counted_ns));
     best_branched = std::min(best_branched, median(structure.branched_ns));
   }
-  const auto hits = static_cast<double>(std::count(structures[0].answers.begin(), structures[0].answers.end(), true));
+  const auto hits =
+      static_cast<double>(std::count(structures[0].answers.begin(), structures[0].answers.end(), true));
   for (const MeasuredStructure& structure : structures) {
     const double counted_ns = median(structure.counted_ns), branched_ns = median(structure.branched_ns);
-    fmt::print("{:>6}  {:4.1f}  {:<24}{:10.1f}{:8.2f}{:10.1f}{:8.2f}\n", count, 100 * hits / kQueries, structure.name,
-               counted_ns, best_counted / counted_ns, branched_ns, best_branched / branched_ns);
+    fmt::print("{:>6}  {:4.1f}  {:<24}{:10.1f}{:8.2f}{:10.1f}{:8.2f}\n", count, 100 * hits / kQueries,
+               structure.name, counted_ns, best_counted / counted_ns, branched_ns,
+               best_branched / branched_ns);
   }
 }
 
@@ -93,11 +97,13 @@ bool compare(std::size_t count, bool circles_only) {
   const peers::PlainArray plain(circles_only ? problem.shapes : std::vector<Shape>());
   const peers::BoostRTree boost(problem.shapes);
   FclTree fcl(problem.shapes);
-  if (circles_only && count <= 4096) structures.push_back(measured_structure("plain vectorised array", false, problem, plain));
+  if (circles_only && count <= 4096)
+    structures.push_back(measured_structure("plain vectorised array", false, problem, plain));
   structures.push_back(measured_structure("Boost R-tree", false, problem, boost));
   // For shapes other than circles FCL iterates to 1e-6 m and is slow.
   if (circles_only || count <= 256)
-    structures.push_back(measured_structure("FCL dynamic AABB tree", false, problem, fcl, circles_only ? 1e-9 : 1e-6));
+    structures.push_back(
+        measured_structure("FCL dynamic AABB tree", false, problem, fcl, circles_only ? 1e-9 : 1e-6));
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (MeasuredStructure& structure : structures) {
       structure.counted_ns.push_back(structure.count_ns());

@@ -10,8 +10,8 @@ using namespace sidestep;
 
 namespace {
 
-/// One grant and the fact that frees it, to each robot in turn, among so many of those in crossing
-/// streams; what is asked for is drawn from what the robot can do.
+/// For each robot in turn, one grant and the fact that releases its previous version, with this number of
+/// robots from the crossing streams. Proposals are random accelerations within the robot's limits.
 void grant_of_one_version(benchmark::State& state) {
   const auto& snapshot = bench::crossing_streams();
   const auto robots = static_cast<std::size_t>(state.range(0));
@@ -31,7 +31,8 @@ void grant_of_one_version(benchmark::State& state) {
     Version& last = newest[i];
     const Time start = last.trajectory.start() + cycle;
     const State there = last.trajectory.state_at(start);
-    const Vec2 drawn = limit_acceleration(sample_acceleration(there.velocity_mps, limits, rng), there.velocity_mps, limits, cycle);
+    const Vec2 drawn = limit_acceleration(sample_acceleration(there.velocity_mps, limits, rng),
+                                          there.velocity_mps, limits, cycle);
     const Version next{last.robot,
                        last.incarnation,
                        last.number + 1,

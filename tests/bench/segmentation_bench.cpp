@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a frame to regions of five colours: all available kernels, two methods with OpenCV, and copying the
-// frame, compared in one run. OpenCV gets the frame already converted to the numbers that thresholds apply to;
-// the conversion is not timed. All regions must agree.
+// frame, compared in one run. OpenCV gets the frame already converted to the numbers that thresholds apply
+// to; the conversion is not timed. All regions must agree.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -97,8 +97,8 @@ struct Contestant {
 };
 
 /// Times all contestants in rounds of random order, because each finds the caches in the state that its
-/// predecessor left: each runs once before it is timed, which on large frames does not fully undo evictions by
-/// OpenCV. Ratios are relative to the first contestant.
+/// predecessor left. Each runs once untimed before it is timed, but on large frames this does not fully undo
+/// OpenCV's evictions. Ratios are relative to the first contestant.
 void compare(const std::string& frame_name, std::size_t bytes, std::vector<Contestant> contestants) {
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), 0);
@@ -154,12 +154,14 @@ bool bench(int width_px, int height_px, PixelFormat format) {
   Segmenter with_others{ColourClasses(all), kAll};
   contestants.push_back({"fastest, with unnamed colours", [&] { with_others.segment(view); }});
   Image copy = image;
-  contestants.push_back({"copying the frame", [&] { std::memcpy(copy.pixels(), view.pixels, view.bytes()); }});
+  contestants.push_back(
+      {"copying the frame", [&] { std::memcpy(copy.pixels(), view.pixels, view.bytes()); }});
   contestants.push_back({"OpenCV inRange, contours", [&] { with_contours(yuv, colours); }});
   contestants.push_back({"OpenCV inRange, components", [&] { with_components(yuv, colours); }});
   const char* name = format == PixelFormat::kRgb ? "RGB" : "4:2:2";
   compare(fmt::format("{}x{} {}", width_px, height_px, name), view.bytes(), contestants);
-  fmt::print("{} regions, {}\n\n", components.size(), agree ? "identical for all contestants" : "NOT IDENTICAL");
+  fmt::print("{} regions, {}\n\n", components.size(),
+             agree ? "identical for all contestants" : "NOT IDENTICAL");
   return agree;
 }
 

@@ -132,9 +132,7 @@ std::string LaunchedRun::wait_for_end() {
 
 std::string LaunchedRun::output() const { return text_of(folder_ / "launcher.log"); }
 
-bool LaunchedRun::printed(const std::string& text) const {
-  return output().find(text) != std::string::npos;
-}
+bool LaunchedRun::printed(const std::string& text) const { return output().find(text) != std::string::npos; }
 
 bool LaunchedRun::logged(const std::string& text) const {
   return text_of(folder_ / "report.log").find(text) != std::string::npos;
@@ -196,9 +194,7 @@ nlohmann::json LaunchedRun::report() const {
   return nlohmann::json::parse(text_of(folder_ / "report.json"), nullptr, false);
 }
 
-std::string three_hosts_file() {
-  return SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/three-namespaces.yaml";
-}
+std::string three_hosts_file() { return SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/three-namespaces.yaml"; }
 
 std::string shipped(const std::string& file) {
   return text_of(std::filesystem::path(SIDESTEP_SOURCE_DIR) / "deploy" / file);

@@ -19,14 +19,15 @@ namespace sidestep {
 /// The path of the shipped hosts file.
 std::string three_hosts_file();
 
-/// `sidestep run` as a user starts it, in its own DDS domain, observed through its output, the ground truth on the bus
-/// and its report. No process of the run outlives this object. A sanitizer error in any of them fails the test.
+/// `sidestep run` as a user starts it, in its own DDS domain, observed through its output, the ground truth
+/// on the bus and its report. No process of the run outlives this object. A sanitizer error in any of them
+/// fails the test.
 class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments = {});
-  /// A run on the three namespace hosts of the hosts file. This thread stays in their network during the lifetime of
-  /// the object. Needs root.
+  /// A run on the three namespace hosts of the hosts file. This thread stays in their network during the
+  /// lifetime of the object. Needs root.
   static std::unique_ptr<LaunchedRun> on_three_hosts(const std::string& scenario,
                                                      const std::vector<std::string>& extra_arguments = {},
                                                      const std::string& hosts_file = three_hosts_file());
@@ -34,7 +35,8 @@ class LaunchedRun {
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;
 
-  /// Receives messages until the condition holds; false on a timeout of one minute or when the run ends first.
+  /// Receives messages until the condition holds; false on a timeout of one minute or when the run ends
+  /// first.
   template <typename Condition>
   bool wait_until(Condition condition) {
     const Time deadline = bus_->now() + std::chrono::minutes(1);
@@ -51,7 +53,8 @@ class LaunchedRun {
   pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
   /// How that program ended, e.g. "exit code 0"; none: it is running.
   std::optional<std::string> exit_reason(const std::string& name) const;
-  /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on timeout.
+  /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on
+  /// timeout.
   std::string command(const std::vector<std::string>& arguments);
   /// The options --domain and --interface for joining the run.
   std::vector<std::string> dds_arguments() const;
@@ -100,12 +103,14 @@ class LaunchedRun {
 std::string shipped(const std::string& file);
 /// The text of a shipped scenario.
 std::string shipped_scenario(const std::string& name);
-/// The scenario crossing-images. With a sanitizer, which slows rendering down many times, frames are fewer and smaller.
+/// The scenario crossing-images. With a sanitizer, which slows rendering down many times, frames are fewer
+/// and smaller.
 std::string crossing_images();
-/// A scenario with six robots that shuttle along their own lanes and two that cross all lanes, each `times` times.
-/// `extra_keys` are added to the scenario.
+/// A scenario with six robots that shuttle along their own lanes and two that cross all lanes, each `times`
+/// times. `extra_keys` are added to the scenario.
 std::string shuttles(int times, const std::string& extra_keys);
-/// Fails the test unless the report exists and shows no contact, no firmware violation and no audit violation.
+/// Fails the test unless the report exists and shows no contact, no firmware violation and no audit
+/// violation.
 void require_no_violations(const nlohmann::json& report);
 /// Whether a process with this id exists and is not a zombie.
 bool is_running(pid_t pid);

@@ -11,9 +11,9 @@
 #include "common/league/tracked_packet.hpp"
 #include "common/league/vision_packet.hpp"
 #include "common/random/rng.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
-#include "deploy/launch/process_group.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/test_endpoint.hpp"
 
@@ -23,8 +23,8 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// A system whose processes a test starts one by one, in its own DDS domain and multicast groups. No process outlives
-/// this object. A sanitizer error in any of them fails the test.
+/// A system whose processes a test starts one by one, in its own DDS domain and multicast groups. No process
+/// outlives this object. A sanitizer error in any of them fails the test.
 class LeagueSystem {
  public:
   LeagueSystem()
@@ -51,7 +51,8 @@ class LeagueSystem {
 
   /// Starts a process of the system.
   pid_t start(const std::string& name, const std::string& program, const Arguments& extra = {}) {
-    Arguments arguments{"--scenario", scenario_file(), "--domain", std::to_string(endpoints_.domain().number())};
+    Arguments arguments{"--scenario", scenario_file(), "--domain",
+                        std::to_string(endpoints_.domain().number())};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     return run(name, program, arguments);
   }
@@ -61,7 +62,9 @@ class LeagueSystem {
     exit_reasons_.erase(name);
     return group_.start({name, argv, false});
   }
-  pid_t start_simulator() { return start("simulator", "sidestep-simulator", {"--ssl-vision", endpoints_.text(0)}); }
+  pid_t start_simulator() {
+    return start("simulator", "sidestep-simulator", {"--ssl-vision", endpoints_.text(0)});
+  }
   void start_vision(const Arguments& extra = {}) {
     Arguments arguments{"--source", "ssl", "--ssl-vision", endpoints_.text(0)};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
@@ -128,7 +131,8 @@ class LeagueSystem {
 /// Compares received tracked packets with the ground truth.
 class TrackedComparison {
  public:
-  explicit TrackedComparison(LeagueSystem& system) : receiver_(system.endpoints().endpoint(1), league::kLeagueInterface) {
+  explicit TrackedComparison(LeagueSystem& system)
+      : receiver_(system.endpoints().endpoint(1), league::kLeagueInterface) {
     system.bus().watch(receiver_.descriptor(), [this, &system] {
       receiver_.receive([&](std::span<const std::byte> datagram, const league::Endpoint&) {
         const auto decoded = league::decode_tracked(datagram);
@@ -154,7 +158,8 @@ class TrackedComparison {
       REQUIRE(spec);
       for (const auto& real : system.truth().robots()) {
         if (real.robot() != spec->id) continue;
-        const Vec2 expected_m = Vec2(real.x_m(), real.y_m()) + to_seconds(age) * Vec2(real.vx_mps(), real.vy_mps());
+        const Vec2 expected_m =
+            Vec2(real.x_m(), real.y_m()) + to_seconds(age) * Vec2(real.vx_mps(), real.vy_mps());
         max_error_m_ = std::max(max_error_m_, (robot.position_m - expected_m).norm());
         ++robots_;
       }
@@ -171,9 +176,9 @@ class TrackedComparison {
 TEST_CASE("the launcher passes league options on to the simulator and vision") {
   const TestEndpoint endpoints;
   league::MulticastReceiver receiver(endpoints.endpoint(1), league::kLeagueInterface);
-  LaunchedRun run(shipped_scenario("crossing"),
-                  {"--simulator=--ssl-vision " + endpoints.text(0),
-                   "--vision=--source ssl --ssl-vision " + endpoints.text(0) + " --tracked " + endpoints.text(1)});
+  LaunchedRun run(shipped_scenario("crossing"), {"--simulator=--ssl-vision " + endpoints.text(0),
+                                                 "--vision=--source ssl --ssl-vision " + endpoints.text(0) +
+                                                     " --tracked " + endpoints.text(1)});
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   CHECK(run.report()["arrived"] == 8);
@@ -198,7 +203,8 @@ TEST_CASE("robots observed through league packets cross the field and arrive wit
   system.start("coordinator", "sidestep-coordinator");
   REQUIRE(system.wait_until([&] { return system.sees_all(); }));
   for (const RobotSpec& robot : system.scenario().robots) {
-    system.start("agent " + std::to_string(robot.id), "sidestep-agent", {"--robot", std::to_string(robot.id)});
+    system.start("agent " + std::to_string(robot.id), "sidestep-agent",
+                 {"--robot", std::to_string(robot.id)});
     const Time next = system.bus().now() + std::chrono::milliseconds(100);
     REQUIRE(system.wait_until([&] { return system.bus().now() >= next; }));
   }
@@ -218,8 +224,8 @@ TEST_CASE("robots observed through league packets cross the field and arrive wit
 TEST_CASE("a recorded log of league packets shows vision the same robots when it is replayed") {
   LeagueSystem system;
   const std::string log = system.file("floor.ssl");
-  const Arguments groups{"--ssl-vision",      system.endpoints().text(0), "--tracked",
-                     system.endpoints().text(1), "--referee",         system.endpoints().text(2)};
+  const Arguments groups{"--ssl-vision", system.endpoints().text(0), "--tracked", system.endpoints().text(1),
+                         "--referee",    system.endpoints().text(2)};
   Arguments recording{"record", log}, replaying{"replay", log, "--seek", "0.5"};
   recording.insert(recording.end(), groups.begin(), groups.end());
   replaying.insert(replaying.end(), groups.begin(), groups.end());

@@ -35,7 +35,7 @@ TEST_CASE("all robots arrive although messages are lost in bursts, delayed, dupl
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
   WARN("10 % loss in bursts, 0 to 50 ms delay, 20 % duplicates: " << report["missed_cycles"] << " of "
-                                                              << report["cycles"] << " cycles missed");
+                                                                  << report["cycles"] << " cycles missed");
 }
 
 TEST_CASE("all robots stop while the coordinator is cut off, and drive on when the fault is cleared") {
@@ -97,7 +97,8 @@ TEST_CASE(
                         states[status.robot()] = status.agent_state();
                       }));
   REQUIRE(run.wait_until([&] { return facts.size() == 8; }));
-  // Robots are disturbed only where no other robot crosses their lane, because a disturbance may cause a contact.
+  // Robots are disturbed only where no other robot crosses their lane, because a disturbance may cause a
+  // contact.
   const auto is_leaving = [&](RobotId robot) {
     return std::ranges::any_of(run.truth().robots(), [&](const msg::TrueRobotState& r) {
       return r.robot() == robot && std::abs(r.x_m()) > 1.1 && r.x_m() * r.vx_mps() > 0.5;
@@ -118,7 +119,8 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return was_off[0] && was_off[1] && was_off[2]; }));
 
   apply_leaving(3, {"clock", "--offset-ms", "400"});
-  CHECK(run.wait_until([&] { return states[3] == msg::AGENT_CLOCK_OUT_OF_BOUND && run.speed_mps(3) < 0.03; }));
+  CHECK(
+      run.wait_until([&] { return states[3] == msg::AGENT_CLOCK_OUT_OF_BOUND && run.speed_mps(3) < 0.03; }));
   apply({"clock", "3", "--offset-ms", "0"});
 
   apply({"lift", "5"});

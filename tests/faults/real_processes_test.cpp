@@ -26,7 +26,9 @@ TEST_CASE("robots detected in camera images cross the field and arrive without c
   CHECK(report["arrived"] == 8);
 }
 
-TEST_CASE("kill -9 of an agent while its robot moves: the robot stops without contact, the report lists the death") {
+TEST_CASE(
+    "kill -9 of an agent while its robot moves: the robot stops without contact, the report lists the "
+    "death") {
   LaunchedRun run(shipped_scenario("crossing"));
   REQUIRE(run.wait_until([&] { return run.speed_mps(2) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 2"), SIGKILL) == 0);
@@ -49,9 +51,9 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their go
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
   const double stopped_s = static_cast<double>(run.truth().valid_at_ns() - killed_at_ns) * 1e-9;
-  WARN("all robots at rest "
-       << stopped_s << " s after the kill; v/D + one cycle is " << max_mps / 5 + 1.0 / 60
-       << " s, plus versions in flight and the lag of bodies and ground truth");
+  WARN("all robots at rest " << stopped_s << " s after the kill; v/D + one cycle is "
+                             << max_mps / 5 + 1.0 / 60
+                             << " s, plus versions in flight and the lag of bodies and ground truth");
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   const auto report = run.report();
@@ -102,7 +104,8 @@ TEST_CASE("no process outlives a killed launcher") {
 }
 
 TEST_CASE(
-    "a failed start names the process and the reason, and an invalid scenario is refused before anything starts") {
+    "a failed start names the process and the reason, and an invalid scenario is refused before anything "
+    "starts") {
   LaunchedRun unreachable(shipped_scenario("crossing"), {"--interface", "192.0.2.77"});
   CHECK(unreachable.wait_for_end() == "exit code 1");
   INFO(unreachable.output());

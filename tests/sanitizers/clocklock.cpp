@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// In every program that the thread sanitizer watches. Its library of g++ 12 does not know this function, by
-// which Fast DDS locks with a deadline: it would take each such mutex for unlocked, and what it guards for
-// unguarded.
+// Linked into every program built with the thread sanitizer. The sanitizer's library of g++ 12 does not
+// intercept this function, with which Fast DDS locks mutexes with a deadline. It would consider each such
+// mutex unlocked and report false data races.
 #include <cstdint>
 #include <pthread.h>
 #include <time.h>

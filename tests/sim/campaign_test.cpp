@@ -21,7 +21,7 @@ TEST_CASE("in dense scenes without faults nearly all robots keep moving") {
     robots += result.robots;
     stationary += result.stationary;
   }
-  // Robots that evade each other to the right against a wall may block each other for good.
+  // Robots that evade each other to the right along a wall may block each other permanently.
   CAPTURE(robots, stationary);
   CHECK(stationary * 50 <= robots);
 }

@@ -51,7 +51,8 @@ TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
 }
 
 TEST_CASE(
-    "robots whose clocks are within the bound come nearer than the margin by at most the clocks' share of the "
+    "robots whose clocks are within the bound come nearer than the margin by at most the clocks' share of "
+    "the "
     "budget") {
   double smallest = 1;
   Scenario scenario = circle_scenario(16);
@@ -68,12 +69,13 @@ TEST_CASE(
     REQUIRE(floor.arrived() == 16);
     smallest = std::min(smallest, clearance);
   }
-  // The clock offsets do reduce the clearance.
+  // Without an effect of the clock offsets on the clearance, the test would prove nothing.
   CHECK(smallest < scenario.margin_m);
 }
 
 TEST_CASE(
-    "a robot whose clock is beyond the bound is not driven, the others are, and it continues once the clock is set") {
+    "a robot whose clock is beyond the bound is not driven, the others are, and it continues once the clock "
+    "is set") {
   const double ahead_s = GENERATE(0.005, -0.005, 0.3, -900.0);
   CAPTURE(ahead_s);
   IdealFloor floor(circle_scenario(4), 5);
@@ -98,7 +100,7 @@ TEST_CASE(
   REQUIRE(floor.run_until_speed(0.8));
   REQUIRE(floor.granting_coordinator() == 0);
   floor.coordinator_bus(0).set_clock_offset(from_seconds(0.1));
-  // The next verdicts reveal the jump; versions granted until then are still driven.
+  // The next verdicts reveal the jump; versions granted until then are still executed.
   (void)floor.run(0.1 + 2.0 / floor.scenario.limits.deceleration_mps2);
   CHECK(floor.max_speed_mps() == 0);
   (void)floor.run(3);

@@ -192,7 +192,7 @@ TEST_CASE("an absent robot does not block others, and joins when it is placed") 
       1);
   (void)floor.run(0.2);
   CHECK(floor.coordinator(0).state().absent() == 1);
-  // Its start position is free: the other robot drives through it.
+  // The absent robot's start position is free, so the other robot drives through it.
   for (int i = 0; i < 600 && floor.arrived() < 1; ++i) (void)floor.run(0.01);
   CHECK((floor.robots.position_m(1, floor.network.now()) - Vec2(2, 0)).norm() < 0.02);
   floor.robots.place(2, {2, 0.05});  // where the other robot rests

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Message-by-message histories with a one-way partition, or an agent that receives nothing: real agents'
-// negotiation, real coordinators, real firmware. Without the fencing of epochs by robots, each one brings two
-// robots too close together.
+// Sequences of single messages with a one-way partition, or an agent that receives nothing, between the real
+// negotiation of agents, real coordinators and real firmware. If robots did not fence epochs, each sequence
+// would bring two robots too close together.
 #include <catch2/catch.hpp>
 
 #include "agents/agent/negotiation.hpp"
@@ -60,7 +60,7 @@ struct Driver {
     if (negotiation.needs_registration()) coordinator.on_registration(addressed(negotiation.registration()));
     negotiation.on_coordinator_state(coordinator.state(), now);
   }
-  /// Drives the robot along x at up to 1 m/s for some cycles, as far as versions are granted.
+  /// Proposes to drive along x at up to 1 m/s for some cycles, and executes the versions that are granted.
   void drive(Coordinator& coordinator, Robot& robot, double direction, int cycles, Time& now) {
     for (int i = 0; i < cycles; ++i) {
       now += kCycle;
@@ -129,8 +129,7 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   floor.left_driver.rest(floor.second, floor.left, floor.now);
   REQUIRE(floor.left.rest_x() > 0.2);
 
-  // The new agent first receives the old coordinator's heartbeats, which does not know of the new
-  // coordinator.
+  // The new agent first receives heartbeats of the old coordinator, which does not know of the new one.
   Driver successor(1, 2000);
   successor.fence(floor.right, floor.now);
   successor.negotiation.on_coordinator_state(floor.first.state(), floor.now);
@@ -139,7 +138,7 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   floor.require_clear();
   CHECK(floor.right.rest_x() == 1);
 
-  // With the new coordinator the robot approaches the other one as far as permitted.
+  // With the new coordinator the robot approaches the other one up to the required separation.
   successor.negotiation.on_coordinator_state(floor.second.state(), floor.now);
   successor.register_with(floor.second, floor.now);
   successor.drive(floor.second, floor.right, -1, 60, floor.now);

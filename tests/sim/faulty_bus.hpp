@@ -18,7 +18,7 @@ class FaultyBus : public SimBus {
   Time now() const override { return SimBus::now() + clock_offset_; }
   void at(Time when, std::function<void()> callback) override;
 
-  /// From now on: process's clock - network's clock.
+  /// Sets how far the process's clock is ahead of the network's clock from now on.
   void set_clock_offset(Duration offset) { clock_offset_ = offset; }
 
   /// From now on nothing runs; timers and messages are queued.

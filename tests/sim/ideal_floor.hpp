@@ -36,8 +36,8 @@ class IdealFloor {
 
   /// Runs for some seconds. Returns the minimum clearance between any two robots in that time.
   double run(double seconds);
-  /// How often a robot executed a version that was not in the ledger of the coordinator in charge. A robot's
-  /// own stop off its reference counts only once the coordinator knows of it.
+  /// How often a robot executed a version that was not in the ledger of the coordinator that grants. A
+  /// robot's own stop off its reference counts only once the coordinator knows of it.
   int unknown_versions() const { return unknown_versions_; }
   /// Rule violations found by the audit.
   std::uint64_t violations() const;

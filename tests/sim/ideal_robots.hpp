@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// Robots that follow their references exactly and keep the firmware's rules, and an exact vision, so that a
-/// test covers the protocol alone.
+/// Robots that follow their references exactly and obey the firmware's rules, and vision without errors, so
+/// that a test covers the protocol alone.
 class IdealRobots {
  public:
   IdealRobots(Bus& bus, const Scenario& scenario);
@@ -20,7 +20,7 @@ class IdealRobots {
   Vec2 velocity_mps(RobotId robot, Time t) { return state_at(robot, t).velocity_mps; }
   /// Minimum distance between the edges of two robots at time t.
   double clearance_m(Time t);
-  /// From now on: robot's clock - bus's clock.
+  /// Sets how far the robot's clock is ahead of the bus's clock from now on.
   void set_clock_offset(RobotId robot, Duration offset) { robots_.at(robot).clock_offset = offset; }
   double radius_m() const { return radius_m_; }
   /// The version that a robot executes at time t.
@@ -47,7 +47,7 @@ class IdealRobots {
     Version executing;
     VersionNumber highest = 0;  // of all version numbers and incarnations received
     bool is_off_reference = false, is_lifted = false;
-    std::vector<Version> pending;  // by start
+    std::vector<Version> pending;  // ascending by start
     Writer<msg::Feedback> writer;
   };
   State state_at(RobotId robot, Time t);

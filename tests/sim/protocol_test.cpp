@@ -52,7 +52,7 @@ TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
     (void)run.run(0.02);
     const Vec2 here = run.robots.position_m(7, run.network.now());
     const double now_mps = (here - last).norm() / 0.02;
-    // Braking before the stop at the goal begins.
+    // Counts braking before the stop at the goal begins.
     slower += now_mps < speed - 0.02 && (here - Vec2(3, 0)).norm() > 0.55;
     peak = std::max(peak, now_mps);
     speed = now_mps;

@@ -98,7 +98,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "when an agent dies its robot stops by itself without contact, the others arrive, and the report names the "
+    "when an agent dies its robot stops by itself without contact, the others arrive, and the report names "
+    "the "
     "agent") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
@@ -143,7 +144,8 @@ TEST_CASE(
   const double cycle_s = to_seconds(run.scenario.cycle);
   const double max_speed = speed + 2 * cycle_s * limits.acceleration_mps2;
   // The latest ground truth received is up to a cycle old, and bodies follow their reference with a lag.
-  run.system.run_for(from_seconds(max_speed / limits.deceleration_mps2 + 2 * cycle_s) + 2 * run.scenario.cycle);
+  run.system.run_for(from_seconds(max_speed / limits.deceleration_mps2 + 2 * cycle_s) +
+                     2 * run.scenario.cycle);
   CHECK(run.max_speed_mps() < 0.03);
   run.system.run_for(from_seconds(1));
   CHECK(run.max_speed_mps() < 0.02);

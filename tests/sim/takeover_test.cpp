@@ -16,8 +16,8 @@ Scenario circle_scenario(int robots, int coordinators) {
                         "circle.yaml");
 }
 
-/// Called right after a kill: the time until a robot accelerates again. The first two cycles do not count,
-/// because versions granted before the kill begin in them.
+/// The time from a kill until a robot accelerates again; call right after the kill. The first two cycles do
+/// not count, because versions granted before the kill begin in them.
 double seconds_until_faster(IdealFloor& floor) {
   const Time killed = floor.network.now();
   (void)floor.run(2.1 * to_seconds(floor.scenario.cycle));
@@ -94,7 +94,7 @@ TEST_CASE("a coordinator that is stopped and resumed does no harm and stands by"
     floor.coordinator_bus(0).resume();
     clearance = std::min(clearance, floor.run(0.1));
     CHECK_FALSE(floor.coordinator(0).is_active());
-    // Now the other one is stopped, and the first one takes over again.
+    // Now the second coordinator is stopped, and the first one takes over again.
     floor.coordinator_bus(1).stop();
     clearance = std::min(clearance, floor.run(0.6));
     CHECK(floor.coordinator(0).is_granting());

@@ -44,7 +44,7 @@ TEST_CASE("of two running agents of one robot the later one drives, and clearanc
       floor.start_agent(3);
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));
       if (twin == 1) floor.kill_coordinator(0);
-      // The earlier agent may be cut off for a while, and so not notice the new one.
+      // The first agent may receive nothing for a while, and so not notice the new one.
       FaultyBus& earlier = *floor.agent_buses(3).front();
       earlier.block_incoming(rng.chance(0.5));
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));

@@ -83,9 +83,8 @@ LearnedColours calibrate_colours(const CalibrateColoursOptions& options) {
 
 bool is_plausible(const LearnedColours& learned) {
   constexpr double kMinRecall = 0.5;
-  return std::ranges::all_of(learned.colours, [](const LearnedColour& one) {
-    return one.pixels == 0 || one.recall > kMinRecall;
-  });
+  return std::ranges::all_of(
+      learned.colours, [](const LearnedColour& one) { return one.pixels == 0 || one.recall > kMinRecall; });
 }
 
 }  // namespace sidestep

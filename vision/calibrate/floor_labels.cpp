@@ -39,8 +39,8 @@ FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& 
   if (scenario.ball) {
     const double radius_m = DetectorSettings{}.ball_radius_m;
     const Vec2& position_m = scenario.ball->position_m;
-    const auto disc = projected_disc(camera, DetectorSettings{}.ball,
-                                     {position_m.x(), position_m.y(), radius_m}, radius_m);
+    const auto disc =
+        projected_disc(camera, DetectorSettings{}.ball, {position_m.x(), position_m.y(), radius_m}, radius_m);
     if (disc) labels.discs.push_back(*disc);
   }
   for (const Circle& obstacle : scenario.obstacles) add_cylinder(camera, obstacle, labels.ignored);

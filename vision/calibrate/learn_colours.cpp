@@ -51,8 +51,8 @@ void warn_of_overlaps(const std::vector<ColourBox>& boxes, std::vector<std::stri
     for (std::size_t j = i + 1; j < boxes.size() && boxes[j].colour != kOtherColour; ++j) {
       if (!overlap(boxes[i], boxes[j])) continue;
       const auto first = name_of_colour(boxes[i].colour), second = name_of_colour(boxes[j].colour);
-      warnings.push_back(fmt::format("{} and {} overlap: pixels in both boxes are classified as {}", first,
-                                     second, first));
+      warnings.push_back(
+          fmt::format("{} and {} overlap: pixels in both boxes are classified as {}", first, second, first));
     }
   }
 }
@@ -62,9 +62,10 @@ void warn_of(const LearnedColour& learned, std::vector<std::string>& warnings) {
   if (learned.pixels == 0) {
     warnings.push_back(fmt::format("the images show nothing {}: the file gets no thresholds for it", name));
   } else if (learned.recall < kMinRecall) {
-    warnings.push_back(fmt::format("only {:.0f} % of the pixels labelled {} are classified as {}: check that "
-                                   "everything is at its start position and that the camera is the right one",
-                                   100 * learned.recall, name, name));
+    warnings.push_back(
+        fmt::format("only {:.0f} % of the pixels labelled {} are classified as {}: check that "
+                    "everything is at its start position and that the camera is the right one",
+                    100 * learned.recall, name, name));
   } else if (learned.pixels < kMinPixels) {
     warnings.push_back(
         fmt::format("only {} pixels of {}: more frames give more reliable thresholds", learned.pixels, name));
@@ -83,9 +84,9 @@ LearnedColours learn_colours(std::span<const LabelledImage> images, std::span<co
   for (const LabelledImage& one : images) tally.add(one, classes);
   for (const Colour colour : expected) {
     const auto k = static_cast<std::size_t>(colour);
-    const double recall = tally.labelled[k] > 0 ? static_cast<double>(tally.correct[k]) /
-                                                      static_cast<double>(tally.labelled[k])
-                                                : 0;
+    const double recall = tally.labelled[k] > 0
+                              ? static_cast<double>(tally.correct[k]) / static_cast<double>(tally.labelled[k])
+                              : 0;
     result.colours.push_back({colour, tally.labelled[k], recall});
     warn_of(result.colours.back(), result.warnings);
   }

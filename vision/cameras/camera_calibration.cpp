@@ -87,8 +87,8 @@ double cost_of(const CameraParameters& parameters, std::span<const CalibrationPo
 }
 
 /// Sets up the normal equations, in which fixed parameters get a step of 0.
-void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points, const FreeParameters& is_free,
-            NormalMatrix& normal, Step& right) {
+void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points,
+            const FreeParameters& is_free, NormalMatrix& normal, Step& right) {
   normal.setZero();
   right.setZero();
   for (const CalibrationPoint& point : points) {
@@ -239,7 +239,8 @@ CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, con
     }
   }
   if (!std::isfinite(cost)) {
-    result.error = "no camera pose shows all points: they are collinear, or pixels are assigned to wrong points";
+    result.error =
+        "no camera pose shows all points: they are collinear, or pixels are assigned to wrong points";
     return result;
   }
   const CameraModel camera(result.camera);
@@ -251,7 +252,8 @@ CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, con
   result.robot_top_sd_px = robot_top_sd_px(camera, points, is_free, std::max(noise_px, kMinNoise_px));
   if (!(result.robot_top_sd_px <= settings.max_robot_top_sd_px)) {
     result.error = fmt::format(
-        "the points do not determine the camera: predicted error of {:.2g} px at the height of robots, expected "
+        "the points do not determine the camera: predicted error of {:.2g} px at the height of robots, "
+        "expected "
         "at most {:g}; add points farther apart and at several heights, or give the focal length",
         result.robot_top_sd_px, settings.max_robot_top_sd_px);
   }

@@ -26,10 +26,10 @@ struct CalibrationResult {
   /// Why the calibration failed; empty on success. After a failure the other members are incomplete.
   std::string error;
   CameraParameters camera;
-  double rms_px = 0;           ///< RMS distance between given pixels and projected points
-  double max_px = 0;           ///< largest such distance
-  std::size_t worst_index = 0; ///< of the point with that distance
-  double rms_m = 0;            ///< RMS distance between given points and pixels projected to their heights
+  double rms_px = 0;            ///< RMS distance between given pixels and projected points
+  double max_px = 0;            ///< largest such distance
+  std::size_t worst_index = 0;  ///< of the point with that distance
+  double rms_m = 0;             ///< RMS distance between given points and pixels projected to their heights
   /// Predicted standard deviation of the pixel at which the camera observes the top of a robot, 0.15 m above
   /// one of the points; the maximum over all points. Large when the points do not determine the camera's
   /// height, such as points on the floor seen vertically from above.

@@ -20,7 +20,8 @@ std::vector<LabelledDisc> projected_dots(const CameraModel& camera, const Marker
   std::vector<LabelledDisc> discs;
   const auto add = [&](Colour colour, const Marker& dot) {
     const Vec2 position_m = pose.to_world(dot.position_m);
-    const auto disc = projected_disc(camera, colour, {position_m.x(), position_m.y(), height_m}, dot.radius_m);
+    const auto disc =
+        projected_disc(camera, colour, {position_m.x(), position_m.y(), height_m}, dot.radius_m);
     if (disc) discs.push_back(*disc);
   };
   add(layout.team_colour(team), layout.centre);

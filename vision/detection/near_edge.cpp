@@ -11,10 +11,10 @@ namespace sidestep {
 namespace {
 
 constexpr int kGrey = 128;
-constexpr double kShadedShare = 0.5;     // of the obstacle's chroma that its shaded side shows
-constexpr double kMaxFloorShare = 0.3;   // of the obstacle's chroma that the floor may show
-constexpr double kFloorOffset = 1.5;     // half widths from the middle at which the floor is sampled
-constexpr double kSampleHalfWidth = 0.2; // half widths to either side that are averaged
+constexpr double kShadedShare = 0.5;      // of the obstacle's chroma that its shaded side shows
+constexpr double kMaxFloorShare = 0.3;    // of the obstacle's chroma that the floor may show
+constexpr double kFloorOffset = 1.5;      // half widths from the middle at which the floor is sampled
+constexpr double kSampleHalfWidth = 0.2;  // half widths to either side that are averaged
 constexpr int kSamplesPerSide = 2;
 constexpr double kMinNearRatio = 0.6;  // of near_m: no obstacle is high enough for its foot to be nearer
 constexpr double kStepRatio = 0.004;   // of near_m, about half a pixel

@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t kMaxBlobs = 256;        // a frame with more is noise
 constexpr int kMaxGap_px = 2;                 // between adjacent regions
 constexpr double kMinRegionAreaRatio = 0.15;  // of the smallest obstacle's area: smaller regions are noise
-constexpr double kMaxDotAreaRatio = 3;        // of the largest dot's area: larger blobs are no dot and no ball
-constexpr double kMinFillRatio = 0.6;         // coloured share of the pixels inside the contour
-constexpr double kMaxHalfWidthSine = 0.7;     // beyond it the obstacle is treated as below the camera
+constexpr double kMaxDotAreaRatio = 3;     // of the largest dot's area: larger blobs are no dot and no ball
+constexpr double kMinFillRatio = 0.6;      // coloured share of the pixels inside the contour
+constexpr double kMaxHalfWidthSine = 0.7;  // beyond it the obstacle is treated as below the camera
 
 // Known obstacles are extended by this margin, and assumed to be this high.
 constexpr double kKnownMargin_m = 0.04, kKnownHeight_m = 0.3;

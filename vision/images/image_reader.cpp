@@ -59,9 +59,11 @@ bool ImageReader::read(const msg::CameraImage& message, Time now, const msg::Wor
   expected_.clear();
   if (std::abs(elapsed_s) <= kMaxWorldAge_s) {
     for (const msg::TrackedRobot& robot : world.robots()) {
-      const Vec2 position_m(robot.x_m() + elapsed_s * robot.vx_mps(), robot.y_m() + elapsed_s * robot.vy_mps());
+      const Vec2 position_m(robot.x_m() + elapsed_s * robot.vx_mps(),
+                            robot.y_m() + elapsed_s * robot.vy_mps());
       expected_.push_back(
-          {robot.robot(), {position_m, wrapped_rad(robot.heading_rad() + elapsed_s * robot.angular_radps())}});
+          {robot.robot(),
+           {position_m, wrapped_rad(robot.heading_rad() + elapsed_s * robot.angular_radps())}});
     }
   }
   frame.camera(message.camera());

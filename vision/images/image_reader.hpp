@@ -17,7 +17,8 @@ namespace sidestep {
 
 /// Detector settings for a scenario. Robots wear the layout's pattern of their number; throws
 /// std::invalid_argument when a robot's number has none.
-[[nodiscard]] DetectorSettings detector_settings(const Scenario& scenario, const std::vector<ColourBox>& boxes,
+[[nodiscard]] DetectorSettings detector_settings(const Scenario& scenario,
+                                                 const std::vector<ColourBox>& boxes,
                                                  const MarkerLayout& layout);
 
 /// Runs detection on the images of all cameras of a scenario.
@@ -27,8 +28,8 @@ class ImageReader {
   ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras, const ColourThresholds& colours,
               const MarkerLayout& layout);
 
-  /// Fills in the detections of an image, all but the frame's header. False, and the frame unchanged, when the
-  /// image is not timely or not from one of the cameras. `world` provides recent poses of the robots.
+  /// Fills in the detections of an image, all but the frame's header. False, and the frame unchanged, when
+  /// the image is not timely or not from one of the cameras. `world` provides recent poses of the robots.
   bool read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
             msg::DetectionFrame& frame);
 

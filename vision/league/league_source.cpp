@@ -65,8 +65,9 @@ LeagueSource::Sender& LeagueSource::sender_at(const league::Endpoint& endpoint, 
   if (found == senders_.end() && senders_.size() < kMaxSenders) {
     found = senders_.insert(senders_.end(), Sender{endpoint});
   } else if (found == senders_.end()) {
-    found = std::min_element(senders_.begin(), senders_.end(),
-                             [](const Sender& a, const Sender& b) { return a.last_received < b.last_received; });
+    found = std::min_element(senders_.begin(), senders_.end(), [](const Sender& a, const Sender& b) {
+      return a.last_received < b.last_received;
+    });
     *found = Sender{endpoint};
   }
   found->last_received = now;

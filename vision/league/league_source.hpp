@@ -15,10 +15,10 @@
 
 namespace sidestep {
 
-/// Converts the league's vision packets to detection frames. Robots are identified by team and number; a robot
-/// without a number, or with one that is not in the scenario, becomes an obstacle with the radius of a league
-/// robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and packets
-/// whose capture time cannot be determined, are counted and dropped.
+/// Converts the league's vision packets to detection frames. Robots are identified by team and number; a
+/// robot without a number, or with one that is not in the scenario, becomes an obstacle with the radius of a
+/// league robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and
+/// packets whose capture time cannot be determined, are counted and dropped.
 class LeagueSource {
  public:
   struct Counts {

@@ -16,8 +16,8 @@ class Replay {
   /// Precondition: speed > 0, and the reader outlives this object.
   Replay(league::LogReader& reader, double speed) : reader_(reader), speed_(speed) {}
 
-  /// Sends the records that are due. Returns when the next one is due; nothing at the end of the log. The first
-  /// call starts the replay. A record received before its predecessor in the log is due with it.
+  /// Sends the records that are due. Returns when the next one is due; nothing at the end of the log. The
+  /// first call starts the replay. A record received before its predecessor in the log is due with it.
   [[nodiscard]] std::optional<Time> advance(Time now, const Send& send);
 
  private:

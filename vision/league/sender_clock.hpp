@@ -9,11 +9,11 @@
 
 namespace sidestep {
 
-/// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages. The
-/// lag of a message, arrival minus sending time, is the clock offset plus a delay. The minimum lag over the
-/// last two seconds in which messages arrived is the offset up to the minimum delay: a drift of 200 ppm causes
-/// an error of 0.4 ms, and delayed messages have no effect while one in two seconds is on time. The sender's
-/// clock must run at the rate of the local one.
+/// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages.
+/// The lag of a message, arrival minus sending time, is the clock offset plus a delay. The minimum lag over
+/// the last two seconds in which messages arrived is the offset up to the minimum delay: a drift of 200 ppm
+/// causes an error of 0.4 ms, and delayed messages have no effect while one in two seconds is on time. The
+/// sender's clock must run at the rate of the local one.
 class SenderClock {
  public:
   /// A message with a longer delay is useless, or the sender's clock has been set.

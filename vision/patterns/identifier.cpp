@@ -71,8 +71,8 @@ Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const D
       nearest != unidentified_.end() &&
       distance_m(*nearest) <=
           std::min(settings_.gate_m,
-                   kPositionTolerance_m + settings_.max_speed_mps *
-                                              std::abs(to_seconds(captured_at - nearest->observed_at)));
+                   kPositionTolerance_m +
+                       settings_.max_speed_mps * std::abs(to_seconds(captured_at - nearest->observed_at)));
   if (!is_known) {
     unidentified_.push_back({pattern.pose.position_m, captured_at, matches});
     return matches;

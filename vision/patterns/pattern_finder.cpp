@@ -29,8 +29,7 @@ bool DetectedPattern::matches(Team other_team, const MarkerPattern& pattern) con
 PatternFinder::PatternFinder(const MarkerLayout& layout, const PatternSettings& settings)
     : layout_(layout), settings_(settings) {
   for (const Marker& dot : layout_.dots) {
-    max_dot_distance_m_ =
-        std::max(max_dot_distance_m_, (dot.position_m - layout_.centre.position_m).norm());
+    max_dot_distance_m_ = std::max(max_dot_distance_m_, (dot.position_m - layout_.centre.position_m).norm());
   }
 }
 
@@ -142,9 +141,8 @@ void PatternFinder::find_with_centres() {
   for (std::size_t i = 0; i < centres_.size(); ++i) {
     if (const auto candidate = best_around(static_cast<int>(i))) candidates_.push_back(*candidate);
   }
-  std::ranges::stable_sort(candidates_, [](const Candidate& a, const Candidate& b) {
-    return is_better(a.pattern, b.pattern);
-  });
+  std::ranges::stable_sort(
+      candidates_, [](const Candidate& a, const Candidate& b) { return is_better(a.pattern, b.pattern); });
   for (const Candidate& candidate : candidates_) {
     const bool is_free = std::ranges::none_of(
         candidate.dots, [&](int dot) { return dot >= 0 && is_used_[static_cast<std::size_t>(dot)]; });

@@ -23,8 +23,8 @@ struct ObstacleObservation {
   double radius_m = 0;
 };
 
-/// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most 100 ms ahead,
-/// because cameras' clocks differ.
+/// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most 100 ms
+/// ahead, because cameras' clocks differ.
 [[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now);
 
 /// The valid content of a DetectionFrame: every number has been checked.

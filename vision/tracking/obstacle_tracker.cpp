@@ -117,11 +117,10 @@ void ObstacleTracker::world_at(Time t, msg::WorldState& world) const {
   }
   const auto end = current.begin() + static_cast<std::ptrdiff_t>(count);
   if (count > msg::MAX_OBSTACLES) {
-    std::nth_element(current.begin(), current.begin() + msg::MAX_OBSTACLES, end,
-                     [](const Track* a, const Track* b) {
-                       return a->observed_at != b->observed_at ? a->observed_at > b->observed_at
-                                                               : a->number < b->number;
-                     });
+    std::nth_element(
+        current.begin(), current.begin() + msg::MAX_OBSTACLES, end, [](const Track* a, const Track* b) {
+          return a->observed_at != b->observed_at ? a->observed_at > b->observed_at : a->number < b->number;
+        });
     count = msg::MAX_OBSTACLES;
   }
   std::sort(current.begin(), current.begin() + static_cast<std::ptrdiff_t>(count),

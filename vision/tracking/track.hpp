@@ -17,13 +17,13 @@ struct TrackModel {
   double heading_noise_rad = 0.005;  ///< standard deviation of an observation
   MotionNoise motion{0.3, 3};        ///< robots brake with 5 m/s²: 5 / sqrt(3) as a standard deviation
   MotionNoise turning{10, 10};
-  double rolling_mps2 = 0;       ///< deceleration by rolling friction
-  double start_speed_mps = 1.5;  ///< standard deviation of the velocity at the first observation, per axis
-  double start_turn_radps = 5;   ///< the same for the heading's rate
-  double gate_sigma = 5;         ///< maximum Mahalanobis distance of an observation from the track
-  double gate_m = 0.09;          ///< maximum distance, however uncertain the track is
-  int confirm_hits = 3;          ///< consistent observations before a track is confirmed
-  int displaced_hits = 2;        ///< consistent observations within gate_m that move a displaced track
+  double rolling_mps2 = 0;        ///< deceleration by rolling friction
+  double start_speed_mps = 1.5;   ///< standard deviation of the velocity at the first observation, per axis
+  double start_turn_radps = 5;    ///< the same for the heading's rate
+  double gate_sigma = 5;          ///< maximum Mahalanobis distance of an observation from the track
+  double gate_m = 0.09;           ///< maximum distance, however uncertain the track is
+  int confirm_hits = 3;           ///< consistent observations before a track is confirmed
+  int displaced_hits = 2;         ///< consistent observations within gate_m that move a displaced track
   Duration max_gap{100'000'000};  ///< between two consistent observations of an unconfirmed track
   Duration relocate_after{150'000'000};  ///< time without an observation before a track may move elsewhere
   Duration drop_after{1'000'000'000};    ///< time without an observation after which a track ends

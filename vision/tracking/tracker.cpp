@@ -37,7 +37,8 @@ msg::TrackedBall tracked_ball(const State& state) {
   return ball;
 }
 
-constexpr double kDotError_px = 0.19;    // of single dots in images, measured by sidestep-evaluation study vision
+constexpr double kDotError_px =
+    0.19;  // of single dots in images, measured by sidestep-evaluation study vision
 constexpr double kRobotHeight_m = 0.15;  // height of the dots
 // Cameras observe an obstacle's contour from different sides, and its edge depends on thresholds.
 constexpr double kContourError_m = 0.008;

@@ -21,7 +21,8 @@ Vec2 random_direction(Rng& rng) {
 /// Samples one of three positions at distance `offset_m` from a corner: perpendicular to either adjacent
 /// edge, or between these two. `in_along` and `out_along` are the unit directions of the incoming and the
 /// outgoing edge, counter-clockwise.
-Vec2 sample_near_corner(const Vec2& corner, const Vec2& in_along, const Vec2& out_along, double offset_m, Rng& rng) {
+Vec2 sample_near_corner(const Vec2& corner, const Vec2& in_along, const Vec2& out_along, double offset_m,
+                        Rng& rng) {
   const Vec2 first = -left_of(in_along), last = -left_of(out_along);
   const auto which = rng.below(3);
   if (which == 0) return corner + offset_m * first;
@@ -86,11 +87,13 @@ DiscDomain::DiscDomain(const ObstacleWorld& world, const Field& field, double ra
 std::optional<Vec2> DiscDomain::projected_out(const Vec2& position) const {
   const Nearest nearest = world_->nearest(position);
   if (nearest.obstacle == kNoObstacle) return std::nullopt;
-  // Leaving the deepest obstacle takes at least this far, so a free projection is the nearest free position.
+  // The disc must move at least this far to leave the deepest obstacle, so the projection, if free, is the
+  // nearest free position.
   const Shape& shape = world_->shape(nearest.obstacle);
   constexpr double kStep_m = 1e-6, kClearance_m = 1e-6;
   const auto slope = [&](const Vec2& step) {
-    return (signed_distance(position + step, shape) - signed_distance(position - step, shape)) / (2 * kStep_m);
+    return (signed_distance(position + step, shape) - signed_distance(position - step, shape)) /
+           (2 * kStep_m);
   };
   const Vec2 away(slope({kStep_m, 0}), slope({0, kStep_m}));
   if (std::abs(away.norm() - 1) > 1e-3) return std::nullopt;
@@ -135,7 +138,9 @@ bool DiscDomain::escapes(const Vec2& from, const Vec2& to) const {
 }
 
 std::optional<Vec2> DiscDomain::exit() const {
-  if (const std::optional<Vec2> projected = projected_out(start_m_); projected && escapes(start_m_, *projected)) return projected;
+  if (const std::optional<Vec2> projected = projected_out(start_m_);
+      projected && escapes(start_m_, *projected))
+    return projected;
   const auto is_exit = [&](const Vec2& position) { return is_free(position) && escapes(start_m_, position); };
   const std::vector<Vec2> positions =
       free_positions_near(start_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m), is_exit);
@@ -144,7 +149,7 @@ std::optional<Vec2> DiscDomain::exit() const {
 
 std::vector<Vec2> DiscDomain::free_positions_near_goal() const {
   return free_positions_near(requested_goal_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m),
-                          [&](const Vec2& position) { return is_free(position); });
+                             [&](const Vec2& position) { return is_free(position); });
 }
 
 DiscDomain DiscDomain::with_goal_at(const Vec2& position) const {
@@ -165,8 +170,9 @@ Vec2 DiscDomain::sample_uniform(Rng& rng) const {
 
 Vec2 DiscDomain::sample_contact(Rng& rng) const {
   const Shape& shape = world_->shape(world_->obstacle(rng.below(world_->size())));
-  // Mostly almost in contact, sometimes with clearance.
-  const double fraction = rng.uniform(), offset_m = radius_m_ * (1 + 1e-6 + 0.5 * fraction * fraction * fraction);
+  // Most samples are almost in contact; some have clearance.
+  const double fraction = rng.uniform(),
+               offset_m = radius_m_ * (1 + 1e-6 + 0.5 * fraction * fraction * fraction);
   return std::visit([&](const auto& obstacle) { return sample_near(obstacle, offset_m, rng); }, shape);
 }
 

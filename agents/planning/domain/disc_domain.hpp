@@ -19,8 +19,8 @@ struct DiscDomainSettings {
 };
 
 /// The planning domain of a disc that moves in straight lines on a field with obstacles. All checks are exact
-/// and cover the whole motion. Refers to the world, which has to outlive it. Made for a single query, which
-/// is cheap if start and goal are free.
+/// and cover the whole motion. Refers to the world, which has to outlive it. Made for a single query;
+/// construction is cheap if start and goal are free.
 ///
 /// A start that touches obstacles, or lies outside the field, may be left by motions that come no nearer to
 /// any obstacle it touches. Since shapes are convex, such a motion does not re-enter them. A goal that
@@ -51,8 +51,8 @@ class DiscDomain {
 
   bool start_is_blocked() const { return start_is_blocked_; }
   bool goal_is_blocked() const { return goal_is_blocked_; }
-  /// The nearest free position that a blocked start can reach straight without coming nearer to any obstacle
-  /// it touches; none if there is no such position.
+  /// The nearest free position that a blocked start can reach in a straight line without coming nearer to any
+  /// obstacle that it touches; none if there is no such position.
   std::optional<Vec2> exit() const;
   /// Free positions near a blocked goal, nearest first.
   std::vector<Vec2> free_positions_near_goal() const;

@@ -58,7 +58,7 @@ class DirectionalSearch {
 }  // namespace
 
 std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m, double max_distance_m,
-                                   const std::function<bool(const Vec2&)>& is_free) {
+                                      const std::function<bool(const Vec2&)>& is_free) {
   const DirectionalSearch direction_search(position_m, step_m, is_free);
   std::vector<Found> found;
   for (int i = 0; i < kDirections; ++i)

@@ -10,8 +10,8 @@ namespace sidestep {
 
 /// Finds the nearest free position in each of 64 directions, up to `max_distance_m` away, and returns them by
 /// distance, nearest first. `step_m` is the initial step of the search. The first position is refined between
-/// the directions: it lies within one percent of the nearest free position, unless obstacles are finer than
-/// the directions.
+/// the directions: its distance is within one percent of the smallest possible one, unless obstacles are
+/// finer than the spacing of the directions.
 [[nodiscard]] std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m,
                                                     double max_distance_m,
                                                     const std::function<bool(const Vec2&)>& is_free);

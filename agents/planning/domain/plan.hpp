@@ -29,7 +29,7 @@ struct Budget {
 enum class PlanReason {
   kSolved,       ///< path to the goal
   kImproved,     ///< path to the goal, shorter than the first one found
-  kBudgetSpent,  ///< no path found within the budget; the states lead as near to the goal as was reached
+  kBudgetSpent,  ///< no path found within the budget; the states lead to the state nearest to the goal
   kUnreachable,  ///< no path exists, or none on this planner's grid or graph; states as for kBudgetSpent
 };
 [[nodiscard]] const char* name_of(PlanReason reason);
@@ -57,7 +57,7 @@ double length_of(const D& domain, const std::vector<typename D::State>& states) 
   return length;
 }
 
-/// Resets a plan, keeping its memory, and sets its blocked flags.
+/// Resets a plan, keeping its allocated memory, and sets its blocked flags.
 template <PlanningDomain D>
 void begin_plan(const D& domain, const typename D::State& start, Plan<typename D::State>& plan) {
   plan.reason = PlanReason::kBudgetSpent;

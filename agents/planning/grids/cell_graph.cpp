@@ -66,7 +66,7 @@ std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const
 }
 
 void CellSearch::expand(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at,
-                           double cost_m, const Vec2& goal) {
+                        double cost_m, const Vec2& goal) {
   for (std::uint32_t i = first_portal_[cell]; i < first_portal_[cell + 1]; ++i) {
     const std::uint32_t portal = portals_by_cell_[i];
     if (came_from_[portal] != kNone) continue;

@@ -24,7 +24,7 @@ struct CellGraph {
 };
 
 /// Finds the shortest path from portal to portal (A*); straight motions within a cell are free. A start or
-/// goal outside all cells is joined to the nearest visible cell. Keeps its memory.
+/// goal outside all cells is joined to the nearest visible cell. Reuses its memory between queries.
 class CellSearch {
  public:
   /// Fills in the plan, except its blocked flags. PlanReason::kUnreachable refers to these cells.
@@ -46,12 +46,12 @@ class CellSearch {
 
   void index_portals(const CellGraph& graph);
   std::optional<Entry> entry(const CellGraph& graph, const DiscDomain& domain, const Vec2& position) const;
-  void expand(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at,
-                 double cost_m, const Vec2& goal);
+  void expand(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at, double cost_m,
+              const Vec2& goal);
   std::optional<std::uint32_t> search(const CellGraph& graph, const Entry& from, const Entry& to,
                                       const Budget& budget, Plan<Vec2>& plan);
 
-  std::vector<std::uint32_t> first_portal_;     // by cell: its first entry in portals_by_cell_
+  std::vector<std::uint32_t> first_portal_;  // by cell: its first entry in portals_by_cell_
   std::vector<std::uint32_t> portals_by_cell_;
   std::vector<std::uint32_t> came_from_;  // previous portal, by portal
   std::vector<Open> open_;

@@ -32,10 +32,11 @@ void QuadTree::subdivide(const DiscDomain& domain, int x, int y, int size) {
   const double half_m = size * unit_m_ / 2, circumradius_m = half_m * std::sqrt(2.0) * (1 + 1e-9);
   const Vec2 centre = origin_m_ + unit_m_ * Vec2(x, y) + Vec2(half_m, half_m);
   const bool is_inside = domain.field().contains(centre, domain.radius_m() + half_m - 1e-9);
-  if (is_inside && !domain.world().touches(centre, domain.radius_m() + circumradius_m)) return add_cell(x, y, size);
+  if (is_inside && !domain.world().touches(centre, domain.radius_m() + circumradius_m))
+    return add_cell(x, y, size);
   // If even a disc smaller by the circumradius touches at the centre, the whole square is blocked.
-  const bool is_blocked =
-      circumradius_m < domain.radius_m() && domain.world().touches(centre, domain.radius_m() - circumradius_m);
+  const bool is_blocked = circumradius_m < domain.radius_m() &&
+                          domain.world().touches(centre, domain.radius_m() - circumradius_m);
   if (size == 1 || is_blocked) return;
   for (const int dx : {0, size / 2})
     for (const int dy : {0, size / 2}) subdivide(domain, x + dx, y + dy, size / 2);

@@ -6,7 +6,7 @@
 namespace sidestep {
 
 struct QuadTreeSettings {
-  int depth = 8;  ///< of the tree: the smallest cell is as wide as the free area's longer side / 2^depth
+  int depth = 8;  ///< of the tree; side of the smallest cell: longer side of the free area / 2^depth
 };
 
 /// Approximate cell decomposition: squares that are neither free nor blocked are divided into four, down to a

@@ -19,7 +19,8 @@ double TrapezoidalDecomposition::Edge::y_at(double x) const {
   return left_m.y() + fraction * (right_m.y() - left_m.y());
 }
 
-const Plan<Vec2>& TrapezoidalDecomposition::plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng&) {
+const Plan<Vec2>& TrapezoidalDecomposition::plan(const DiscDomain& domain, const Vec2& start,
+                                                 const Budget& budget, Rng&) {
   begin_plan(domain, start, plan_);
   if (plan_straight(domain, start, plan_)) return plan_;
   const double half_length_m = domain.field().length_m / 2 - domain.radius_m();
@@ -111,7 +112,8 @@ void TrapezoidalDecomposition::fill_slab(double left_m, double right_m, double h
   std::swap(left_cells_, current_cells_);
 }
 
-void TrapezoidalDecomposition::add_cell(double left_m, double right_m, const Vec2& low_m, const Vec2& high_m) {
+void TrapezoidalDecomposition::add_cell(double left_m, double right_m, const Vec2& low_m,
+                                        const Vec2& high_m) {
   if (high_m.x() - low_m.x() + high_m.y() - low_m.y() < kMinWidth_m) return;
   const auto index = static_cast<std::uint32_t>(graph_.cells.size());
   graph_.cells.push_back(
@@ -119,8 +121,7 @@ void TrapezoidalDecomposition::add_cell(double left_m, double right_m, const Vec
   for (const Cell& other : left_cells_) {
     const double low = std::max(other.right_low_m, low_m.x()),
                  high = std::min(other.right_high_m, high_m.x());
-    if (high - low > kMinWidth_m)
-      graph_.portals.push_back({other.index, index, {left_m, (low + high) / 2}});
+    if (high - low > kMinWidth_m) graph_.portals.push_back({other.index, index, {left_m, (low + high) / 2}});
   }
   current_cells_.push_back({index, low_m.y(), high_m.y()});
 }

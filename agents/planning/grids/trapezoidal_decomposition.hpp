@@ -15,7 +15,8 @@ struct TrapezoidalDecompositionSettings {
 /// the inflated obstacles. Rebuilt for each query.
 class TrapezoidalDecomposition {
  public:
-  explicit TrapezoidalDecomposition(const TrapezoidalDecompositionSettings& settings = {}) : settings_(settings) {}
+  explicit TrapezoidalDecomposition(const TrapezoidalDecompositionSettings& settings = {})
+      : settings_(settings) {}
 
   /// The result belongs to this planner and is valid until its next plan. Deterministic.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);

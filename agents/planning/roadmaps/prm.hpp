@@ -7,7 +7,7 @@
 namespace sidestep {
 
 struct PrmSettings {
-  std::size_t nodes = 200;  ///< sampled at first, and again whenever the roadmap does not suffice
+  std::size_t nodes = 200;  ///< sampled initially, and again while the roadmap does not solve the query
   ConnectionSettings connection = {};
   bool keep_roadmap = true;  ///< for the next query
   /// The world may differ between queries: a motion is checked again when A* takes it from the queue.
@@ -23,8 +23,8 @@ inline PrmSettings dynamic_prm() {
 }
 
 /// The probabilistic roadmap (Kavraki et al. 1996; Bruce 2006, section 4.4): random free states joined by
-/// free motions. A query joins its start and goal to the roadmap and takes the shortest path (A*). Keeps its
-/// memory.
+/// free motions. A query joins its start and goal to the roadmap and takes the shortest path (A*). Reuses its
+/// memory between queries.
 template <EuclideanDomain D>
 class Prm {
  public:
@@ -127,7 +127,8 @@ class Prm {
 
   void write_plan(Node from, Node node) {
     plan_.states.clear();
-    for (; node != from; node = map_.edges()[reached_by_[node]].other(node)) plan_.states.push_back(map_[node]);
+    for (; node != from; node = map_.edges()[reached_by_[node]].other(node))
+      plan_.states.push_back(map_[node]);
     plan_.states.push_back(map_[from]);
     std::reverse(plan_.states.begin(), plan_.states.end());
   }
@@ -137,7 +138,7 @@ class Prm {
   PrmSettings settings_;
   Roadmap<D> map_;
   std::size_t base_size_ = 0;              // nodes of the roadmap without start and goal of the last query
-  std::uint32_t version_ = 1;           // of the world
+  std::uint32_t version_ = 1;              // of the world
   std::vector<std::uint32_t> reached_by_;  // edge, by node
   std::vector<Open> queue_;
   Plan<State> plan_;

@@ -115,9 +115,11 @@ class Roadmap {
       const double distance = domain.distance(states_[node], states_[other]);
       if (!is_within || distance <= settings.radius) candidates_.push_back({distance, other});
     }
-    const std::size_t candidate_count = settings.neighbours * (settings.method == Connection::kRadial ? kCandidatesPerSector : 1);
+    const std::size_t candidate_count =
+        settings.neighbours * (settings.method == Connection::kRadial ? kCandidatesPerSector : 1);
     const std::size_t count = is_within ? candidates_.size() : std::min(candidate_count, candidates_.size());
-    std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(count), candidates_.end());
+    std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(count),
+                      candidates_.end());
     candidates_.resize(count);
   }
 

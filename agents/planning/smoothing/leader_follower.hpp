@@ -17,7 +17,7 @@ struct SmoothingSettings {
 /// Leader-follower smoothing (Bruce 2006, section 4.6.1): a leader advances along the path while the follower
 /// can reach it on a straight motion. Where it no longer can, the follower moves to the last visible state,
 /// and the leader advances again. Repeated forwards and backwards, this pulls the path tight around
-/// obstacles. Keeps its memory.
+/// obstacles. Reuses its memory between plans.
 template <StraightDomain D>
 class LeaderFollower {
  public:
@@ -66,7 +66,8 @@ class LeaderFollower {
   }
 
   /// The last state visible to the follower between a visible and a hidden one.
-  State farthest_visible(const D& domain, const State& follower, const State& visible, const State& hidden) const {
+  State farthest_visible(const D& domain, const State& follower, const State& visible,
+                         const State& hidden) const {
     State last = visible;
     double low = 0, high = 1;
     for (std::size_t i = 0; i < settings_.halvings; ++i) {

@@ -10,18 +10,18 @@ struct BidirectionalErrtSettings {
   double waypoint_probability = 0.4;  ///< while the cache is not empty
   std::size_t cache_capacity = 50;    ///< 0: no cache
   CacheReplacement replacement = CacheReplacement::kRandom;
-  std::size_t growth_extensions = 100;   ///< maximum, of one tree towards its target; 1: RRT-Connect
-  std::size_t connect_extensions = 100;  ///< maximum, of the other tree towards the new node
-  std::size_t bridges = 1;               ///< number of bridges that ends planning
+  std::size_t growth_extensions = 100;   ///< maximum per turn of one tree towards its target; 1: RRT-Connect
+  std::size_t connect_extensions = 100;  ///< maximum per turn of the other tree towards the new node
+  std::size_t bridges = 1;               ///< planning ends when this many bridges are found
   /// Try the straight path before the trees grow, and make the goal their first target. RRT-Connect does
   /// neither.
   bool tries_straight_line = true;
 };
 
 /// Bidirectional multi-bridge ERRT (Bruce 2006, section 4.3.4). A tree from the start and a tree from the
-/// goal grow in turn: one towards a target, the other towards the node that the first one reached
+/// goal grow alternately: one towards a target, the other towards the node that the first one reached
 /// (RRT-Connect; Kuffner and LaValle 2000). Planning ends once the requested number of bridges join the
-/// trees; the plan is the shortest path over both. Caches plans for the next query, and keeps its memory.
+/// trees; the plan is the shortest path over both. Caches plans for the next query, and reuses its memory.
 template <StraightDomain D>
 class BidirectionalErrt {
  public:
@@ -69,8 +69,7 @@ class BidirectionalErrt {
   void grow_towards(const D& domain, std::size_t turn, const State& target) {
     SearchTree<D>&mine = trees_[turn], &other = trees_[1 - turn];
     const Node before = static_cast<Node>(mine.size());
-    const Node node =
-        extend(domain, mine, mine.nearest(domain, target), target, settings_.growth_extensions);
+    const Node node = extend(domain, mine, mine.nearest(domain, target), target, settings_.growth_extensions);
     if (node < before) return;
     const Node nearest = other.nearest(domain, mine[node]);
     const Node across = extend(domain, other, nearest, mine[node], settings_.connect_extensions);
@@ -83,7 +82,8 @@ class BidirectionalErrt {
   }
 
   /// Repeatedly extends the tree from a node towards the target; returns the last node.
-  Node extend(const D& domain, SearchTree<D>& tree, Node node, const State& target, std::size_t max_extensions) {
+  Node extend(const D& domain, SearchTree<D>& tree, Node node, const State& target,
+              std::size_t max_extensions) {
     for (std::size_t i = 0; i < max_extensions; ++i) {
       const std::optional<State> reached = domain.extend(tree[node], target);
       if (!reached) return node;

@@ -72,7 +72,8 @@ class Bridges {
   }
 
   /// Appends the states after `from`, up to `ancestor` and down to `to`.
-  static void append_up_and_down(const Tree& tree, Node from, Node ancestor, Node to, std::vector<State>& states) {
+  static void append_up_and_down(const Tree& tree, Node from, Node ancestor, Node to,
+                                 std::vector<State>& states) {
     if (from != ancestor) {
       states.pop_back();
       tree.append_upwards(from, ancestor, states);
@@ -97,7 +98,8 @@ class Bridges {
       const Tree& tree = next.in_goal_tree ? from_goal : from_start;
       for (std::size_t bridge = 0; bridge <= bridges_.size(); ++bridge) {
         const End other{next.in_goal_tree, bridge};
-        if (!label_of(other).is_done) relax(next, other, distance_within(tree, node_of(next), node_of(other)));
+        if (!label_of(other).is_done)
+          relax(next, other, distance_within(tree, node_of(next), node_of(other)));
       }
     }
   }

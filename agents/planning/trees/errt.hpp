@@ -16,7 +16,7 @@ struct ErrtSettings {
 
 /// Extended rapidly-exploring random tree (Bruce and Veloso 2002): a tree from the start that grows towards
 /// the goal, towards waypoints of earlier plans, or towards random states. Caches plans for the next query,
-/// and keeps its memory.
+/// and reuses its memory.
 template <PlanningDomain D>
 class Errt {
  public:

@@ -19,7 +19,7 @@ class KdTree {
 
   KdTree() { clear(); }
 
-  /// Keeps the memory.
+  /// Keeps the allocated memory.
   void clear() {
     splits_.clear();
     leaves_.clear();

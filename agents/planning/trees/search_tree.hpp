@@ -18,7 +18,7 @@ class SearchTree {
   using State = typename D::State;
   using Node = std::uint32_t;
 
-  /// Starts a new tree, keeping the memory.
+  /// Starts a new tree, keeping the allocated memory.
   void start(const D& domain, const State& root) {
     states_.clear();
     parents_.clear();

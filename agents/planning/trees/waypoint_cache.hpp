@@ -16,7 +16,7 @@ namespace sidestep {
 enum class CacheReplacement {
   kRandom,             ///< a random one (Bruce and Veloso 2002)
   kOldest,             ///< the one stored first
-  kLeastRecentlyUsed,  ///< the one unused as a growth target for the longest
+  kLeastRecentlyUsed,  ///< the one least recently used as a growth target
   kWholePlan,          ///< all of them: the cache holds the last plan
 };
 
@@ -74,7 +74,7 @@ class WaypointCache {
       case CacheReplacement::kOldest:
         return oldest([](const Entry& e) { return e.stored; });
       case CacheReplacement::kLeastRecentlyUsed:
-        // One hard plan may use all waypoints; then the oldest goes.
+        // One hard plan may use all waypoints; then the one stored first is dropped.
         return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
         return random_index(rng);
@@ -87,8 +87,8 @@ class WaypointCache {
   std::uint64_t now_ = 0;
 };
 
-/// The common frame of planners with a cache: tries the straight path if `tries_straight_line`, otherwise
-/// calls `grow`, which writes the plan. The states of plans that arrive are stored in the cache.
+/// The common part of planners with a cache: tries the straight path if `tries_straight_line`. Unless that is
+/// free, calls `grow`, which writes the plan. Stores the states of plans that arrive in the cache.
 template <PlanningDomain D, typename Grow>
 void plan_and_remember(const D& domain, const typename D::State& start,
                        WaypointCache<typename D::State>& cache, Plan<typename D::State>& plan, Rng& rng,

@@ -4,7 +4,9 @@
 namespace sidestep {
 namespace {
 
-Box box_of(const Segment& motion) { return {motion.from_m.cwiseMin(motion.to_m), motion.from_m.cwiseMax(motion.to_m)}; }
+Box box_of(const Segment& motion) {
+  return {motion.from_m.cwiseMin(motion.to_m), motion.from_m.cwiseMax(motion.to_m)};
+}
 
 }  // namespace
 
@@ -14,7 +16,9 @@ void KnownObstacles::clear(double radius_m) {
   last_blocking_ = 0;
 }
 
-void KnownObstacles::add(const Shape& shape) { known_.push_back({inflated(bounds(shape), radius_m_), &shape}); }
+void KnownObstacles::add(const Shape& shape) {
+  known_.push_back({inflated(bounds(shape), radius_m_), &shape});
+}
 
 bool KnownObstacles::blocks_motion(const Known& known, const Segment& motion, const Box& box) const {
   if (!overlap(box, known.box)) return false;
@@ -40,7 +44,8 @@ bool KnownObstacles::blocks(const Segment& motion) {
 
 bool KnownObstacles::covers(const Vec2& position, std::size_t first, std::size_t end) const {
   for (std::size_t i = first; i < end; ++i)
-    if (overlap(known_[i].box, {position, position}) && signed_distance(position, *known_[i].shape) < kCoincidence_m)
+    if (overlap(known_[i].box, {position, position}) &&
+        signed_distance(position, *known_[i].shape) < kCoincidence_m)
       return true;
   return false;
 }

@@ -11,11 +11,11 @@ namespace sidestep {
 /// A corner within this distance of a shape counts as lying on it.
 inline constexpr double kCoincidence_m = 1e-9;
 
-/// The obstacles that a search has run into, tested one by one. They are few, and the obstacle that blocked
-/// one motion often blocks the next.
+/// The obstacles that a search has encountered, tested one by one. They are few, and the obstacle that
+/// blocked one motion often blocks the next.
 class KnownObstacles {
  public:
-  /// Removes all obstacles, keeping the memory, and sets the radius of the disc that moves.
+  /// Removes all obstacles, keeping the allocated memory, and sets the radius of the moving disc.
   void clear(double radius_m);
   /// The shape has to outlive this set.
   void add(const Shape& shape);

@@ -14,8 +14,8 @@ constexpr std::uint32_t kNone = 0xffffffff;
 // A corner's arc covers at most half a circle, or slightly more if the start lies within the standoff.
 constexpr double kMaxCornerTurn_rad = 3.2, kMaxCornerTurnSine = -0.0584;
 
-/// A tight lower bound of the angles from a direction, for angles up to a right angle: the series of an arc
-/// in its chord.
+/// Lower bounds of the angles from a direction, tight up to a right angle: the power series of an arc's
+/// length in terms of its chord.
 SidePair min_turns_rad(const Vec2& from, const DirectionPair& to) {
   const SidePair chord2 = (to.x - from.x()).square() + (to.y - from.y()).square();
   return chord2.sqrt() * (1 + chord2 * (1.0 / 24 + chord2 * (3.0 / 640 + chord2 * (5.0 / 7168))));
@@ -62,7 +62,7 @@ void LazyVisibility::plan_from_blocked(const DiscDomain& domain, const Vec2& sta
     return;
   }
   if (!plan_straight(domain, *exit, plan_)) plan_from(domain, *exit, budget);
-  // The last state that the start can reach straight replaces the exit.
+  // The path continues from the last state that the start can reach in a straight line, which skips the exit.
   std::size_t first = plan_.states.size() - 1;
   while (first > 0 && !domain.check(start, plan_.states[first])) --first;
   plan_.states.erase(plan_.states.begin(), plan_.states.begin() + static_cast<std::ptrdiff_t>(first));
@@ -89,7 +89,7 @@ bool LazyVisibility::search(const DiscDomain& domain, const Budget& budget) {
     const OpenEntry entry = pop();
     Arrival next = candidates_[entry.candidate];
     if (next.vertex_turn_rad == 0) {
-      // Most promising tangents are blocked, so that is checked first.
+      // Most of the tangents taken from the queue are blocked, so this check comes first.
       if (!is_tangent_free(domain, next)) continue;
       const double estimate_m = entry.cost_m + refine_cost(next);
       if (!queue_.empty() && estimate_m > queue_.front().cost_m) {
@@ -131,13 +131,14 @@ void LazyVisibility::expand(const DiscDomain& domain, std::uint32_t arrival, std
 }
 
 void LazyVisibility::add_candidates(const DiscDomain& domain, std::uint32_t arrival, const TangentArc& from,
-                             std::uint32_t arc) {
+                                    std::uint32_t arc) {
   const Arrival& at = arrivals_[arrival];
   const TangentArc& to = arcs_[arc];
   const TangentPair tangents = tangent_pair(from, at.side, to, settings_.standoff_m);
   const SidePair from_sides = SidePair::Constant(sign(at.side));
-  SidePair slack = arc_slack(from, from_sides, tangents.along).min(arc_slack(to, kSideSigns, tangents.along)) + 1e-9;
-  // A start or goal within the standoff of an edge is left or reached at a small angle.
+  SidePair slack =
+      arc_slack(from, from_sides, tangents.along).min(arc_slack(to, kSideSigns, tangents.along)) + 1e-9;
+  // A path may leave a start, or reach a goal, within the standoff of an edge at a small angle to that edge.
   if (at.arc == kStart || arc == kGoal) slack += 2 * settings_.standoff_m / tangents.length_m;
   const SidePair across = from_sides * cross(at.along, tangents.along), ahead = dot(at.along, tangents.along);
   const SidePair turns_rad = min_turns_rad(at.along, tangents.along);
@@ -147,7 +148,8 @@ void LazyVisibility::add_candidates(const DiscDomain& domain, std::uint32_t arri
   const SidePair to_goal_m = ((x_m - goal.x()).square() + (y_m - goal.y()).square()).sqrt();
   for (Eigen::Index lane = 0; lane < (arc == kGoal ? 1 : 2); ++lane) {
     if (!tangents.exist[lane] || !(slack[lane] >= 0)) continue;
-    const bool is_backwards = at.arc != kStart && across[lane] < (ahead[lane] > 0 ? -1e-9 : kMaxCornerTurnSine);
+    const bool is_backwards =
+        at.arc != kStart && across[lane] < (ahead[lane] > 0 ? -1e-9 : kMaxCornerTurnSine);
     if (from.is_corner && is_backwards) continue;
     const Vec2 point(x_m[lane], y_m[lane]);
     if (!domain.field().contains(point, domain.radius_m())) continue;
@@ -208,7 +210,7 @@ bool LazyVisibility::is_arc_free(const DiscDomain& domain, Arrival& next) {
 }
 
 bool LazyVisibility::is_arc_free(const DiscDomain& domain, const Arrival& at, double turn_rad,
-                                   const Vec2& along, double vertex_turn_rad) {
+                                 const Vec2& along, double vertex_turn_rad) {
   if (arcs_[at.arc].radius_m == 0 || turn_rad == 0) return true;
   vertices_.assign(1, tangent_point(arcs_[at.arc], at.side, at.along));
   append_vertices(arcs_[at.arc], at.side, at.along, turn_rad, vertex_turn_rad, vertices_);
@@ -236,8 +238,7 @@ void LazyVisibility::discover(const DiscDomain& domain, const Vec2& from, const 
   known_.add(shape);
   hide_covered_corners(domain.field(), first_arc);
   last_.resize(arcs_.size() * 2, kNone);
-  for (std::uint32_t arrival = 0; arrival < arrivals_.size(); ++arrival)
-    expand(domain, arrival, first_arc);
+  for (std::uint32_t arrival = 0; arrival < arrivals_.size(); ++arrival) expand(domain, arrival, first_arc);
 }
 
 void LazyVisibility::hide_covered_corners(const Field& field, std::size_t first_arc) {
@@ -245,9 +246,9 @@ void LazyVisibility::hide_covered_corners(const Field& field, std::size_t first_
   for (std::size_t i = first_arc; i < arcs_.size(); ++i) {
     const TangentArc& arc = arcs_[i];
     is_hidden_.push_back(arc.is_corner && (known_.covers(arc.centre_m, 0, obstacle) ||
-                                            !field.contains(arc.centre_m, kCoincidence_m)));
+                                           !field.contains(arc.centre_m, kCoincidence_m)));
   }
-  // Of coincident corners, one is kept.
+  // Only one of several coincident corners is kept.
   const auto is_covered_by_new_corner = [&](const TangentArc& arc) {
     for (std::size_t i = first_arc; i < arcs_.size(); ++i)
       if (is_hidden_[i] != 0 && (arcs_[i].centre_m - arc.centre_m).norm() < 2 * kCoincidence_m) return true;
@@ -267,7 +268,8 @@ void LazyVisibility::write_plan(std::uint32_t arrival) {
   for (std::size_t i = path_.size(); i-- > 0;) {
     const Arrival& next = arrivals_[path_[i]];
     if (last.arc != kStart) {
-      append_vertices(arcs_[last.arc], last.side, last.along, next.turn_rad, next.vertex_turn_rad, plan_.states);
+      append_vertices(arcs_[last.arc], last.side, last.along, next.turn_rad, next.vertex_turn_rad,
+                      plan_.states);
     }
     last = next;
   }
@@ -280,7 +282,7 @@ std::vector<Segment> LazyVisibility::explored_tangents() const {
   for (std::size_t i = 1; i < arrivals_.size(); ++i) {
     const Arrival &to = arrivals_[i], &from = arrivals_[to.parent];
     tangents.push_back({tangent_point(arcs_[from.arc], from.side, to.along),
-                    tangent_point(arcs_[to.arc], to.side, to.along)});
+                        tangent_point(arcs_[to.arc], to.side, to.along)});
   }
   return tangents;
 }

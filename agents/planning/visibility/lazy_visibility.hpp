@@ -3,8 +3,8 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/domain/plan.hpp"
-#include "agents/planning/visibility/tangent_arc.hpp"
 #include "agents/planning/visibility/known_obstacles.hpp"
+#include "agents/planning/visibility/tangent_arc.hpp"
 
 namespace sidestep {
 
@@ -16,7 +16,7 @@ struct LazyVisibilitySettings {
 
 /// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is only
 /// checked when it is the most promising one, and an obstacle is only taken into account once such a tangent
-/// has run into it. Few obstacles matter for a query, whatever their number.
+/// is blocked by it. A query therefore considers few obstacles, even in a world with many.
 class LazyVisibility {
  public:
   explicit LazyVisibility(const LazyVisibilitySettings& settings = {}) : settings_(settings) {}
@@ -34,11 +34,11 @@ class LazyVisibility {
     std::uint32_t arc = 0;
     Side side = Side::kLeft;
     Vec2 along{0, 0};
-    double cost_m = 0;            // length up to the tangent point
-    double turn_rad = 0;          // turn along the parent's arc
-    double vertex_turn_rad = 0;   // maximum turn at a vertex there; 0: turn_rad is still a lower bound
-    std::uint32_t parent;         // arrival at the previous arc
-    std::uint32_t previous;       // previous arrival at this arc and side
+    double cost_m = 0;           // length up to the tangent point
+    double turn_rad = 0;         // turn along the parent's arc
+    double vertex_turn_rad = 0;  // maximum turn at a vertex there; 0: turn_rad is still a lower bound
+    std::uint32_t parent;        // arrival at the previous arc
+    std::uint32_t previous;      // previous arrival at this arc and side
   };
   /// A candidate that is not checked yet, and a lower bound of the length of a path through it to the goal.
   struct OpenEntry {
@@ -54,7 +54,8 @@ class LazyVisibility {
   void begin_search(const DiscDomain& domain, const Vec2& start);
   bool search(const DiscDomain& domain, const Budget& budget);
   void expand(const DiscDomain& domain, std::uint32_t arrival, std::uint32_t first_arc);
-  void add_candidates(const DiscDomain& domain, std::uint32_t arrival, const TangentArc& from, std::uint32_t arc);
+  void add_candidates(const DiscDomain& domain, std::uint32_t arrival, const TangentArc& from,
+                      std::uint32_t arc);
   void push(const OpenEntry& entry);
   OpenEntry pop();
   /// Replaces the lower bound of the turn by the turn itself; returns the increase of the cost.
@@ -65,12 +66,12 @@ class LazyVisibility {
   bool is_arc_free(const DiscDomain& domain, Arrival& next);
   bool is_tangent_free(const DiscDomain& domain, const Arrival& next);
   bool is_arc_free(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
-                     double vertex_turn_rad);
+                   double vertex_turn_rad);
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   /// Adds the first obstacle that blocks a motion, if it is not known yet.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   /// Hides corners that lie in another obstacle or outside the field, since no shortest path turns at them:
-  /// those of the last obstacle, whose arcs begin at `first_arc`, and those that it covers.
+  /// corners of the newest obstacle, whose arcs begin at `first_arc`, and older corners that it covers.
   void hide_covered_corners(const Field& field, std::size_t first_arc);
   void write_plan(std::uint32_t arrival);
 
@@ -82,7 +83,7 @@ class LazyVisibility {
   std::vector<std::uint32_t> last_;      // last arrival, by arc and side
   std::vector<Arrival> candidates_;
   std::vector<OpenEntry> queue_;          // a heap
-  std::vector<std::uint32_t> promising_;  // arcs
+  std::vector<std::uint32_t> promising_;  // arcs that may have a tangent from the expanded one
   std::vector<Vec2> vertices_;
   std::vector<std::uint32_t> path_;
   Plan<Vec2> plan_;

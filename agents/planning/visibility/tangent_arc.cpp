@@ -14,7 +14,8 @@ void append(const Circle& circle, double clearance_m, std::vector<TangentArc>& a
   arcs.push_back({circle.centre_m, circle.radius_m + clearance_m});
 }
 
-void append_corner_arcs(const Vec2* vertices, std::size_t count, double clearance_m, std::vector<TangentArc>& arcs) {
+void append_corner_arcs(const Vec2* vertices, std::size_t count, double clearance_m,
+                        std::vector<TangentArc>& arcs) {
   for (std::size_t i = 0; i < count; ++i) {
     const Vec2 in = vertices[i] - vertices[(i + count - 1) % count],
                out = vertices[(i + 1) % count] - vertices[i];
@@ -48,7 +49,7 @@ void append_arcs(const Shape& shape, double clearance_m, std::vector<TangentArc>
 }
 
 void append_vertices(const TangentArc& arc, Side side, const Vec2& from, double turn_rad, double max_turn_rad,
-                    std::vector<Vec2>& vertices) {
+                     std::vector<Vec2>& vertices) {
   constexpr double kStraight_rad = 1e-7;
   if (arc.radius_m == 0 || turn_rad < kStraight_rad) return;
   const double vertex_count = std::ceil(turn_rad / max_turn_rad);

@@ -87,6 +87,6 @@ inline double turn_rad(Side side, const Vec2& from, const Vec2& to) {
 /// Appends the vertices of a polyline that circumscribes an arc, from the direction of travel `from` through
 /// `turn_rad`. The path turns by at most `max_turn_rad` at each vertex.
 void append_vertices(const TangentArc& arc, Side side, const Vec2& from, double turn_rad, double max_turn_rad,
-                    std::vector<Vec2>& vertices);
+                     std::vector<Vec2>& vertices);
 
 }  // namespace sidestep

@@ -46,18 +46,22 @@ void TangentGraph::join(std::uint32_t a, std::uint32_t b) {
 void TangentGraph::join(std::uint32_t a, Side a_side, std::uint32_t b, Side b_side) {
   const auto tangent_ab = tangent(arcs_[a], a_side, arcs_[b], b_side, settings_.standoff_m);
   if (!tangent_ab) return;
-  const bool a_contains = a < kObstacles || arcs_[a].contains(tangent_point_direction(a_side, tangent_ab->along));
-  const bool b_contains = b < kObstacles || arcs_[b].contains(tangent_point_direction(b_side, tangent_ab->along));
+  const bool a_contains =
+      a < kObstacles || arcs_[a].contains(tangent_point_direction(a_side, tangent_ab->along));
+  const bool b_contains =
+      b < kObstacles || arcs_[b].contains(tangent_point_direction(b_side, tangent_ab->along));
   if (!a_contains || !b_contains) return;
   const Vec2 from = tangent_point(arcs_[a], a_side, tangent_ab->along);
   const Vec2 to = tangent_point(arcs_[b], b_side, tangent_ab->along);
-  // Tangents of the world do not depend on the query, so they must not use the exception for blocked starts.
+  // Tangents of the world do not depend on the query, so they must not use the domain's exception for blocked
+  // starts.
   const bool is_of_world = a >= kObstacles && b >= kObstacles;
   if (is_of_world ? !is_free(from, to) : !domain_.check(from, to)) return;
   add_tangent(ring_of(a, a_side), ring_of(b, b_side), *tangent_ab);
   const auto other = [](Side side) { return side == Side::kLeft ? Side::kRight : Side::kLeft; };
   if (a == kStart || b == kGoal) return;
-  add_tangent(ring_of(b, other(b_side)), ring_of(a, other(a_side)), {-tangent_ab->along, tangent_ab->length_m});
+  add_tangent(ring_of(b, other(b_side)), ring_of(a, other(a_side)),
+              {-tangent_ab->along, tangent_ab->length_m});
 }
 
 void TangentGraph::add_tangent(std::uint32_t from, std::uint32_t to, const Tangent& tangent) {
@@ -159,7 +163,7 @@ void TangentGraph::write_plan(std::uint32_t node) {
     if (from.ring != to.ring) continue;
     const Side side = side_of(from.ring);
     append_vertices(arc_of(from.ring), side, from.along, turn_rad(side, from.along, to.along),
-                   settings_.vertex_turn_rad, plan_.states);
+                    settings_.vertex_turn_rad, plan_.states);
   }
   plan_.states.push_back(arcs_[kGoal].centre_m);
   plan_.length = length_of(domain_, plan_.states);

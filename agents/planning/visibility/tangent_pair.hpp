@@ -24,7 +24,8 @@ struct TangentPair {
   bool exist[2];
 };
 
-inline TangentPair tangent_pair(const TangentArc& from, Side from_side, const TangentArc& to, double slack_m) {
+inline TangentPair tangent_pair(const TangentArc& from, Side from_side, const TangentArc& to,
+                                double slack_m) {
   const Vec2 between = to.centre_m - from.centre_m;
   const double distance2 = between.squaredNorm();
   SidePair across = kSideSigns * to.radius_m - sign(from_side) * from.radius_m;
@@ -55,8 +56,11 @@ inline bool may_have_tangent(const TangentArc& from, Side from_side, const Tange
   const SidePair tolerance_m = 1.16 * across + slack_m;
   const double departure_slack_m =
       std::min(-sign(from_side) * between.dot(from.first), sign(from_side) * between.dot(from.last));
-  const SidePair arrival_slack_m = (-between.dot(to.first) * kSideSigns).min(between.dot(to.last) * kSideSigns);
-  return (tolerance_m + arrival_slack_m.min(departure_slack_m)).max(4 * across.square() - between.squaredNorm()).maxCoeff() >= 0;
+  const SidePair arrival_slack_m =
+      (-between.dot(to.first) * kSideSigns).min(between.dot(to.last) * kSideSigns);
+  return (tolerance_m + arrival_slack_m.min(departure_slack_m))
+             .max(4 * across.square() - between.squaredNorm())
+             .maxCoeff() >= 0;
 }
 
 /// How far the tangent points of two directions lie inside an arc: approximately the angle in rad, negative

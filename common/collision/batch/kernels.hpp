@@ -62,8 +62,8 @@ struct LinearView {
 };
 
 /// Extent masks: four consecutive tables of kBuckets rows. A row has `words` words with one bit per slot. The
-/// first two tables (x, y) mark the obstacles that do not end before a bucket, the last two (x, y) those that
-/// begin before the end of a bucket. The bucket of a coordinate v is v * per_m + shift, truncated and
+/// first two tables (x, y) mark the obstacles that end in or after a bucket, the last two (x, y) those that
+/// begin in or before a bucket. The bucket of a coordinate v is v * per_m + shift, truncated and
 /// clamped. The last two tables are looked up with -v, so their `per_m` is negative.
 struct MasksView {
   const std::uint64_t* rows;
@@ -98,8 +98,8 @@ struct WorldView {
   TreeView tree;
 };
 
-/// Whether a disc that moves along a segment touches an obstacle. Left undecided are motions that are not
-/// finite or too far away, negative radii and, by the linear kernel, contacts within rounding of a circle:
+/// Whether a disc that moves along a segment touches an obstacle. Undecided for motions that are not finite
+/// or too far away, for negative radii and, with the linear kernel, for contacts within rounding of a circle:
 /// these need the exact comparison with all obstacles.
 using SweepKernel = Answer (*)(const WorldView& world, const double* from_m, const double* to_m,
                                double radius_m);

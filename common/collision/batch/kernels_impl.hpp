@@ -72,7 +72,8 @@ Answer linear(const WorldView& world, const double* from_m, const double* to_m, 
   for (std::size_t block = 0; block < view.box_blocks; ++block) {
     const std::uint32_t* slots = view.box_slots + block * kLanes;
     for (unsigned bits = overlaps(view.boxes[block], box); bits != 0; bits &= bits - 1) {
-      if (touches_undecided(bodies, disc, from_m, to_m, radius_m, slots[lowest(bits)])) return Answer::kTouches;
+      if (touches_undecided(bodies, disc, from_m, to_m, radius_m, slots[lowest(bits)]))
+        return Answer::kTouches;
     }
   }
   return Answer::kClear;

@@ -124,8 +124,9 @@ inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::
     const FourFloats edge_error = error * (larger(edge_x, -edge_x) + larger(edge_y, -edge_y));
     const FourFloats path_error =
         error * all<FourFloats>(__builtin_fabsf(d.path_x_m) + __builtin_fabsf(d.path_y_m));
-    const FourFloats apart = larger(larger(smaller(from, to) + edge_error, edge_error - larger(from, to)),
-                                    larger(smaller(begin, end) + path_error, path_error - larger(begin, end)));
+    const FourFloats apart =
+        larger(larger(smaller(from, to) + edge_error, edge_error - larger(from, to)),
+               larger(smaller(begin, end) + path_error, path_error - larger(begin, end)));
     const unsigned touched = not_above(gap, all<FourFloats>(-d.gap_error_m2));
     const unsigned apart_bits = not_above(all<FourFloats>(0), apart);
     if (touched != 0 || apart_bits != 0xf) return Answer::kTouches;
@@ -138,7 +139,7 @@ inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::
 
 /// Decides an undecided obstacle: a shape with edges, or a circle in contact within rounding.
 inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, const double* from_m,
-                         const double* to_m, double radius_m, std::uint32_t slot) {
+                              const double* to_m, double radius_m, std::uint32_t slot) {
   const BodyRecord& record = bodies.records[slot];
   Answer answer = Answer::kUndecided;
   if (record.radius_m != record.radius_m) answer = touches_edges(bodies, disc, record.edges);
@@ -149,8 +150,9 @@ inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, 
 
 /// Whether any obstacle is touched among the undecided ones of the first four set bits.
 template <typename SlotOf>
-[[gnu::noinline]] bool touches_any_undecided(const BodiesView& bodies, const double* from_m, const double* to_m,
-                                        double radius_m, std::uint64_t bits, unsigned undecided, SlotOf slot) {
+[[gnu::noinline]] bool touches_any_undecided(const BodiesView& bodies, const double* from_m,
+                                             const double* to_m, double radius_m, std::uint64_t bits,
+                                             unsigned undecided, SlotOf slot) {
   const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
   for (; undecided != 0; undecided >>= 1, bits &= bits - 1) {
     if ((undecided & 1) != 0 && touches_undecided(bodies, disc, from_m, to_m, radius_m, slot(lowest(bits))))
@@ -171,8 +173,8 @@ inline bool touches_marked(const Query& query, std::uint64_t bits, const SlotOf&
     const unsigned wanted = lowest_four(bits);
     bool touches = (found.surely & wanted) != 0;
     if (const unsigned undecided = found.undecided & wanted; undecided != 0) [[unlikely]]
-      touches = touches ||
-                touches_any_undecided(query.bodies, query.from_m, query.to_m, query.radius_m, bits, undecided, slot);
+      touches = touches || touches_any_undecided(query.bodies, query.from_m, query.to_m, query.radius_m, bits,
+                                                 undecided, slot);
     bits = bits3 & (bits3 - 1);
     if (bits == 0 || touches) return touches;
   }

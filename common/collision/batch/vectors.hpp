@@ -42,7 +42,7 @@ inline unsigned not_above(const Vector& a, const Vector& b) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
 }
 #else
-// With masks, because g++ 12 warns about the forms without.
+// Masked intrinsics, because g++ 12 warns about the unmasked ones.
 inline Vector smaller(const Vector& a, const Vector& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 inline Vector larger(const Vector& a, const Vector& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
 inline unsigned not_above(const Vector& a, const Vector& b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
@@ -74,7 +74,7 @@ inline TwoDoubles load_two(const double* lanes) {
   return v;
 }
 
-/// Both in single precision, concatenated.
+/// a and b, converted to single precision and concatenated.
 inline FourFloats joined(const TwoDoubles& a, const TwoDoubles& b) {
 #ifdef __SSE2__
   return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));

@@ -11,9 +11,9 @@ namespace sidestep {
 /// A geometry of FCL.
 using Solid = std::shared_ptr<fcl::CollisionGeometryd>;
 
-/// Extrudes a shape of the floor: half of the height lies below the floor, and the origin is the floor's. A
-/// circle becomes a polygon of 128 corners, a segment a vertical rectangle. Throws std::invalid_argument if
-/// the shape is invalid or the height not above 0.
+/// Extrudes a shape on the floor: half of the height lies below the floor, and the floor's origin is kept. A
+/// circle becomes a polygon with 128 corners, a segment a vertical rectangle. Throws std::invalid_argument if
+/// the shape is invalid or the height is not above 0.
 [[nodiscard]] Solid prism(const Shape& shape, double height_m);
 
 }  // namespace sidestep

@@ -19,7 +19,7 @@ struct DdsSettings {
 
 struct LinkQuality;
 
-/// The bus over Fast DDS, by UDPv4, with a second participant per process for images by shared memory. All
+/// A bus over Fast DDS and UDPv4. A second participant per process carries images by shared memory. All
 /// callbacks are made by the thread that calls run(). Throws std::runtime_error with the reason if a
 /// participant or an endpoint cannot be created.
 class DdsBus : public Bus {

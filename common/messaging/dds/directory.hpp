@@ -14,8 +14,7 @@
 
 namespace sidestep {
 
-/// Participant listener that keeps the endpoints which participants of the domain have announced.
-/// Thread-safe.
+/// Participant listener that records the endpoints announced by the participants of the domain. Thread-safe.
 class DdsDirectory : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;

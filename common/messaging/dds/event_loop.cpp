@@ -24,8 +24,8 @@ Duration read_clock(clockid_t clock) {
   return Duration{std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec};
 }
 
-/// Host's clock - steady clock. An interruption between the two readings would be an error of its length, so
-/// this takes several readings and uses the quickest.
+/// Host's clock - steady clock. An interruption between the two readings would cause an error of the
+/// same length, so this takes several pairs of readings and uses the quickest.
 Duration host_clock_offset() {
   constexpr int kReadings = 20;
   Duration ahead{0}, quickest = Duration::max();

@@ -33,7 +33,7 @@ constexpr octet kOperatorMark[] = {'s', 's', 'o', 'p'};
 /// 2.2, 9.6.1).
 bool is_discovery(const Locator_t& local) { return local.port % 2 == 0; }
 
-/// Holds delayed datagrams, and passes each one on, in a thread of its own, when its delay is over.
+/// Holds delayed datagrams. Its own thread passes each one on when the delay is over.
 class DelayedDatagrams {
  public:
   DelayedDatagrams() : thread_([this] { run(); }) {}
@@ -59,7 +59,7 @@ class DelayedDatagrams {
     changed_.notify_all();
   }
 
-  /// Drops the port's datagrams. After the return no datagram of this port is passed on or being passed on.
+  /// Drops the port's datagrams. Once this returns, none is being passed on, and none will be.
   void close(std::uint32_t port) {
     std::unique_lock lock(mutex_);
     closed_.insert(port);

@@ -10,8 +10,8 @@
 namespace sidestep {
 
 /// A UDP transport that impairs arriving datagrams: it loses, duplicates, delays and so reorders them.
-/// Discovery is exempt, or processes would not find each other for seconds; so are an operator's messages, or
-/// a fault could not be ended.
+/// Discovery is exempt, because otherwise processes would not find each other for seconds. An operator's
+/// messages are exempt, because otherwise a fault could not be ended.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> fault_transport(
     std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,
     std::shared_ptr<Impairment> impairment);

@@ -20,10 +20,10 @@ void remove_stale_segments(const std::filesystem::path& folder, std::chrono::sec
 /// others. If there is no shared memory it uses UDP only, and logs that.
 std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings);
 
-/// A bus's reader of images. It reads by shared memory. That fails without an error if the writer's shared
-/// memory is another one (containers). So if a writer is known and no image arrives for a second, the reader
-/// switches to UDP; after two more seconds back to shared memory, and so on, with the timeout doubled each
-/// time, until an image arrives.
+/// A bus's reader of images. It starts with shared memory, which fails silently if the writer uses another
+/// shared memory (containers). Therefore, if a writer is known but no image arrives for a second, the reader
+/// switches to UDP; after two more seconds it switches back to shared memory, and so on. The timeout doubles
+/// each time, until an image arrives.
 class DdsImageReader {
  public:
   /// Throws std::runtime_error as DdsReader.

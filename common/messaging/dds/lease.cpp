@@ -35,7 +35,7 @@ namespace eprosima::fastrtps::rtps {
 
 /// The timer callback of each remote participant's lease. If another thread is removing the participant
 /// meanwhile, the library's version waits for that, and then asserts that the participant still exists. The
-/// process aborts, and a robot loses its agent because a neighbour has left.
+/// process then aborts, and a robot loses its agent because a neighbour has left.
 void PDP::check_remote_participant_liveliness(ParticipantProxyData* remote) {
   ++checks;
   std::unique_lock<std::recursive_mutex> lock(*getMutex());

@@ -151,7 +151,7 @@ void RawType::deleteData(void* data) { delete static_cast<std::vector<std::uint8
 
 bool RawType::getKey(void*, InstanceHandle_t* handle, bool) {
   // The position of the key in the bytes is unknown. Unless the writer sends the key's hash, all samples
-  // share one.
+  // belong to one instance.
   *handle = InstanceHandle_t();
   handle->value[0] = 1;
   return true;

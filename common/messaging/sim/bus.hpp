@@ -16,8 +16,8 @@ struct SimProcessSpec {
   Duration clock_offset{0};  ///< process's clock - network's time
 };
 
-/// One instance of a simulated process, and its access to a SimNetwork. Destroying it is kill -9: its timers
-/// never fire and messages on their way to it are lost; messages that it has sent still arrive.
+/// One instance of a simulated process, and its access to a SimNetwork. Destroying it simulates kill -9: its
+/// timers never fire and messages on their way to it are lost; messages that it has sent still arrive.
 class SimBus : public Bus {
  public:
   /// A new process, without link faults.
@@ -35,9 +35,9 @@ class SimBus : public Bus {
   /// From now on, receives all messages without delay or loss. For audit and metrics, which are not part of
   /// the system.
   void become_observer();
-  /// SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are queued.
-  /// Further ones are lost, as when a socket buffer is full. At the end all queued messages and timers are
-  /// delivered at once.
+  /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
+  /// queued. Further ones are lost, as when a socket buffer is full. At the end, all queued messages and
+  /// timers are delivered at the same time.
   void pause(Time until, std::size_t max_queued);
 
  protected:

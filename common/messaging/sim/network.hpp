@@ -29,7 +29,7 @@ struct SimProcessInstance {
   std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
 };
 
-/// One subscription of one process instance. A callback-less one owns the instance's timers.
+/// One subscription of one process instance. The instance's timers refer to one without a callback.
 struct SimSubscription {
   SimProcessInstance* instance;
   std::function<void(const void*)> callback;
@@ -38,8 +38,8 @@ struct SimSubscription {
 
 /// Runs many processes in one thread under virtual time: an event queue ordered by (time, order of
 /// scheduling), and a network between the processes that delays, loses, duplicates and reorders messages. The
-/// same seed gives the same run, bit for bit. Channels of kEvent are reliable and in order, as over DDS;
-/// their messages are only delayed.
+/// same seed gives the same run, bit for bit. Channels with Qos::kEvent are reliable and in order, as over
+/// DDS; their messages are only delayed.
 class SimNetwork {
  public:
   SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network);

@@ -34,7 +34,7 @@ struct FrameOptions {
 const Ink kTruth{255, 255, 255};
 constexpr double kCrossRadius_m = 0.03;
 
-/// Draws the true positions, and on top of them the detections with default colours; prints the errors.
+/// Draws the true positions and, on top, the detections made with default colours; prints the errors.
 void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
              const MarkerLayout& layout, cv::Mat3b& picture) {
   const FloorScene floor = floor_scene(scenario);

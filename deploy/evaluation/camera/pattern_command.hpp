@@ -11,8 +11,8 @@ namespace sidestep {
 
 /// Evaluates a layout, as in the comparison of patterns by Bruce (CMU-CS-06-181, appendix A.2.3): the number
 /// of patterns that its dots can show with two to six colours and with the colours it uses, the minimum
-/// distance of its patterns, and the pose error when each dot's position has this standard deviation per
-/// axis.
+/// distance of its patterns, and the pose error for a standard deviation of `dot_sd_m` per axis in each dot's
+/// position.
 [[nodiscard]] std::string describe_layout(const MarkerLayout& layout, double dot_sd_m);
 
 /// Adds `pattern`, which prints the evaluation of a layout. Parsing it sets `action` to the command, which

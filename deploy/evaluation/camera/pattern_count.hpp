@@ -16,8 +16,8 @@ namespace sidestep {
 /// The number of colours in a layout's patterns, without the team colours.
 [[nodiscard]] std::uint64_t used_colour_count(const MarkerLayout& layout);
 
-/// The number of dots in which the two most similar patterns differ at any headings, or a pattern from itself
-/// after a rotation. With 1, a hidden dot may leave the identity ambiguous.
+/// The minimum number of dots by which two patterns differ, over all relative headings, or by which a pattern
+/// differs from a rotation of itself. If it is 1, one hidden dot can make the identity ambiguous.
 [[nodiscard]] std::size_t min_pattern_distance(const MarkerLayout& layout);
 
 }  // namespace sidestep

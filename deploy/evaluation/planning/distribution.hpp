@@ -11,9 +11,7 @@ namespace sidestep {
 /// Values of one quantity, kept sorted.
 class Distribution {
  public:
-  void add(double value) {
-    values_.insert(std::upper_bound(values_.begin(), values_.end(), value), value);
-  }
+  void add(double value) { values_.insert(std::upper_bound(values_.begin(), values_.end(), value), value); }
   void add(const Distribution& other) {
     const auto middle = static_cast<std::ptrdiff_t>(values_.size());
     values_.insert(values_.end(), other.values_.begin(), other.values_.end());
@@ -42,7 +40,7 @@ class Distribution {
   std::vector<double> values_;
 };
 
-/// The smallest number of values from which a 99th percentile is reported.
+/// The minimum number of values for which a 99th percentile is reported.
 inline constexpr std::size_t kMinForP99 = 1000;
 
 }  // namespace sidestep

@@ -21,8 +21,8 @@ class WindingSets {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
 
-  /// Records that the angle of `b` exceeds that of `a` by `turn_rad`. Returns false if what is known already
-  /// differs by a full turn.
+  /// Records that the angle of `b` exceeds that of `a` by `turn_rad`. Returns false if the difference already
+  /// known disagrees by a full turn.
   [[nodiscard]] bool join(std::uint32_t a, std::uint32_t b, double turn_rad) {
     const std::uint32_t root_a = find(a), root_b = find(b);
     const double difference_rad = angle_rad_[a] + turn_rad - angle_rad_[b];
@@ -33,7 +33,7 @@ class WindingSets {
   }
 
  private:
-  /// Makes the representative the parent.
+  /// Returns the representative, and makes it the parent to shorten later searches.
   std::uint32_t find(std::uint32_t i) {
     const std::uint32_t parent = parent_[i];
     if (parent == i) return i;
@@ -67,8 +67,8 @@ FreeSpace::FreeSpace(const PlanWorld& world) {
   }
 }
 
-/// Rectangles as thick as the field stand for the half-planes: a curve outside of the field winds round no
-/// position in it, or round all.
+/// Rectangles as thick as the field represent the half-planes: a curve outside the field winds around either
+/// none or all of the positions in the field.
 void FreeSpace::add_field_sides(const PlanWorld& world) {
   const Vec2 out(1.5 * world.field.length_m, 1.5 * world.field.width_m);
   const Vec2 in(world.field.length_m / 2 - world.radius_m, world.field.width_m / 2 - world.radius_m);

@@ -9,23 +9,24 @@
 
 namespace sidestep {
 
-/// Decides exactly, up to rounding, whether a path for the disc robot joins two positions. It uses neither
-/// planners nor samples, so it decides which queries of a benchmark are solvable.
+/// Decides whether a free path for the disc robot joins two positions, exactly up to rounding. Uses neither
+/// planners nor samples, so it is the reference for which queries of a benchmark are solvable.
 ///
-/// The positions that are blocked are a union of convex sets: the obstacles inflated by the robot's radius,
-/// and four half-planes outside of the field. Two free positions are separated exactly if a closed curve in
-/// that union winds round one of them and not round the other (Alexander duality), and the overlaps between
-/// pairs of sets generate all such curves (nerve theorem).
+/// The blocked positions form a union of convex sets: the obstacles inflated by the robot's radius, and four
+/// half-planes outside of the field. Two free positions are separated exactly if a closed curve in that union
+/// winds around one of them and not around the other (Alexander duality), and the overlaps between pairs of
+/// sets generate all such curves (nerve theorem).
 class FreeSpace {
  public:
-  /// Copies what it needs of the world.
+  /// Copies what it needs from the world.
   explicit FreeSpace(const PlanWorld& world);
 
-  /// Both positions have to be free.
+  /// Precondition: both positions are free.
   [[nodiscard]] bool connects(const Vec2& a_m, const Vec2& b_m) const;
 
  private:
-  /// Two sets that overlap, with a curve from one's anchor over a common point to the other's anchor.
+  /// Two overlapping sets, with a curve from the anchor of one through a common point to the anchor of the
+  /// other.
   struct Overlap {
     std::uint32_t first, second;
     Vec2 common_m;

@@ -22,7 +22,7 @@ namespace {
 
 using Trees = BidirectionalErrt<DiscDomain>;
 
-/// Builds its graph anew when the world differs from that of the last plan.
+/// Rebuilds its graph when the world differs from that of the last plan.
 class FullVisibility {
  public:
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {
@@ -72,9 +72,9 @@ PlanDrawing drawing_of(GridPlanner& planner) { return {planner.steps(), {}, {}, 
 PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cells, {}}; }
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 
-/// What the agents use.
+/// The settings that the agents use.
 DiscDomainSettings shipped_domain(const PlanWorld&) { return {}; }
-/// What OMPL does: its range, uniform samples.
+/// Settings that match OMPL: its range, and uniform samples only.
 DiscDomainSettings namesake_domain(const PlanWorld& world) {
   return {.step_m = namesake_range_m(world), .contact_probability = 0};
 }
@@ -107,17 +107,16 @@ Factory shipped(Arguments... arguments) {
   return factory<Planner>(shipped_domain, arguments...);
 }
 
-/// RRT as OMPL has it.
-constexpr ErrtSettings kRrt{.goal_probability = kNamesakeGoalBias,
-                            .cache_capacity = 0,
-                            .tries_straight_line = false};
+/// RRT as in OMPL.
+constexpr ErrtSettings kRrt{
+    .goal_probability = kNamesakeGoalBias, .cache_capacity = 0, .tries_straight_line = false};
 ErrtSettings rrt_with(void (*change)(ErrtSettings&)) {
   ErrtSettings settings = kRrt;
   change(settings);
   return settings;
 }
 
-/// RRTConnect as OMPL has it: one extension towards the sample, then as many as it takes towards the new node.
+/// RRTConnect as in OMPL: one extension towards the sample, then as many as possible towards the new node.
 constexpr BidirectionalErrtSettings kRrtConnect{
     .cache_capacity = 0, .growth_extensions = 1, .tries_straight_line = false};
 BidirectionalErrtSettings rrt_connect_with(void (*change)(BidirectionalErrtSettings&)) {
@@ -139,9 +138,9 @@ std::vector<Entry> one_tree_planners() {
           {"rrt+straight-line",
            factory<Tree>(namesake_domain, rrt_with([](auto& s) { s.tries_straight_line = true; })), "rrt"},
           {"rrt+border-samples", factory<Tree>(border_sampling_domain, kRrt), "rrt"},
-          {"rrt+cache",
-           factory<Tree>(namesake_domain,
-                         rrt_with([](auto& s) { s.cache_capacity = ErrtSettings{}.cache_capacity; })),
+          {"rrt+cache", factory<Tree>(namesake_domain, rrt_with([](auto& s) {
+                                        s.cache_capacity = ErrtSettings{}.cache_capacity;
+                                      })),
            "rrt"},
           {"errt", shipped<Tree>(), "rrt"}};
 }
@@ -151,35 +150,33 @@ std::vector<Entry> two_tree_planners() {
   const auto two_trees = [](void (*change)(Settings&)) {
     return factory<Trees>(namesake_domain, rrt_connect_with(change));
   };
-  return {
-      {"rrt-connect", factory<Trees>(namesake_domain, kRrtConnect)},
-      {"rrt-connect+straight-line", two_trees([](Settings& s) { s.tries_straight_line = true; }),
-       "rrt-connect"},
-      {"rrt-connect+border-samples", factory<Trees>(border_sampling_domain, kRrtConnect), "rrt-connect"},
-      {"rrt-connect+cache", two_trees([](Settings& s) { s.cache_capacity = Settings{}.cache_capacity; }),
-       "rrt-connect"},
-      {"rrt-connect+extend-both",
-       two_trees([](Settings& s) { s.growth_extensions = Settings{}.growth_extensions; }), "rrt-connect"},
-      {"bi-errt", shipped<Trees>(), "rrt-connect"},
-      {"bi-errt-no-cache", shipped<Trees>(Settings{.cache_capacity = 0}), "rrt-connect"},
-      {"bi-errt-4-bridges", shipped<Trees>(Settings{.bridges = 4}), "rrt-connect"},
-      {"anytime", shipped<Anytime<DiscDomain, Trees>>(Trees(Settings{.cache_capacity = 0})), "rrt-connect",
-       PlannerKind::kAnytime}};
+  return {{"rrt-connect", factory<Trees>(namesake_domain, kRrtConnect)},
+          {"rrt-connect+straight-line", two_trees([](Settings& s) { s.tries_straight_line = true; }),
+           "rrt-connect"},
+          {"rrt-connect+border-samples", factory<Trees>(border_sampling_domain, kRrtConnect), "rrt-connect"},
+          {"rrt-connect+cache", two_trees([](Settings& s) { s.cache_capacity = Settings{}.cache_capacity; }),
+           "rrt-connect"},
+          {"rrt-connect+extend-both",
+           two_trees([](Settings& s) { s.growth_extensions = Settings{}.growth_extensions; }), "rrt-connect"},
+          {"bi-errt", shipped<Trees>(), "rrt-connect"},
+          {"bi-errt-no-cache", shipped<Trees>(Settings{.cache_capacity = 0}), "rrt-connect"},
+          {"bi-errt-4-bridges", shipped<Trees>(Settings{.bridges = 4}), "rrt-connect"},
+          {"anytime", shipped<Anytime<DiscDomain, Trees>>(Trees(Settings{.cache_capacity = 0})),
+           "rrt-connect", PlannerKind::kAnytime}};
 }
 
 std::vector<Entry> other_planners() {
   using Roadmaps = Prm<DiscDomain>;
-  return {
-      {"prm", shipped<Roadmaps>(), "", PlannerKind::kForOneWorld},
-      {"one-shot-prm", shipped<Roadmaps>(one_shot_prm()), "prm"},
-      {"dynamic-prm", shipped<Roadmaps>(dynamic_prm()), "prm"},
-      {"lazy-visibility", shipped<LazyVisibility>(), "visibility"},
-      {"visibility", shipped<FullVisibility>(), "", PlannerKind::kForOneWorld},
-      {"grid-bfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst}), "grid-a-star"},
-      {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
-      {"grid-a-star", shipped<GridPlanner>()},
-      {"quad-tree", shipped<QuadTree>()},
-      {"trapezoids", shipped<TrapezoidalDecomposition>()}};
+  return {{"prm", shipped<Roadmaps>(), "", PlannerKind::kForOneWorld},
+          {"one-shot-prm", shipped<Roadmaps>(one_shot_prm()), "prm"},
+          {"dynamic-prm", shipped<Roadmaps>(dynamic_prm()), "prm"},
+          {"lazy-visibility", shipped<LazyVisibility>(), "visibility"},
+          {"visibility", shipped<FullVisibility>(), "", PlannerKind::kForOneWorld},
+          {"grid-bfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst}), "grid-a-star"},
+          {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
+          {"grid-a-star", shipped<GridPlanner>()},
+          {"quad-tree", shipped<QuadTree>()},
+          {"trapezoids", shipped<TrapezoidalDecomposition>()}};
 }
 
 const std::vector<Entry>& entries() {
@@ -195,7 +192,8 @@ const std::vector<Entry>& entries() {
 }  // namespace
 
 double namesake_range_m(const PlanWorld& world) {
-  return 0.2 * std::hypot(world.field.length_m - 2 * world.radius_m, world.field.width_m - 2 * world.radius_m);
+  return 0.2 *
+         std::hypot(world.field.length_m - 2 * world.radius_m, world.field.width_m - 2 * world.radius_m);
 }
 
 const std::vector<std::string>& planner_names() {

@@ -22,14 +22,14 @@ struct PlanDrawing {
 enum class PlannerKind {
   kForAnyWorld,
   kForOneWorld,  ///< keeps a roadmap or graph of the world, which must not change
-  kAnytime,      ///< uses up its budget
+  kAnytime,      ///< improves its path until the budget is used up
 };
 
 /// A planner of agents/planning, chosen by name, and the domain settings that belong to it.
 struct NamedPlanner {
   std::string name;
   PlannerKind kind = PlannerKind::kForAnyWorld;
-  /// The planner that this one adds one thing to, or is a variant of; empty where there is none.
+  /// The planner that this one is a variant of, or adds one feature to; empty: none.
   std::string baseline;
   /// Valid until the planner's next plan.
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
@@ -37,10 +37,9 @@ struct NamedPlanner {
   std::function<DiscDomainSettings(const PlanWorld&)> domain_settings;
 };
 
-/// Settings of the planners that are namesakes of OMPL's RRT and RRTConnect: both sides of a comparison use
-/// them.
+/// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.
 inline constexpr double kNamesakeGoalBias = 0.05;
-/// A fifth of the diagonal of the positions that the robot may take: OMPL's default range
+/// A fifth of the diagonal of the rectangle of the robot's possible positions: OMPL's default range
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
 [[nodiscard]] double namesake_range_m(const PlanWorld& world);
 

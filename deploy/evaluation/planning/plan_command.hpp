@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `plan` to a program. When it is parsed, `action` becomes what to run; that returns the exit code, and
-/// may throw ConfigError for a world file, or std::runtime_error that says what failed.
+/// Adds `plan`. Parsing it sets `action`, which returns the exit code, and may throw ConfigError for a world
+/// file or std::runtime_error with the reason of any other failure.
 void add_plan_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -39,7 +39,7 @@ void ReplanCourse::step() {
   move_circles();
   if ((world_.queries[goal_].goal_m - position_m_).norm() < kGoalTolerance_m)
     goal_ = (goal_ + 1) % world_.queries.size();
-  Rng rng(0);  // the driver does not use it
+  Rng rng(0);  // unused: the driver does not sample
   path_ = plan_robustly(driver_, domain(), position_m_, {}, rng);
 }
 

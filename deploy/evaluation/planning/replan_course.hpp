@@ -6,17 +6,18 @@
 
 namespace sidestep {
 
-/// What one plan of a course may spend. Counts, not time, so that a seed gives the same plans everywhere.
+/// Budget of one plan of a course: counts instead of time, so that a seed gives the same plans on every
+/// machine.
 inline const Budget kReplanBudget{.nodes = 2000, .samples = 20'000};
 
-/// A sequence of queries in a moving world: the benchmark's 64 circles move straight to and fro, and a robot
-/// drives along the shortest path among them, from goal to goal. The queries depend on the seed alone, not on
-/// the planner that is measured.
+/// A sequence of queries in a moving world: the benchmark's 64 circles move back and forth in straight lines,
+/// and a robot drives along the shortest path among them, from goal to goal. The queries depend on the seed
+/// alone, not on the planner that is measured.
 class ReplanCourse {
  public:
   static constexpr double kCycle_s = 1.0 / 60, kSpeed_mps = 2, kObstacleSpeed_mps = 0.5;
 
-  /// `cycles`: the largest number of steps that will be made.
+  /// `cycles`: the maximum number of calls of step().
   ReplanCourse(std::size_t cycles, std::uint64_t seed);
 
   /// Advances the world by one cycle; precedes the first query.
@@ -27,7 +28,7 @@ class ReplanCourse {
   const Vec2& start_m() const { return position_m_; }
   /// The shortest path, if there is one.
   const Plan<Vec2>& shortest() const { return path_; }
-  /// As is_valid_path; a path that begins in an obstacle counts as valid.
+  /// Like is_valid_path(), but a path that begins in an obstacle counts as valid.
   [[nodiscard]] bool is_valid(const std::vector<Vec2>& path_m) const;
 
  private:

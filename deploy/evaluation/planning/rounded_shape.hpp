@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// A point, segment or convex polygon (counter-clockwise) inflated by a radius: one form for every obstacle.
-/// The reference checks use it; it shares no arithmetic with the collision structures that planners query.
+/// Used by the reference checks; shares no arithmetic with the collision structures that planners query.
 struct RoundedShape {
   std::vector<Vec2> corners_m;
   double radius_m = 0;

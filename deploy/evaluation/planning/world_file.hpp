@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Reads and checks a world file, see deploy/evaluation/planning/README.md. Throws ConfigError with file and line
-/// for the first error.
+/// Reads and checks a world file; see deploy/evaluation/planning/README.md. Throws ConfigError with file and
+/// line for the first error.
 [[nodiscard]] PlanWorld load_plan_world(const std::string& path);
 
 /// The same from text. `file_name` appears in messages, and its stem is the world's default name.

@@ -71,7 +71,7 @@ void add_mixed_shapes(PlanWorld& world, std::size_t count_each, Rng& rng) {
   }
 }
 
-/// A perfect maze: one route joins any two cells (depth-first, from the first cell).
+/// A perfect maze: exactly one route joins any two cells (depth-first, from the first cell).
 class Maze {
  public:
   Maze(std::size_t cells, Rng& rng)
@@ -105,7 +105,7 @@ class Maze {
           const double from = static_cast<double>(i) * cell - length_m / 2;
           const double to = static_cast<double>(end) * cell - length_m / 2;
           walls.push_back(vertical ? Segment{{position, from}, {position, to}}
-                                  : Segment{{from, position}, {to, position}});
+                                   : Segment{{from, position}, {to, position}});
         }
       }
     }
@@ -138,7 +138,7 @@ void make_maze(PlanWorld& world, std::size_t queries, Rng& rng) {
   add_queries_across(world, queries, rng);
 }
 
-/// A wall with a gap a fifth wider than the robot.
+/// A wall with a gap that is 20 % wider than the robot.
 void make_gap(PlanWorld& world, std::size_t queries, Rng& rng) {
   const double half = world.radius_m * 1.2, middle = 1;
   world.obstacles = {Box{{-0.2, -5}, {0.2, middle - half}}, Box{{-0.2, middle + half}, {0.2, 5}}};

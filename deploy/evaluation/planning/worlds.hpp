@@ -27,8 +27,9 @@ struct PlanWorld {
 /// The names that make_world knows, in the order of the benchmark's table.
 const std::vector<std::string>& world_names();
 
-/// A world with this number of queries, all from the seed: empty, circles, mixed, maze, gap, trap or u. Every
-/// query is solvable, as FreeSpace decides it. Throws std::invalid_argument for another name.
+/// Generates a world of this kind (empty, circles, mixed, maze, gap, trap or u) with this number of queries
+/// from the seed. Every query is solvable according to FreeSpace. Throws std::invalid_argument for another
+/// name.
 PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t seed);
 
 /// This number of circles with the density of the 64 in "circles"; the field grows with the number.
@@ -38,12 +39,13 @@ PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t s
 /// apart.
 void add_queries_across(PlanWorld& world, std::size_t queries, Rng& rng);
 
-/// Whether the robot at a position lies in the field and touches no obstacle, each obstacle compared exactly.
+/// Whether the robot at a position lies within the field and touches no obstacle. Compares each obstacle
+/// exactly.
 [[nodiscard]] bool is_free(const PlanWorld& world, const Vec2& position_m);
 
-/// Whether a path stays in the field and off the obstacles, each of its segments compared exactly with each
-/// obstacle, independently of the structures that planners query. `slack_m`: how much closer than its radius
-/// the robot may come. A path without positions is not valid.
+/// Whether a path stays within the field and clear of the obstacles. Compares each segment exactly with each
+/// obstacle, independently of the structures that planners query. `slack_m`: how much closer to an obstacle
+/// than its radius the robot may come. A path without positions is not valid.
 [[nodiscard]] bool is_valid_path(const PlanWorld& world, const std::vector<Vec2>& path_m, double slack_m);
 
 }  // namespace sidestep

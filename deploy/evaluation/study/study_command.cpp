@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// Replaces CLI11's own check, which reads -1 as a large number.
+/// Replaces CLI11's own check, which accepts -1 as a large number.
 std::string seed_number(const std::string& text) {
   std::uint64_t number = 0;
   const char* end = text.data() + text.size();

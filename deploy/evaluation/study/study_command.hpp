@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `study ...` to a program. When one of its commands is parsed, `action` becomes what to run; that
-/// returns the exit code, and may throw std::runtime_error that says what failed.
+/// Adds `study`. Parsing one of its commands sets `action`, which returns the exit code and may throw
+/// std::runtime_error with the reason of a failure.
 void add_study_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -21,7 +21,8 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File temporary_file() {
   File file(std::tmpfile(), &std::fclose);
-  if (!file) throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
+  if (!file)
+    throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
   return file;
 }
 

@@ -19,7 +19,8 @@ constexpr std::size_t kMaxHosts = 100;
 constexpr std::size_t kMaxNameLength = 24;
 constexpr std::uint32_t kMaxNumber = kMaxRobots - 1;
 
-std::string identifier_from(const YAML::Node& node, const YamlLocation& location, const std::string& extra_characters) {
+std::string identifier_from(const YAML::Node& node, const YamlLocation& location,
+                            const std::string& extra_characters) {
   const std::string text = text_from(node, location);
   const auto is_plain = [&](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -27,14 +28,15 @@ std::string identifier_from(const YAML::Node& node, const YamlLocation& location
   };
   if (text.empty() || text[0] == '-' || text[0] == '.' || !std::all_of(text.begin(), text.end(), is_plain)) {
     location.fail(fmt::format("expected letters, digits and any of \"{}\", got \"{}\"", extra_characters,
-                             text.substr(0, 40)));
+                              text.substr(0, 40)));
   }
   return text;
 }
 
 std::string name_from(const YAML::Node& node, const YamlLocation& location) {
   const std::string name = identifier_from(node, location, "-_");
-  if (name.size() > kMaxNameLength) location.fail(fmt::format("expected at most {} characters", kMaxNameLength));
+  if (name.size() > kMaxNameLength)
+    location.fail(fmt::format("expected at most {} characters", kMaxNameLength));
   return name;
 }
 
@@ -61,8 +63,8 @@ NumberedShare::Range range_from(const YAML::Node& node, const YamlLocation& loca
     const bool is_number =
         !digits.empty() && digits.size() <= 4 && digits.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || std::stoul(digits) > kMaxNumber) {
-      location.fail(fmt::format("expected a number from 0 to {} or a range such as 5-9, got \"{}\"", kMaxNumber,
-                               text.substr(0, 40)));
+      location.fail(fmt::format("expected a number from 0 to {} or a range such as 5-9, got \"{}\"",
+                                kMaxNumber, text.substr(0, 40)));
     }
     return static_cast<std::uint32_t>(std::stoul(digits));
   };
@@ -122,7 +124,8 @@ void read_processes(YamlMap& map, HostSpec& host) {
                        : process == "coordinator" ? &host.coordinator
                                                   : nullptr;
     if (!flag)
-      element_location.fail("expected simulator, vision or coordinator, got \"" + process.substr(0, 40) + "\"");
+      element_location.fail("expected simulator, vision or coordinator, got \"" + process.substr(0, 40) +
+                            "\"");
     *flag = true;
   }
 }
@@ -157,7 +160,8 @@ void check_unique(const Hosts& hosts) {
       location.fail("create: true requires transport {namespace: NAME}");
     if (!addresses.insert(host.interface).second)
       location.fail("the interface " + host.interface + " is already in use");
-    if (host.target == kBridgeLabel) location.fail("this namespace is reserved for the launcher, expected another name");
+    if (host.target == kBridgeLabel)
+      location.fail("this namespace is reserved for the launcher, expected another name");
     if (!targets.insert(host.target).second) location.fail("another host has this namespace");
   }
 }

@@ -16,7 +16,7 @@ struct NumberedShare {
     int line;  ///< of the hosts file
   };
   std::vector<Range> ranges;
-  bool rest = false;  ///< an even share of the processes that no host names
+  bool rest = false;  ///< takes an even share of the processes that no host names
 };
 
 /// A host (a machine or a network namespace) and the processes that run there.

@@ -128,7 +128,7 @@ void remove_abandoned_namespaces() {
     try {
       ip({"netns", "del", found.name});
     } catch (const std::exception&) {
-      // Another launcher that is starting may have removed it.
+      // Another launcher may have removed it in the meantime.
     }
   }
 }

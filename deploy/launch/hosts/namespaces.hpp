@@ -23,9 +23,9 @@ class ScopedNamespace {
   int previous_ = -1;
 };
 
-/// Emulated hosts on this machine: one network namespace per host, and one more with the launcher's address and the
-/// bridge that connects them. The network is isolated from the machine and from other runs. All names contain the
-/// process's pid.
+/// Emulated hosts on this machine: one network namespace per host, and one more with the launcher's address
+/// and the bridge that connects them. The network is isolated from the machine and from other runs. All names
+/// contain the process's pid.
 class NamespaceNetwork {
  public:
   /// Precondition: hosts.create. Throws std::runtime_error after removing everything that it created.

@@ -33,8 +33,7 @@ void Placement::place_single(const std::string& process, bool HostSpec::*flag) {
   for (const HostSpec& host : hosts_.hosts) {
     if (host.*flag) place(process, host, host.line);
   }
-  if (!host_by_process_.count(process))
-    throw ConfigError(hosts_.file, 1, "no host runs " + process);
+  if (!host_by_process_.count(process)) throw ConfigError(hosts_.file, 1, "no host runs " + process);
 }
 
 void Placement::place_numbered(const std::map<std::uint32_t, std::string>& names,
@@ -45,8 +44,8 @@ void Placement::place_numbered(const std::map<std::uint32_t, std::string>& names
       const auto first = names.lower_bound(range.first), last = names.upper_bound(range.last);
       if (first == last) {
         throw ConfigError(hosts_.file, range.line,
-                            fmt::format("host {} runs {} {}-{}, but the scenario has none of them", host.name,
-                                        key, range.first, range.last));
+                          fmt::format("host {} runs {} {}-{}, but the scenario has none of them", host.name,
+                                      key, range.first, range.last));
       }
       for (auto i = first; i != last; ++i) place(i->second, host, range.line);
     }

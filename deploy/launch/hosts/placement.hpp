@@ -12,8 +12,8 @@ namespace sidestep {
 /// The host of each process of a scenario.
 class Placement {
  public:
-  /// Throws ConfigError with the line of the hosts file when a process has no host or two, or a host names
-  /// processes that the scenario does not have. The hosts must outlive the placement.
+  /// Throws ConfigError with the line of the hosts file when a process has no host or more than one, or a
+  /// host names processes that the scenario does not have. The hosts must outlive the placement.
   Placement(const Hosts& hosts, const Scenario& scenario);
 
   /// `process`: "simulator", "agent 3" etc. (deploy/monitor/process_names.hpp)

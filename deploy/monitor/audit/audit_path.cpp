@@ -36,8 +36,8 @@ struct Pair {
     return length(gap.x, gap.y);
   }
   double end_s() const { return std::max({0.0, a.duration_s() - a_from_s, b.duration_s() - b_from_s}); }
-  /// The relative velocity is linear between phase boundaries, so its maximum lies at a boundary. Both sides of
-  /// each boundary are sampled, because a path that ends with residual speed rests immediately afterwards.
+  /// The relative velocity is linear between phase boundaries, so its maximum lies at a boundary. Both sides
+  /// of each boundary are sampled, because a path that ends with residual speed rests immediately afterwards.
   double max_relative_speed() const {
     double largest = 0;
     const auto sample = [&](const AuditPath& path, double from_s) {
@@ -84,9 +84,9 @@ ClosestApproach closest_approach_of(const Pair& pair, double cutoff_m, std::int6
 
 bool is_sane(const msg::Version& version) {
   bool sane = version.phase_count() <= msg::MAX_PHASES && is_valid_time(version.start_ns()) &&
-               within(version.x_m(), kMaxCoordinate_m) &&
-              within(version.y_m(), kMaxCoordinate_m) && within(version.vx_mps(), kMaxSpeed_mps) &&
-              within(version.vy_mps(), kMaxSpeed_mps) && version.inflation_m() >= 0 && version.inflation_m() <= 10;
+              within(version.x_m(), kMaxCoordinate_m) && within(version.y_m(), kMaxCoordinate_m) &&
+              within(version.vx_mps(), kMaxSpeed_mps) && within(version.vy_mps(), kMaxSpeed_mps) &&
+              version.inflation_m() >= 0 && version.inflation_m() <= 10;
   for (int i = 0; sane && i < version.phase_count(); ++i) {
     const msg::MotionPhase& phase = version.phases()[static_cast<std::size_t>(i)];
     sane = phase.duration_ns() >= 0 && phase.duration_ns() <= kMaxPhaseDuration_ns &&
@@ -133,11 +133,12 @@ AuditPath::Node AuditPath::at_s(double elapsed_s) const {
           n.ay};
 }
 
-ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m, std::int64_t from_ns) {
+ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m,
+                                 std::int64_t from_ns) {
   from_ns = std::max({from_ns, a.start_ns(), b.start_ns()});
   return closest_approach_of({a, b, static_cast<double>(from_ns - a.start_ns()) * 1e-9,
-                     static_cast<double>(from_ns - b.start_ns()) * 1e-9},
-                    cutoff_m, from_ns);
+                              static_cast<double>(from_ns - b.start_ns()) * 1e-9},
+                             cutoff_m, from_ns);
 }
 
 ClosestApproach closest_approach(const AuditPath& path, double x_m, double y_m, double cutoff_m) {

@@ -44,7 +44,8 @@ class AuditPath {
  private:
   std::int64_t start_ns_ = 0;
   int count_ = 0;
-  std::array<Node, msg::MAX_PHASES + 1> nodes_{};  ///< the beginning of each phase, and the end of the last one
+  std::array<Node, msg::MAX_PHASES + 1>
+      nodes_{};  ///< the beginning of each phase, and the end of the last one
   double reach_m_ = 0;
   double max_speed_mps_ = 0;
 };
@@ -55,12 +56,13 @@ struct ClosestApproach {
   std::int64_t at_ns = 0;
 };
 
-/// Closest approach from the later of the two starts and `from_ns` on. Steps are as long as the relative speed
-/// allows without missing a distance below `cutoff_m`, and at most 0.25 ms where the paths are that close.
-/// Exact to micrometres below `cutoff_m`; above it, the result is only a bound.
+/// Closest approach at or after `from_ns` and the later of the two starts. Steps are as long as the relative
+/// speed allows without missing a distance below `cutoff_m`, and at most 0.25 ms where the paths are that
+/// close. Exact to micrometres below `cutoff_m`; above it, the result is only a bound.
 [[nodiscard]] ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m,
                                                std::int64_t from_ns = 0);
 /// The same for a path and a fixed point.
-[[nodiscard]] ClosestApproach closest_approach(const AuditPath& path, double x_m, double y_m, double cutoff_m);
+[[nodiscard]] ClosestApproach closest_approach(const AuditPath& path, double x_m, double y_m,
+                                               double cutoff_m);
 
 }  // namespace sidestep

@@ -115,8 +115,8 @@ Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& versi
   if (fact.is_lifted && fact.executing == 0) {
     // Only a rest version that was granted and not yet executed remains possible for a lifted robot.
     const bool is_rest_version = version.has_content && version.version.base() == 0 && version.number != 0 &&
-                          version.path.reach_m() == 0 && !version.was_executed &&
-                          version.path.start_ns() > fact.at_ns;
+                                 version.path.reach_m() == 0 && !version.was_executed &&
+                                 version.path.start_ns() > fact.at_ns;
     return is_rest_version ? Exclusion::kNone : Exclusion::kLifted;
   }
   if (version.number < fact.executing) return Exclusion::kOlder;

@@ -35,7 +35,7 @@ class EpochMemory {
   Epoch max_evicted_ = 0;
 };
 
-/// What is known of one version. Sending times are by the auditor's clock.
+/// What is known about one version. Sending times are by the auditor's clock.
 struct KnownVersion {
   // The members that are read for most versions come first, adjacent in memory.
   VersionNumber number = 0;
@@ -62,7 +62,7 @@ struct KnownVersion {
   bool may_be_in(Epoch epoch) const;
 };
 
-/// A received proposal and what is known of its verdict.
+/// A received proposal and what is known about its verdict.
 struct ProposalRecord {
   std::uint64_t number = 0;
   Epoch epoch = 0;
@@ -81,21 +81,22 @@ struct EarlyVerdict {
   VersionNumber granted = 0;
 };
 
-/// What the auditor knows of one robot of the roster; bounded in size.
+/// What the auditor knows about one robot of the roster; bounded in size.
 class AuditedRobot {
  public:
   static constexpr std::size_t kMaxVersions = 64;
   static constexpr std::size_t kMaxProposals = 16;
 
   RobotId id = 0;
-  std::deque<KnownVersion> versions;  ///< ascending by number; mostly appended at the end, removed at the front
+  std::deque<KnownVersion>
+      versions;  ///< ascending by number; mostly appended at the end, removed at the front
   std::array<ProposalRecord, kMaxProposals> proposals;
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
   std::size_t early_verdict_count = 0;
   std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
   VersionNumber max_evicted_version = 0;   ///< versions up to this number may have been evicted
-  std::size_t first_recent = 0;  ///< versions before this index were excluded long ago; all others follow it
+  std::size_t first_recent = 0;            ///< versions before this index were excluded long ago
 
   /// The latest fact.
   struct Fact {
@@ -105,7 +106,7 @@ class AuditedRobot {
     VersionNumber executing = 0;
     Incarnation obeyed_incarnation = 0;
     Epoch obeyed_epoch = 0;
-    std::int64_t epoch_since_ns = kNever;  ///< latest time of the first fact with this epoch
+    std::int64_t epoch_since_ns = kNever;  ///< upper bound of the time of the first fact with this epoch
     bool is_off_reference = false;
     bool is_lifted = false;
   };
@@ -136,11 +137,12 @@ class AuditedRobot {
   KnownVersion& find_or_insert(VersionNumber number);
   /// The proposal with this number, or, for number 0, the newest one with this candidate.
   ProposalRecord* find_proposal(std::uint64_t number, VersionNumber candidate);
-  /// Removes versions that were excluded before then.
+  /// Removes versions that were excluded before `before_ns`.
   void forget(std::int64_t before_ns);
-  /// Advances first_recent past versions excluded before then; they are compared with others' no more.
+  /// Advances first_recent past versions excluded before `since_ns`: they are no longer compared with other
+  /// robots' versions.
   void advance_recent(std::int64_t since_ns);
-  /// Compares this version again, because more is known of it.
+  /// Moves first_recent back to this version, so that it is compared again with what is now known about it.
   void make_recent(VersionNumber number);
   /// Slot for one more proposal; evicts the oldest one when full.
   ProposalRecord& add_proposal();

@@ -83,11 +83,11 @@ KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
     known.excluded_ns = known.exclusion == Exclusion::kNone ? kNever : to_ns(now_);
     robot.make_recent(known.number);
   } else if (!(known.version == version)) {
-    report(
-        AuditRule::kUniqueVersion, robot.id, &known, 0,
-        fmt::format("one message has a start at {} ns and ({:.6f}, {:.6f}) m, another one at {} ns and ({:.6f}, {:.6f}) m",
-                    known.version.start_ns(), known.version.x_m(), known.version.y_m(), version.start_ns(),
-                    version.x_m(), version.y_m()));
+    report(AuditRule::kUniqueVersion, robot.id, &known, 0,
+           fmt::format("one message has a start at {} ns and ({:.6f}, {:.6f}) m, another one at {} ns and "
+                       "({:.6f}, {:.6f}) m",
+                       known.version.start_ns(), known.version.x_m(), known.version.y_m(), version.start_ns(),
+                       version.x_m(), version.y_m()));
   }
   return &known;
 }
@@ -204,9 +204,9 @@ void Auditor::check_forwarded(AuditedRobot& robot, VersionNumber number) {
   if (!was_denied && !was_never_granted) return;
   known->is_reported_unsent = true;
   report(AuditRule::kForwarded, robot.id, known, known->sent_epoch,
-         was_denied
-             ? fmt::format("the verdict on proposal {} granted version {}", proposal->number, proposal->granted)
-             : "no verdict has granted it");
+         was_denied ? fmt::format("the verdict on proposal {} granted version {}", proposal->number,
+                                  proposal->granted)
+                    : "no verdict has granted it");
 }
 
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {

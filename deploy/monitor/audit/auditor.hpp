@@ -15,18 +15,19 @@
 
 namespace sidestep {
 
-/// What the auditor receives.
+/// Which messages the auditor receives, and how soon.
 struct AuditInput {
-  /// Every message from the start on, at the moment it is sent. Only then is the absence of a message evidence.
+  /// It receives every message from the start on, at the moment it is sent. Only then is a missing message
+  /// evidence.
   bool is_complete = false;
   /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete.
   Duration min_latency_bound{5'000'000};
 };
 
 /// Checks all messages of a run against the rules of the safety protocol and reports each violation with the
-/// robots and versions involved. Shares no code with the components under audit. The auditor may join late, miss
-/// messages and receive them out of order. It then relies only on contradictions between received messages: it
-/// finds less, but never raises a false alarm. Memory is bounded by the roster.
+/// robots and versions involved. Shares no code with the components under audit. The auditor may join late,
+/// miss messages and receive them out of order. It then relies only on contradictions between received
+/// messages: it finds less, but never raises a false alarm. Memory is bounded by the roster.
 class Auditor {
  public:
   Auditor(const Scenario& scenario, const AuditInput& input);
@@ -47,14 +48,14 @@ class Auditor {
   void on_violation(std::function<void(const Violation&)> callback) { on_violation_ = std::move(callback); }
 
  private:
-  /// What is known of one epoch.
+  /// What is known about one epoch.
   struct EpochRecord {
     std::uint32_t granter = 0;
     Incarnation granter_life = 0;
     std::int64_t first_grant_ns = kNever;  ///< upper bound
     bool is_reported = false;
   };
-  /// What had been proven of a version before the current message.
+  /// What had been proven about a version before the current message.
   struct Evidence {
     std::int64_t alive_until_ns, executed_until_ns;
     bool was_executed;
@@ -96,7 +97,8 @@ class Auditor {
   void check_field(const AuditedRobot& robot, const KnownVersion& known);
   void check_obstacles(const AuditedRobot& robot, const KnownVersion& known);
   void check_base(const AuditedRobot& robot, const KnownVersion& known);
-  void check_granting_epoch(const AuditedRobot& robot, const KnownVersion& known, const msg::Verdict& verdict);
+  void check_granting_epoch(const AuditedRobot& robot, const KnownVersion& known,
+                            const msg::Verdict& verdict);
   void check_forwarded(AuditedRobot& robot, VersionNumber number);
   void check_ledger_page(const msg::LedgerPage& page);
 
@@ -110,7 +112,7 @@ class Auditor {
   void check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                            const Reception& reception);
   void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
-  /// `reported`: number of contacts in the ground truth before.
+  /// `reported`: number of contacts in the previous ground truth.
   void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
   void record_positions(const msg::GroundTruth& truth);
   /// nullopt: not on the roster.

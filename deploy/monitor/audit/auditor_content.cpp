@@ -14,8 +14,7 @@ constexpr double kContinuityTolerance = 1e-7;  // in m and in m/s
 constexpr double kSpeedTolerance_mps = 1e-5;
 constexpr double kEffortTolerance = 2e-3;
 
-/// The share of the robot's acceleration limit that is used; 1 is the limit: F ahead and sideways, D against
-/// the velocity.
+/// The acceleration relative to the robot's limit, which is F ahead and sideways and D against the velocity.
 double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   const double f = limits.acceleration_mps2, d = limits.deceleration_mps2;
   const double speed = std::hypot(n.vx, n.vy), acceleration = std::hypot(n.ax, n.ay);
@@ -74,7 +73,8 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
   };
   // A robot that was pushed out of the field may return in several steps.
   const KnownVersion* base = robot.find(known.version.base());
-  const double allowed = base && base->has_content ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
+  const double allowed =
+      base && base->has_content ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
   if (const double most = distance_outside_m(known.path); most > allowed) {
     report(AuditRule::kField, robot.id, &known, known.granted_in,
            fmt::format("{:.6f} m outside the field", most));
@@ -84,12 +84,14 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
 void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
   const KnownVersion* base = robot.find(known.version.base());
   for (const Circle& obstacle : scenario_.obstacles) {
-    const double required_m = obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
+    const double required_m =
+        obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
     const double reach_m = required_m + known.path.reach_m();
     if (std::hypot(known.version.x_m() - obstacle.centre_m.x(), known.version.y_m() - obstacle.centre_m.y()) >
         reach_m)
       continue;
-    const ClosestApproach near = closest_approach(known.path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m);
+    const ClosestApproach near =
+        closest_approach(known.path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m);
     if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) continue;
     const bool was_near =
         base && base->has_content &&
@@ -113,9 +115,11 @@ void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
       (robot.fact && robot.fact->is_lifted) || (robot.registered && robot.registered->is_absent);
   if (is_rest_version && is_absent) return;
   const bool is_evicted = robot.was_evicted(known.version.base());
-  if (input_.is_complete && !is_evicted && !(base && (base->may_be_in(known.granted_in) || base->is_own_stop))) {
+  if (input_.is_complete && !is_evicted &&
+      !(base && (base->may_be_in(known.granted_in) || base->is_own_stop))) {
     report(AuditRule::kBase, robot.id, &known, known.granted_in,
-           fmt::format("its base, version {}, was neither registered nor granted in the epoch", known.version.base()));
+           fmt::format("its base, version {}, was neither registered nor granted in the epoch",
+                       known.version.base()));
   }
   if (!base || !base->has_content) return;
   const AuditPath::Node& from = known.path.first();
@@ -125,9 +129,10 @@ void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
   const bool is_continuous = jump_m <= kContinuityTolerance && jump_mps <= kContinuityTolerance;
   if (known.path.start_ns() <= base->path.start_ns() || !is_continuous) {
     report(AuditRule::kContinuity, robot.id, &known, known.granted_in,
-           fmt::format("starts {:.9f} m and {:.9f} m/s off its base, version {}, {:.6f} s after its base's start",
-                       jump_m, jump_mps, base->number,
-                       static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9));
+           fmt::format(
+               "starts {:.9f} m and {:.9f} m/s off its base, version {}, {:.6f} s after its base's start",
+               jump_m, jump_mps, base->number,
+               static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9));
   }
   const bool begins_at_rest = from.vx == 0 && from.vy == 0 && known.version.inflation_m() == 0;
   if (known.version.inflation_m() != base->version.inflation_m() && !begins_at_rest) {

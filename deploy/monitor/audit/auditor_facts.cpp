@@ -12,11 +12,11 @@ namespace sidestep {
 namespace {
 
 constexpr std::int64_t kRetention_ns = 1'500'000'000;
-// Versions excluded longer ago than this were compared while they were still possible.
+// Versions excluded longer ago than this were compared before they were excluded.
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
 // A robot checks its tracking error once per millisecond, but reports the position in between.
 constexpr double kReportingTolerance_m = 0.0005;
-// The 25 ms that a robot has to return to its reference, and the millisecond until its next check.
+// A robot may take 25 ms to return to its reference, plus a millisecond until its next check.
 constexpr std::int64_t kRecoveryTimeout_ns = 26'000'000;
 
 bool is_sane(const msg::Feedback& feedback) {
@@ -121,14 +121,16 @@ void Auditor::check_fact_order(const AuditedRobot& robot, const msg::Feedback& f
   };
   // A clock that was out of bound may be set back.
   if (feedback.valid_at_ns() < last.at_ns && has_sound_clock_[index_of(robot)])
-    fail(fmt::format("is stamped {} ns and follows a fact stamped {} ns", feedback.valid_at_ns(), last.at_ns));
+    fail(
+        fmt::format("is stamped {} ns and follows a fact stamped {} ns", feedback.valid_at_ns(), last.at_ns));
   if (feedback.obeyed_incarnation() < last.obeyed_incarnation)
-    fail(fmt::format("obeys incarnation {} after incarnation {}", feedback.obeyed_incarnation(), last.obeyed_incarnation));
+    fail(fmt::format("obeys incarnation {} after incarnation {}", feedback.obeyed_incarnation(),
+                     last.obeyed_incarnation));
   if (feedback.obeyed_epoch() < last.obeyed_epoch)
     fail(fmt::format("obeys epoch {} after epoch {}", feedback.obeyed_epoch(), last.obeyed_epoch));
   if (number != 0 && feedback.executing().start_ns() > feedback.valid_at_ns())
     fail(fmt::format("executes at {} ns a version that starts at {} ns", feedback.valid_at_ns(),
-                       feedback.executing().start_ns()));
+                     feedback.executing().start_ns()));
   if (number == 0 && !feedback.is_lifted() && last.executing > 0)
     fail(fmt::format("reports its initial rest after version {}", last.executing));
 }
@@ -138,7 +140,7 @@ void Auditor::check_switch(const AuditedRobot& robot, const KnownVersion& to, co
   if (to.exclusion != Exclusion::kNone) {
     const AuditRule rule = to.exclusion == Exclusion::kLate     ? AuditRule::kLateSwitch
                            : to.exclusion == Exclusion::kFenced ? AuditRule::kStaleIncarnation
-                                                              : AuditRule::kFacts;
+                                                                : AuditRule::kFacts;
     report(rule, robot.id, &to, 0, fmt::format("is executed, although {}", reason_of(to.exclusion)));
     return;
   }
@@ -161,24 +163,24 @@ void Auditor::check_sent(AuditedRobot& robot, KnownVersion& executing) {
   }
 }
 
-void Auditor::check_tracking(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
-                             const Reception& reception) {
+void Auditor::check_tracking(AuditedRobot& robot, const KnownVersion& executing,
+                             const msg::Feedback& feedback, const Reception& reception) {
   const std::int64_t since_ns = std::exchange(robot.beyond_bound_since_ns, kNever);
   // Setting a robot's clock displaces its reference at once.
   if (!has_sound_clock_[index_of(robot)] || !is_clock_sound(feedback, reception)) return;
   if (feedback.is_off_reference() || feedback.is_lifted() || !robot.fact || robot.fact->is_off_reference)
     return;
-  const double beyond_m =
-      feedback.tracking_error_m() - tracking_bound_m_ - executing.version.inflation_m() - kReportingTolerance_m;
+  const double beyond_m = feedback.tracking_error_m() - tracking_bound_m_ - executing.version.inflation_m() -
+                          kReportingTolerance_m;
   if (!(beyond_m > 0)) return;
   // If facts were missed, the robot may have recovered in between.
-  robot.beyond_bound_since_ns =
-      reception.is_next && since_ns != kNever ? since_ns : feedback.valid_at_ns();
+  robot.beyond_bound_since_ns = reception.is_next && since_ns != kNever ? since_ns : feedback.valid_at_ns();
   if (feedback.valid_at_ns() - robot.beyond_bound_since_ns <= kRecoveryTimeout_ns) return;
   const double lasted_s = static_cast<double>(feedback.valid_at_ns() - robot.beyond_bound_since_ns) * 1e-9;
-  report(AuditRule::kTracking, robot.id, &executing, 0,
-         fmt::format("{:.6f} m off its reference by its own estimate, for at least {:.3f} s; {:.6f} m allowed",
-                     feedback.tracking_error_m(), lasted_s, tracking_bound_m_));
+  report(
+      AuditRule::kTracking, robot.id, &executing, 0,
+      fmt::format("{:.6f} m off its reference by its own estimate, for at least {:.3f} s; {:.6f} m allowed",
+                  feedback.tracking_error_m(), lasted_s, tracking_bound_m_));
 }
 
 void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop) {
@@ -200,8 +202,9 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
 void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing,
                                   const msg::Feedback& feedback, const Reception& reception) {
   const bool is_switch = robot.fact && robot.fact->executing != executing.number;
-  if (is_switch && executing.sent_ns != kNever && input_.is_complete && robot.fact->epoch_since_ns != kNever &&
-      executing.sent_ns > robot.fact->epoch_since_ns && executing.sent_epoch < robot.fact->obeyed_epoch) {
+  if (is_switch && executing.sent_ns != kNever && input_.is_complete &&
+      robot.fact->epoch_since_ns != kNever && executing.sent_ns > robot.fact->epoch_since_ns &&
+      executing.sent_epoch < robot.fact->obeyed_epoch) {
     report(AuditRule::kStaleEpoch, robot.id, &executing, executing.sent_epoch,
            fmt::format("was sent after the robot had obeyed epoch {}", robot.fact->obeyed_epoch));
   }
@@ -213,7 +216,8 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
            fmt::format("still obeys epoch {}, so it cannot have registered before the first grant",
                        feedback.obeyed_epoch()));
   }
-  if (!robot.registered || robot.registered->is_reported || robot.registered->latest_ns >= reception.earliest_ns)
+  if (!robot.registered || robot.registered->is_reported ||
+      robot.registered->latest_ns >= reception.earliest_ns)
     return;
   AuditedRobot::Registered& registered = *robot.registered;
   if (feedback.obeyed_epoch() < registered.epoch || feedback.obeyed_incarnation() < registered.incarnation) {
@@ -242,7 +246,8 @@ void Auditor::exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const
     known.exclusion = exclusion_by(fact, known);
     if (known.exclusion != Exclusion::kNone) known.excluded_ns = now_ns;
     if (!known.has_content) continue;
-    // If no fact was missed, this is the first one that excludes the version; before it, no component could know.
+    // If no fact was missed, this is the first one that excludes the version, and no component could know
+    // earlier.
     if (known.exclusion == Exclusion::kNone || reception.is_next)
       known.alive_until_ns = std::max(known.alive_until_ns, reception.earliest_ns);
   }

@@ -44,10 +44,12 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   }
   if (verdict.granted_version() == 0) return;
   const KnownVersion* before = robot.find(verdict.granted_version());
-  // A coordinator that was delayed repeats its verdict on an old proposal; its version may have been evicted here.
+  // A delayed coordinator may repeat its verdict on an old proposal, whose version may have been evicted
+  // here.
   if (robot.was_evicted(verdict.granted_version())) return;
   if (before && before->granted_in == verdict.epoch()) {
-    robot.find(verdict.granted_version())->granted_by_ns = std::min(before->granted_by_ns, reception.latest_ns);
+    robot.find(verdict.granted_version())->granted_by_ns =
+        std::min(before->granted_by_ns, reception.latest_ns);
     return;
   }
   if (before && before->granted_in != 0 && !before->is_own_stop && !before->is_granted_by_page) {
@@ -65,7 +67,8 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
            is_wrong_epoch ? fmt::format("was proposed in epoch {}", proposal->epoch)
                           : fmt::format("is not a candidate of proposal {}", verdict.proposal_number()));
   }
-  KnownVersion* known = candidate ? store(robot, *candidate) : &robot.find_or_insert(verdict.granted_version());
+  KnownVersion* known =
+      candidate ? store(robot, *candidate) : &robot.find_or_insert(verdict.granted_version());
   if (!known) return;
   known->granted_in = verdict.epoch();
   known->granted_by_ns = reception.latest_ns;
@@ -109,13 +112,14 @@ void Auditor::check_granting_epoch(const AuditedRobot& robot, const KnownVersion
     for (const AuditedRobot& other : robots_) {
       if (!input_.is_complete || other.registered_in.may_have_held(verdict.epoch())) continue;
       record.is_reported = true;
-      report(AuditRule::kAllRegistered, other.id, nullptr, verdict.epoch(),
-             fmt::format("had not registered when version {} of robot {} was granted", known.number, robot.id));
+      report(
+          AuditRule::kAllRegistered, other.id, nullptr, verdict.epoch(),
+          fmt::format("had not registered when version {} of robot {} was granted", known.number, robot.id));
     }
   } else if (record.granter_life != life || record.granter != verdict.header().sender()) {
     report(AuditRule::kSingleCoordinator, robot.id, &known, verdict.epoch(),
-           fmt::format("coordinator {} (incarnation {}) grants after coordinator {} (incarnation {})", verdict.header().sender(),
-                       life, record.granter, record.granter_life));
+           fmt::format("coordinator {} (incarnation {}) grants after coordinator {} (incarnation {})",
+                       verdict.header().sender(), life, record.granter, record.granter_life));
   }
   record.first_grant_ns = std::min(record.first_grant_ns, known.granted_by_ns);
 }
@@ -141,14 +145,15 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     if (robot.was_evicted(version.version_number())) continue;
     const bool may_be_held = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
     if (input_.is_complete && is_of_epoch && !may_be_held) {
-      report(AuditRule::kLedgerPage, robot.id, known ? known : &robot.find_or_insert(version.version_number()),
-             page.epoch(), "is in the ledger, but was neither registered nor granted");
+      report(AuditRule::kLedgerPage, robot.id,
+             known ? known : &robot.find_or_insert(version.version_number()), page.epoch(),
+             "is in the ledger, but was neither registered nor granted");
     }
     KnownVersion* stored = store(robot, version);
     if (!stored || stored->is_in(page.epoch()) || stored->granted_in != 0) continue;
     // A version that an agent proposed or sent is not the robot's own stop, so its verdict was missed.
-    const bool was_granted = !input_.is_complete && (stored->sent_ns != kNever ||
-                                                     robot.find_proposal(0, stored->number) != nullptr);
+    const bool was_granted = !input_.is_complete &&
+                             (stored->sent_ns != kNever || robot.find_proposal(0, stored->number) != nullptr);
     if (!stored->is_own_stop && !was_granted) continue;
     stored->granted_in = page.epoch();
     stored->granted_by_ns = reception.latest_ns;
@@ -175,7 +180,7 @@ void Auditor::check_ledger_page(const msg::LedgerPage& page) {
     const AuditedRobot& robot = robots_[index_[id]];
     for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
       const KnownVersion& known = robot.versions[i];
-      // Its content may have been evicted here before a delayed coordinator granted it.
+      // The version's content may have been evicted here before a delayed coordinator granted the version.
       if (!known.has_content) continue;
       if (known.exclusion != Exclusion::kNone || known.is_own_stop || !known.is_in(page.epoch())) continue;
       if (std::ranges::find(page_numbers_, known.number) != page_numbers_.end()) continue;

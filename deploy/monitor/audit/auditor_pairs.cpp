@@ -25,10 +25,10 @@ double Auditor::min_separation_m(const KnownVersion& a, const KnownVersion& b) c
   return 2 * scenario_.radius_m + scenario_.margin_m + a.version.inflation_m() + b.version.inflation_m();
 }
 
-std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence& a_state, const KnownVersion& b,
-                                            const Evidence& b_state) const {
-  // Proof by a ledger: the later version was granted while no fact had excluded the earlier one. Their order does
-  // not matter, as long as both were alive when both had been granted.
+std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence& a_state,
+                                           const KnownVersion& b, const Evidence& b_state) const {
+  // Proof by a ledger: when both versions had been granted, in whichever order, no fact had excluded either
+  // of them.
   for (const KnownVersion* granted : {&a, &b}) {
     const Epoch epoch = granted->granted_in;
     if (epoch == 0 || granted->is_own_stop || !a.is_in(epoch) || !b.is_in(epoch)) continue;
@@ -108,13 +108,13 @@ void Auditor::check_new_pairs(AuditedRobot& robot, const KnownVersion& known) {
   }
 }
 
-void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb, const KnownVersion& b,
-                         Epoch epoch) {
+void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
+                         const KnownVersion& b, Epoch epoch) {
   const double required_m = min_separation_m(a, b);
   ++totals_.compared_pairs;
   const ClosestApproach near = closest_approach(a.path, b.path, required_m);
   if (near.distance_m >= required_m - kLengthTolerance_m || (a.number == 0 && b.number == 0)) return;
-  // If the base was already too close, its successor may lead out of the conflict.
+  // A version is excused if its base was already too close and the version comes no closer.
   const auto a_excused = is_excused(ra, a, b, near.distance_m),
              b_excused = is_excused(rb, b, a, near.distance_m);
   if (a_excused.value_or(false) || b_excused.value_or(false)) return;
@@ -130,19 +130,18 @@ void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const Au
   violation.other_version = b.number;
   violation.epoch = epoch;
   violation.detail = fmt::format("{:.6f} m apart at {:.6f} s, {:.6f} m required{}", near.distance_m,
-                               static_cast<double>(near.at_ns) * 1e-9, required_m,
-                               epoch == 0 ? "; both were executed at the same time" : "");
+                                 static_cast<double>(near.at_ns) * 1e-9, required_m,
+                                 epoch == 0 ? "; both were executed at the same time" : "");
   report(std::move(violation));
 }
 
-std::optional<bool> Auditor::is_excused(const AuditedRobot& robot, const KnownVersion& later, const KnownVersion& other,
-                                        double distance_m) const {
+std::optional<bool> Auditor::is_excused(const AuditedRobot& robot, const KnownVersion& later,
+                                        const KnownVersion& other, double distance_m) const {
   if (later.is_own_stop || later.number == 0) return false;
   const KnownVersion* base = robot.find(later.version.base());
   if (!base || !base->has_content) return std::nullopt;
   const double required_m = min_separation_m(later, other);
-  const ClosestApproach before =
-      closest_approach(base->path, other.path, required_m, later.path.start_ns());
+  const ClosestApproach before = closest_approach(base->path, other.path, required_m, later.path.start_ns());
   return before.distance_m < required_m && distance_m >= before.distance_m - kLengthTolerance_m;
 }
 

@@ -16,8 +16,7 @@ constexpr std::size_t kMaxSimulatorLives = 16;
 
 }  // namespace
 
-void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
-                             const Reception& reception) {
+void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception) {
   Observation& pending = observations_[index_of(robot)];
   if (!input_.is_complete || pending.at_ns == kNever) return;
   const std::int64_t clock_offset_ns = feedback.valid_at_ns() - reception.latest_ns;
@@ -60,9 +59,10 @@ void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t report
     are_all_excused = false;
     const std::string touched =
         contact.second() == msg::NO_ROBOT ? "an obstacle" : fmt::format("robot {}", contact.second());
-    report(AuditRule::kContact, contact.first(), nullptr, 0,
-           fmt::format("touches {}; {} contacts so far, {:.9f} m s of penetration, minimum clearance {:.6f} m",
-                       touched, truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m()));
+    report(
+        AuditRule::kContact, contact.first(), nullptr, 0,
+        fmt::format("touches {}; {} contacts so far, {:.9f} m s of penetration, minimum clearance {:.6f} m",
+                    touched, truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m()));
   }
   // Contacts beyond the list are excused if all listed ones are.
   if (are_all_excused) totals_.excused_contacts += added - listed;
@@ -92,8 +92,8 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
            fmt::format("{} violations so far", truth.firmware_violations()));
   if (truth.crashes_while_moving() > last.crashes_while_moving()) {
     report(AuditRule::kCrash, any_robot, nullptr, 0,
-           fmt::format("{} crashes of moving robots so far, at a robot speed of up to {:.3f} m/s", truth.crashes_while_moving(),
-                       truth.max_robot_crash_speed_mps()));
+           fmt::format("{} crashes of moving robots so far, at a robot speed of up to {:.3f} m/s",
+                       truth.crashes_while_moving(), truth.max_robot_crash_speed_mps()));
   }
   last.contacts(truth.contacts());
   last.firmware_violations(truth.firmware_violations());

@@ -7,7 +7,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMaxDuration{60'000'000'000};
-// A displaced robot may pass through its place by chance for this long after the disturbance.
+// For this long after the disturbance, a displaced robot may pass through its place by chance.
 constexpr Duration kSettlingTime{1'000'000'000};
 
 }  // namespace

@@ -15,18 +15,18 @@ namespace sidestep {
 struct Reception {
   std::int64_t earliest_ns = 0;  ///< lower bound of the sending time
   std::int64_t latest_ns = 0;    ///< upper bound of the sending time
-  bool is_next = false;          ///< directly follows the newest message received from that sender before
+  bool is_next = false;          ///< directly follows the newest message previously received from that sender
   bool is_newest = false;        ///< neither this nor a later message of that sender was received before
 };
 
 /// Counts missed messages and bounds sending times, from message headers alone.
 class MessageTrace {
  public:
-  /// `min_latency_bound`: the fastest messages of a channel take at most this long to the auditor. Zero: every
-  /// message is received at the moment it is sent.
+  /// `min_latency_bound`: the fastest messages of a channel take at most this long to reach the auditor.
+  /// Zero: every message is received at the moment it is sent.
   explicit MessageTrace(Duration min_latency_bound) : min_latency_bound_ns_(min_latency_bound.count()) {}
 
-  /// `channel` tells apart the streams that one sender numbers separately.
+  /// `channel` distinguishes the streams that one sender numbers separately.
   [[nodiscard]] Reception record(std::uint64_t channel, const msg::Header& header, Time now);
 
   std::uint64_t received() const { return received_; }
@@ -50,7 +50,7 @@ class MessageTrace {
   };
   struct Stream {
     std::uint64_t newest = 0;
-    std::uint64_t window = 0;           ///< bit i: message newest - i was received
+    std::uint64_t window = 0;            ///< bit i: message newest - i was received
     std::int64_t min_difference_ns = 0;  ///< minimum of (received - stamp): clock offset + minimum latency
     std::int64_t updated_ns = 0;         ///< when min_difference_ns was updated
     int count = 0;                       ///< messages behind that minimum, up to kMinSamples

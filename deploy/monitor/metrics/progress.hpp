@@ -7,13 +7,13 @@
 
 namespace sidestep {
 
-/// One line on the whole run.
+/// One line that summarises the whole run.
 std::string progress_line(const RunMetrics& metrics, Time now);
-/// That line, followed by at most `max_rows` lines with one robot each.
+/// That line, followed by at most `max_rows` lines for one robot each.
 std::string progress_table(const RunMetrics& metrics, Time now, int max_rows);
 
-/// Shows the progress of a run on stdout: in a terminal a table that is redrawn in place, elsewhere one line per
-/// second.
+/// Shows the progress of a run on stdout: in a terminal a table that is redrawn in place, elsewhere one line
+/// per second.
 class ProgressDisplay {
  public:
   ProgressDisplay();

@@ -69,8 +69,7 @@ std::string Report::failure_reason() const {
   std::string reason;
   const auto add = [&reason](const std::string& part) { reason += (reason.empty() ? "" : ", ") + part; };
   if (!abort_reason.empty()) add(abort_reason);
-  if (const auto unexcused = unexcused_contacts(); unexcused > 0)
-    add(fmt::format("{} contacts", unexcused));
+  if (const auto unexcused = unexcused_contacts(); unexcused > 0) add(fmt::format("{} contacts", unexcused));
   if (crashes_while_moving > 0) add(fmt::format("{} crashes of moving robots", crashes_while_moving));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {
@@ -152,15 +151,18 @@ std::string summary(const Report& r) {
       us(r.plan, 0.5), us(r.plan, 0.99), us(r.search, 0.5), us(r.search, 0.99));
   if (r.crashes > 0) {
     text += fmt::format(
-        "{} crashes with opponents, {} of them while the robot moved; maximum closing speed {:.2f} m/s, maximum "
+        "{} crashes with opponents, {} of them while the robot moved; maximum closing speed {:.2f} m/s, "
+        "maximum "
         "robot share {:.2f} m/s\n",
         r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
   for (const auto& [first, second] : r.conflicts)
-    text += fmt::format("a cause outside the protocol brought robots {} and {} into conflict\n", first, second);
+    text +=
+        fmt::format("a cause outside the protocol brought robots {} and {} into conflict\n", first, second);
   if (r.audit) {
-    text += fmt::format("audit: {} violations; {} messages received, {} missed; {} pairs of versions compared\n",
-                        r.audit->violations, r.audit->received, r.audit->missed, r.audit->compared_pairs);
+    text +=
+        fmt::format("audit: {} violations; {} messages received, {} missed; {} pairs of versions compared\n",
+                    r.audit->violations, r.audit->received, r.audit->missed, r.audit->compared_pairs);
     for (std::size_t i = 0; i < std::min<std::size_t>(r.audit->first.size(), 5); ++i)
       text += "  " + to_line(r.audit->first[i]) + "\n";
   }

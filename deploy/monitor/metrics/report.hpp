@@ -34,12 +34,12 @@ struct Report {
   std::uint64_t contacts = 0;
   double penetration_m_s = 0;
   std::optional<double> min_clearance_m;
-  std::uint64_t crashes = 0;               ///< contacts of a robot and an opponent
-  std::uint64_t crashes_while_moving = 0;  ///< crashes in which the robot was not at rest
-  double max_crash_speed_mps = 0;          ///< closing speed along the line of centres
-  double max_robot_crash_speed_mps = 0;    ///< the robot's share of the closing speed
-  std::optional<double> makespan_s;        ///< arrival of the last robot; none: not all have arrived
-  std::optional<double> mean_arrival_s;    ///< of the robots that arrived
+  std::uint64_t crashes = 0;                       ///< contacts of a robot and an opponent
+  std::uint64_t crashes_while_moving = 0;          ///< crashes in which the robot was not at rest
+  double max_crash_speed_mps = 0;                  ///< closing speed along the line of centres
+  double max_robot_crash_speed_mps = 0;            ///< the robot's share of the closing speed
+  std::optional<double> makespan_s;                ///< arrival of the last robot; none: not all have arrived
+  std::optional<double> mean_arrival_s;            ///< of the robots that arrived
   std::optional<double> straight_line_time_ratio;  ///< mean of arrival time / straight_line_time_s()
   std::map<RobotId, std::optional<double>> arrival_s;
   std::uint64_t proposals = 0;
@@ -51,9 +51,11 @@ struct Report {
   std::optional<double> route_changes_per_s;  ///< per agent and second of planning
   std::uint64_t invalid_messages = 0;
   std::uint64_t firmware_violations = 0;
-  std::set<std::pair<RobotId, RobotId>> conflicts;  ///< pairs that a cause outside the protocol brought into conflict
+  std::set<std::pair<RobotId, RobotId>>
+      conflicts;  ///< pairs that a cause outside the protocol brought into conflict
   double max_reference_error_m = 0;
-  /// Largest measured offset of a robot's clock from the coordinator's, and its uncertainty; none: not measured.
+  /// Largest measured offset of a robot's clock from the coordinator's, and its uncertainty; none: not
+  /// measured.
   std::optional<double> max_clock_offset_s;
   std::optional<double> clock_uncertainty_s;
   double robot_time_s = 0;  ///< from the first grant to the latest ground truth
@@ -66,8 +68,8 @@ struct Report {
 
   /// Contacts, except for those excused because a robot was disturbed from outside.
   std::uint64_t unexcused_contacts() const;
-  /// Why the run failed, in one line. Empty if it passed: it was not aborted, no robot touched anything without
-  /// excuse, none moved in a crash, no rule was broken, and all robots arrived if they had to.
+  /// Why the run failed, in one line. Empty if it passed: it was not aborted, no robot touched anything
+  /// without excuse, none moved in a crash, no rule was broken, and all robots arrived if they had to.
   [[nodiscard]] std::string failure_reason() const;
 };
 

@@ -15,8 +15,8 @@ constexpr std::size_t kMaxLives = 1000;
 /// An incarnation is assumed dead after this many statuses of other incarnations without one of its own.
 constexpr int kSilentAfter = 5;
 
-/// The slot for a message in the list of its sender's incarnations, which is sorted; nullptr if a newer message
-/// of that incarnation is stored already, or there are too many incarnations.
+/// The slot for a message in the list of its sender's incarnations, which is sorted; nullptr if a newer
+/// message of that incarnation is stored already, or there are too many incarnations.
 template <typename Message>
 Message* slot_for(std::vector<Message>& lives, const msg::Header& header) {
   const auto at =
@@ -76,13 +76,15 @@ double RunMetrics::distance_to_go_m(const RobotRecord& robot) const {
 }
 
 bool RunMetrics::has_arrived(const RobotRecord& robot) const {
-  return robot.settled_since && robot.status() && robot.status()->agent_state() == msg::AgentState::AGENT_ARRIVED;
+  return robot.settled_since && robot.status() &&
+         robot.status()->agent_state() == msg::AgentState::AGENT_ARRIVED;
 }
 
 void RunMetrics::on_truth(const msg::GroundTruth& truth) {
   const bool is_sound = std::isfinite(truth.penetration_m_s()) && !std::isnan(truth.min_clearance_m()) &&
                         std::isfinite(truth.max_crash_speed_mps()) &&
-                        std::isfinite(truth.max_robot_crash_speed_mps()) && is_valid_time(truth.valid_at_ns());
+                        std::isfinite(truth.max_robot_crash_speed_mps()) &&
+                        is_valid_time(truth.valid_at_ns());
   msg::GroundTruth* life = is_sound ? slot_for(simulators_, truth.header()) : nullptr;
   if (!life) {
     ++dropped_messages_;
@@ -110,7 +112,8 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
     robot->position_m = {state.x_m(), state.y_m()};
     robot->speed_mps = std::hypot(state.vx_mps(), state.vy_mps());
     max_reference_error_m_ = std::max(max_reference_error_m_, state.reference_error_m());
-    const bool is_settled = distance_to_go_m(*robot) <= scenario_.goal_tolerance_m && robot->speed_mps < kAtRest_mps;
+    const bool is_settled =
+        distance_to_go_m(*robot) <= scenario_.goal_tolerance_m && robot->speed_mps < kAtRest_mps;
     if (!is_settled)
       robot->settled_since.reset();
     else if (!robot->settled_since)

@@ -66,7 +66,8 @@ class RunMetrics {
   std::uint64_t dropped_messages() const { return dropped_messages_; }
 
   std::vector<RobotProgress> progress() const;
-  /// The report, except for what only the caller knows: program, seed, wall-clock times, and why the run ended.
+  /// The report, except for what only the caller knows: program, seed, wall-clock times, and why the run
+  /// ended.
   Report report() const;
 
  private:
@@ -95,13 +96,14 @@ class RunMetrics {
 
   const Scenario& scenario_;
   const Auditor* auditor_ = nullptr;
-  std::vector<RobotRecord> robots_;               ///< ascending by id
+  std::vector<RobotRecord> robots_;           ///< ascending by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
   struct CoordinatorLife {
     std::uint64_t message_number = 0;
     std::uint64_t invalid = 0;
   };
-  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife> coordinators_;  ///< by number and incarnation
+  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife>
+      coordinators_;                             ///< by number and incarnation
   std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::optional<Time> granting_since_;
@@ -114,8 +116,8 @@ class RunMetrics {
 /// Subscribes the metrics to a bus; they must outlive the bus's last callback.
 void listen(Bus& bus, RunMetrics& metrics);
 
-/// Lower bound of the time from the start via all goals: straight lines, at rest at each goal, acceleration F,
-/// deceleration D, at most v_max, no other robots.
+/// Lower bound of the time from the start via all goals: straight lines, at rest at each goal, acceleration
+/// F, deceleration D, at most v_max, no other robots.
 [[nodiscard]] double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits);
 
 }  // namespace sidestep

@@ -48,8 +48,8 @@ void put(std::vector<std::uint8_t>& bytes, const std::string& text) {
   bytes.insert(bytes.end(), text.begin(), text.end());
 }
 
-/// Reads numbers and strings from the front of a block. After the first read beyond its end, `ok` is false and
-/// all results are zero or empty.
+/// Reads numbers and strings from the front of a block. After the first read beyond its end, `ok` is false
+/// and all results are zero or empty.
 struct ByteReader {
   std::span<const std::uint8_t> left;
   bool ok = true;

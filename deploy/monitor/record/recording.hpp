@@ -26,9 +26,9 @@ struct RecordingHeader {
 [[nodiscard]] RecordingHeader recording_header(const std::string& scenario_name,
                                                const std::string& scenario_file);
 
-/// Writes messages with their time of reception to a file. The file is a magic number and a sequence of blocks,
-/// each with its length and a checksum, so a truncated file is readable up to its last whole block. All numbers
-/// are little-endian.
+/// Writes messages with their time of reception to a file. The file is a magic number and a sequence of
+/// blocks, each with its length and a checksum, so a truncated file is readable up to its last whole block.
+/// All numbers are little-endian.
 class RecordingWriter {
  public:
   /// Throws std::runtime_error with the reason when the file cannot be written.

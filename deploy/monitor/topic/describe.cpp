@@ -22,12 +22,13 @@ Json word(Enum value, const char* const (&words)[kCount]) {
 }
 
 constexpr const char* kReasons[] = {
-    "granted",     "not evaluated",    "malformed",      "wrong epoch",   "not all registered", "old incarnation",
-    "old version", "base unknown", "not continuous", "beyond limits", "not at rest",        "outside field",
-    "obstacle",    "conflict",     "ledger full",    "absent"};
+    "granted",         "not evaluated", "malformed",    "wrong epoch",    "not all registered",
+    "old incarnation", "old version",   "base unknown", "not continuous", "beyond limits",
+    "not at rest",     "outside field", "obstacle",     "conflict",       "ledger full",
+    "absent"};
 constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
-constexpr const char* kAgentStates[] = {"fencing", "registering", "waiting", "driving",
-                                        "arrived", "clock out of bound",   "absent"};
+constexpr const char* kAgentStates[] = {"fencing", "registering",        "waiting", "driving",
+                                        "arrived", "clock out of bound", "absent"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
 constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
 
@@ -56,9 +57,10 @@ Json phase(const msg::MotionPhase& m) {
 }
 
 Json intent(const msg::Intent& m) {
-  return {{"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"velocity_duration_s", m.velocity_duration_s()},
-          {"via_x_m", m.via_x_m()},  {"via_y_m", m.via_y_m()}, {"goal_x_m", m.goal_x_m()},
-          {"goal_y_m", m.goal_y_m()}};
+  return {
+      {"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"velocity_duration_s", m.velocity_duration_s()},
+      {"via_x_m", m.via_x_m()},  {"via_y_m", m.via_y_m()}, {"goal_x_m", m.goal_x_m()},
+      {"goal_y_m", m.goal_y_m()}};
 }
 
 Json version(const msg::Version& m) {
@@ -235,10 +237,15 @@ Json describe(const msg::Verdict& m) {
 }
 
 Json describe(const msg::LedgerPage& m) {
-  return {
-      {"page_index", m.page_index()}, {"header", header(m.header())},   {"epoch", m.epoch()},
-      {"page_count", m.page_count()}, {"min_x_m", m.min_x_m()},   {"min_y_m", m.min_y_m()},
-      {"max_x_m", m.max_x_m()},     {"max_y_m", m.max_y_m()}, {"versions", list(m.versions(), version)}};
+  return {{"page_index", m.page_index()},
+          {"header", header(m.header())},
+          {"epoch", m.epoch()},
+          {"page_count", m.page_count()},
+          {"min_x_m", m.min_x_m()},
+          {"min_y_m", m.min_y_m()},
+          {"max_x_m", m.max_x_m()},
+          {"max_y_m", m.max_y_m()},
+          {"versions", list(m.versions(), version)}};
 }
 
 Json describe(const msg::CoordinatorState& m) {

@@ -14,8 +14,8 @@
 namespace sidestep {
 namespace {
 
-/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the channel
-/// does not belong to the topic.
+/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the
+/// channel does not belong to the topic.
 std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel) {
   if (!topic.per_robot) return channel == topic.name ? std::optional<std::uint32_t>(0) : std::nullopt;
   const std::string prefix = std::string(topic.name) + "/";

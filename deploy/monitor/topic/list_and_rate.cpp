@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/monitor/topic/topic_tools.hpp"
-
 #include <algorithm>
 #include <fmt/core.h>
 #include <optional>
@@ -11,6 +9,7 @@
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/topic/rate_meter.hpp"
 #include "deploy/monitor/topic/topic_table.hpp"
+#include "deploy/monitor/topic/topic_tools.hpp"
 
 namespace sidestep {
 namespace {
@@ -42,8 +41,8 @@ void print_rate(const char* label, const Rate& rate) {
     fmt::print("{}{} sample(s)\n", label, rate.samples);
   } else {
     fmt::print("{}{} samples  {:.2f} Hz  gap min {:.2f} ms  max {:.2f} ms  {:.2f} kB/s\n", label,
-               rate.samples, rate.rate_hz, to_seconds(*rate.min_gap) * 1e3,
-               to_seconds(*rate.max_gap) * 1e3, rate.bytes_per_second * 1e-3);
+               rate.samples, rate.rate_hz, to_seconds(*rate.min_gap) * 1e3, to_seconds(*rate.max_gap) * 1e3,
+               rate.bytes_per_second * 1e-3);
   }
   std::fflush(stdout);
 }

@@ -12,8 +12,8 @@ namespace sidestep {
 /// Statistics of the samples in a span of time.
 struct Rate {
   std::uint64_t samples = 0;
-  double rate_hz = 0;                ///< gaps per second from the first to the last sample; 0 for less than two
-  std::optional<Duration> min_gap;   ///< none for less than two samples
+  double rate_hz = 0;  ///< gaps per second from the first to the last sample; 0 for less than two
+  std::optional<Duration> min_gap;  ///< none for less than two samples
   std::optional<Duration> max_gap;
   double bytes_per_second = 0;  ///< payload of all samples but the first, per second
 };

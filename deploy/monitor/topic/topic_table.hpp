@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The output of `sidestep topic list`: one line per topic with its type, writers, readers and QoS, followed by one
-/// line per reason for a mismatch.
+/// The output of `sidestep topic list`: one line per topic with its type, writers, readers and QoS, followed
+/// by one line per reason for a mismatch.
 [[nodiscard]] std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints);
 
 /// The topic names, separated by spaces.

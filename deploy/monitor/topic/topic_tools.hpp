@@ -15,8 +15,8 @@ struct TopicOptions {
   std::uint64_t count = 0;  ///< 0: until Ctrl-C
 };
 
-/// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit code, and
-/// throws std::runtime_error as DdsBus does.
+/// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit
+/// code, and throws std::runtime_error as DdsBus does.
 int list_topics(const TopicOptions& options);
 int measure_rate(const TopicOptions& options);
 int echo_topic(const TopicOptions& options);

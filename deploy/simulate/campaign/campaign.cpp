@@ -12,9 +12,9 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
+#include "deploy/simulate/campaign/campaign_summary.hpp"
 #include "deploy/simulate/campaign/results_file.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
-#include "deploy/simulate/campaign/campaign_summary.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/campaign/trial_result.hpp"
 #include "deploy/simulate/campaign/worker_pool.hpp"
@@ -77,8 +77,8 @@ void print_failure(const CampaignOptions& options, const std::optional<Scenario>
 }
 
 /// Adds the results in the results file to the summary and returns the remaining seeds.
-std::vector<std::uint64_t> remaining_seeds(const CampaignOptions& options, std::optional<ResultsFile>& results,
-                                      CampaignSummary& summary) {
+std::vector<std::uint64_t> remaining_seeds(const CampaignOptions& options,
+                                           std::optional<ResultsFile>& results, CampaignSummary& summary) {
   std::set<std::uint64_t> done;
   if (!options.results_file.empty()) {
     results.emplace(options.results_file,

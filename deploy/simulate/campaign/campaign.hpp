@@ -17,9 +17,9 @@ struct CampaignOptions {
   int jobs = 0;                                  ///< number of worker processes; 0: number of cores
 };
 
-/// Runs one trial per seed. Prints every failure with the command that repeats it, and a summary. Returns the exit
-/// code: 0 if no trial failed. Throws as simulate() does, and std::runtime_error when the results file belongs to
-/// another campaign.
+/// Runs one trial per seed. Prints every failure with the command that repeats it, and a summary. Returns the
+/// exit code: 0 if no trial failed. Throws as simulate() does, and std::runtime_error when the results file
+/// belongs to another campaign.
 int run_campaign(const CampaignOptions& options);
 
 }  // namespace sidestep

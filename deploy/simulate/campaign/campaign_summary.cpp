@@ -79,28 +79,30 @@ std::string CampaignSummary::text() const {
   }
   const double hours = robot_hours();
   std::string text = fmt::format(
-      "{} seeds, {} failed; {:.2f} robot-hours, {:.1f} km driven; {} contacts, {} audit violations, {} firmware "
+      "{} seeds, {} failed; {:.2f} robot-hours, {:.1f} km driven; {} contacts, {} audit violations, {} "
+      "firmware "
       "violations\n",
       seeds(), failed(), hours, distance_m / 1000, contacts(), sum(&TrialResult::audit_violations),
       sum(&TrialResult::firmware_violations));
   if (const auto excused = sum(&TrialResult::excused_contacts); excused > 0) {
-    text += fmt::format("{} excused contacts of robots that were pushed, slipped, blocked or rebooted\n", excused);
+    text += fmt::format("{} excused contacts of robots that were pushed, slipped, blocked or rebooted\n",
+                        excused);
   }
-  text += fmt::format(
-      "with 95 % confidence at most {:.3g} contacts per robot-hour under these faults\n",
-      upper_bound_95(contacts(), hours));
+  text += fmt::format("with 95 % confidence at most {:.3g} contacts per robot-hour under these faults\n",
+                      upper_bound_95(contacts(), hours));
   text += fmt::format("{} proposals, {:.2f} % denied; {:.0f} robot-seconds per second and core\n",
                       sum(&TrialResult::proposals),
                       100 * share(sum(&TrialResult::denials), sum(&TrialResult::proposals)),
                       wall_s > 0 ? hours * 3600 / wall_s : 0);
-  text +=
-      "shortest distance, in metres per robot and minute: " +
-      extremes([](const TrialResult& r) { return r.robot_s > 0 ? 60 * r.distance_m / r.robot_s : 0; }, false) +
-      "\n";
+  text += "shortest distance, in metres per robot and minute: " +
+          extremes([](const TrialResult& r) { return r.robot_s > 0 ? 60 * r.distance_m / r.robot_s : 0; },
+                   false) +
+          "\n";
   text += "largest share of denied proposals: " +
           extremes([](const TrialResult& r) { return share(r.denials, r.proposals); }, true) + "\n";
   text += "largest share of stationary robots at the end: " +
-          extremes([](const TrialResult& r) { return r.robots > 0 ? double(r.stationary) / r.robots : 0; }, true) +
+          extremes([](const TrialResult& r) { return r.robots > 0 ? double(r.stationary) / r.robots : 0; },
+                   true) +
           "\n";
   text += "smallest clearance, in metres: " +
           extremes([](const TrialResult& r) { return r.min_clearance_m; }, false) + "\n";

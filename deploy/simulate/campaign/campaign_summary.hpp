@@ -32,8 +32,8 @@ class CampaignSummary {
   std::map<std::uint64_t, TrialResult> results_;
 };
 
-/// Upper 95 % confidence bound of the rate of a Poisson process with this many events in this time; about 3/time for
-/// no events.
+/// Upper 95 % confidence bound of the rate of a Poisson process with this many events in this time; about
+/// 3/time for no events.
 [[nodiscard]] double upper_bound_95(std::uint64_t events, double time);
 
 }  // namespace sidestep

@@ -30,7 +30,8 @@ void sample_clocks(Scenario& scenario, FaultPlan& plan, Rng& rng) {
   // The robot and the coordinator each get half of the bound.
   const double half_bound_s = 0.499 * scenario.clock_bound_s;
   for (const ProcessNames& host : plan.hosts) {
-    for (const std::string& process : host) plan.clocks[process] = sample_process_offset(process, half_bound_s, rng);
+    for (const std::string& process : host)
+      plan.clocks[process] = sample_process_offset(process, half_bound_s, rng);
   }
   // The simulator's host only carries the robots, which have their own clocks.
   for (RobotSpec& robot : scenario.robots)
@@ -47,7 +48,8 @@ void sample_clocks(Scenario& scenario, FaultPlan& plan, Rng& rng) {
   }
   for (std::uint64_t left = 1 + rng.below(3); left > 0; --left) {
     RobotSpec& robot = scenario.robots[rng.below(scenario.robots.size())];
-    if (std::ranges::find(plan.robots_out_of_clock_bound, robot.id) != plan.robots_out_of_clock_bound.end()) continue;
+    if (std::ranges::find(plan.robots_out_of_clock_bound, robot.id) != plan.robots_out_of_clock_bound.end())
+      continue;
     robot.clock_offset += sample_large_offset(rng);
     plan.robots_out_of_clock_bound.push_back(robot.id);
   }

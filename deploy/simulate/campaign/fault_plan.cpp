@@ -19,7 +19,8 @@ class Describe {
   std::string operator()(const LinkChange& change) const {
     const LinkQuality& q = change.quality;
     return fmt::format(
-        "links between hosts, from {} to {}: delay {:.1f} to {:.1f} ms (mean {:.1f}), loss {:.1f} % (mean burst "
+        "links between hosts, from {} to {}: delay {:.1f} to {:.1f} ms (mean {:.1f}), loss {:.1f} % (mean "
+        "burst "
         "{:.1f}), duplicates {:.1f} %",
         group(change.from), group(change.to), ms(q.delay_min), ms(q.delay_max), ms(q.delay_mean),
         100 * q.loss, q.mean_burst, 100 * q.duplicate);
@@ -38,13 +39,14 @@ class Describe {
     const double duration_s = to_seconds(disturbance.duration);
     switch (disturbance.kind) {
       case msg::DISTURBANCE_PUSH:
-        return fmt::format("robot {} pushed by ({:.3f}, {:.3f}) m/s", disturbance.robot, disturbance.push_mps.x(),
-                           disturbance.push_mps.y());
+        return fmt::format("robot {} pushed by ({:.3f}, {:.3f}) m/s", disturbance.robot,
+                           disturbance.push_mps.x(), disturbance.push_mps.y());
       case msg::DISTURBANCE_SLIP:
-        return fmt::format("robot {} slips for {:.3f} s, grip {:.2f}", disturbance.robot, duration_s, disturbance.grip);
+        return fmt::format("robot {} slips for {:.3f} s, grip {:.2f}", disturbance.robot, duration_s,
+                           disturbance.grip);
       case msg::DISTURBANCE_BLOCK:
-        return fmt::format("a wheel of robot {} blocked for {:.3f} s, along {:.2f} rad", disturbance.robot, duration_s,
-                           disturbance.heading_rad);
+        return fmt::format("a wheel of robot {} blocked for {:.3f} s, along {:.2f} rad", disturbance.robot,
+                           duration_s, disturbance.heading_rad);
       default:
         return fmt::format("firmware of robot {} restarted", disturbance.robot);
     }
@@ -81,10 +83,11 @@ std::vector<std::string> to_lines(const FaultPlan& plan) {
     lines.push_back(fmt::format("clock of {}: {:+.4f} ms", process, ms(offset)));
   }
   if (!plan.robots_out_of_clock_bound.empty())
-    lines.push_back(
-        fmt::format("robots that must not move because of their clocks: {}", fmt::join(plan.robots_out_of_clock_bound, ", ")));
+    lines.push_back(fmt::format("robots that must not move because of their clocks: {}",
+                                fmt::join(plan.robots_out_of_clock_bound, ", ")));
   for (const TimedFault& timed : plan.faults) {
-    lines.push_back(fmt::format("{:.3f} s: {}", to_seconds(timed.at), std::visit(Describe(plan), timed.fault)));
+    lines.push_back(
+        fmt::format("{:.3f} s: {}", to_seconds(timed.at), std::visit(Describe(plan), timed.fault)));
   }
   lines.push_back(fmt::format("{:.3f} s: end of all faults", to_seconds(plan.healed_at)));
   return lines;

@@ -16,12 +16,12 @@ namespace sidestep {
 
 using ProcessNames = std::vector<std::string>;
 
-/// Sets the quality of the links between these processes, as far as they are on different hosts.
+/// Sets the quality of the links between those of these processes that are on different hosts.
 struct LinkChange {
   ProcessNames from, to;
   LinkQuality quality;
 };
-/// Loses all messages between these processes for a while.
+/// Drops all messages between these processes for a while.
 struct Partition {
   ProcessNames from, to;
   Duration duration{0};
@@ -59,10 +59,10 @@ struct TimedFault {
 
 /// All faults of one run. None occurs or persists after `healed_at`.
 struct FaultPlan {
-  std::vector<ProcessNames> hosts;         ///< messages within a host are fast and never lost
-  std::map<std::string, Duration> clocks;  ///< offsets from true time, by process
-  std::vector<RobotId> robots_out_of_clock_bound;          ///< robots that must not move because of their clocks
-  std::vector<TimedFault> faults;          ///< sorted by time
+  std::vector<ProcessNames> hosts;                 ///< messages within a host are fast and never lost
+  std::map<std::string, Duration> clocks;          ///< offsets from true time, by process
+  std::vector<RobotId> robots_out_of_clock_bound;  ///< robots that must not move because of their clocks
+  std::vector<TimedFault> faults;                  ///< sorted by time
   Duration healed_at{0};
 };
 

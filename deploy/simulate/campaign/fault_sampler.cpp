@@ -47,7 +47,8 @@ class FaultSampler {
   double random_time_s() { return rng_.uniform(0, to_seconds(plan_.healed_at)); }
   Duration time() {
     const double time_s = rng_.chance(0.35) ? random_time_s() : pick(burst_times_s_) + 0.4 * rng_.normal();
-    return std::clamp(from_seconds(time_s), Duration{0}, std::max(Duration{0}, plan_.healed_at - kMinFaultDuration));
+    return std::clamp(from_seconds(time_s), Duration{0},
+                      std::max(Duration{0}, plan_.healed_at - kMinFaultDuration));
   }
   template <typename Item>
   const Item& pick(const std::vector<Item>& from) {
@@ -130,7 +131,9 @@ class FaultSampler {
     const Duration at = time();
     const Duration length = until_healed(at, log_uniform(0.05, 8));
     const double u = rng_.uniform();
-    ProcessNames group = u < 0.4 ? pick(plan_.hosts) : u < 0.6 ? random_agents() : ProcessNames{random_victim()};
+    ProcessNames group = u < 0.4   ? pick(plan_.hosts)
+                         : u < 0.6 ? random_agents()
+                                   : ProcessNames{random_victim()};
     ProcessNames rest = all_except(group);
     if (group.size() == 1 && rng_.chance(0.6)) rest = {pick(rest)};
     if (rest.empty()) return;
@@ -156,7 +159,7 @@ class FaultSampler {
     const std::string victim = random_victim();
     const Duration at = time();
     add(at, Kill{victim});
-    // Every killed process is started again: no later coordinator would grant without all agents.
+    // Every killed process is restarted, because no later coordinator would grant without all agents.
     const double dead_s = rng_.chance(0.3) ? 0 : log_uniform(0.01, 4);
     add(std::max(at + Duration{1}, at + until_healed(at, dead_s) - Duration{1}), Start{victim});
   }
@@ -175,7 +178,7 @@ class FaultSampler {
     add(at, disturbance);
   }
 
-  /// Two living agents for one robot, until one of them dies.
+  /// Runs two agents for one robot at the same time, until one of them dies.
   void sample_twins() {
     repeat(3, [&] {
       const RobotId robot = pick(scenario_.robots).id;
@@ -187,7 +190,8 @@ class FaultSampler {
       add(at, Start{second});
       const Duration first_kill = at + until_healed(at, log_uniform(0.02, 10)) - Duration{4};
       add(first_kill, Kill{first});
-      // The surviving agent has yielded to the other one for good, so both are killed and one is started.
+      // The surviving agent may have yielded permanently to the dead one, so both are killed and one is
+      // restarted.
       const Duration end =
           rng_.chance(0.5) ? first_kill + until_healed(first_kill, log_uniform(0.02, 10)) : plan_.healed_at;
       add(std::max(first_kill, end - Duration{3}), Kill{first});

@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// Samples faults of all kinds for a run of this duration. `processes` are all processes of the system. The last
-/// `fault_free_end` of the run has no faults.
+/// Samples faults of all kinds for a run of this duration. `processes` are all processes of the system. The
+/// last `fault_free_end` of the run has no faults.
 FaultPlan sample_faults(const Scenario& scenario, const ProcessNames& processes, Duration duration,
-                      Duration fault_free_end, Rng& rng);
+                        Duration fault_free_end, Rng& rng);
 
 }  // namespace sidestep

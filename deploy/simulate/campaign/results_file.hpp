@@ -10,12 +10,12 @@
 
 namespace sidestep {
 
-/// The results of a campaign on disk, one per line, so that an interrupted campaign can resume. The first line
-/// identifies the campaign.
+/// The results of a campaign on disk, one per line, so that an interrupted campaign can resume. The first
+/// line identifies the campaign.
 class ResultsFile {
  public:
-  /// Opens or creates the file. An incomplete last line is removed. Throws std::runtime_error when the file belongs
-  /// to another campaign, is malformed, or cannot be written.
+  /// Opens or creates the file. An incomplete last line is removed. Throws std::runtime_error when the file
+  /// belongs to another campaign, is malformed, or cannot be written.
   ResultsFile(const std::string& path, const std::string& campaign);
 
   /// The results in the file when it was opened.

@@ -22,8 +22,9 @@ class PositionSampler {
   bool is_free(const Vec2& p) const {
     const double clearance_m = scenario_.radius_m + scenario_.margin_m + 0.01;
     return scenario_.field.contains(p, clearance_m) &&
-           std::ranges::none_of(scenario_.obstacles,
-                                [&](const Circle& o) { return (p - o.centre_m).norm() < o.radius_m + clearance_m; });
+           std::ranges::none_of(scenario_.obstacles, [&](const Circle& o) {
+             return (p - o.centre_m).norm() < o.radius_m + clearance_m;
+           });
   }
   bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const {
     const double separation_m = 2 * scenario_.radius_m + scenario_.margin_m + 0.01;
@@ -44,7 +45,7 @@ class PositionSampler {
       if (is_apart(p, others)) return p;
     }
   }
-  /// A free position near the desired one, apart from the others.
+  /// A free position near the desired one and clear of the others.
   Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others) {
     for (int i = 0; i < kMaxAttempts; ++i) {
       const double spread = 0.005 * i;
@@ -92,7 +93,7 @@ void sample_paths(Scenario& scenario, Rng& rng) {
     const Vec2 arm = rotated(Vec2(circle_m, 0), 2 * std::numbers::pi * i / count);
     const double side = robot.id % 2 == 0 ? 1 : -1;
     const Vec2 at_side(side * 0.42 * scenario.field.length_m,
-                      rng.uniform(-0.45, 0.45) * scenario.field.width_m);
+                       rng.uniform(-0.45, 0.45) * scenario.field.width_m);
     robot.start_m = pattern == kCircle  ? positions.sample_near(arm, starts)
                     : pattern == kSides ? positions.sample_near(at_side, starts)
                                         : positions.sample_apart(starts);
@@ -136,7 +137,8 @@ Scenario sample_scene(Rng& rng) {
 
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; command loss {:.1f} %, "
+      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; command loss "
+      "{:.1f} %, "
       "vision delay {:.1f} ms, missed detections {:.1f} %",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
       scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,

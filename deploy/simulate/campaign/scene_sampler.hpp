@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// A scene with 5 to 30 robots, dense enough that they interact (0.5 to 3 m² each), up to five obstacles, and so many
-/// goals per robot that none reaches its last goal within a few minutes.
+/// A scene with 5 to 30 robots, dense enough that they interact (0.5 to 3 m² each), up to five obstacles, and
+/// enough goals per robot that none reaches its last one within a few minutes.
 Scenario sample_scene(Rng& rng);
 
 /// A description in one line.

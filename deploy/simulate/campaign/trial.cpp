@@ -32,8 +32,7 @@ struct UnexpectedStates {
 UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan& plan) {
   UnexpectedStates unexpected;
   for (const RobotProgress& row : system.metrics().progress()) {
-    const bool is_driving =
-        row.agent_state == msg::AGENT_DRIVING || row.agent_state == msg::AGENT_ARRIVED;
+    const bool is_driving = row.agent_state == msg::AGENT_DRIVING || row.agent_state == msg::AGENT_ARRIVED;
     if (std::ranges::find(plan.robots_out_of_clock_bound, row.robot) ==
         plan.robots_out_of_clock_bound.end()) {
       if (!is_driving) unexpected.not_driving.push_back(row.robot);
@@ -45,7 +44,7 @@ UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan
   return unexpected;
 }
 
-/// Whether the clocks of these robots were so wrong that no version may have been granted to them at all.
+/// Whether every robot out of the clock bound is so far out that no version may have been granted to it.
 bool is_detection_certain(const Trial& trial) {
   const auto is_large = [](Duration offset) { return std::chrono::abs(offset) > kCertainlyDetectedOffset; };
   return std::ranges::all_of(trial.plan.robots_out_of_clock_bound, [&](RobotId robot) {
@@ -91,8 +90,8 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
                      list(unexpected.undetected_clock)));
   }
   if (!unexpected.driven.empty() && is_detection_certain(trial)) {
-    fail(fmt::format("robots {} were driven although their clocks are out of bound",
-                     list(unexpected.driven)));
+    fail(
+        fmt::format("robots {} were driven although their clocks are out of bound", list(unexpected.driven)));
   }
   // Robots that must not move may stand at the goals of others.
   if (out_of_bound.empty() && result.stationary == result.robots && !system.metrics().all_arrived())

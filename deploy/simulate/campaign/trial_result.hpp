@@ -12,7 +12,7 @@ namespace sidestep {
 struct TrialResult {
   std::uint64_t seed = 0;
   std::vector<std::string> failures;
-  std::uint64_t contacts = 0;          ///< without the excused ones
+  std::uint64_t contacts = 0;          ///< excluding excused ones
   std::uint64_t excused_contacts = 0;  ///< of robots that were disturbed from outside
   std::uint64_t audit_violations = 0, firmware_violations = 0;
   std::uint64_t proposals = 0, grants = 0, denials = 0;
@@ -29,7 +29,7 @@ nlohmann::ordered_json to_json(const TrialResult& result);
 
 /// One line of JSON.
 std::string to_line(const TrialResult& result);
-/// The reverse of to_line(); throws nlohmann::json::exception for anything else.
+/// The inverse of to_line(); throws nlohmann::json::exception for anything else.
 [[nodiscard]] TrialResult parse_trial_result(const std::string& line);
 
 }  // namespace sidestep

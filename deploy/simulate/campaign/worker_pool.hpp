@@ -9,14 +9,14 @@
 
 namespace sidestep {
 
-/// Runs numbered jobs in child processes, one job per process at a time, so that a crash affects only its own job.
-/// Must be created before this process has threads.
+/// Runs numbered jobs in child processes, one job per process at a time, so that a crash affects only its own
+/// job. Must be created before this process has threads.
 class WorkerPool {
  public:
   /// Runs in a child; returns one line of text.
   using Work = std::function<std::string(std::uint64_t job)>;
-  /// Runs in this process after each job, in any order. If the worker died, `death_reason` is not empty and there is
-  /// no line.
+  /// Runs in this process after each job, in any order. If the worker died, `death_reason` is not empty and
+  /// there is no line.
   using Done =
       std::function<void(std::uint64_t job, const std::string& line, const std::string& death_reason)>;
 

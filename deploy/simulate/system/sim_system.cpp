@@ -69,9 +69,9 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
     if (on_truth_) on_truth_(truth);
   });
   observer_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
-                                         [this](const auto& status) { metrics_.on_status(status); });
-  observer_bus_.subscribe<msg::CoordinatorState>(topics::kCoordinator,
-                                              [this](const auto& state) { metrics_.on_coordinator(state); });
+                                            [this](const auto& status) { metrics_.on_status(status); });
+  observer_bus_.subscribe<msg::CoordinatorState>(
+      topics::kCoordinator, [this](const auto& state) { metrics_.on_coordinator(state); });
   for (const RobotSpec& robot : scenario_.robots)
     robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
   for (const std::string& process : process_names(scenario_)) start(process);
@@ -97,8 +97,8 @@ SimProcessSpec SimSystem::spec_of(const std::string& process) {
 void SimSystem::start(const std::string& name) {
   auto process = std::make_unique<Process>(network_, spec_of(name));
   SimBus& bus = process->bus;
-  // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it must
-  // depend on the seed.
+  // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it
+  // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
   if (name == "simulator")

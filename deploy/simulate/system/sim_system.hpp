@@ -22,13 +22,13 @@ struct PlanningScratch;
 /// The process name of a second agent of a robot.
 std::string twin_process(RobotId robot);
 
-/// The whole system on SimBus, in one thread and virtual time: one simulated process each for the simulator, vision,
-/// every coordinator and every agent, and an observer with metrics and auditor. The same scenario and seed give the
-/// same run, bit for bit.
+/// The whole system on SimBus, in one thread and virtual time: one simulated process each for the simulator,
+/// vision, every coordinator and every agent, and an observer with metrics and auditor. The same scenario and
+/// seed give the same run, bit for bit.
 class SimSystem {
  public:
-  /// Starts all processes at virtual time 1000 s. `clocks` holds the offsets of processes' clocks ahead of virtual
-  /// time; they apply to all incarnations.
+  /// Starts all processes at virtual time 1000 s. `clocks` holds the offsets of processes' clocks ahead of
+  /// virtual time; they apply to all incarnations.
   SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks = {});
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
@@ -36,14 +36,15 @@ class SimSystem {
 
   void run_until(Time limit) { network_.run_until(limit); }
   void run_for(Duration duration) { network_.run_until(network_.now() + duration); }
-  /// Runs until all robots have arrived and stayed for half a second, or until the limit; returns whether they have.
+  /// Runs until all robots have arrived and stayed for half a second, or until the limit; returns whether
+  /// they have.
   bool run_until_arrived(Time limit);
 
-  /// Kills a process as by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3". Robots,
-  /// messages in flight and other processes are not affected. Does nothing if it is dead.
+  /// Kills a process as by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3".
+  /// Robots, messages in flight and other processes are not affected. Does nothing if it is dead.
   void kill(const std::string& process);
-  /// Starts a dead process as a new incarnation without any state of the old one, or twin_process(robot) as a second
-  /// agent.
+  /// Starts a dead process as a new incarnation without any state of the old one, or twin_process(robot) as a
+  /// second agent.
   void restart(const std::string& process);
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
   /// Pauses a process as by SIGSTOP and SIGCONT; see SimBus::pause. Does nothing if it is dead.
@@ -52,7 +53,7 @@ class SimSystem {
   void disturb(msg::Disturbance& disturbance) { disturbance_writer_.publish(disturbance, now()); }
   /// Sets the quality of the link between two processes, for all their incarnations.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
-  /// The processes that a system starts.
+  /// The names of the processes that a system starts.
   static std::vector<std::string> process_names(const Scenario& scenario);
 
   Time now() const { return network_.now(); }

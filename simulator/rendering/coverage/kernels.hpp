@@ -27,14 +27,14 @@ struct PixelSamples {
   const Points* offsets = nullptr;
 };
 
-/// Counts of a pixel's samples by where they lie. All instruction sets give the same counts.
+/// Functions that count a pixel's samples in a region. All instruction sets give the same counts.
 struct Kernels {
   const char* name;
-  /// In a disc about (x, y).
+  /// Samples in a disc about (x, y).
   int (*count_in_disc)(const PixelSamples& samples, float x, float y, float radius);
   int (*count_in_cross_section)(const PixelSamples& samples, const CrossSection& section);
-  /// On rays that meet the cross-section. The rays begin at the samples; their directions are those of the
-  /// rays at `still_offsets` from the pixel's centre, the samples before any shift by the body's motion.
+  /// Samples whose rays meet the cross-section. The rays begin at the samples. Their directions are those of
+  /// the rays at `still_offsets` from the pixel's centre: the samples before the shift by the body's motion.
   int (*count_rays_hitting)(const Points& still_offsets, const PixelSamples& samples, const ViewingRays& rays,
                             const CrossSection& section);
 };

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Number of sample points that determine which share of a pixel an edge covers.
+/// Number of sample points per pixel, from which the covered share of the pixel is computed at edges.
 inline constexpr std::size_t kSamples = 128;
 
 /// One coordinate of every sample.

@@ -102,8 +102,8 @@ inline void add_ball(msg::DetectionFrame& frame, const Vec2& position_m) {
   frame.ball_count(static_cast<std::uint8_t>(frame.ball_count() + 1));
 }
 
-inline void add_noisy_robot(msg::DetectionFrame& frame, RobotId id, const Pose& pose, const CameraNoise& noise,
-                Rng& rng) {
+inline void add_noisy_robot(msg::DetectionFrame& frame, RobotId id, const Pose& pose,
+                            const CameraNoise& noise, Rng& rng) {
   add_robot(frame, id,
             pose.position_m + Vec2(noise.position_m * rng.normal(), noise.position_m * rng.normal()),
             pose.heading_rad + noise.heading_rad * rng.normal());
@@ -112,7 +112,8 @@ inline void add_noisy_robot(msg::DetectionFrame& frame, RobotId id, const Pose& 
 /// A tracker for robots 0 .. count - 1 that receives messages.
 class TrackerFixture {
  public:
-  explicit TrackerFixture(RobotId count, const TrackerSettings& settings = {}) : tracker_(settings, roster(count)) {}
+  explicit TrackerFixture(RobotId count, const TrackerSettings& settings = {})
+      : tracker_(settings, roster(count)) {}
 
   void feed(const msg::DetectionFrame& message, Time arrival) {
     frame_.assign(message, arrival);

@@ -95,8 +95,8 @@ void classify(const ClassesView& classes, const std::uint8_t* row, std::size_t w
   if (rest == 0) return;
   std::uint8_t last[kWord * Pixels::kBytes] = {};
   __builtin_memcpy(last, row + words * kWord * Pixels::kBytes, rest * Pixels::kBytes);
-  masks.any[words] = classify_word<Pixels>(classes, last, (std::uint64_t{1} << rest) - 1,
-                                           masks.by_colour + words * kMasks);
+  masks.any[words] =
+      classify_word<Pixels>(classes, last, (std::uint64_t{1} << rest) - 1, masks.by_colour + words * kMasks);
 }
 
 }  // namespace

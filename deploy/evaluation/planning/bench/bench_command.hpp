@@ -7,8 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `bench planning` to a program. When it is parsed, `action` becomes what to run; that returns the exit
-/// code.
+/// Adds `bench planning`. Parsing it sets `action`, which returns the exit code.
 void add_bench_command(const Command& root, std::function<int()>& action);
 
 }  // namespace sidestep

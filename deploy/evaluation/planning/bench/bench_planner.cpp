@@ -15,9 +15,9 @@
 namespace sidestep {
 namespace {
 
-// Planners add to it.
+// Half of the maximum, so that planners can add to it without overflow.
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max() / 2;
-// Anytime planners would use all of their time: samples end them.
+// Sample limit of anytime planners, which would otherwise always use the whole time limit.
 constexpr std::size_t kAnytimeSamples = 2000;
 
 struct Pair {
@@ -34,7 +34,8 @@ class OwnPlanner {
         domain_settings_(planner_.domain_settings(world.world)),
         rng_(seed) {}
 
-  /// Only time limits a plan, as with the peers. Making the domain belongs to the query.
+  /// Limited only by time, as the peers are, except for anytime planners. Making the domain is part of the
+  /// measured time.
   TimedPlan plan(const PlanQuery& query, double max_ms) {
     const std::size_t samples = planner_.kind == PlannerKind::kAnytime ? kAnytimeSamples : kUnlimited;
     const double begin_us = cpu_us();
@@ -66,7 +67,7 @@ class OwnPlanner {
   Rng rng_;
 };
 
-/// A function that plans with a planner of this type, which it owns.
+/// Returns a function that owns a planner of this type and plans with it.
 template <typename Planner>
 QueryFunction prepared(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed) {
   const auto planner = std::make_shared<Planner>(name, world, seed);
@@ -106,7 +107,8 @@ std::vector<BenchPlanner> bench_planners() {
   return planners;
 }
 
-std::vector<BenchPlanner> select_planners(std::vector<BenchPlanner> all, const std::vector<std::string>& names) {
+std::vector<BenchPlanner> select_planners(std::vector<BenchPlanner> all,
+                                          const std::vector<std::string>& names) {
   if (names.empty()) return all;
   std::vector<std::string> wanted = names;
   for (const BenchPlanner& planner : all)

@@ -12,9 +12,9 @@ namespace sidestep {
 
 /// A planner's answer to a query, with the processor time that it took.
 struct TimedPlan {
-  bool is_solved = false;  ///< what the planner says; the benchmark checks it
+  bool is_solved = false;  ///< claimed by the planner; the benchmark checks it
   double plan_us = 0, smoothing_us = 0;
-  std::size_t iterations = 0;  ///< our samples; a peer's checks of its termination condition
+  std::size_t iterations = 0;  ///< samples for ours; checks of the termination condition for OMPL's
   std::vector<Vec2> path_m, smoothed_m;
 };
 
@@ -24,24 +24,24 @@ using QueryFunction = std::function<TimedPlan(const PlanQuery& query, double max
 /// One row of the benchmark.
 struct BenchPlanner {
   std::string name;
-  /// The planner whose times it is compared with; empty where there is none.
+  /// The planner that this one's times are compared with; empty: none.
   std::string baseline;
-  /// It is the same algorithm as its baseline, so it must not solve significantly fewer queries.
+  /// Implements the same algorithm as its baseline, so it must not solve significantly fewer queries.
   bool is_namesake = false;
-  /// Prepares a planner for a world, which has to outlive the result.
+  /// Prepares a planner for a world, which must outlive the result.
   std::function<QueryFunction(const BenchmarkWorld&, std::uint64_t seed)> prepare;
 };
 
-/// The planners of agents/planning, and OMPL's where it is installed: each namesake after its peer, then the
-/// rows that add one thing to the namesake.
+/// The planners of agents/planning, and OMPL's if it is installed. Each namesake (our version of an OMPL
+/// planner) follows its peer (OMPL's), then the variants that add one feature to the namesake.
 [[nodiscard]] std::vector<BenchPlanner> bench_planners();
 
-/// Those with the given names, and the peers of namesakes among them. No names: all.
+/// The planners with the given names, plus the peers of the namesakes among them. No names: all planners.
 [[nodiscard]] std::vector<BenchPlanner> select_planners(std::vector<BenchPlanner> all,
                                                         const std::vector<std::string>& names);
 
-/// Planners that the benchmark has to fail: what "invalid-path" returns leads through obstacles;
-/// "weak-namesake" gives up every fourth query. Throws std::invalid_argument for another name.
+/// Faulty planners that the benchmark must detect: "invalid-path" returns paths through obstacles,
+/// "weak-namesake" gives up on every fourth query. Throws std::invalid_argument for another name.
 [[nodiscard]] BenchPlanner planted_planner(const std::string& name);
 
 }  // namespace sidestep

@@ -41,13 +41,12 @@ class ExactMotions : public ob::MotionValidator {
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     return !obstacles_.touches(position_of(from), position_of(to), radius_m_);
   }
-  /// KPIECE keeps the free fraction of a blocked motion.
+  /// KPIECE uses the free fraction of a blocked motion.
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {
     if (checkMotion(from, to)) return true;
     last_valid.second = free_fraction(obstacles_, position_of(from), position_of(to), radius_m_);
-    if (last_valid.first)
-      si_->getStateSpace()->interpolate(from, to, last_valid.second, last_valid.first);
+    if (last_valid.first) si_->getStateSpace()->interpolate(from, to, last_valid.second, last_valid.first);
     return false;
   }
 
@@ -56,8 +55,8 @@ class ExactMotions : public ob::MotionValidator {
   double radius_m_;
 };
 
-/// OMPL's default projection for a plane: the position itself, in 20 by 20 cells. That one's code fails an
-/// assertion of Eigen in Debian's build.
+/// The position itself, in 20 by 20 cells. Replaces OMPL's equivalent default projection for a plane, whose
+/// code fails an Eigen assertion in Debian's build.
 class PositionProjection : public ob::ProjectionEvaluator {
  public:
   PositionProjection(const ob::StateSpacePtr& space, const Vec2& cell_m)
@@ -118,7 +117,7 @@ struct OmplPlanner::Parts {
       goal[axis] = query.goal_m[axis];
     }
     problem->setStartAndGoalStates(start, goal);
-    // Any cost satisfies it: planners that improve their paths stop at the first one.
+    // Any cost satisfies the objective, so planners that improve their paths stop at the first one.
     const auto objective = std::make_shared<ob::PathLengthOptimizationObjective>(information);
     objective->setCostThreshold(objective->infiniteCost());
     problem->setOptimizationObjective(objective);
@@ -143,7 +142,7 @@ std::string ompl_build() {
 OmplPlanner::OmplPlanner(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed)
     : parts_(std::make_unique<Parts>()) {
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-  // OMPL takes one seed in a process.
+  // OMPL accepts only one seed per process.
   static const bool is_seeded = (ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed)), true);
   static_cast<void>(is_seeded);
   const auto space = std::make_shared<ob::RealVectorStateSpace>(2);
@@ -179,7 +178,7 @@ TimedPlan OmplPlanner::plan(const PlanQuery& query, double max_ms) {
   planner->setup();
   TimedPlan plan;
   const double begin_us = cpu_us(), end_us = begin_us + 1e3 * max_ms;
-  // The clock is read as rarely as by our planners' budget: reading it costs as much as a sample.
+  // Reads the clock as rarely as our planners' Budget does, because a reading costs as much as a sample.
   const auto is_over = [&] { return ++plan.iterations % 16 == 0 && cpu_us() >= end_us; };
   const ob::PlannerStatus status = planner->solve(ob::PlannerTerminationCondition(is_over));
   plan.plan_us = cpu_us() - begin_us;

@@ -12,13 +12,13 @@ namespace sidestep {
 /// OMPL's RRT, RRTConnect, KPIECE and BIT*; none when built without OMPL.
 const std::vector<std::string>& ompl_planner_names();
 
-/// OMPL's version, where it comes from and how it was compiled, as far as that is known.
+/// OMPL's version, origin and compile options, or that they are unknown.
 [[nodiscard]] std::string ompl_build();
 
 /// A planner of the Open Motion Planning Library (Sucan, Moll, Kavraki 2012) with this project's exact
-/// collision checks and that library's own smoothing. It is made anew for each query; the time counts its
-/// solve() alone, not its construction, setup and destruction. Ranges and goal biases are those of the
-/// namesakes, which are OMPL's defaults. The world has to outlive it.
+/// collision checks and OMPL's own smoothing. Every query constructs a new OMPL planner; the measured time is
+/// that of solve() alone, without construction, setup and destruction. Range and goal bias are OMPL's
+/// defaults, which the namesakes use too. The world must outlive this object.
 class OmplPlanner {
  public:
   OmplPlanner(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed);

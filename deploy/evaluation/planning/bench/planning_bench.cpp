@@ -34,13 +34,16 @@ std::vector<PlanWorld> worlds_of(const std::string& name, const PlanningBenchOpt
 
 void print_head(const PlanningBenchOptions& options) {
   fmt::print(
-      "{}\nsidestep: {}. The collision checks, which both sides call, are compiled for the baseline, AVX2 and\n"
+      "{}\nsidestep: {}. The collision checks, which both sides call, are compiled for the baseline, AVX2 "
+      "and\n"
       "AVX-512, and the best is chosen at run time.\n\n",
       ompl_build(), SIDESTEP_BUILD);
   fmt::print(
       "{} queries in each world, seeds {} to {}, at most {} ms each; planners take turns of {} queries, in "
-      "shuffled\norder. Microseconds of processor time. solved: by a valid path; an exact decision says that all "
-      "queries are\nsolvable. A query that is not solved counts with the time it took. ratio: of the medians, to "
+      "shuffled\norder. Microseconds of processor time. solved: by a valid path; an exact decision says that "
+      "all "
+      "queries are\nsolvable. A query that is not solved counts with the time it took. ratio: of the "
+      "medians, to "
       "the planner in the\ncolumn `over`. iterations: median over solved queries. smoothed: median with each "
       "library's own smoothing.\nLengths: medians over the shortest path's.\n\n",
       options.queries, options.seed, options.seed + std::min(options.seeds, options.queries) - 1,
@@ -63,7 +66,8 @@ bool bench_planning(const PlanningBenchOptions& options) {
       failures.push_back(fmt::format("{}: {}", world, failure));
   }
   if (options.worlds.empty()) {
-    const std::size_t cycles = std::min(kReplanCycles, options.queries >= kMinForP99 ? kReplanCycles : options.queries);
+    const std::size_t cycles =
+        std::min(kReplanCycles, options.queries >= kMinForP99 ? kReplanCycles : options.queries);
     const auto more = bench_replanning(options.planners, cycles, options.seed);
     failures.insert(failures.end(), more.begin(), more.end());
   }

@@ -40,8 +40,8 @@ void add(QueryBenchRow& row, const BenchmarkWorld& world, std::size_t query, con
 }
 
 const QueryBenchRow* row_of(const std::vector<QueryBenchRow>& rows, const std::string& planner) {
-  const auto row = std::find_if(rows.begin(), rows.end(),
-                                [&](const QueryBenchRow& r) { return r.planner == planner; });
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const QueryBenchRow& r) { return r.planner == planner; });
   return row == rows.end() ? nullptr : &*row;
 }
 
@@ -93,9 +93,11 @@ std::vector<std::string> query_bench_failures(const std::vector<QueryBenchRow>& 
 }
 
 std::string query_bench_head() {
-  return "| world    | planner                    | over            | solved  | median    | ratio  | p95       "
+  return "| world    | planner                    | over            | solved  | median    | ratio  | p95     "
+         "  "
          "| p99       | iterations | smoothed  | length | smoothed | invalid |\n"
-         "|----------|----------------------------|-----------------|--------:|----------:|-------:|----------:"
+         "|----------|----------------------------|-----------------|--------:|----------:|-------:|---------"
+         "-:"
          "|----------:|-----------:|----------:|-------:|---------:|--------:|\n";
 }
 
@@ -111,12 +113,13 @@ std::string query_bench_lines(const std::string& world, const std::vector<QueryB
     const std::string p99 =
         row->queries >= kMinForP99 ? fmt::format("{:.1f}", row->plan_us.quantile(0.99)) : "";
     lines += fmt::format(
-        "| {:<8} | {:<26} | {:<15} | {:>5.1f} % | {:>9.1f} | {:>6} | {:>9.1f} | {:>9} | {:>10.0f} | {:>9.1f} | "
+        "| {:<8} | {:<26} | {:<15} | {:>5.1f} % | {:>9.1f} | {:>6} | {:>9.1f} | {:>9} | {:>10.0f} | {:>9.1f} "
+        "| "
         "{:>6.3f} | {:>8.3f} | {:>7} |\n",
         world, row->planner, baseline ? planner.baseline : "",
         100.0 * static_cast<double>(row->solved) / static_cast<double>(row->queries), row->plan_us.median(),
-        ratio, row->plan_us.quantile(0.95), p99, row->iterations.median(), row->with_smoothing_us.median(), row->length.median(),
-        row->smoothed_length.median(), row->invalid);
+        ratio, row->plan_us.quantile(0.95), p99, row->iterations.median(), row->with_smoothing_us.median(),
+        row->length.median(), row->smoothed_length.median(), row->invalid);
   }
   return lines;
 }

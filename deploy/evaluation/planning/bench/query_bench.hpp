@@ -6,38 +6,39 @@
 
 namespace sidestep {
 
-/// What one planner did on the queries of one world.
+/// One planner's results on the queries of one kind of world.
 struct QueryBenchRow {
   std::string planner;
   std::size_t queries = 0;
-  std::size_t solved = 0;       ///< by valid paths from the start to the goal
-  std::size_t invalid = 0;      ///< said to be solved, by a path that is not valid, smoothed or not
-  Distribution plan_us;         ///< of all queries, unsolved ones included
+  std::size_t solved = 0;   ///< with a valid path from the start to the goal
+  std::size_t invalid = 0;  ///< claimed to be solved, but the raw or the smoothed path is not valid
+  Distribution plan_us;     ///< of all queries, including unsolved ones
   Distribution with_smoothing_us;
-  Distribution iterations;  ///< where solved
-  Distribution length;          ///< over the shortest path's, where solved
+  Distribution iterations;  ///< of solved queries
+  Distribution length;      ///< relative to the shortest path, of solved queries
   Distribution smoothed_length;
 };
 
-/// Planners take turns of this many queries: after the first of them, each finds its own code and data in the
-/// processor's caches, as it would alone.
+/// Number of queries that a planner answers per turn. From the second one on, the processor's caches hold the
+/// planner's own code and data, as if it ran alone.
 inline constexpr std::size_t kBlock = 20;
 
-/// Gives all planners the same queries in worlds of one kind: block by block, in an order shuffled by the seed
-/// for each block, after one query each that does not count. One row for each planner, in their order.
+/// Gives all planners the same queries in worlds of one kind, in blocks of kBlock. The seed shuffles the
+/// order of planners in each block. Each planner first answers one query that does not count. Returns one row
+/// per planner, in the order of `planners`.
 [[nodiscard]] std::vector<QueryBenchRow> bench_queries(const std::vector<PlanWorld>& worlds,
                                                        const std::vector<BenchPlanner>& planners,
                                                        double max_ms, std::uint64_t seed);
 
-/// Namesakes fail below this probability of solving so few queries by chance.
+/// A namesake fails if the probability of solving as few queries by chance is below this.
 inline constexpr double kSignificance = 0.01;
 
-/// What is wrong with the rows of bench_queries, a sentence each: invalid paths, and namesakes that solve
+/// The failures in the rows of bench_queries, one sentence each: invalid paths, and namesakes that solve
 /// significantly fewer queries than their peers.
 [[nodiscard]] std::vector<std::string> query_bench_failures(const std::vector<QueryBenchRow>& rows,
                                                             const std::vector<BenchPlanner>& planners);
 
-/// The rows as lines of a Markdown table, and its head.
+/// The head and the rows of a Markdown table.
 [[nodiscard]] std::string query_bench_head();
 [[nodiscard]] std::string query_bench_lines(const std::string& world, const std::vector<QueryBenchRow>& rows,
                                             const std::vector<BenchPlanner>& planners);

@@ -32,7 +32,7 @@ std::vector<Row> rows_of(const std::vector<std::string>& names, std::uint64_t se
 }
 
 void replan(const ReplanCourse& course, Row& row) {
-  // The field and the radius, which the settings depend on, are those of the benchmark's worlds.
+  // The settings depend only on the field and the radius, whose defaults are those of the benchmark's worlds.
   const DiscDomainSettings settings = row.planner.domain_settings(PlanWorld{});
   const double begin_us = cpu_us();
   const DiscDomain domain = course.domain(settings);
@@ -64,8 +64,9 @@ std::vector<std::string> bench_replanning(const std::vector<std::string>& planne
                                           std::uint64_t seed) {
   std::vector<Row> rows = rows_of(planners, seed);
   if (rows.empty()) return {};
-  fmt::print("\n{} replans at 60 Hz among 64 circles that move at {} m/s; microseconds of processor time.\n\n",
-             cycles, ReplanCourse::kObstacleSpeed_mps);
+  fmt::print(
+      "\n{} replans at 60 Hz among 64 circles that move at {} m/s; microseconds of processor time.\n\n",
+      cycles, ReplanCourse::kObstacleSpeed_mps);
   ReplanCourse course(cycles, seed);
   std::vector<std::size_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -79,7 +80,8 @@ std::vector<std::string> bench_replanning(const std::vector<std::string>& planne
   std::vector<std::string> failures;
   for (const Row& row : rows)
     if (row.invalid > 0)
-      failures.push_back(fmt::format("{}: {} of {} replans are not valid", row.planner.name, row.invalid, cycles));
+      failures.push_back(
+          fmt::format("{}: {} of {} replans are not valid", row.planner.name, row.invalid, cycles));
   return failures;
 }
 

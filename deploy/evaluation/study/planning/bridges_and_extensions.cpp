@@ -13,11 +13,10 @@ std::vector<MeasuredPlanner> planners_of(const BridgesAndExtensions& settings, s
   std::vector<MeasuredPlanner> planners;
   for (const std::size_t extensions : settings.extensions) {
     for (const std::size_t bridges : settings.bridges) {
-      const BidirectionalErrtSettings trees{
-          .cache_capacity = 0,
-          .growth_extensions = extensions,
-          .connect_extensions = extensions,
-          .bridges = bridges};
+      const BidirectionalErrtSettings trees{.cache_capacity = 0,
+                                            .growth_extensions = extensions,
+                                            .connect_extensions = extensions,
+                                            .bridges = bridges};
       planners.emplace_back("", plan_function(std::make_shared<BidirectionalErrt<DiscDomain>>(trees)),
                             seeds.bits(), DiscDomainSettings{.step_m = settings.step_m});
     }

@@ -10,8 +10,8 @@ struct CacheReplans {
 };
 
 /// Replans among moving obstacles (ReplanCourse) with one tree (ERRT) and with two, each without a waypoint
-/// cache and with one of 50 waypoints, sampled with probability 0.4 (Bruce 2006, chapter 4). All planners plan
-/// in each cycle, in shuffled order.
+/// cache and with a cache of 50 waypoints, sampled with probability 0.4 (Bruce 2006, chapter 4). All planners
+/// plan in each cycle, in shuffled order.
 StudyTable cache_replans(const CacheReplans& settings, std::uint64_t seed, const ProgressCallback& progress);
 
 }  // namespace sidestep

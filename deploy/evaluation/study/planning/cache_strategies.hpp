@@ -11,8 +11,10 @@ struct CacheStrategies {
   std::size_t replans = 890;  ///< in each course
 };
 
-/// The four replacement strategies of one tree's waypoint cache (ERRT) over the probability of growing
-/// towards a waypoint: replans among moving obstacles, all strategies in each cycle, in shuffled order.
-StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed, const ProgressCallback& progress);
+/// Replan times with the four replacement strategies of the waypoint cache of one tree (ERRT), as functions
+/// of the probability of growing towards a waypoint. In each cycle among moving obstacles all strategies
+/// replan, in shuffled order.
+StudyTable cache_strategies(const CacheStrategies& settings, std::uint64_t seed,
+                            const ProgressCallback& progress);
 
 }  // namespace sidestep

@@ -9,10 +9,10 @@
 namespace sidestep {
 
 /// Obstacles that cover a fifth of the unit square, and short straight motions of a small robot among them.
-/// All sizes scale with the spacing of the obstacles: more obstacles make the world larger in proportion, and
-/// contacts stay as frequent.
+/// All sizes scale with the spacing of the obstacles: with more obstacles the robot is smaller and its
+/// motions are shorter, so contacts are equally frequent.
 struct CollisionProblem {
-  /// Circles only, or boxes, segments and pentagons too.
+  /// The obstacles are circles only, or also boxes, segments and pentagons.
   CollisionProblem(std::size_t obstacles, std::size_t motions, bool circles_only, std::uint64_t seed);
 
   static constexpr double kCovered = 0.2;
@@ -28,7 +28,8 @@ enum class AnswerUse {
   kBranched,  ///< branches on it, as planners do
 };
 
-/// Queries all motions and returns the mean time of one. `query` takes a motion and returns whether it touches.
+/// Queries all motions and returns the mean time per query. `query` takes a motion and returns whether it
+/// touches.
 template <AnswerUse kUse, typename Query>
 double query_ns(const CollisionProblem& problem, const Query& query) {
   std::size_t clear = 0;

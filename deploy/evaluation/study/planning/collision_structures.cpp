@@ -14,7 +14,7 @@
 namespace sidestep {
 namespace {
 
-// As in the thesis's domains.
+// Marked in the plot: the number of obstacles in the domains of the thesis (Bruce 2006).
 constexpr double kMarkedObstacles = 64;
 
 constexpr std::array kNames{"linear", "extent masks", "tree of boxes", "FCL tree of boxes"};
@@ -77,9 +77,10 @@ StudyTable collision_structures(const CollisionStructures& settings, std::uint64
       const double touch_percent = 100 * static_cast<double>(touched) / static_cast<double>(settings.queries);
       table.rows.push_back(cells(obstacles, kNames[i], settings.queries, fmt::format("{:.3f}", touch_percent),
                                  fmt::format("{:.1f}", contender.ns.median()),
-                                 fmt::format("{:.1f}", contender.ns.quantile(0)), fmt::format("{:.1f}", contender.ns.quantile(1))));
-      table.plots[0].lines[i].points.push_back(
-          {static_cast<double>(obstacles), contender.ns.median(), contender.ns.quantile(0), contender.ns.quantile(1)});
+                                 fmt::format("{:.1f}", contender.ns.quantile(0)),
+                                 fmt::format("{:.1f}", contender.ns.quantile(1))));
+      table.plots[0].lines[i].points.push_back({static_cast<double>(obstacles), contender.ns.median(),
+                                                contender.ns.quantile(0), contender.ns.quantile(1)});
     }
   }
   return table;

@@ -11,9 +11,9 @@ struct CollisionStructures {
   std::size_t rounds = 9;
 };
 
-/// Structures that decide whether a moving disc touches anything (Bruce 2006, chapter 3), and FCL's, over the
-/// number of circles: times of a query, medians of rounds in which all get the same queries, in shuffled
-/// order.
+/// Query times of structures that decide whether a moving disc touches anything (Bruce 2006, chapter 3), and
+/// of FCL, as functions of the number of circles: medians over rounds in which all structures get the same
+/// queries, in shuffled order.
 StudyTable collision_structures(const CollisionStructures& settings, std::uint64_t seed,
                                 const ProgressCallback& progress);
 

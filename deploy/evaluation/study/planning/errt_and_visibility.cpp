@@ -45,15 +45,15 @@ class KeptGraph {
   TangentGraph graph_;
 };
 
-/// The textbook's planners: uniform samples, no cache, no attempt at the straight line.
+/// Textbook planners: uniform samples, no cache, no attempt at the straight line.
 MeasuredPlanner plain_rrt(std::uint64_t seed) {
   const auto planner =
       std::make_shared<OneTree>(ErrtSettings{.cache_capacity = 0, .tries_straight_line = false});
   return {"RRT", plan_function(planner), seed, {.contact_probability = 0}};
 }
 MeasuredPlanner plain_rrt_connect(std::uint64_t seed) {
-  const auto planner = std::make_shared<TwoTrees>(BidirectionalErrtSettings{
-      .cache_capacity = 0, .growth_extensions = 1, .tries_straight_line = false});
+  const auto planner = std::make_shared<TwoTrees>(
+      BidirectionalErrtSettings{.cache_capacity = 0, .growth_extensions = 1, .tries_straight_line = false});
   return {"RRT-Connect", plan_function(planner), seed, {.contact_probability = 0}};
 }
 

@@ -11,10 +11,11 @@ struct ErrtAndVisibility {
   std::size_t queries = 40;  ///< in each world
 };
 
-/// One tree and two trees (ERRT, its cache filled by the earlier queries in a world), raw and smoothed, and
-/// the plain RRT and RRT-Connect without our additions, against visibility graphs: the full graph, kept for a
-/// world or built anew for each query as moving obstacles require, and the lazy graph, which keeps nothing.
-/// Times and lengths over the number of circles; the field grows with it, so that the density is constant.
+/// Compares planners with one and two trees to visibility graphs. The tree planners are ERRT, whose cache is
+/// filled by the earlier queries in a world, raw and smoothed, and plain RRT and RRT-Connect without our
+/// additions. The visibility graphs are the full graph, either kept for a world or rebuilt for each query as
+/// moving obstacles require, and the lazy graph, which keeps nothing. Times and lengths are functions of the
+/// number of circles; the field grows with it, so that the density is constant.
 StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t seed,
                                const ProgressCallback& progress);
 

@@ -47,8 +47,8 @@ bool FclTerrain::touches(const Vec3& from_m, const Vec3& to_m, double radius_m) 
   fcl::CollisionRequestd request;
   if (model_->solver == Solver::kExact) request.gjk_solver_type = fcl::GST_INDEP;
   fcl::CollisionResultd result;
-  return fcl::collide(&model_->surface, Eigen::Isometry3d::Identity(), model_->capsule.get(), pose,
-                      request, result) > 0;
+  return fcl::collide(&model_->surface, Eigen::Isometry3d::Identity(), model_->capsule.get(), pose, request,
+                      result) > 0;
 }
 
 double FclTerrain::clearance_m(const Vec3& from_m, const Vec3& to_m, double radius_m) const {

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// FCL's tree of boxes over a mesh (oriented boxes and spheres), queried with a capsule: the peer of
-/// TerrainTree. FCL knows the surface only, so a motion has to begin above it.
+/// TerrainTree. FCL knows only the surface, so a motion must begin above it.
 class FclTerrain {
  public:
   enum class Solver {

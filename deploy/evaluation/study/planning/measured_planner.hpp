@@ -15,26 +15,24 @@ namespace sidestep {
 struct PlanStatistics {
   std::size_t queries = 0, solved = 0;
   Distribution plan_us{}, nodes{};
-  Distribution length{};  ///< over the shortest path's, where solved
+  Distribution length{};  ///< relative to the shortest path, of solved queries
 
   /// `shortest_m`: the length of the shortest path, 0 when it is not known.
   void add(const Plan<Vec2>& plan, double us, double shortest_m);
   void add(const PlanStatistics& other);
-  double solved_percent() const {
-    return 100.0 * static_cast<double>(solved) / static_cast<double>(queries);
-  }
+  double solved_percent() const { return 100.0 * static_cast<double>(solved) / static_cast<double>(queries); }
 };
 
-/// The columns of a table of plans, after those of the key.
+/// The columns of a table of plan statistics: those of the key, then the measurements.
 std::vector<std::string> plan_columns(std::vector<std::string> key);
-/// A row of it. The 99th percentile is empty for fewer than kMinForP99 plans.
+/// A row of that table. The 99th percentile is empty for fewer than kMinForP99 plans.
 std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanStatistics& statistics);
 
 /// Makes a query's domain with the settings that a planner needs.
 using DomainFactory = std::function<DiscDomain(const DiscDomainSettings&)>;
 DomainFactory domain_factory(const ObstacleWorld& obstacles, const PlanWorld& world, const PlanQuery& query);
 
-/// A planner that is measured beside others.
+/// A planner that is measured in comparison with others.
 class MeasuredPlanner {
  public:
   using PlanFunction =
@@ -57,7 +55,7 @@ class MeasuredPlanner {
   PlanStatistics statistics_;
 };
 
-/// A function that plans with a planner, which it owns.
+/// Returns a function that owns a planner and plans with it.
 template <typename Planner>
 MeasuredPlanner::PlanFunction plan_function(std::shared_ptr<Planner> planner) {
   return [planner = std::move(planner)](const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
@@ -72,8 +70,8 @@ MeasuredPlanner measured_planner(std::string name, std::uint64_t seed, const Set
   return {std::move(name), plan_function(std::make_shared<Planner>(settings...)), seed};
 }
 
-/// Gives all planners the same query, in an order shuffled by `order`, because a planner's time depends on what
-/// its predecessor left in the processor's caches.
+/// Gives all planners the same query, in an order shuffled by `order`, because a planner's time depends on
+/// what its predecessor left in the processor's caches.
 void plan_all(std::vector<MeasuredPlanner>& planners, Rng& order, const DomainFactory& domain,
               const Vec2& start_m, const Budget& budget, double shortest_m);
 

@@ -6,9 +6,9 @@
 namespace sidestep {
 
 /// The evaluation of planning and collision detection (Bruce 2006, chapters 3 and 4). Writes a table and a
-/// picture for each experiment into the folder, which it makes, prints the tables, and shows progress on
-/// stderr. Everything is timed, so all of it runs in one process. Returns the exit code; throws
-/// std::runtime_error that says what failed.
+/// picture for each experiment into the folder, which it creates, prints the tables, and shows progress on
+/// stderr. Every experiment is timed, so all run in one process, one after another. Returns the exit code;
+/// throws std::runtime_error that says what failed.
 int study_planning(const StudyOptions& options);
 
 }  // namespace sidestep

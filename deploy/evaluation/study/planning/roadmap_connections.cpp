@@ -5,8 +5,8 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/roadmaps/prm.hpp"
-#include "deploy/evaluation/planning/cpu_clock.hpp"
 #include "deploy/evaluation/planning/benchmark_world.hpp"
+#include "deploy/evaluation/planning/cpu_clock.hpp"
 #include "deploy/evaluation/study/planning/measured_planner.hpp"
 
 namespace sidestep {
@@ -51,7 +51,8 @@ DiscDomain domain_of(const BenchmarkWorld& world, const PlanQuery& query) {
 
 Roadmaps build(const RoadmapConnections& settings, const BenchmarkWorld& world, std::uint64_t seed,
                Variant& variant) {
-  Roadmaps roadmap(PrmSettings{.nodes = settings.nodes, .connection = variant.connection, .is_dynamic = true});
+  Roadmaps roadmap(
+      PrmSettings{.nodes = settings.nodes, .connection = variant.connection, .is_dynamic = true});
   Rng rng(seed);
   const DiscDomain domain = domain_of(world, world.world.queries.front());
   const double begin_us = cpu_us();
@@ -63,7 +64,7 @@ Roadmaps build(const RoadmapConnections& settings, const BenchmarkWorld& world, 
 }
 
 PlanStatistics plan_queries(const Roadmaps& built, const BenchmarkWorld& world) {
-  // A roadmap that would exceed its budget does not grow.
+  // With its current size as budget, the roadmap does not grow.
   const Budget budget{.nodes = built.roadmap().size()};
   PlanStatistics statistics;
   Roadmaps roadmap = built;
@@ -112,10 +113,11 @@ StudyTable roadmap_connections(const RoadmapConnections& settings, std::uint64_t
   table.plots.push_back(
       {.title = nodes, .x_label = "edges per node", .y_label = "time of a query, median [us]"});
   for (const double displacement_m : settings.displacements_m)
-    table.plots.push_back(
-        {.title = displacement_m == 0 ? nodes : fmt::format("{}, obstacles moved by {} m", nodes, displacement_m),
-         .x_label = "edges per node",
-         .y_label = "queries solved [%]"});
+    table.plots.push_back({.title = displacement_m == 0
+                                        ? nodes
+                                        : fmt::format("{}, obstacles moved by {} m", nodes, displacement_m),
+                           .x_label = "edges per node",
+                           .y_label = "queries solved [%]"});
   std::string method;
   for (const Variant& variant : variants) {
     if (method != variant.method)

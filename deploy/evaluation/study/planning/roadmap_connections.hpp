@@ -12,12 +12,12 @@ struct RoadmapConnections {
   std::vector<double> displacements_m{0, 0.5};  ///< displacement of each obstacle after the roadmap was built
   std::size_t nodes = 200;
   std::size_t worlds = 50;
-  std::size_t queries = 20;  ///< in each world
+  std::size_t queries = 20;  ///< per world
 };
 
-/// Connection methods of a dynamic roadmap among 64 circles: the nearest node in each sector, the nearest
-/// nodes, all within a radius. All connect the same nodes; every query gets the roadmap as it was built, and
-/// may not add samples to it.
+/// Compares connection methods of a dynamic roadmap among 64 circles: the nearest node in each sector, the
+/// nearest nodes, and all nodes within a radius. All methods connect the same nodes. Every query gets the
+/// roadmap as it was built, and must not add samples to it.
 StudyTable roadmap_connections(const RoadmapConnections& settings, std::uint64_t seed,
                                const ProgressCallback& progress);
 

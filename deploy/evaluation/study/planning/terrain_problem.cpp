@@ -21,7 +21,8 @@ class Hills {
   explicit Hills(Rng& rng) {
     for (Wave& wave : waves_) {
       const double wavelength_m = rng.uniform(100, 400);
-      wave.frequency = rotated({2 * std::numbers::pi / wavelength_m, 0}, rng.uniform(0, 2 * std::numbers::pi));
+      wave.frequency =
+          rotated({2 * std::numbers::pi / wavelength_m, 0}, rng.uniform(0, 2 * std::numbers::pi));
       wave.phase = rng.uniform(0, 2 * std::numbers::pi);
       wave.height_m = 0.06 * wavelength_m;
     }

@@ -25,7 +25,7 @@ struct TerrainProblem {
   std::vector<Flight> flights{};
 };
 
-/// All triangles compared with each query: the reference.
+/// The reference: compares every query with all triangles.
 class LinearTerrain {
  public:
   explicit LinearTerrain(const TerrainProblem& problem);

@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::array kNames{"linear", "terrain tree", "FCL mesh", "FCL mesh (exact solver)"};
 constexpr std::array kQueries{"collision", "clearance"};
-// A clearance off by more is wrong, and so is a decision where the clearance is this far from contact.
+// A clearance with a larger error is wrong. A wrong decision about contact is excused up to this clearance.
 constexpr double kTolerance_m = 1e-6;
 
-/// A structure, and what it answered: a collision is 0 or 1, a clearance is in metres.
+/// A structure with its answers (0 or 1 for a collision, metres for a clearance) and query times.
 struct Contender {
   std::size_t name;
   std::array<std::function<double(const Flight&)>, kQueries.size()> answer;
@@ -99,9 +99,9 @@ std::vector<std::string> row_of(const TerrainProblem& problem, const std::vector
   const Distribution& ns = contender.ns[query];
   const std::size_t queries = problem.flights.size();
   return cells(problem.triangles.size(), kQueries[query], kNames[contender.name], queries,
-               fmt::format("{:.1f}", percent(touching, queries)), fmt::format("{:.1f}", percent(wrong, queries)),
-               fmt::format("{:.0f}", ns.median()), fmt::format("{:.0f}", ns.quantile(0)),
-               fmt::format("{:.0f}", ns.quantile(1)));
+               fmt::format("{:.1f}", percent(touching, queries)),
+               fmt::format("{:.1f}", percent(wrong, queries)), fmt::format("{:.0f}", ns.median()),
+               fmt::format("{:.0f}", ns.quantile(0)), fmt::format("{:.0f}", ns.quantile(1)));
 }
 
 }  // namespace
@@ -114,7 +114,8 @@ StudyTable terrain_structures(const TerrainStructures& settings, std::uint64_t s
                    "wrong_percent", "median_ns", "min_ns",    "max_ns"};
   for (const char* query : kQueries) {
     Plot& plot = table.plots.emplace_back();
-    plot = {.title = fmt::format("A ball over terrain: {}, {} rounds of {}", query, settings.rounds, settings.queries),
+    plot = {.title = fmt::format("A ball over terrain: {}, {} rounds of {}", query, settings.rounds,
+                                 settings.queries),
             .x_label = "triangles",
             .y_label = "time of a query [ns]",
             .has_log_x = true,

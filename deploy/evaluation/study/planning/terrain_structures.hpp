@@ -12,9 +12,10 @@ struct TerrainStructures {
   std::size_t max_linear_triangles = 2048;  ///< larger terrains are not timed with the linear list
 };
 
-/// Structures for the collision of a moving ball with terrain and for its clearance: TerrainTree, FCL's tree
-/// over the same mesh with both of its solvers, and a linear list of triangles, over the number of triangles. Medians of rounds in
-/// which all get the same queries, in shuffled order; answers are compared with the linear list's.
+/// Compares structures for the collision of a moving ball with terrain and for its clearance: TerrainTree,
+/// FCL's tree over the same mesh with both of its solvers, and a linear list of triangles. Times are
+/// functions of the number of triangles: medians over rounds in which all structures get the same queries, in
+/// shuffled order. Answers are checked against the linear list's.
 StudyTable terrain_structures(const TerrainStructures& settings, std::uint64_t seed,
                               const ProgressCallback& progress);
 

@@ -15,11 +15,11 @@ class Interpenetration {
   Interpenetration(std::size_t robots, double radius_m)
       : radius_m_(radius_m), is_touching_(robots * robots) {}
 
-  /// Adds the robots' positions, which last for `seconds`.
+  /// Adds the robots' positions, assumed constant for `seconds`.
   void add(std::span<const Vec2> positions_m, double seconds);
 
   double depth_time_m_s() const { return depth_time_m_s_; }
-  std::uint64_t contacts() const { return contacts_; }  ///< pairs that began to touch
+  std::uint64_t contacts() const { return contacts_; }  ///< times that a pair began to touch
   double min_clearance_m() const { return min_clearance_m_; }
 
  private:

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "deploy/simulate/campaign/worker_pool.hpp"
 #include "deploy/evaluation/study/safety/search_time.hpp"
 #include "deploy/evaluation/study/safety/traversal.hpp"
+#include "deploy/simulate/campaign/worker_pool.hpp"
 
 namespace sidestep {
 namespace {
@@ -33,7 +33,7 @@ Sizes quick_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 2
 
 /// One run: the key of its row in the table, and how to measure it.
 struct Run {
-  std::string line;  ///< in a plot; empty: none
+  std::string line;  ///< the line of the plot that shows this run; empty: none
   double x = 0;
   std::vector<std::string> key;          ///< the first columns
   std::function<std::string()> columns;  ///< the others, the plotted one first
@@ -106,7 +106,8 @@ Experiment margins(const StudyOptions& options, const Sizes& sizes) {
       run.key = cells(is_poor ? "poor" : "usual", stops_off_reference ? "on" : "off", margin_mm, noise_mm,
                       sizes.margin_robots, sizes.margin_seconds, seed);
       run.columns = [=, robots = sizes.margin_robots, seconds = sizes.margin_seconds] {
-        const TraversalSettings settings{robots, margin_mm * 1e-3, noise_mm * 1e-3, is_poor, stops_off_reference};
+        const TraversalSettings settings{robots, margin_mm * 1e-3, noise_mm * 1e-3, is_poor,
+                                         stops_off_reference};
         return columns_of(traverse_with_search(traversal_scenario(settings, seed), seed, seconds));
       };
       experiment.runs.push_back(std::move(run));

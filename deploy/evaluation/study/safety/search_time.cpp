@@ -19,7 +19,8 @@ constexpr Time kNow = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle{16'666'667};
 constexpr int kWarmUps = 2;
 
-/// Motions on a jittered grid that are clear of each other; a robot that finds none in kMaxAttempts rests.
+/// Motions on a jittered grid that are clear of each other; a robot without such a motion after kMaxAttempts
+/// samples rests.
 std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& rng) {
   const double cell_m = std::sqrt(kArea_m2);
   const int columns = static_cast<int>(std::ceil(std::sqrt(robots)));
@@ -28,13 +29,13 @@ std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& r
   for (int i = 0; i < robots; ++i) {
     const Vec2 corner = -0.5 * cell_m * (columns - 1) * Vec2(1, 1);
     const Vec2 position = corner + cell_m * Vec2(i % columns, i / columns) +
-                       Vec2(rng.uniform(-jitter_m, jitter_m), rng.uniform(-jitter_m, jitter_m));
+                          Vec2(rng.uniform(-jitter_m, jitter_m), rng.uniform(-jitter_m, jitter_m));
     Trajectory trajectory = Trajectory::resting(kNow, position);
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
       const Vec2 velocity = rng.uniform(0, rules.limits.speed_mps) *
                             rotated({1, 0}, rng.uniform(-std::numbers::pi, std::numbers::pi));
-      const Trajectory moving =
-          accelerate_then_stop(kNow, {position, velocity}, Vec2::Zero(), kCycle, rules.limits.deceleration_mps2);
+      const Trajectory moving = accelerate_then_stop(kNow, {position, velocity}, Vec2::Zero(), kCycle,
+                                                     rules.limits.deceleration_mps2);
       bool is_free = rules.field.contains(moving.rest_position_m(), rules.radius_m);
       for (const Version& other : versions)
         is_free = is_free && is_clear(moving, other.trajectory, rules.min_separation_m());
@@ -60,7 +61,8 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
     const Time start = kNow + kCycle;
     const State there = version.trajectory.state_at(start);
     const Vec2 to_go(rng.uniform(-2, 2), rng.uniform(-2, 2));
-    const AccelerationCommand desired = desired_acceleration(to_go, there.velocity_mps, rules.limits, kCycle, kCycle);
+    const AccelerationCommand desired =
+        desired_acceleration(to_go, there.velocity_mps, rules.limits, kCycle, kCycle);
     SearchQuery query;
     query.start = start;
     query.at_start = there;

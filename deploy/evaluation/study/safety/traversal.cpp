@@ -15,11 +15,11 @@ namespace sidestep {
 namespace {
 
 constexpr int kRows = 8;
-// Between slots at a side, so that robots pass between others that rest there.
+// Distance between slots on one side; robots can pass between others that rest there.
 constexpr double kSlotSpacing_m = 0.45;
 constexpr double kFirstColumn_m = 1.4;
 constexpr double kWallDistance_m = 0.4;
-// More than a robot reaches.
+// More than a robot can reach in a run.
 constexpr int kGoals = 100;
 constexpr double kPoorOdometryFactor = 10;
 constexpr double kBodyRadius_m = 0.05;
@@ -33,17 +33,18 @@ std::vector<int> shuffled(int count, Rng& rng) {
   return numbers;
 }
 
-/// The position of a slot at a side: -1 left, 1 right.
+/// The position of a slot on a side: -1 left, 1 right.
 Vec2 slot_position_m(int slot, int side) {
   const double x = kFirstColumn_m + kSlotSpacing_m * (slot / kRows);
   return {side * x, kSlotSpacing_m * (slot % kRows - 0.5 * (kRows - 1))};
 }
 
-/// Measures interpenetration between two ground truths by cubic polynomials with the positions and velocities
-/// of both.
+/// Measures interpenetration between two ground truths, with motions interpolated by cubic polynomials that
+/// match the positions and velocities of both.
 class InterpolatedMeter {
  public:
-  explicit InterpolatedMeter(std::size_t robots) : meter_(robots, kStudyRadius_m), last_(robots), positions_m_(robots) {}
+  explicit InterpolatedMeter(std::size_t robots)
+      : meter_(robots, kStudyRadius_m), last_(robots), positions_m_(robots) {}
 
   void add(const msg::GroundTruth& truth) {
     const Time at = time_from_ns(truth.valid_at_ns());

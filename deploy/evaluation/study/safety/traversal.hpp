@@ -11,32 +11,33 @@ namespace sidestep {
 /// The robots' radius in this study.
 inline constexpr double kStudyRadius_m = 0.09;
 
-/// Two groups of robots that traverse the field from left to right and back repeatedly (Bruce 2006, chapter 5).
+/// Two groups of robots that traverse the field from left to right and back repeatedly (Bruce 2006, chapter
+/// 5).
 struct TraversalSettings {
   int robots = 8;
   double margin_m = 0.01;
   double position_noise_m = 0.0005;  ///< of vision, standard deviation per axis
   bool has_poor_odometry = false;    ///< ten times the noise and the scale error, so that vision matters
-  bool stops_off_reference = true;            ///< beyond their tracking bound; otherwise there is no bound
+  bool stops_off_reference = true;   ///< beyond the tracking bound; false: there is no bound
 };
 
-/// Each robot has its own slot at either side, assigned by the seed. Unlike in scenario files, the margin may
+/// Each robot has its own slot on each side, assigned by the seed. Unlike in scenario files, the margin may
 /// be below the safety budget. The bodies are smaller than kStudyRadius_m and the margin is larger by the
 /// difference: robots keep the same separation, and the simulator does not resolve contacts.
 Scenario traversal_scenario(const TraversalSettings& settings, std::uint64_t seed);
 
 struct TraversalResult {
   std::uint64_t traversals = 0;  ///< completed by all robots together
-  std::uint64_t contacts = 0;    ///< pairs that began to touch
+  std::uint64_t contacts = 0;    ///< times that a pair began to touch
   double penetration_m_s = 0;    ///< interpenetration depth x time
   double min_clearance_m = 1;
-  double reference_error_m = 0;  ///< largest of a body against its reference
+  double reference_error_m = 0;  ///< largest distance of a body from its reference
 };
 
 TraversalResult result_of(const Interpenetration& meter);
 
-/// Runs the whole system for `seconds` after the coordinator's first grant. Throws std::runtime_error if there
-/// is none.
+/// Runs the whole system for `seconds` after the coordinator's first grant. Throws std::runtime_error if it
+/// never grants.
 TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t seed, double seconds);
 
 /// Runs the same bodies, firmware and motion control without agents and coordinator: every robot executes its

@@ -40,8 +40,8 @@ class UncoordinatedRobot {
     if (now >= base.trajectory.end() && (rest - goal()).norm() < scenario_.goal_tolerance_m) ++traversals_;
     if ((rest - goal()).norm() < kGoalTolerance_m) return;
     const State there = base.trajectory.state_at(start);
-    const AccelerationCommand desired = desired_acceleration(goal() - there.position_m, there.velocity_mps, scenario_.limits,
-                                          scenario_.cycle, scenario_.cycle);
+    const AccelerationCommand desired = desired_acceleration(
+        goal() - there.position_m, there.velocity_mps, scenario_.limits, scenario_.cycle, scenario_.cycle);
     const Trajectory trajectory = accelerate_then_stop(start, there, desired.acceleration_mps2, desired.hold,
                                                        scenario_.limits.deceleration_mps2);
     msg::Command command;

@@ -11,7 +11,8 @@
 namespace sidestep {
 namespace {
 
-constexpr std::array kColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c", "#222222", "#d62728", "#ff7fbf", "#8f8f8f"};
+constexpr std::array kColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c",
+                              "#222222", "#d62728", "#ff7fbf", "#8f8f8f"};
 
 /// Quotes text for gnuplot: within single quotes, only a single quote has to be doubled.
 std::string quoted(const std::string& text) {
@@ -40,8 +41,8 @@ std::string script(const Plot& plot) {
     text += fmt::format("$line{} << EOD\n", i);
     for (const PlotPoint& p : line.points) text += fmt::format("{} {} {} {}\n", p.x, p.median, p.min, p.max);
     text += "EOD\n";
-    const bool has_bars = std::any_of(line.points.begin(), line.points.end(),
-                                      [](const PlotPoint& p) { return p.min < p.max; });
+    const bool has_bars =
+        std::any_of(line.points.begin(), line.points.end(), [](const PlotPoint& p) { return p.min < p.max; });
     lines += fmt::format("{}$line{} using {} pointtype 7 pointsize 0.7 title {}", i ? ", " : "", i,
                          has_bars ? "1:2:3:4 with yerrorlines" : "1:2 with linespoints", quoted(line.title));
   }

@@ -23,10 +23,10 @@ struct Plot {
   bool has_log_x = false, has_log_y = false;
   double min_y = 0;  ///< lower end of a y axis that is not logarithmic
   std::vector<PlotLine> lines{};
-  std::optional<double> marked_x{};  ///< by a vertical line
+  std::optional<double> marked_x{};  ///< position of a vertical line; none: no line
 };
 
-/// Throws std::runtime_error that says what to install if gnuplot is missing.
+/// Throws std::runtime_error that names the package to install if gnuplot is missing.
 void require_gnuplot();
 
 /// Draws plots side by side into a PNG file with gnuplot. Throws std::runtime_error if that fails.

@@ -28,9 +28,9 @@ void require_study_output(const StudyOptions& options) {
 
 void write_study_table(const StudyTable& table, const std::string& study, const StudyOptions& options) {
   const std::filesystem::path folder = options.folder;
-  std::string text =
-      fmt::format("# sidestep study {} --out {} --seed {}{}\n# commit {}\n{}\n", study, options.folder,
-                  options.seed, options.is_quick ? " --quick" : "", kBuildCommit, fmt::join(table.columns, ","));
+  std::string text = fmt::format("# sidestep study {} --out {} --seed {}{}\n# commit {}\n{}\n", study,
+                                 options.folder, options.seed, options.is_quick ? " --quick" : "",
+                                 kBuildCommit, fmt::join(table.columns, ","));
   for (const auto& row : table.rows) text += fmt::format("{}\n", fmt::join(row, ","));
   write_file((folder / (table.name + ".csv")).string(), text);
   draw(table.plots, (folder / (table.name + ".png")).string());

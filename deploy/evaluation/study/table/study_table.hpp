@@ -21,7 +21,7 @@ struct StudyOptions {
 
 /// The measurements of one experiment, and its plots.
 struct StudyTable {
-  std::string name{};                            ///< the stem of its files
+  std::string name{};                            ///< the stem of the file names
   std::vector<std::string> columns{};            ///< machine-dependent ones end in _us or _ns
   std::vector<std::vector<std::string>> rows{};  ///< a cell for each column
   std::vector<Plot> plots{};                     ///< side by side in one picture
@@ -48,7 +48,7 @@ class StudyProgress {
   std::chrono::steady_clock::time_point next_{};
 };
 
-/// Makes the folder. Throws std::runtime_error if no file can be written there or plots cannot be drawn, so
+/// Creates the folder. Throws std::runtime_error if no file can be written there or plots cannot be drawn, so
 /// that a long study does not fail at its end.
 void require_study_output(const StudyOptions& options);
 

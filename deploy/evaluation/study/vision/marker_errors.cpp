@@ -59,8 +59,7 @@ Vec2 centroid_of(const MarkerLayout& layout) {
 }
 
 /// Position error of the largest region of a colour near a dot; noise creates small regions beside it.
-std::optional<Vec2> error_at(const std::vector<ProjectedRegion>& regions, Colour colour,
-                             const Vec2& true_m) {
+std::optional<Vec2> error_at(const std::vector<ProjectedRegion>& regions, Colour colour, const Vec2& true_m) {
   const ProjectedRegion* largest = nullptr;
   for (const ProjectedRegion& region : regions) {
     const bool matches = region.colour == colour && (region.position_m - true_m).norm() < kMaxDotError_m;

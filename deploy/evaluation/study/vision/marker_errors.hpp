@@ -9,7 +9,7 @@ namespace sidestep {
 
 struct MarkerErrors {
   std::size_t frames = 300;                     ///< per row
-  std::vector<double> noises{1, 2.5, 4, 6, 8};  ///< of the sensor, in red, green and blue, of 255
+  std::vector<double> noises{1, 2.5, 4, 6, 8};  ///< of the sensor per channel, in levels of 255
 };
 
 /// How errors of single dots propagate to a robot's pose, in frames with increasing noise (Bruce,

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Robots of both teams with randomly chosen patterns, and a ball. Each oscillates and rotates in its own cell
-/// of the field, so that none touches another.
+/// Robots of both teams with randomly chosen patterns, and a ball. Each oscillates and rotates in its own
+/// cell of the field, so that none touches another.
 class OscillatingRobots {
  public:
   /// At most 16 robots per team. Throws std::invalid_argument when the field is too small for them.
@@ -28,7 +28,7 @@ class OscillatingRobots {
     Vec2 position_m(double time_s) const;
     Vec2 velocity_mps(double time_s) const;
   };
-  std::vector<SceneRobot> robots_;          ///< teams and patterns only
+  std::vector<SceneRobot> robots_;         ///< teams and patterns only
   std::vector<Oscillation> oscillations_;  ///< in the order of robots_, then the ball's
 };
 

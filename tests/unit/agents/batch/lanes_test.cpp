@@ -133,7 +133,8 @@ void check_random_pairs(BatchedClearance& batch, Generator generate, std::uint64
     }
     batch.restart(rng.chance(0.9) ? one.start() : kBegin);
     for (std::size_t i = 0; i < count; ++i) batch.add(others[i], separations[i]);
-    // The second one may begin at the same time as the first one. The third reuses or repeats its sampling.
+    // The second trajectory may begin at the same time as the first one. The third one is the first one
+    // again, whose sampling is reused or repeated.
     for (const Trajectory& tested : {one, generate(rng), one}) {
       const auto clear = batch.compare(tested);
       REQUIRE(clear.size() == count);

@@ -17,7 +17,8 @@ TEST_CASE("after the maximum dead reckoning distance one robot in 370 exceeds th
   int beyond = 0;
   constexpr int kRobots = 100'000;
   for (int i = 0; i < kRobots; ++i) {
-    const double error_m = known.position_error_rms_m * rng.normal() + known.odometry_scale_stddev * rng.normal() * path_m;
+    const double error_m =
+        known.position_error_rms_m * rng.normal() + known.odometry_scale_stddev * rng.normal() * path_m;
     beyond += std::abs(error_m) > bound_m;
   }
   CHECK(beyond > kRobots / 500);

@@ -107,10 +107,10 @@ TEST_CASE("every instruction set gives bit-identical predictions") {
     const std::vector<float> weights(batch::kPredictionSamples, 0.5F);
     std::vector<batch::PredictionRow> dangers(predictor.block_count(), batch::PredictionRow{});
     const batch::Prediction reference = predictor.prediction_of(3);
-    kernels.prediction.add_proximity_danger(reference, 0, 0.5F, weights.data(), 0.3F, predictor.blocks(), predictor.block_count(),
-                             dangers.data());
-    kernels.prediction.add_outside_danger(2, 2, 0.1F, weights.data(), predictor.blocks(), predictor.block_count(),
-                              dangers.data());
+    kernels.prediction.add_proximity_danger(reference, 0, 0.5F, weights.data(), 0.3F, predictor.blocks(),
+                                            predictor.block_count(), dangers.data());
+    kernels.prediction.add_outside_danger(2, 2, 0.1F, weights.data(), predictor.blocks(),
+                                          predictor.block_count(), dangers.data());
     std::vector<double> all;
     for (std::size_t lane = 0; lane < predictor.size(); ++lane) {
       const batch::Prediction prediction = predictor.prediction_of(lane);
@@ -153,15 +153,17 @@ TEST_CASE("danger is positive exactly where two robots come nearer than their mi
     const float min_separation_m = static_cast<float>(rng.uniform(0.1, 1));
     const batch::Prediction reference = predictor.prediction_of(8);
     std::vector<batch::PredictionRow> dangers(predictor.block_count(), batch::PredictionRow{});
-    batch::best_kernels().prediction.add_proximity_danger(reference, 0, min_separation_m, weights.data(), 1e9F, predictor.blocks(),
-                                           predictor.block_count(), dangers.data());
+    batch::best_kernels().prediction.add_proximity_danger(reference, 0, min_separation_m, weights.data(),
+                                                          1e9F, predictor.blocks(), predictor.block_count(),
+                                                          dangers.data());
     for (std::size_t lane = 0; lane < 8; ++lane) {
       const batch::Prediction other = predictor.prediction_of(lane);
       double nearest = 1e9;
       for (std::size_t i = 0; i < kSteps; ++i) {
         for (double share = 0; share <= 1; share += 0.002) {
           const auto at = [&](const float* p) { return p[i] + share * (p[i + 1] - p[i]); };
-          nearest = std::min(nearest, std::hypot(at(reference.x_m) - at(other.x_m), at(reference.y_m) - at(other.y_m)));
+          nearest = std::min(
+              nearest, std::hypot(at(reference.x_m) - at(other.x_m), at(reference.y_m) - at(other.y_m)));
         }
       }
       const double danger = dangers[lane / batch::kPredictionLanes].lane[lane % batch::kPredictionLanes];

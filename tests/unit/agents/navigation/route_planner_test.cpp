@@ -16,7 +16,8 @@ const Field kField{4, 4};
 
 /// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm, whose paths are at most 8.3 % longer
 /// than the shortest.
-double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal, double inflation) {
+double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal,
+                   double inflation) {
   const int n = 200;
   const double step = 4.0 / n;
   const auto cell = [&](const Vec2& p) {

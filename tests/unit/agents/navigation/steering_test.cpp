@@ -183,7 +183,7 @@ TEST_CASE("a robot keeps its chosen detour") {
   }
   CHECK(mover.state.position_m.x() >= 1.4);
   CHECK(turned_m < -0.1);
-  // The detour, the direct path again, and a few better detours.
+  // The changes are to the detour, to the direct path again, and to a few better detours.
   CHECK(mover.last.changes >= 2);
   CHECK(mover.last.changes < 12);
 }

@@ -35,7 +35,8 @@ Vec2 blocked_position(const PlanWorld& world, Rng& rng) {
   for (;;) {
     const Vec2 position(rng.uniform(-4.8, 4.8), rng.uniform(-4.8, 4.8));
     double min_distance = 1;
-    for (const Shape& shape : world.obstacles) min_distance = std::min(min_distance, signed_distance(position, shape));
+    for (const Shape& shape : world.obstacles)
+      min_distance = std::min(min_distance, signed_distance(position, shape));
     if (min_distance <= world.radius_m && min_distance > world.radius_m - 0.3) return position;
   }
 }

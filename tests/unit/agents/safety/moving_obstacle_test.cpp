@@ -101,7 +101,7 @@ TEST_CASE("a robot at rest is passively safe from any obstacle, a robot that sta
 }
 
 TEST_CASE("a short violation between two samples is detected") {
-  // 2 m/s past a small obstacle at rest: 1 mm too near for 14 ms of the 1.9 s.
+  // Passes a small obstacle at rest at 2 m/s, and is 1 mm too near for 14 ms of the 1.9 s.
   Trajectory passing(kBegin, {{-1.5, 0.1}, {2, 0}});
   passing.append(from_seconds(1.5), {0, 0});
   append_stop(passing, 5);

@@ -26,7 +26,8 @@ std::vector<Vec2> boundary_of(const Shape& shape) {
   if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) corners = polygon->corners_m;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2 edge = corners[(i + 1) % corners.size()] - corners[i];
-    for (double fraction = 0; fraction < 1; fraction += 1e-3) boundary.push_back(corners[i] + fraction * edge);
+    for (double fraction = 0; fraction < 1; fraction += 1e-3)
+      boundary.push_back(corners[i] + fraction * edge);
   }
   return boundary;
 }

@@ -16,7 +16,8 @@ TEST_CASE("sweeps by distance agree with exact sweeps") {
   Rng rng(seed);
   const ObstacleWorld world(random_shapes(rng, 60, 3));
   for (int i = 0; i < 200; ++i) {
-    const Vec2 from = random_position(rng, 3), to = rng.chance(0.1) ? from : from + random_displacement(rng, 2);
+    const Vec2 from = random_position(rng, 3),
+               to = rng.chance(0.1) ? from : from + random_displacement(rng, 2);
     const double radius = rng.uniform(0, 0.2);
     const SweepByDistance sweep(from, to, radius,
                                 [&](const Vec2& at) { return world.nearest(at).distance_m; });

@@ -158,7 +158,8 @@ TEST_CASE("invalid terrain and invalid queries are rejected") {
   CHECK_THROWS_AS(TerrainTree(HeightField{{0, 0}, 1, 2, 2, {0, 0, kNan, 0}}), std::invalid_argument);
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   CHECK_THROWS_WITH(TerrainTree(points, {}), "a terrain has no triangles");
-  CHECK_THROWS_WITH(TerrainTree(points, {{0, 1, 3}}), "a terrain triangle refers to a corner that does not exist");
+  CHECK_THROWS_WITH(TerrainTree(points, {{0, 1, 3}}),
+                    "a terrain triangle refers to a corner that does not exist");
   const TerrainTree tree(points, {{0, 1, 2}});
   CHECK_THROWS_AS(tree.distance_m({0, kNan, 0}), std::invalid_argument);
   CHECK_THROWS_AS(tree.touches({0, 0, 1}, {0, kInfinite, 0}, 1), std::invalid_argument);

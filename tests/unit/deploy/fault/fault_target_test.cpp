@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "deploy/fault/fault_target.hpp"
+
+#include <catch2/catch.hpp>
 
 using namespace sidestep;
 
@@ -19,7 +19,7 @@ TEST_CASE("fault targets are named as in reports, and other names are refused") 
   CHECK(number("vision") == 20000);
   CHECK(number("simulator") == 30000);
   for (const char* text : {"", "agent", "agent ", "agent 1024", "agent -1", "agent 3 4", "agent 3x",
-                            "robot 3", "coordinator 8", "vision 1", "everybody"}) {
+                           "robot 3", "coordinator 8", "vision 1", "everybody"}) {
     INFO(text);
     CHECK_FALSE(parse_fault_target(text));
   }

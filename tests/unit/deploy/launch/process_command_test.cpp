@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder with two fake programs: "sidestep-agent" writes its arguments and its scenario to files and waits for
-/// SIGTERM; "ssh" runs the remote command locally in a shell, as sshd would.
+/// A folder with two fake programs: "sidestep-agent" writes its arguments and its scenario to files and waits
+/// for SIGTERM; "ssh" runs the remote command locally in a shell, as sshd would.
 struct Fixture {
   Fixture() {
     std::string name = (fs::temp_directory_path() / "sidestep-ssh-XXXXXX").string();
@@ -53,7 +53,8 @@ struct Fixture {
   /// Waits until a file exists, or until it does not.
   bool wait_for(ProcessGroup& group, const std::string& file, bool exists = true) const {
     const Time deadline = EventLoop::now() + std::chrono::seconds(30);
-    while (fs::exists(file) != exists && EventLoop::now() < deadline) group.poll(std::chrono::milliseconds(5));
+    while (fs::exists(file) != exists && EventLoop::now() < deadline)
+      group.poll(std::chrono::milliseconds(5));
     return fs::exists(file) == exists;
   }
   /// The folder on the remote host into which the scenario was copied.
@@ -88,9 +89,8 @@ TEST_CASE("a local process is started directly, one in a namespace by ip netns e
   expected.insert(expected.end(), tail.begin(), tail.end());
   CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kLocal, ""), "").argv == expected);
   expected.insert(expected.begin(), {find_program("ip"), "netns", "exec", "sidestep-5-east"});
-  CHECK(
-      child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "sidestep-5-east").argv ==
-      expected);
+  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "sidestep-5-east").argv ==
+        expected);
 }
 
 TEST_CASE("over ssh the scenario is copied, and the process ends when the launcher asks it to") {

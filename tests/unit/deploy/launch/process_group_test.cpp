@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-// glibc 2.36 declares it without C linkage.
+// glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
 #include <sys/pidfd.h>
 }

@@ -117,7 +117,8 @@ TEST_CASE("an image shows the objects in its camera's view") {
     };
     // The difference is only noise and the texture of the field surface.
     CHECK(difference(rendered(scenario, cameras[camera])) < 4);
-    CHECK(difference(rendered(scenario, cameras[camera])) < 0.8 * difference(rendered(scenario, cameras[1 - camera])));
+    CHECK(difference(rendered(scenario, cameras[camera])) <
+          0.8 * difference(rendered(scenario, cameras[1 - camera])));
   }
 }
 

@@ -22,8 +22,7 @@ Points random_points(Rng& rng) {
 
 /// Whether any point of a ray is well inside the cross-section, and whether any is inside it or near its
 /// edge.
-std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy,
-                                     const CrossSection& section) {
+std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy, const CrossSection& section) {
   bool is_inside = false, is_near = false;
   for (int i = 0; i <= 1000; ++i) {
     const double px = x + dx * i / 1000, py = y + dy * i / 1000;
@@ -44,15 +43,16 @@ TEST_CASE("all instruction sets give the same counts") {
   for (int i = 0; i < 20000; ++i) {
     const Points still = random_points(rng), moved = rng.chance(0.5) ? still : random_points(rng);
     const PixelSamples samples{static_cast<float>(rng.uniform(-0.02, 0.02)),
-                       static_cast<float>(rng.uniform(-0.02, 0.02)), &moved};
+                               static_cast<float>(rng.uniform(-0.02, 0.02)), &moved};
     const CrossSection section{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
     const ViewingRays rays{static_cast<float>(rng.uniform(0, 0.1)), static_cast<float>(rng.uniform(-3, 3)),
-                      static_cast<float>(rng.uniform(-3, 3))};
+                           static_cast<float>(rng.uniform(-3, 3))};
     for (const Kernels& kernels : available_kernels()) {
       CAPTURE(kernels.name);
       REQUIRE(kernels.count_in_disc(samples, 0.035F, 0.05F, 0.02F) ==
               baseline.count_in_disc(samples, 0.035F, 0.05F, 0.02F));
-      REQUIRE(kernels.count_in_cross_section(samples, section) == baseline.count_in_cross_section(samples, section));
+      REQUIRE(kernels.count_in_cross_section(samples, section) ==
+              baseline.count_in_cross_section(samples, section));
       REQUIRE(kernels.count_rays_hitting(still, samples, rays, section) ==
               baseline.count_rays_hitting(still, samples, rays, section));
     }
@@ -67,17 +67,17 @@ TEST_CASE("counts match a check of each sample") {
   for (int i = 0; i < 300; ++i) {
     const Points offsets = random_points(rng);
     const PixelSamples samples{static_cast<float>(rng.uniform(-0.02, 0.02)),
-                       static_cast<float>(rng.uniform(-0.02, 0.02)), &offsets};
+                               static_cast<float>(rng.uniform(-0.02, 0.02)), &offsets};
     const CrossSection section{0.09F, rng.chance(0.5) ? 0.055F : 1e3F};
     const ViewingRays rays{static_cast<float>(rng.uniform(0.01, 0.1)), static_cast<float>(rng.uniform(-2, 2)),
-                      static_cast<float>(rng.uniform(-2, 2))};
+                           static_cast<float>(rng.uniform(-2, 2))};
     int disc = 0, inside = 0, min_hits = 0, max_hits = 0;
     for (std::size_t j = 0; j < kSamples; ++j) {
       const double x = offsets.x[j] + samples.x, y = offsets.y[j] + samples.y;
       disc += std::hypot(x - 0.03, y + 0.05) <= 0.02;
       inside += std::hypot(x, y) <= 0.09 && x <= section.front;
-      const auto [is_inside, is_near] =
-          reference_hits(x, y, rays.parallax * (x - rays.nadir_x), rays.parallax * (y - rays.nadir_y), section);
+      const auto [is_inside, is_near] = reference_hits(x, y, rays.parallax * (x - rays.nadir_x),
+                                                       rays.parallax * (y - rays.nadir_y), section);
       min_hits += is_inside;
       max_hits += is_near;
     }

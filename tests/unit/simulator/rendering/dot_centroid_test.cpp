@@ -58,8 +58,8 @@ struct ErrorStatistics {
 
 void check(const ErrorStatistics& errors, double max_error_px) {
   INFO(fmt::format("mean {:.4f} {:.4f}, RMS {:.4f}, max {:.4f} px over {} dots",
-                   errors.sum.x() / errors.count, errors.sum.y() / errors.count, std::sqrt(errors.squares / errors.count),
-                   errors.max_error, errors.count));
+                   errors.sum.x() / errors.count, errors.sum.y() / errors.count,
+                   std::sqrt(errors.squares / errors.count), errors.max_error, errors.count));
   CHECK((errors.sum / errors.count).norm() < 0.002);
   CHECK(errors.max_error < max_error_px);
 }
@@ -124,7 +124,8 @@ TEST_CASE("a rendered ball lies where its viewing rays hit it") {
     const bool is_on_line = std::abs(ball.position_m.x()) < 0.4 || std::abs(ball.position_m.y()) < 0.4 ||
                             std::abs(ball.position_m.head<2>().norm() - 0.5) < 0.3;
     const auto middle = camera.pixel_of(ball.position_m);
-    if (is_on_line || !camera.is_in_image(*middle + Vec2(8, 8)) || !camera.is_in_image(*middle - Vec2(8, 8))) continue;
+    if (is_on_line || !camera.is_in_image(*middle + Vec2(8, 8)) || !camera.is_in_image(*middle - Vec2(8, 8)))
+      continue;
     Image frame = renderer.render(Scene{{}, {}, ball});
     Vec2 sum(0, 0);
     int hits = 0;

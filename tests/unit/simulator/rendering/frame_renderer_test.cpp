@@ -193,9 +193,11 @@ TEST_CASE("an odd width is refused for YUV") {
   OverheadCamera overhead_camera = quarter_field();
   overhead_camera.width_px = 781;
   RenderSpec spec;
-  CHECK_THROWS_AS(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1)), std::invalid_argument);
+  CHECK_THROWS_AS(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1)),
+                  std::invalid_argument);
   spec.format = PixelFormat::kRgb;
-  CHECK_NOTHROW(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1)).render(Scene{}));
+  CHECK_NOTHROW(FrameRenderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1))
+                    .render(Scene{}));
 }
 
 TEST_CASE("robots outside the camera's view are omitted") {

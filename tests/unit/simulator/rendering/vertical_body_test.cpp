@@ -181,8 +181,8 @@ TEST_CASE("a body that moves during the exposure looks like the mean over its po
         changed += error > 0.01;
       }
     }
-    INFO(fmt::format("max {:.1f}, RMS {:.2f} levels over {} pixels", max_error,
-                     std::sqrt(squares / changed), changed));
+    INFO(fmt::format("max {:.1f}, RMS {:.2f} levels over {} pixels", max_error, std::sqrt(squares / changed),
+                     changed));
     CHECK(max_error < 24);
     CHECK(std::sqrt(squares / changed) < 4);
   }

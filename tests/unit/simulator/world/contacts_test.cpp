@@ -38,7 +38,7 @@ struct BruteForce {
       }
       for (std::size_t k = 0; k < obstacles.size(); ++k) {
         check(a, bodies.size() + k,
-             (bodies[a].position_m() - obstacles[k].centre_m).norm() - kRadius_m - obstacles[k].radius_m);
+              (bodies[a].position_m() - obstacles[k].centre_m).norm() - kRadius_m - obstacles[k].radius_m);
       }
     }
   }
@@ -66,7 +66,8 @@ TEST_CASE("contacts, penetration and clearance match a check of every pair in ev
   for (int step = 0; step < 3000; ++step) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       if (step % 100 == 0) desired_accelerations[i] = rotated(Vec2(6, 0), rng.uniform(-3.14, 3.14));
-      if (bodies[i].position_m().norm() > side) desired_accelerations[i] = -6 * bodies[i].position_m().normalized();
+      if (bodies[i].position_m().norm() > side)
+        desired_accelerations[i] = -6 * bodies[i].position_m().normalized();
       bodies[i].step({desired_accelerations[i], 0});
     }
     slow.step(bodies);

@@ -22,7 +22,9 @@ Version version(VersionNumber number, VersionNumber base, int start_ms, Incarnat
 struct Scene {
   FirmwareMonitor monitor{version(0, 0, 0, 0)};
 
-  void arrive(const Version& v, int ms) { monitor.command_arrived(command_with(v), kBegin + milliseconds(ms)); }
+  void arrive(const Version& v, int ms) {
+    monitor.command_arrived(command_with(v), kBegin + milliseconds(ms));
+  }
   void report(const Version& executing, int ms, Incarnation obeyed = 1) {
     msg::Feedback fact;
     fact.executing(encode(executing));

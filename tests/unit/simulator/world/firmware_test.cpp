@@ -160,7 +160,8 @@ TEST_CASE("a new incarnation cannot forward an older one's version") {
 }
 
 TEST_CASE(
-    "a version under an older epoch is refused from any agent, and the robot reports the epoch that it obeys") {
+    "a version under an older epoch is refused from any agent, and the robot reports the epoch that it "
+    "obeys") {
   auto robot = firmware();
   auto later = bare_command(kRobot, kFirst);
   later.epoch(9);

@@ -42,7 +42,8 @@ class IdealAgent {
     const auto seen = std::find_if(seen_.rbegin(), seen_.rend(), [&](const msg::PoseFix& fix) {
       return time_from_ns(fix.captured_at_ns()) + scenario_.vision.delay <= now;
     });
-    const bool is_missed = scenario_.vision.miss_probability > 0 && rng_.chance(scenario_.vision.miss_probability);
+    const bool is_missed =
+        scenario_.vision.miss_probability > 0 && rng_.chance(scenario_.vision.miss_probability);
     if (seen != seen_.rend() && !is_missed) {
       command.has_fix(true);
       command.fix(*seen);
@@ -79,10 +80,13 @@ class IdealAgent {
     }
     if (!drives) return std::nullopt;
     const State state = executing->trajectory.state_at(start);
-    if (rng_.chance(0.1)) desired_acceleration_ = rotated(Vec2(rng_.uniform(0, 4), 0), rng_.uniform(-3.14159, 3.14159));
-    if ((state.position_m - home_m_).norm() > 3) desired_acceleration_ = (home_m_ - state.position_m).normalized() * 3;
+    if (rng_.chance(0.1))
+      desired_acceleration_ = rotated(Vec2(rng_.uniform(0, 4), 0), rng_.uniform(-3.14159, 3.14159));
+    if ((state.position_m - home_m_).norm() > 3)
+      desired_acceleration_ = (home_m_ - state.position_m).normalized() * 3;
     Trajectory trajectory(start, state);
-    trajectory.append(scenario_.cycle, limit_acceleration(desired_acceleration_, state.velocity_mps, scenario_.limits, scenario_.cycle));
+    trajectory.append(scenario_.cycle, limit_acceleration(desired_acceleration_, state.velocity_mps,
+                                                          scenario_.limits, scenario_.cycle));
     append_stop(trajectory, scenario_.limits.deceleration_mps2);
     const double inflation_m = state.velocity_mps.isZero() ? 0 : executing->inflation_m;
     return Version{world_.id(robot_), 1, newest_, executing->number, trajectory, inflation_m};

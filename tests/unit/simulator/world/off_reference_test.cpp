@@ -182,7 +182,8 @@ TEST_CASE("a robot far from its reference returns to it without oscillating") {
   for (int i = 0; i < 60 * 3; ++i) {
     send_fix(world.bodies()[0].position_m());
     max_speed_mps = std::max(max_speed_mps, world.bodies()[0].velocity_mps().norm());
-    overshoot_m = std::max(overshoot_m, world.bodies()[0].position_m().x() - stop.trajectory.rest_position_m().x());
+    overshoot_m =
+        std::max(overshoot_m, world.bodies()[0].position_m().x() - stop.trajectory.rest_position_m().x());
   }
   CHECK(world.firmware(0).executing().number == stop.number);
   CHECK(world.reference_error_m(0) < scenario.tracking_bound_m);

@@ -52,7 +52,7 @@ TEST_CASE("an opponent follows its route at its speed, back and forth or round")
 
 TEST_CASE("an opponent with a single waypoint, or with coincident ones, stays at rest") {
   const auto path_m = GENERATE(std::vector<Vec2>{{1, 2}}, std::vector<Vec2>{{1, 2}, {1, 2}},
-                            std::vector<Vec2>{{1, 2}, {1, 2}, {1, 2}});
+                               std::vector<Vec2>{{1, 2}, {1, 2}, {1, 2}});
   Opponents opponents(std::vector{OpponentSpec{0.1, 1, path_m}}, 0.09, 2.5);
   for (int step = 0; step < 100; ++step) opponents.step({});
   CHECK((opponents.discs()[0].centre_m - Vec2(1, 2)).norm() < 1e-9);
@@ -68,7 +68,9 @@ Scenario crash_scene(double lateral_offset_m) {
   return scenario;
 }
 
-TEST_CASE("an opponent that drives into a robot at rest counts as one crash at its own speed, and not as a contact") {
+TEST_CASE(
+    "an opponent that drives into a robot at rest counts as one crash at its own speed, and not as a "
+    "contact") {
   World world(crash_scene(0), kBegin, 1);
   world.advance(kBegin + milliseconds(1900));
   msg::GroundTruth truth;

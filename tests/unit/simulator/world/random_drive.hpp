@@ -83,12 +83,15 @@ class RandomDrive {
     // The desired acceleration changes rarely, so that the robot reaches its maximum speed, and points home
     // if it is far away.
     if (rng_.chance(0.3)) {
-      desired_acceleration_ = rotated(Vec2(rng_.chance(0.8) ? 20 : rng_.uniform(0, 5), 0), rng_.uniform(-3.14159, 3.14159));
+      desired_acceleration_ =
+          rotated(Vec2(rng_.chance(0.8) ? 20 : rng_.uniform(0, 5), 0), rng_.uniform(-3.14159, 3.14159));
       heading_rad_ = rng_.uniform(-3.14159, 3.14159);
     }
-    if ((state.position_m - home_m_).norm() > 3) desired_acceleration_ = (home_m_ - state.position_m).normalized() * 20;
+    if ((state.position_m - home_m_).norm() > 3)
+      desired_acceleration_ = (home_m_ - state.position_m).normalized() * 20;
     Trajectory trajectory(start_, state);
-    trajectory.append(scenario_.cycle, limit_acceleration(desired_acceleration_, state.velocity_mps, scenario_.limits, scenario_.cycle));
+    trajectory.append(scenario_.cycle, limit_acceleration(desired_acceleration_, state.velocity_mps,
+                                                          scenario_.limits, scenario_.cycle));
     append_stop(trajectory, scenario_.limits.deceleration_mps2);
     return {world_.id(robot_), 1, held_.number + 1, held_.number, trajectory};
   }

@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
-using test::separated_robots;
 using test::RandomDrive;
+using test::separated_robots;
 
 struct ErrorQuantiles {
   double median_mm, p99_mm, max_mm, top_speed_mps;

@@ -11,8 +11,8 @@ namespace sidestep {
 namespace {
 
 using std::chrono::milliseconds;
-using test::separated_robots;
 using test::RandomDrive;
+using test::separated_robots;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 

@@ -26,8 +26,7 @@ std::string points_text(std::uint32_t id, const CameraModel& camera, const Box& 
     const Vec2 position_m = random_point_in(view_m, rng);
     const double height_m = 0.25 * (i % 3);
     const Vec2 noise(rng.normal(), rng.normal());
-    const Vec2 pixel =
-        *camera.pixel_of({position_m.x(), position_m.y(), height_m}) + noise_px * noise;
+    const Vec2 pixel = *camera.pixel_of({position_m.x(), position_m.y(), height_m}) + noise_px * noise;
     text += fmt::format("      - {{pixel: [{}, {}], field_m: [{}, {}, {}]}}\n", pixel.x(), pixel.y(),
                         position_m.x(), position_m.y(), height_m);
   }
@@ -110,8 +109,7 @@ TEST_CASE("given parameters are not estimated") {
   CHECK_FALSE(cameras[0].settings.estimates_distortion);
   CHECK_FALSE(cameras[0].settings.estimates_principal_point);
   const CameraParameters& initial = cameras[0].initial;
-  const CameraParameters found =
-      calibrate_camera(cameras[0].points, initial, cameras[0].settings).camera;
+  const CameraParameters found = calibrate_camera(cameras[0].points, initial, cameras[0].settings).camera;
   CHECK(found.focal_length_px == 590);
   CHECK(found.distortion == 0.09);
   CHECK(found.principal_point_px == Vec2(390, 289));

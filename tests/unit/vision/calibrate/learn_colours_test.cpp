@@ -17,7 +17,8 @@ TEST_CASE("colours learned from one frame find robots and obstacles in different
   RenderSpec spec;
   spec.format = format;
   const Image image = rendered_start(scenario, camera, spec, 1);
-  const std::vector<LabelledImage> labelled{{image.view(), floor_labels_at_start(scenario, butterfly(), camera)}};
+  const std::vector<LabelledImage> labelled{
+      {image.view(), floor_labels_at_start(scenario, butterfly(), camera)}};
   const LearnedColours learned = learn_colours(labelled, colours_at_start(scenario, butterfly()));
   CHECK(learned.warnings.empty());
   CHECK(learned.thresholds.format == format);

@@ -33,7 +33,8 @@ inline DetectorSettings settings_of(const Scenario& scenario, const std::vector<
 inline std::size_t found_at_start(const Scenario& scenario, const msg::DetectionFrame& frame) {
   return static_cast<std::size_t>(std::ranges::count_if(scenario.robots, [&](const RobotSpec& robot) {
     return std::ranges::any_of(frame.robots(), [&](const msg::RobotDetection& detection) {
-      return detection.robot() == robot.id && (Vec2(detection.x_m(), detection.y_m()) - robot.start_m).norm() < 0.005;
+      return detection.robot() == robot.id &&
+             (Vec2(detection.x_m(), detection.y_m()) - robot.start_m).norm() < 0.005;
     });
   }));
 }

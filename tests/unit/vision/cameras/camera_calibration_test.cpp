@@ -12,7 +12,7 @@ namespace {
 
 /// Random points at the given heights in turn, with noisy pixels.
 std::vector<CalibrationPoint> noisy_points(const CameraModel& camera, const Box& view_m, int count,
-                                          const std::vector<double>& heights_m, double noise_px, Rng& rng) {
+                                           const std::vector<double>& heights_m, double noise_px, Rng& rng) {
   std::vector<CalibrationPoint> points;
   for (int i = 0; i < count; ++i) {
     const Vec2 p = random_point_in(view_m, rng);
@@ -133,12 +133,13 @@ TEST_CASE("points that do not determine the camera are refused with the reason")
     return calibrate_camera(points, initial).error;
   };
   CHECK_THAT(error({}), Catch::Equals("expected at least 5 points, got 0"));
-  CHECK(error(noisy_points(camera, overhead_camera.view_m, 4, {0, 0.3}, 0, rng)).find("got 4") != std::string::npos);
+  CHECK(error(noisy_points(camera, overhead_camera.view_m, 4, {0, 0.3}, 0, rng)).find("got 4") !=
+        std::string::npos);
 
   // Points on the floor only, in a vertical view: a lower camera with a shorter focal length gives the same
   // image.
-  CHECK(error(noisy_points(camera, overhead_camera.view_m, 60, {0}, 0.1, rng)).find("do not determine the camera") !=
-        std::string::npos);
+  CHECK(error(noisy_points(camera, overhead_camera.view_m, 60, {0}, 0.1, rng))
+            .find("do not determine the camera") != std::string::npos);
 
   auto line = noisy_points(camera, {{-2, 1}, {2, 1}}, 20, {0}, 0.1, rng);
   CHECK(!error(line).empty());

@@ -77,7 +77,6 @@ TEST_CASE("cameras are restored from a file to the last bit") {
     CHECK(loaded[i].id == cameras[i].id);
     CHECK(are_equal(loaded[i].parameters, cameras[i].parameters));
   }
-
 }
 
 TEST_CASE("invalid files of cameras are refused with file and line") {

@@ -66,9 +66,9 @@ TEST_CASE("boxes contain the observed pixels of their colours and do not overlap
     return static_cast<std::uint8_t>(low + static_cast<int>(rng.below(static_cast<std::size_t>(high - low))));
   };
   const std::vector<Sample> samples{{Colour::kOrange, {byte(120, 200), byte(40, 80), byte(185, 215)}},
-                                   {Colour::kYellow, {byte(140, 220), byte(30, 70), byte(140, 165)}},
-                                   {Colour::kBlue, {byte(60, 120), byte(170, 220), byte(60, 100)}},
-                                   {Colour::kPink, {byte(90, 160), byte(130, 160), byte(185, 225)}}};
+                                    {Colour::kYellow, {byte(140, 220), byte(30, 70), byte(140, 165)}},
+                                    {Colour::kBlue, {byte(60, 120), byte(170, 220), byte(60, 100)}},
+                                    {Colour::kPink, {byte(90, 160), byte(130, 160), byte(185, 225)}}};
   const Painting painting({byte(40, 90), byte(110, 125), byte(100, 120)}, samples, noise, rng);
   ColourLearner learner;
   learner.add(painting.image.view(), painting.discs);
@@ -80,7 +80,6 @@ TEST_CASE("boxes contain the observed pixels of their colours and do not overlap
   for (const Sample& sample : samples) {
     REQUIRE(box_of(boxes, sample.colour));
     CHECK(is_within(*box_of(boxes, sample.colour), sample.yuv));
-
   }
 }
 

@@ -18,7 +18,7 @@ constexpr Duration kFrame{16'666'667};
 
 /// The class of a colour in light of this gain.
 std::optional<std::uint32_t> classified_as(const ColourThresholds& thresholds, const Rgb& colour,
-                                  const Eigen::Vector3d& gain) {
+                                           const Eigen::Vector3d& gain) {
   Image pair(PixelFormat::kRgb, 2, 1);
   for (int i = 0; i < 6; i += 3) {
     pair.pixels()[i] = to_byte(gain.x() * colour.r);
@@ -45,7 +45,8 @@ TEST_CASE("named colours are classified in all lights and the ground has no colo
             static_cast<std::uint32_t>(colour));
     for (const double drift : {-0.1, 0.0, 0.1}) {
       for (const Colour ground : {Colour::kField, Colour::kWhite, Colour::kBlack})
-        CHECK_FALSE(classified_as(thresholds, named(ground).rgb, Eigen::Vector3d(1 + drift, 1, 1 - drift) * light));
+        CHECK_FALSE(
+            classified_as(thresholds, named(ground).rgb, Eigen::Vector3d(1 + drift, 1, 1 - drift) * light));
     }
   }
 }

@@ -71,8 +71,8 @@ TEST_CASE("robots with one dot covered are found and never confused") {
 }
 
 TEST_CASE("a team is identified by a centre whose colour is just outside that team's thresholds") {
-  // All yellow centres are a little too orange for their thresholds, as in tinted light. No robot is expected,
-  // so the centre alone determines the team.
+  // All yellow centres are a little too orange for their thresholds, as in tinted light. No robot is
+  // expected, so the centre alone determines the team.
   const bool is_covered = GENERATE(false, true);
   CAPTURE(is_covered);
   RenderedField floor(5);

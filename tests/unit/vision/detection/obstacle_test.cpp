@@ -15,8 +15,8 @@ constexpr Duration kFrame{16'666'667};
 
 /// A rendered field, and a detector with the default colours.
 struct ObstacleFixture {
-  explicit ObstacleFixture(std::uint64_t seed, PixelFormat format = PixelFormat::kYuv422, double far_light = 0.85,
-                   double drift = 0)
+  explicit ObstacleFixture(std::uint64_t seed, PixelFormat format = PixelFormat::kYuv422,
+                           double far_light = 0.85, double drift = 0)
       : floor(seed, spec_of(format, far_light, drift)), detector(floor.camera, settings_of(format)) {}
 
   static RenderSpec spec_of(PixelFormat format, double far_light, double drift) {
@@ -35,10 +35,12 @@ struct ObstacleFixture {
     settings.roster = roster_of(scattered(butterfly(), 11, 0.2, rng));
     return settings;
   }
-  const msg::DetectionFrame& detect(const std::vector<PlacedRobot>& robots, std::span<const SceneCylinder> cylinders,
-                                  const std::optional<Vec2>& ball = {}, bool are_expected = true) {
+  const msg::DetectionFrame& detect(const std::vector<PlacedRobot>& robots,
+                                    std::span<const SceneCylinder> cylinders,
+                                    const std::optional<Vec2>& ball = {}, bool are_expected = true) {
     const auto expected = are_expected ? expected_of(robots) : std::vector<ExpectedRobot>{};
-    detector.detect(floor.frame(robots, ball, 0, cylinders).view(), kBegin + frames++ * kFrame, expected, frame);
+    detector.detect(floor.frame(robots, ball, 0, cylinders).view(), kBegin + frames++ * kFrame, expected,
+                    frame);
     return frame;
   }
   std::vector<Circle> obstacles() const {
@@ -83,8 +85,8 @@ TEST_CASE("obstacles of unnamed colours are found with their positions and radii
       const Vec2 position_m = fixture.position_for(radius_m, robots);
       const std::array cylinders{SceneCylinder{{position_m, radius_m}, height_m, colour}};
       fixture.detect(robots, cylinders);
-      CAPTURE(format, height_m, int(colour.r), int(colour.g), int(colour.b), i, position_m.x(), position_m.y(),
-              radius_m);
+      CAPTURE(format, height_m, int(colour.r), int(colour.g), int(colour.b), i, position_m.x(),
+              position_m.y(), radius_m);
       const auto found = fixture.obstacles();
       REQUIRE(found.size() == 1);
       CAPTURE(found[0].centre_m.x(), found[0].centre_m.y(), found[0].radius_m);
@@ -107,7 +109,8 @@ TEST_CASE("obstacles are located in bad light too") {
       const Vec2 position_m = fixture.position_for(radius_m, {});
       const std::array cylinders{SceneCylinder{{position_m, radius_m}, 0.15, colour}};
       fixture.detect({}, cylinders);
-      CAPTURE(format, drift, int(colour.r), int(colour.g), int(colour.b), i, position_m.x(), position_m.y(), radius_m);
+      CAPTURE(format, drift, int(colour.r), int(colour.g), int(colour.b), i, position_m.x(), position_m.y(),
+              radius_m);
       const auto found = fixture.obstacles();
       REQUIRE(found.size() == 1);
       CAPTURE(found[0].centre_m.x(), found[0].centre_m.y(), found[0].radius_m);
@@ -252,7 +255,8 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
     const Vec2 direction = rotated(outward, bearing_rad);
     const Circle other{known.centre_m + distance_m * direction, 0.1};
     Detector detector(fixture.floor.camera, ObstacleFixture::settings_of(PixelFormat::kYuv422, {known}));
-    const std::array cylinders{SceneCylinder{known, 0.15}, SceneCylinder{other, 0.15, named(Colour::kPurple).rgb}};
+    const std::array cylinders{SceneCylinder{known, 0.15},
+                               SceneCylinder{other, 0.15, named(Colour::kPurple).rgb}};
     detector.detect(fixture.floor.frame({}, {}, 0, cylinders).view(), kBegin, {}, fixture.frame);
     CAPTURE(i, known.centre_m.x(), known.centre_m.y(), other.centre_m.x(), other.centre_m.y());
     const auto found = fixture.obstacles();
@@ -265,8 +269,8 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
 TEST_CASE("several obstacles are separated and the largest comes first") {
   ObstacleFixture fixture(16);
   const std::array cylinders{SceneCylinder{{{1, 1}, 0.1}, 0.15, named(Colour::kCyan).rgb},
-                         SceneCylinder{{{1.5, 1}, 0.15}, 0.15, named(Colour::kRed).rgb},
-                         SceneCylinder{{{-1, -1}, 0.05}}};
+                             SceneCylinder{{{1.5, 1}, 0.15}, 0.15, named(Colour::kRed).rgb},
+                             SceneCylinder{{{-1, -1}, 0.05}}};
   fixture.detect({}, cylinders);
   const auto found = fixture.obstacles();
   REQUIRE(found.size() == 3);

@@ -220,7 +220,8 @@ TEST_CASE("cameras and colours that do not fit the scenario are refused with the
   write_cameras({{1, cameras[0].parameters()}, {0, cameras[1].parameters()}}, file);
   CHECK_THAT(refusal({.cameras_file = file}), Catch::Contains("cameras[0].id: expected 0, got 1"));
   std::ofstream(file) << colours_text({PixelFormat::kRgb, {{{0, 0, 0}, {9, 9, 9}, 0}}});
-  CHECK(refusal({.colours_file = file}) == file + ": format: expected yuv422 for the scenario's images, got rgb");
+  CHECK(refusal({.colours_file = file}) ==
+        file + ": format: expected yuv422 for the scenario's images, got rgb");
   CHECK_THAT(refusal({.layout_file = file}), Catch::StartsWith(file + ":"));
   std::remove(file.c_str());
 }

@@ -54,7 +54,7 @@ void synchronise(LeagueSource& source, Duration captured, const league::Endpoint
   for (int ms = 200; ms >= 90; ms -= 10) {
     const auto number = static_cast<std::uint32_t>(100'000 + ms);
     (void)source.decode(datagram(detection_at(captured - milliseconds(ms), number)), from,
-                      kNow - milliseconds(ms));
+                        kNow - milliseconds(ms));
   }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("a restarted sender is accepted soon because it sends from another por
     for (std::uint32_t i = 0; i < 10; ++i) {
       const Time now = kNow + std::chrono::seconds(incarnation) + milliseconds(17) * i;
       const auto* frame = source.decode(datagram(detection_at(milliseconds(100 + 17 * i), i)),
-                                      {0x7f000001, static_cast<std::uint16_t>(6000 + incarnation)}, now);
+                                        {0x7f000001, static_cast<std::uint16_t>(6000 + incarnation)}, now);
       if (!frame) continue;
       REQUIRE(frame->captured_at_ns() == Approx(to_ns(now - milliseconds(5))).margin(1000));
       ++frames;

@@ -32,12 +32,13 @@ class Scene {
   Time now() const { return now_; }
   SenderClock& clock() { return clock_; }
 
-  /// Sends the next frame, captured now, with an additional delay. Returns the error of its capture time; nothing
-  /// if it has none.
+  /// Sends the next frame, captured now, with an additional delay. Returns the error of its capture time;
+  /// nothing if it has none.
   std::optional<Duration> frame(Duration additional_delay = Duration{0}) {
     const Time captured = now_, sent = captured + kProcessing;
     now_ += kFrame;
-    const Duration delay = kMinDelay + from_seconds(rng_.uniform(0, 0.003) * rng_.uniform()) + additional_delay;
+    const Duration delay =
+        kMinDelay + from_seconds(rng_.uniform(0, 0.003) * rng_.uniform()) + additional_delay;
     const auto captured_at = clock_.add(model_.at(captured), model_.at(sent), sent + delay);
     return captured_at ? std::optional(*captured_at - captured) : std::nullopt;
   }

@@ -31,7 +31,8 @@ Tally tally(std::span<const IdentifiedRobot> found, const std::vector<PlacedRobo
 /// Displaces robots randomly by up to 3 cm.
 std::vector<PlacedRobot> moved(std::vector<PlacedRobot> robots, Rng& rng) {
   for (PlacedRobot& robot : robots) {
-    robot.pose.position_m += rotated(Vec2(rng.uniform(0, 0.03), 0), rng.uniform(-std::numbers::pi, std::numbers::pi));
+    robot.pose.position_m +=
+        rotated(Vec2(rng.uniform(0, 0.03), 0), rng.uniform(-std::numbers::pi, std::numbers::pi));
     robot.pose.heading_rad += rng.uniform(-0.2, 0.2);
   }
   return robots;
@@ -114,7 +115,7 @@ TEST_CASE("robots that pass each other closely keep their identities with one do
   const auto& patterns = butterfly().patterns;
   // 0 and 10 differ in one dot.
   std::vector<PlacedRobot> robots{{{0, Team::kBlue, patterns[0]}, {{-0.5, 0.095}, 0.3}},
-                             {{10, Team::kBlue, patterns[10]}, {{0.5, -0.095}, -0.4}}};
+                                  {{10, Team::kBlue, patterns[10]}, {{0.5, -0.095}, -0.4}}};
   PatternFinder finder(butterfly());
   Identifier identifier(roster_of(robots));
   std::size_t correct = 0, wrong = 0;

@@ -34,7 +34,8 @@ TEST_CASE("every pattern of both teams is found with its position, heading and c
     CHECK(pattern->dot_count == 5);
     CHECK(std::abs(wrapped_rad(pattern->pose.heading_rad - robot.pose.heading_rad)) < 0.06);
     for (const PlacedRobot& other : robots) {
-      CHECK(pattern->matches(other.entry.team, other.entry.pattern) == (other.entry.robot == robot.entry.robot));
+      CHECK(pattern->matches(other.entry.team, other.entry.pattern) ==
+            (other.entry.robot == robot.entry.robot));
     }
   }
 }
@@ -70,10 +71,11 @@ TEST_CASE("dots that belong to no robot are ignored") {
     Vec2 position_m;
     bool is_free = false;
     while (!is_free) {
-      position_m =
-          robot.pose.position_m + rotated(Vec2(rng.uniform(0.03, 0.11), 0), rng.uniform(-std::numbers::pi, std::numbers::pi));
-      is_free = std::ranges::all_of(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(own),
-                                    [&](const ProjectedRegion& p) { return (p.position_m - position_m).norm() > 0.03; });
+      position_m = robot.pose.position_m + rotated(Vec2(rng.uniform(0.03, 0.11), 0),
+                                                   rng.uniform(-std::numbers::pi, std::numbers::pi));
+      is_free = std::ranges::all_of(
+          regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(own),
+          [&](const ProjectedRegion& p) { return (p.position_m - position_m).norm() > 0.03; });
     }
     regions.push_back({rng.chance(0.5) ? Colour::kPink : Colour::kGreen, position_m, disc_m2(0.02)});
   }

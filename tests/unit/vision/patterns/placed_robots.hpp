@@ -25,8 +25,9 @@ struct Noise {
 inline double disc_m2(double radius_m) { return std::numbers::pi * radius_m * radius_m; }
 
 /// The regions of all dots, in random order.
-inline std::vector<ProjectedRegion> regions_of(const MarkerLayout& layout, const std::vector<PlacedRobot>& robots,
-                                     const Noise& noise, Rng& rng) {
+inline std::vector<ProjectedRegion> regions_of(const MarkerLayout& layout,
+                                               const std::vector<PlacedRobot>& robots, const Noise& noise,
+                                               Rng& rng) {
   std::vector<ProjectedRegion> regions;
   const auto add = [&](Colour colour, const Vec2& position_m, double radius_m) {
     const Vec2 error = noise.sd_m * Vec2(rng.normal(), rng.normal());
@@ -53,15 +54,17 @@ inline std::vector<ProjectedRegion> regions_of(const MarkerLayout& layout, const
 }
 
 /// Robots of both teams with the layout's first patterns, at random poses more than `min_distance_m` apart.
-inline std::vector<PlacedRobot> scattered(const MarkerLayout& layout, std::size_t robots_per_team, double min_distance_m,
-                                     Rng& rng) {
+inline std::vector<PlacedRobot> scattered(const MarkerLayout& layout, std::size_t robots_per_team,
+                                          double min_distance_m, Rng& rng) {
   std::vector<PlacedRobot> robots;
   while (robots.size() < 2 * robots_per_team) {
     const std::size_t i = robots.size() % robots_per_team;
     const bool is_blue = robots.size() < robots_per_team;
-    const Pose pose{{rng.uniform(-3, 3), rng.uniform(-2, 2)}, rng.uniform(-std::numbers::pi, std::numbers::pi)};
+    const Pose pose{{rng.uniform(-3, 3), rng.uniform(-2, 2)},
+                    rng.uniform(-std::numbers::pi, std::numbers::pi)};
     bool is_free = true;
-    for (const PlacedRobot& other : robots) is_free &= (other.pose.position_m - pose.position_m).norm() > min_distance_m;
+    for (const PlacedRobot& other : robots)
+      is_free &= (other.pose.position_m - pose.position_m).norm() > min_distance_m;
     if (!is_free) continue;
     const auto id = static_cast<RobotId>(is_blue ? i : 16 + i);
     robots.push_back({{id, is_blue ? Team::kBlue : Team::kYellow, layout.patterns[i]}, pose});

@@ -12,7 +12,7 @@ namespace sidestep {
 
 /// Slow reference: classifies each pixel, and flood-fills a region from each pixel that is in none yet.
 inline std::vector<Region> flood_filled(const ImageView& image, const ColourClasses& classes,
-                                   std::uint32_t min_area_px) {
+                                        std::uint32_t min_area_px) {
   const int width = image.width_px, height = image.height_px;
   std::vector<int> colour(static_cast<std::size_t>(width * height), -1);
   const auto at = [&](int x, int y) -> int& { return colour[static_cast<std::size_t>(y * width + x)]; };

@@ -117,11 +117,11 @@ TEST_CASE("all kernels classify every RGB colour by its definition") {
 
 TEST_CASE("parts that join farther down form one region with a common centroid") {
   const Image image = image_of({"X...X...X",  //
-                             "X...X...X",  //
-                             "X..X.X..X",  //
-                             ".XX...XX.",  //
-                             ".........",  //
-                             "....X...."});
+                                "X...X...X",  //
+                                "X..X.X..X",  //
+                                ".XX...XX.",  //
+                                ".........",  //
+                                "....X...."});
   Segmenter segmenter(ColourClasses(std::vector{kRed}), kAll);
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 2);
@@ -131,10 +131,10 @@ TEST_CASE("parts that join farther down form one region with a common centroid")
 
 TEST_CASE("a region split by a line is merged") {
   const Image image = image_of({".XXXXX....",  //
-                             ".XXXXX....",  //
-                             "..........",  //
-                             ".XXXXX....",  //
-                             ".XXXXX...X"});
+                                ".XXXXX....",  //
+                                "..........",  //
+                                ".XXXXX....",  //
+                                ".XXXXX...X"});
   Segmenter unmerged(ColourClasses(std::vector{kRed}), kAll);
   CHECK(unmerged.segment(image.view()).size() == 3);
   Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.7, 1}});
@@ -146,9 +146,9 @@ TEST_CASE("a region split by a line is merged") {
 
 TEST_CASE("regions skipped as too far away are reconsidered after a merge") {
   const Image image = image_of({"XXXX....XX",  //
-                             "XXXX....XX",  //
-                             "XXXX.XX.XX",  //
-                             "XXXX.XX.XX"});
+                                "XXXX....XX",  //
+                                "XXXX.XX.XX",  //
+                                "XXXX.XX.XX"});
   Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.65, 1}});
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 1);
@@ -157,17 +157,17 @@ TEST_CASE("regions skipped as too far away are reconsidered after a merge") {
 
 TEST_CASE("regions that do not fill their common box are not merged") {
   const Image image = image_of({"XX....",  //
-                             "XX....",  //
-                             "......",  //
-                             "..XX..",  //
-                             "..XX.."});
+                                "XX....",  //
+                                "......",  //
+                                "..XX..",  //
+                                "..XX.."});
   Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.5, 2}});
   CHECK(segmenter.segment(image.view()).size() == 2);
 }
 
 TEST_CASE("regions of different colours are never merged") {
   Image image = image_of({"XXXX",  //
-                       "XXXX"});
+                          "XXXX"});
   for (int x = 0; x < 4; ++x) {
     image.row(1)[3 * static_cast<std::ptrdiff_t>(x)] = 0;
     image.row(1)[3 * static_cast<std::ptrdiff_t>(x) + 2] = 255;
@@ -187,7 +187,6 @@ TEST_CASE("regions of a noisy frame beyond the limit are dropped") {
   }
   Segmenter segmenter(ColourClasses(std::vector{kRed}), kAll);
   CHECK(segmenter.segment(image.view()).size() == RegionBuilder::kMaxRegions);
-
 }
 
 TEST_CASE("segmenting a second frame allocates nothing") {

@@ -45,7 +45,7 @@ TEST_CASE("the filter's errors match its covariance") {
       for (auto& axis : truth) axis = stepped(axis, dt_s, rng);
       filter.predict(dt_s, {kAccelerationPsd, 0});
       const Eigen::Vector2d measured{truth[0](0) + kNoise_m * rng.normal(),
-                                 truth[1](0) + kNoise_m * rng.normal()};
+                                     truth[1](0) + kNoise_m * rng.normal()};
       filter.correct(measured - filter.position(), kNoise_m * kNoise_m);
     }
     for (int i = 0; i < 2; ++i) {
@@ -85,7 +85,8 @@ TEST_CASE("the filter's estimate equals batch least squares over all observation
   for (int i = 0; i < kSteps; ++i) measured(i) = rng.uniform(-0.01, 0.01);
   const Eigen::Vector2d expected = last_measured * measured_covariance.ldlt().solve(measured);
   const Eigen::Matrix2d covariance =
-      prior.back() - last_measured * measured_covariance.ldlt().solve(Eigen::MatrixXd(last_measured.transpose()));
+      prior.back() -
+      last_measured * measured_covariance.ldlt().solve(Eigen::MatrixXd(last_measured.transpose()));
 
   Filter1 filter(Filter1::Vector(0), kNoise_m * kNoise_m, 2.25);
   for (int i = 0; i < kSteps; ++i) {

@@ -127,7 +127,8 @@ TEST_CASE("latency is compensated: under constant acceleration the world lags by
     worst = std::max(worst, error);
     if (truth.velocity_mps.x() > 1) CHECK(error < 0.3 * (truth.position_m - motion.at(t).position_m).norm());
   }
-  // a t²/2 over 35 ms is 3.1 mm; the rest is the filter's velocity lag. Without prediction the error is 60 mm.
+  // a t²/2 over 35 ms is 3.1 mm; the rest is the filter's velocity lag. Without prediction the error is 60
+  // mm.
   CHECK(worst < 0.008);
   CHECK(worst > 0.001);
 }

@@ -80,7 +80,8 @@ TEST_CASE("the node publishes worlds at the cameras' rate, valid at their public
     REQUIRE(world.robots().size() == 1);
     const auto& robot = world.robots()[0];
     CHECK((position_of(robot) - motion.at(time_from_ns(world.valid_at_ns())).position_m).norm() < 0.03);
-    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() < 0.008);
+    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() <
+          0.008);
     CHECK(world.valid_at_ns() - robot.observed_at_ns() < 150'000'000);
   }
 }
@@ -101,7 +102,8 @@ TEST_CASE("the world remains usable when the network loses, delays, duplicates a
     if (world.valid_at_ns() < to_ns(after_s(0.5))) continue;
     REQUIRE(world.robots().size() == 1);
     const auto& robot = world.robots()[0];
-    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() < 0.008);
+    CHECK((observed_position_of(robot) - motion.at(time_from_ns(robot.observed_at_ns())).position_m).norm() <
+          0.008);
     const double error =
         (position_of(robot) - motion.at(time_from_ns(world.valid_at_ns())).position_m).norm();
     CHECK(error < 6 * std::sqrt(robot.position_variance_m2()));

@@ -95,7 +95,8 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
     };
     const auto count = std::count_if(planner.cells().cells.begin(), planner.cells().cells.end(), contains);
     if (count > 0) REQUIRE(is_free(smaller_robot, position));
-    if (count == 0) REQUIRE_FALSE((is_free(larger_robot, position) && larger_robot.field.contains(position, 0.11)));
+    if (count == 0)
+      REQUIRE_FALSE((is_free(larger_robot, position) && larger_robot.field.contains(position, 0.11)));
     REQUIRE(count <= 1);
   }
 }

@@ -17,7 +17,8 @@ namespace {
 /// as extra clearance.
 class ReferenceGrid {
  public:
-  ReferenceGrid(const PlanWorld& world, double step_m, double min_separation_m) : world_(world), step_m_(step_m) {
+  ReferenceGrid(const PlanWorld& world, double step_m, double min_separation_m)
+      : world_(world), step_m_(step_m) {
     cells_ = static_cast<int>(world.field.length_m / step_m);
     PlanWorld inflated_world = world;
     inflated_world.radius_m += min_separation_m;
@@ -113,7 +114,8 @@ std::vector<Shape> joined_walls(Rng& rng, std::size_t count) {
   while (walls.size() < count) {
     const auto kind = walls.empty() ? 0 : rng.below(6);
     const Segment other = walls.empty() ? Segment{} : walls[rng.below(walls.size())];
-    const Vec2 displacement = rng.chance(0.5) ? random_displacement(rng, 2) : Vec2(rng.chance(0.5) ? rng.uniform(-2, 2) : 0, 0);
+    const Vec2 displacement =
+        rng.chance(0.5) ? random_displacement(rng, 2) : Vec2(rng.chance(0.5) ? rng.uniform(-2, 2) : 0, 0);
     const Vec2 on = other.from_m + rng.uniform() * (other.to_m - other.from_m);
     if (kind == 0) walls.push_back({random_position(rng, 5), random_position(rng, 5)});
     if (kind == 1) walls.push_back({other.to_m, other.to_m + displacement});
@@ -166,7 +168,8 @@ TEST_CASE("the shortest path around a box turns at two corners") {
   const auto [exact, polyline, lazy] = plan_both(world_of({Box{{-1, -3}, {1, 0.5}}}), {-2, 0}, {2, 0});
   // A tangent, the arc around a corner, the edge, the other arc, and a tangent.
   const double far = std::hypot(1, 0.5), straight = std::sqrt(far * far - 0.01);
-  const double turn = std::numbers::pi / 2 - (std::numbers::pi / 2 - std::atan2(0.5, 1)) + std::asin(0.1 / far);
+  const double turn =
+      std::numbers::pi / 2 - (std::numbers::pi / 2 - std::atan2(0.5, 1)) + std::asin(0.1 / far);
   const double expected = 2 * straight + 2 + 2 * 0.1 * turn;
   CHECK(exact == Approx(expected).epsilon(1e-6));
   CHECK(polyline == Approx(expected).epsilon(1e-4));
@@ -225,7 +228,8 @@ TEST_CASE("the shortest path is no longer than on a fine grid and not much short
 TEST_CASE("visibility graphs report that no path exists") {
   std::vector<Shape> ring;
   for (int i = 0; i < 24; ++i)
-    ring.push_back(Circle{2 * Vec2(std::cos(i * std::numbers::pi / 12), std::sin(i * std::numbers::pi / 12)), 0.2});
+    ring.push_back(
+        Circle{2 * Vec2(std::cos(i * std::numbers::pi / 12), std::sin(i * std::numbers::pi / 12)), 0.2});
   const PlanWorld world = world_of(ring);
   const ObstacleWorld obstacles(world.obstacles);
   TangentGraph graph(obstacles, world.field, world.radius_m);
@@ -240,8 +244,7 @@ TEST_CASE("visibility graphs report that no path exists") {
   CHECK(plan.states.back().norm() < 2.5);
 }
 
-TEST_CASE(
-    "all tangents of a full visibility graph are free even if an obstacle covers the field's centre") {
+TEST_CASE("all tangents of a full visibility graph are free even if an obstacle covers the field's centre") {
   const auto seed = GENERATE(1u, 2u);
   PlanWorld world = make_world("circles", 1, seed);
   world.obstacles.push_back(Circle{{0.1, 0}, 0.5});
@@ -279,7 +282,8 @@ TEST_CASE("the shortest path around an angled wall turns once at its corner") {
   // start |
   //       |____  goal below
   const Segment vertical{{0, 5}, {0, 0}}, horizontal{{0, 0}, {4, 0}};
-  for (const auto& walls : {std::vector<Shape>{vertical, horizontal}, std::vector<Shape>{horizontal, vertical}}) {
+  for (const auto& walls :
+       {std::vector<Shape>{vertical, horizontal}, std::vector<Shape>{horizontal, vertical}}) {
     const auto [exact, polyline, lazy] = plan_both(world_of(walls), {-0.5, 4}, {3.5, -0.5});
     // Two tangents to the circle around the common corner, and the arc between them.
     const double a = std::sqrt(16.25 - 0.01), b = std::sqrt(12.5 - 0.01);

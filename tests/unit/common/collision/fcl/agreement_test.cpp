@@ -4,8 +4,8 @@
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/sphere.h>
 
-#include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "common/collision/obstacle_world.hpp"
+#include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep {
@@ -58,8 +58,8 @@ struct WorldPair {
 double clearance_in_fcl(const SolidWorld& solids, const Vec2& from, const Vec2& to, double radius) {
   const Vec2 displacement = to - from, middle = 0.5 * (from + to);
   Eigen::Isometry3d pose = on_floor(middle);
-  pose.rotate(
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(displacement.x(), displacement.y(), 0)));
+  pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(0, 0, 1),
+                                                 Eigen::Vector3d(displacement.x(), displacement.y(), 0)));
   return solids.clearance_m(std::make_shared<fcl::Capsuled>(radius, displacement.norm()), pose);
 }
 
@@ -75,7 +75,8 @@ void check_queries(const WorldPair& pair, Rng& rng, int queries) {
     } else {
       CHECK(pair.world.touches(from, to, radius + kTolerance_m));
     }
-    const double fcl_distance_m = pair.solids.clearance_m(std::make_shared<fcl::Sphered>(1e-3), on_floor(from)) + 1e-3;
+    const double fcl_distance_m =
+        pair.solids.clearance_m(std::make_shared<fcl::Sphered>(1e-3), on_floor(from)) + 1e-3;
     const double nearest = pair.world.nearest(from).distance_m;
     if (nearest > 1e-3 + kTolerance_m) CHECK(nearest == Approx(fcl_distance_m).margin(kTolerance_m));
     if (nearest <= 1e-3 - kTolerance_m) CHECK(fcl_distance_m <= 1e-3 + kTolerance_m);

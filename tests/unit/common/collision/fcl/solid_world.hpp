@@ -38,7 +38,7 @@ class SolidWorld {
   /// obstacles.
   [[nodiscard]] double clearance_m(const Solid& body, const Eigen::Isometry3d& pose) const;
 
-  /// Swept queries for a body that translates without rotating. The world has to outlive the result.
+  /// Swept queries for a body that translates without rotating. The world must outlive the result.
   auto sweep(const Solid& body, const Eigen::Isometry3d& from, const Eigen::Vector3d& to_m,
              double margin_m = 0) const {
     const auto clearance = [this, body, from](const Eigen::Vector3d& at_m) {

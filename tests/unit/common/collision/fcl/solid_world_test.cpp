@@ -52,8 +52,7 @@ TEST_CASE("a swept body touches if the body at any position along its path does"
   SolidWorld world;
   const auto random_position = [&](double half) {
     Isometry3d pose = at(rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-half, half));
-    pose.rotate(
-        Eigen::AngleAxisd(rng.uniform(0, 3), Vector3d(rng.uniform(), rng.uniform(), 1).normalized()));
+    pose.rotate(Eigen::AngleAxisd(rng.uniform(0, 3), Vector3d(rng.uniform(), rng.uniform(), 1).normalized()));
     return pose;
   };
   for (int i = 0; i < 15; ++i)
@@ -96,7 +95,8 @@ TEST_CASE("invalid solids are rejected") {
   using Triangles = std::vector<std::array<std::size_t, 3>>;
   CHECK_NOTHROW(mesh(corners, Triangles{{0, 1, 2}}));
   CHECK_THROWS_WITH(mesh(corners, Triangles{}), "a mesh has no triangles");
-  CHECK_THROWS_WITH(mesh(corners, Triangles{{0, 1, 3}}), "a mesh triangle refers to a corner that does not exist");
+  CHECK_THROWS_WITH(mesh(corners, Triangles{{0, 1, 3}}),
+                    "a mesh triangle refers to a corner that does not exist");
   const std::vector<Vector3d> broken{{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}};
   CHECK_THROWS_AS(mesh(broken, Triangles{{0, 1, 2}}), std::invalid_argument);
   CHECK_THROWS_AS(prism(Circle{{0, 0}, -1}, 1), std::invalid_argument);

@@ -33,7 +33,8 @@ TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
     Eigen::Isometry3d pose(Eigen::Translation3d(from + 0.5 * displacement));
     pose.rotate(Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), displacement));
     const double radius = 0.05;
-    const double in_fcl = world.clearance_m(std::make_shared<fcl::Capsuled>(radius, displacement.norm()), pose);
+    const double in_fcl =
+        world.clearance_m(std::make_shared<fcl::Capsuled>(radius, displacement.norm()), pose);
     CAPTURE(from.transpose(), displacement.transpose());
     CHECK(std::max(0.0, tree.distance_m(from, from + displacement) - radius) == Approx(in_fcl).margin(2e-6));
   }

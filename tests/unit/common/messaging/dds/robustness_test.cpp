@@ -124,7 +124,7 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
 
 namespace {
 
-/// Adds so many readers that announcing them takes several messages.
+/// Adds enough readers that announcing them takes several messages.
 void subscribe_to_many(DdsBus& bus) {
   for (std::uint32_t robot = 2; robot < 30; ++robot)
     bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [](const msg::Verdict&) {});

@@ -18,7 +18,8 @@ namespace {
 /// A rotated pattern as colours by position in millimetres.
 using ColourMap = std::map<std::pair<long, long>, std::uint64_t>;
 
-ColourMap colour_map(const MarkerLayout& layout, const std::vector<std::uint64_t>& colours, double angle_rad) {
+ColourMap colour_map(const MarkerLayout& layout, const std::vector<std::uint64_t>& colours,
+                     double angle_rad) {
   ColourMap result;
   for (std::size_t i = 0; i < colours.size(); ++i) {
     const Vec2 p = rotated(layout.dots[i].position_m - layout.centre.position_m, angle_rad) * 1e3;

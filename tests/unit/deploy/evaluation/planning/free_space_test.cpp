@@ -20,9 +20,10 @@ class Grid {
     corner_m_ = Vec2(-world.field.length_m / 2 + cell_m / 2, -world.field.width_m / 2 + cell_m / 2);
     for (int i = 0; i < columns_ * rows_; ++i) {
       const Vec2 p = centre_m(i);
-      double clearance_m = std::min(world.field.length_m / 2 - std::abs(p.x()),
-                                    world.field.width_m / 2 - std::abs(p.y()));
-      for (const Shape& shape : world.obstacles) clearance_m = std::min(clearance_m, signed_distance(p, shape));
+      double clearance_m =
+          std::min(world.field.length_m / 2 - std::abs(p.x()), world.field.width_m / 2 - std::abs(p.y()));
+      for (const Shape& shape : world.obstacles)
+        clearance_m = std::min(clearance_m, signed_distance(p, shape));
       clearance_m_.push_back(clearance_m - world.radius_m);
     }
   }
@@ -30,8 +31,8 @@ class Grid {
   Vec2 centre_m(int i) const { return corner_m_ + cell_m_ * Vec2(i % columns_, i / columns_); }
   int size() const { return columns_ * rows_; }
 
-  /// Two cells with one label are joined by a free path: between neighbours' centres, every point is within
-  /// half a cell of one of them.
+  /// Two cells with the same label are joined by a free path: between neighbours' centres, every point is
+  /// within half a cell of one of them.
   std::vector<int> surely_joined() const { return labels(cell_m_ / 2, false); }
   /// Two cells with different labels are not joined by any free path: each cell with a free point counts, and
   /// a path may pass from one to the next across a corner.
@@ -51,7 +52,8 @@ class Grid {
         for (int dy = -1; dy <= 1; ++dy) {
           for (int dx = -1; dx <= 1; ++dx) {
             const int x = cell % columns_ + dx, y = cell / columns_ + dy, next = y * columns_ + x;
-            if ((dx != 0 && dy != 0 && !across_corners) || x < 0 || x >= columns_ || y < 0 || y >= rows_) continue;
+            if ((dx != 0 && dy != 0 && !across_corners) || x < 0 || x >= columns_ || y < 0 || y >= rows_)
+              continue;
             if (labels[next] >= 0 || clearance_m_[next] <= min_clearance_m) continue;
             labels[next] = label;
             open.push_back(next);
@@ -69,7 +71,7 @@ class Grid {
   std::vector<double> clearance_m_;
 };
 
-/// Obstacles of all kinds, so many that some free positions are enclosed.
+/// Obstacles of all kinds, enough that some free positions are enclosed.
 PlanWorld crowded_world(std::uint64_t seed) {
   Rng rng(seed);
   PlanWorld world;
@@ -99,8 +101,8 @@ Scene scene_of(const std::vector<std::string>& rows) {
   scene.world.field = {kCell_m * width, kCell_m * height};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (std::size_t column = 0; column < rows[row].size(); ++column) {
-      const Vec2 corner = kCell_m * Vec2(static_cast<double>(column) - width / 2,
-                                         height / 2 - 1 - static_cast<double>(row));
+      const Vec2 corner =
+          kCell_m * Vec2(static_cast<double>(column) - width / 2, height / 2 - 1 - static_cast<double>(row));
       const Vec2 cell(kCell_m, kCell_m);
       if (rows[row][column] == '#') scene.world.obstacles.push_back(Box{corner, corner + cell});
       if (rows[row][column] == 'a') scene.a = corner + cell / 2;
@@ -171,37 +173,21 @@ TEST_CASE("free space connects everything where there is no obstacle") {
 
 TEST_CASE("a closed ring separates its inside from its outside and an open one does not") {
   CHECK_FALSE(connects({".......",  //
-                        ".#####.",
-                        ".#.a.#.",
-                        ".#...#.",
-                        ".#####b"}));
+                        ".#####.", ".#.a.#.", ".#...#.", ".#####b"}));
   CHECK(connects({".......",  //
-                  ".#####.",
-                  ".#.a.#.",
-                  ".#....b",
-                  ".#####."}));
+                  ".#####.", ".#.a.#.", ".#....b", ".#####."}));
 }
 
 TEST_CASE("a wall from side to side separates, boxes that meet at corners included") {
   CHECK_FALSE(connects({"a.#....",  //
-                        "..#....",
-                        "...#...",
-                        "....#.b"}));
+                        "..#....", "...#...", "....#.b"}));
   CHECK(connects({"a.#....",  //
-                  "..#....",
-                  ".......",
-                  "....#.b"}));
+                  "..#....", ".......", "....#.b"}));
 }
 
 TEST_CASE("two islands in one ring, and rings around both positions, are told apart") {
   CHECK(connects({"#########",  //
-                  "#.......#",
-                  "#a.#.#.b#",
-                  "#.......#",
-                  "#########"}));
+                  "#.......#", "#a.#.#.b#", "#.......#", "#########"}));
   CHECK_FALSE(connects({"#########",  //
-                        "#...#...#",
-                        "#a..#..b#",
-                        "#...#...#",
-                        "#########"}));
+                        "#...#...#", "#a..#..b#", "#...#...#", "#########"}));
 }

@@ -36,7 +36,7 @@ class Planning {
   Rng rng_{1};
 };
 
-/// How many of the queries are answered by the straight line alone.
+/// The number of queries that are answered by the straight line alone.
 int count_straight(const std::string& planner, const PlanWorld& world) {
   Planning planning(planner, world);
   int straight = 0;

@@ -19,7 +19,8 @@ std::vector<Vec2> points_of(const RoundedShape& shape) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (double part = 0; part <= 1; part += kStep_m / 2)
       for (double inwards = 0; inwards <= 1; inwards += corners.size() < 3 ? 2 : kStep_m * 2)
-        points.push_back((1 - inwards) * (corners[i] + part * (corners[(i + 1) % corners.size()] - corners[i])) +
+        points.push_back((1 - inwards) *
+                             (corners[i] + part * (corners[(i + 1) % corners.size()] - corners[i])) +
                          inwards * corners[0]);
   }
   return points;

@@ -46,9 +46,9 @@ TEST_CASE("the path check finds a path that touches an obstacle or leaves the fi
 TEST_CASE("the path check finds contacts of a micrometre between the corners of a path") {
   PlanWorld world;
   world.radius_m = 0.1;
-  for (const Shape& shape : std::initializer_list<Shape>{Circle{{0, 0}, 0.5}, Box{{-0.5, -0.5}, {0.5, 0.5}},
-                                                         Segment{{0, 0}, {0, 0.5}},
-                                                         ConvexPolygon{{{-1, 0}, {1, 0}, {0, 0.5}}}}) {
+  for (const Shape& shape :
+       std::initializer_list<Shape>{Circle{{0, 0}, 0.5}, Box{{-0.5, -0.5}, {0.5, 0.5}},
+                                    Segment{{0, 0}, {0, 0.5}}, ConvexPolygon{{{-1, 0}, {1, 0}, {0, 0.5}}}}) {
     world.obstacles = {shape};
     CHECK(is_valid_path(world, {{-3, -1}, {-3, 0.600001}, {3, 0.600001}}, 0));
     CHECK_FALSE(is_valid_path(world, {{-3, -1}, {-3, 0.599999}, {3, 0.599999}}, 0));

@@ -12,7 +12,7 @@ using namespace sidestep;
 
 namespace {
 
-/// The exit code of `sidestep study ARGUMENTS`, or that of what it does.
+/// Parses `sidestep study ARGUMENTS`, runs its action if there is one, and returns the exit code.
 int study(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sidestep", "study"});
   std::vector<char*> argv;

@@ -43,6 +43,7 @@ using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const 
 /// different seed gives different ones.
 void check_experiment(const Experiment& experiment);
 
-/// The sum of a column over the rows with the value `is` in the column `where`; there has to be one.
+/// The sum of a column over the rows with the value `is` in the column `where`. Fails the test if there are
+/// none.
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,
               const std::string& is);

@@ -117,7 +117,8 @@ TEST_CASE("with `create` all addresses and namespaces must differ") {
   check_refused(with(good, "10.1.0.2", "10.1.0.9"), "hosts.yaml:9: ", "is already in use");
   check_refused(with(good, "{namespace: b}", "{namespace: a}"),
                 "hosts.yaml:9: ", "another host has this namespace");
-  check_refused(with(good, "{namespace: b}", "{namespace: bridge}"), "hosts.yaml:9: ", "reserved for the launcher");
+  check_refused(with(good, "{namespace: b}", "{namespace: bridge}"),
+                "hosts.yaml:9: ", "reserved for the launcher");
 }
 
 TEST_CASE("standby coordinators are placed like agents") {
@@ -141,8 +142,9 @@ TEST_CASE("each process has exactly one host, and hosts name only existing robot
              Catch::StartsWith("hosts.yaml:1: no host runs agent 6"));
   CHECK_THAT(placement_error(with(kTwoHosts, "rest", "[2-6]")),
              Catch::StartsWith("hosts.yaml:12: host far runs agent 2, but host floor runs it already"));
-  CHECK_THAT(placement_error(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
-             Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, but the scenario has none of them"));
+  CHECK_THAT(
+      placement_error(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
+      Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, but the scenario has none of them"));
 }
 
 TEST_CASE("the shipped hosts files fit any scenario") {

@@ -152,8 +152,9 @@ TEST_CASE("ground truth that contradicts the promise is reported under its rule"
   }
   SECTION("contacts of a pushed robot, and of robots that it pushes in turn") {
     // The last pair, and the numbers of excused and reported contacts.
-    const auto [first, second, excused, reported] = GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
-        {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));
+    const auto [first, second, excused, reported] =
+        GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
+            {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));
     CAPTURE(first, second);
     const AuditTotals totals = audit_of_tampered([a = first, b = second](History& h) {
       const Time push = h.messages.front().at + 1500ms;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An unmodified history breaks no rule. Each modification of one detail must be reported under the rule that it
-// breaks.
+// An unmodified history breaks no rule. Each modification of one detail must be reported under the rule that
+// it breaks.
 #include "deploy/monitor/audit/auditor.hpp"
 
 #include <algorithm>
@@ -138,7 +138,8 @@ TEST_CASE("every wrong grant is reported under its rule") {
     require_violation(AuditRule::kSingleCoordinator, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
-        if (v.robot() == s.robot && v.granted_version() == s.number) v.header().incarnation(v.header().incarnation() + 1);
+        if (v.robot() == s.robot && v.granted_version() == s.number)
+          v.header().incarnation(v.header().incarnation() + 1);
       });
     });
   }

@@ -50,8 +50,8 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
 
 AuditTotals audit_of(const History& history, const AuditInput& input);
 
-/// The history as received by a late joiner over a network that loses, duplicates and delays messages by up to
-/// 20 ms.
+/// The history as received by a late joiner over a network that loses, duplicates and delays messages by up
+/// to 20 ms.
 History degraded(const History& history, std::uint64_t seed, double loss, Duration joined_after);
 
 /// The recorded violations, one per line.

@@ -59,7 +59,8 @@ TEST_CASE("the sending time is bounded although the sender's clock has an unknow
     CHECK(reception.earliest_ns <= to_ns(message.sent));
     CHECK(reception.latest_ns >= to_ns(message.sent));
     CHECK(reception.latest_ns <= to_ns(message.received));
-    if (reception.earliest_ns != 0) widest_ns = std::max(widest_ns, reception.latest_ns - reception.earliest_ns);
+    if (reception.earliest_ns != 0)
+      widest_ns = std::max(widest_ns, reception.latest_ns - reception.earliest_ns);
   }
   CHECK(widest_ns == 5'000'000);
 }

@@ -165,7 +165,8 @@ TEST_CASE("audit violations fail a run and are included in its report") {
   CHECK(audit["by_rule"]["late-switch"] == 1);
   CHECK(audit["first"][0]["robot"] == 3);
   CHECK(audit["first"][0]["detail"] == "is executed, although");
-  CHECK_THAT(summary(report), Catch::Contains("late-switch (firmware, S-05): robot 3 version 17: is executed"));
+  CHECK_THAT(summary(report),
+             Catch::Contains("late-switch (firmware, S-05): robot 3 version 17: is executed"));
 }
 
 TEST_CASE("excused contacts do not fail a run, other contacts do") {

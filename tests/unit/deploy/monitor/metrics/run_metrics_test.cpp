@@ -83,9 +83,10 @@ TEST_CASE("arrival time runs from the first grant until the robot settles at its
   metrics.on_coordinator(state(3, 2.0, kGranting));
   CHECK(metrics.granting_since() == after(1));
 
-  metrics.on_truth(truth(1, 2.0, {body(3, 0.99, 0, 0.5), body(7, 0.5, 1)}));      // robot 3 drives through its goal
-  metrics.on_truth(truth(2, 3.0, {body(3, 1.01, 0), body(7, 1, 1, 1)}));          // rests at it
-  metrics.on_truth(truth(3, 3.5, {body(3, 1.03, 0), body(7, 1.5, 1, 1)}));        // is pushed off it
+  metrics.on_truth(
+      truth(1, 2.0, {body(3, 0.99, 0, 0.5), body(7, 0.5, 1)}));             // robot 3 drives through its goal
+  metrics.on_truth(truth(2, 3.0, {body(3, 1.01, 0), body(7, 1, 1, 1)}));    // rests at it
+  metrics.on_truth(truth(3, 3.5, {body(3, 1.03, 0), body(7, 1.5, 1, 1)}));  // is pushed off it
   metrics.on_truth(truth(4, 4.0, {body(3, 1.019, 0, 0.019), body(7, 1.99, 1)}));  // and returns
   metrics.on_truth(truth(5, 5.0, {body(3, 1, 0), body(7, 2, 1)}));
   CHECK(metrics.arrived() == 0);
@@ -107,9 +108,9 @@ TEST_CASE("arrival time runs from the first grant until the robot settles at its
   CHECK(report.robot_time_s == Approx(4));
   CHECK(report.max_reference_error_m == Approx(0.001));
   CHECK(report.min_clearance_m == Approx(0.3));
-  const double expected =
-      (3 / straight_line_time_s(kTwo.robots[0], kTwo.limits) + 3 / straight_line_time_s(kTwo.robots[1], kTwo.limits)) /
-      2;
+  const double expected = (3 / straight_line_time_s(kTwo.robots[0], kTwo.limits) +
+                           3 / straight_line_time_s(kTwo.robots[1], kTwo.limits)) /
+                          2;
   CHECK(report.straight_line_time_ratio == Approx(expected));
 }
 
@@ -138,7 +139,7 @@ TEST_CASE("the straight-line time agrees with slow integration") {
     while (goal_m - x > 1e-6) {
       const bool may_accelerate = goal_m - x > v * v / (2 * limits.deceleration_mps2);
       v = may_accelerate ? std::min(limits.speed_mps, v + limits.acceleration_mps2 * dt)
-                   : std::max(1e-3, v - limits.deceleration_mps2 * dt);
+                         : std::max(1e-3, v - limits.deceleration_mps2 * dt);
       x += v * dt;
       t += dt;
     }
@@ -199,7 +200,8 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
   CHECK(report.firmware_violations == 1);
   CHECK(report.min_clearance_m == Approx(-0.01));
   CHECK(metrics.granting_since() == after(0));
-  CHECK_THAT(report.failure_reason(), Catch::Contains("5 contacts") && Catch::Contains("1 firmware violations"));
+  CHECK_THAT(report.failure_reason(),
+             Catch::Contains("5 contacts") && Catch::Contains("1 firmware violations"));
 }
 
 TEST_CASE("the status of a dead incarnation with a clock ahead does not override its successor") {
@@ -228,7 +230,8 @@ TEST_CASE("the status of an incarnation that is fencing counts only if no other 
     CHECK(metrics.arrived() == 1);
   }
   // Incarnation 5 has fallen silent.
-  for (std::uint64_t number = 21; number <= 24; ++number) metrics.on_status(status(3, number, kFencing, fencing));
+  for (std::uint64_t number = 21; number <= 24; ++number)
+    metrics.on_status(status(3, number, kFencing, fencing));
   CHECK(metrics.progress()[0].agent_state == kFencing);
   CHECK(metrics.arrived() == 0);
   metrics.on_status(status(3, 21, kArrived, 5));

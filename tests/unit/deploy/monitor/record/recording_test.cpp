@@ -162,7 +162,8 @@ TEST_CASE("bytes that do not decode as a message of their topic are refused") {
 TEST_CASE("a file that is not a recording is refused with its name") {
   const TemporaryFile file;
   write(file.path, {'n', 'o'});
-  CHECK_THROWS_WITH(PlaybackBus(file.path), Catch::Contains(file.path) && Catch::Contains("is not a recording"));
+  CHECK_THROWS_WITH(PlaybackBus(file.path),
+                    Catch::Contains(file.path) && Catch::Contains("is not a recording"));
   CHECK_THROWS_WITH(PlaybackBus("/nowhere/at/all"), Catch::Contains("cannot be read"));
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), Catch::Contains("cannot be written"));
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/topic/describe.hpp"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-
-#include "deploy/monitor/topic/describe.hpp"
 
 namespace sidestep {
 namespace {

@@ -97,7 +97,8 @@ TEST_CASE("robots' clocks are within the bound of every coordinator's clock, or 
       const Duration robot_s = robot.clock_offset + (clocks.empty() ? Duration{0} : clocks.at("simulator"));
       for (int number = 0; number < trial.scenario.coordinators && !clocks.empty(); ++number) {
         const Duration difference = std::chrono::abs(robot_s - clocks.at(coordinator_process(number)));
-        const bool is_off = std::ranges::find(trial.plan.robots_out_of_clock_bound, robot.id) != trial.plan.robots_out_of_clock_bound.end();
+        const bool is_off = std::ranges::find(trial.plan.robots_out_of_clock_bound, robot.id) !=
+                            trial.plan.robots_out_of_clock_bound.end();
         CAPTURE(robot.id, number, to_seconds(difference));
         CHECK((is_off ? difference > Duration{300ms}
                       : difference < from_seconds(trial.scenario.clock_bound_s)));

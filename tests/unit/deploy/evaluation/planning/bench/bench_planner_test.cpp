@@ -31,9 +31,11 @@ TEST_CASE("the benchmark has every planner of ours and every peer once") {
 TEST_CASE("RRT and RRTConnect are compared with OMPL's as namesakes, and nothing else is") {
   for (const BenchPlanner& planner : bench_planners()) {
     CAPTURE(planner.name);
-    const bool has_peer = !ompl_planner_names().empty() && (planner.name == "rrt" || planner.name == "rrt-connect");
+    const bool has_peer =
+        !ompl_planner_names().empty() && (planner.name == "rrt" || planner.name == "rrt-connect");
     CHECK(planner.is_namesake == has_peer);
-    if (planner.is_namesake) CHECK(planner.baseline == (planner.name == "rrt" ? "ompl-RRT" : "ompl-RRTConnect"));
+    if (planner.is_namesake)
+      CHECK(planner.baseline == (planner.name == "rrt" ? "ompl-RRT" : "ompl-RRTConnect"));
   }
 }
 

@@ -18,7 +18,7 @@ BenchPlanner planner_of(std::string name, const Answer& answer) {
           }};
 }
 
-/// The shortest path: what a planner should answer.
+/// A correct answer: the shortest path.
 TimedPlan right_answer(const BenchmarkWorld& world, const PlanQuery& query) {
   TangentGraph graph(world.obstacles, world.world.field, world.world.radius_m);
   const std::vector<Vec2> path = graph.plan(query.start_m, query.goal_m).states;
@@ -65,21 +65,23 @@ TEST_CASE("the benchmark fails a planner whose path leads through an obstacle") 
 TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or does not join start and goal") {
   const int fault = GENERATE(0, 1, 2, 3);
   CAPTURE(fault);
-  const auto found = failures({planner_of("faulty", [fault](const BenchmarkWorld& world, const PlanQuery& query) {
-    TimedPlan plan = right_answer(world, query);
-    if (fault == 0) plan.smoothed_m = {query.start_m, query.goal_m};
-    if (fault == 1) plan.path_m.pop_back();
-    if (fault == 2) plan.path_m.erase(plan.path_m.begin());
-    if (fault == 3) plan.path_m.clear();
-    return plan;
-  })});
+  const auto found =
+      failures({planner_of("faulty", [fault](const BenchmarkWorld& world, const PlanQuery& query) {
+        TimedPlan plan = right_answer(world, query);
+        if (fault == 0) plan.smoothed_m = {query.start_m, query.goal_m};
+        if (fault == 1) plan.path_m.pop_back();
+        if (fault == 2) plan.path_m.erase(plan.path_m.begin());
+        if (fault == 3) plan.path_m.clear();
+        return plan;
+      })});
   REQUIRE(found.size() == 1);
   CHECK_THAT(found[0], Catch::StartsWith("faulty: "));
 }
 
 TEST_CASE("what a planner returns for a query that it gave up is not checked") {
-  CHECK(failures({planner_of("silent", [](const BenchmarkWorld&, const PlanQuery&) { return TimedPlan{}; })})
-            .empty());
+  CHECK(failures({planner_of("silent", [](const BenchmarkWorld&, const PlanQuery&) {
+          return TimedPlan{};
+        })}).empty());
 }
 
 TEST_CASE("the benchmark fails a namesake that solves significantly fewer queries, and only a namesake") {
@@ -147,6 +149,7 @@ TEST_CASE("a table gives a 99th percentile only for a thousand queries, and rati
   const std::string lines = query_bench_lines("u", rows, planners);
   CHECK_THAT(lines, Catch::Contains("0.50"));
   std::size_t times = 0;
-  for (std::size_t at = lines.find("1234.5"); at != std::string::npos; at = lines.find("1234.5", at + 1)) ++times;
+  for (std::size_t at = lines.find("1234.5"); at != std::string::npos; at = lines.find("1234.5", at + 1))
+    ++times;
   CHECK(times == (queries < 1000 ? 2 : 3));  // median, p95, p99
 }

@@ -8,7 +8,7 @@ using namespace sidestep;
 
 namespace {
 
-/// By looking at every way to choose which trials succeed.
+/// Slow reference: enumerates every choice of the trials that succeed.
 double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other_successes,
                     std::size_t other_trials) {
   const std::size_t total = successes + other_successes;

@@ -35,8 +35,9 @@ TEST_CASE("roadmaps with more edges solve more queries, and fewer after obstacle
   const auto of = [&](const char* connection, const char* parameter, const char* displacement_m,
                       const char* column) {
     CAPTURE(connection, parameter, displacement_m, column);
-    return number_in(rows, {{"connection", connection}, {"parameter", parameter}, {"displacement_m", displacement_m}},
-                     column);
+    return number_in(
+        rows, {{"connection", connection}, {"parameter", parameter}, {"displacement_m", displacement_m}},
+        column);
   };
   struct Method {
     const char *name, *few, *many;
@@ -51,7 +52,7 @@ TEST_CASE("roadmaps with more edges solve more queries, and fewer after obstacle
     CHECK(of(name, many, "0", "queries") == 80);
     CHECK(of(name, many, "0", "median_length") >= 1);
   }
-  // Edges in all directions: fewer of them solve more queries.
+  // Edges in all directions solve more queries with fewer edges.
   CHECK(of("sectors", "4", "0", "edges_per_node") < of("nearest", "4", "0", "edges_per_node"));
   CHECK(of("sectors", "4", "0", "solved_percent") > of("nearest", "4", "0", "solved_percent"));
 }

@@ -28,6 +28,5 @@ TEST_CASE("all terrain structures agree with a comparison of all triangles") {
 
 TEST_CASE("large terrains are not timed with the linear list") {
   const auto rows = rows_of(terrain_structures({{8, 16}, 50, 1, 200}, 1, [](auto, auto) {}));
-  for (const StudyRow& row : rows)
-    CHECK((row.at("structure") != "linear" || row.at("triangles") == "128"));
+  for (const StudyRow& row : rows) CHECK((row.at("structure") != "linear" || row.at("triangles") == "128"));
 }

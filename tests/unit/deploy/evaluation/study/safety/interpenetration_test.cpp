@@ -6,8 +6,8 @@
 using namespace sidestep;
 
 TEST_CASE("a disc that passes through another counts depth times time, and one contact") {
-  // At 1 m/s through the centre of a resting one: the depth is 0.2 m less the distance, which is |t| metres,
-  // so its integral is 0.2 m times 0.2 s.
+  // One disc passes through the centre of a resting one at 1 m/s. The depth is 0.2 m minus the distance,
+  // which is |t| metres, so its integral is 0.2 m times 0.2 s.
   Interpenetration meter(2, 0.1);
   const double step_s = 1e-4;
   for (double t = -0.5; t < 0.5; t += step_s) {

@@ -48,7 +48,7 @@ TEST_CASE("robots without safety search traverse as fast as their limits allow")
     const Scenario scenario = traversal_scenario(settings, seed);
     const RobotSpec& robot = scenario.robots.front();
     const double path_m = (robot.goals.front().position_m - robot.start_m).norm();
-    // Accelerating to full speed and braking take v/F + v/D, over half of v times that as distance.
+    // Accelerating to full speed v and braking take v/F + v/D, and cover v/2 times that time.
     const double ramps_s = scenario.limits.speed_mps *
                            (1 / scenario.limits.acceleration_mps2 + 1 / scenario.limits.deceleration_mps2);
     const double straight_line_s = ramps_s / 2 + path_m / scenario.limits.speed_mps;

@@ -8,14 +8,16 @@ using namespace sidestep;
 
 TEST_CASE("oscillating robots stay on the field and apart, and their velocities match their motion") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
-  const std::size_t robots_per_team = GENERATE(std::size_t{1}, std::size_t{6}, std::size_t{11}, std::size_t{16});
+  const std::size_t robots_per_team =
+      GENERATE(std::size_t{1}, std::size_t{6}, std::size_t{11}, std::size_t{16});
   CAPTURE(seed, robots_per_team);
   Rng rng(seed);
   const Field field{6, 4.5};
   const OscillatingRobots oscillating(field, robots_per_team, rng);
   constexpr double kStep_s = 1e-5;
   for (double t_s = 1000; t_s < 1005; t_s += 0.1) {
-    const std::vector<SceneRobot> robots = oscillating.robots_at(t_s), later = oscillating.robots_at(t_s + kStep_s);
+    const std::vector<SceneRobot> robots = oscillating.robots_at(t_s),
+                                  later = oscillating.robots_at(t_s + kStep_s);
     REQUIRE(robots.size() == 2 * robots_per_team);
     std::set<std::pair<Team, std::uint32_t>> patterns;
     for (std::size_t i = 0; i < robots.size(); ++i) {
