@@ -5,7 +5,8 @@
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 
-using namespace sidestep;
+namespace sidestep::campaign_test {
+
 using namespace std::chrono_literals;
 
 TEST_CASE("in dense scenes without faults nearly all robots keep moving") {
@@ -25,3 +26,5 @@ TEST_CASE("in dense scenes without faults nearly all robots keep moving") {
   CAPTURE(robots, stationary);
   CHECK(stationary * 50 <= robots);
 }
+
+}  // namespace sidestep::campaign_test

@@ -5,9 +5,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::clock_test {
 
 Scenario circle_scenario(int robots, int coordinators = 1) {
   Scenario scenario = parse_scenario(
@@ -27,8 +25,6 @@ struct Statuses {
                   std::function([this](const msg::AgentStatus& s) { latest[s.robot()] = s; }));
   }
 };
-
-}  // namespace
 
 TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -128,3 +124,5 @@ TEST_CASE("a robot measures the clocks again after a long wait, before it moves 
   CHECK(floor.run_until_arrived(10) >= scenario.margin_m);
   CHECK(floor.arrived() == 2);
 }
+
+}  // namespace sidestep::clock_test

@@ -7,9 +7,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::disturbance_test {
 
 Scenario circle_scenario(int robots, int coordinators = 1) {
   return parse_scenario("coordinators: " + std::to_string(coordinators) +
@@ -33,8 +31,6 @@ Epoch highest_epoch(IdealFloor& floor) {
     highest = std::max(highest, floor.coordinator(static_cast<CoordinatorNumber>(number)).epoch());
   return highest;
 }
-
-}  // namespace
 
 TEST_CASE("pushed robots stop, and all robots reach their goals in the same epoch") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -205,3 +201,5 @@ TEST_CASE("an absent robot does not block others, and joins when it is placed") 
   CHECK(floor.run_until_arrived(10) >= floor.scenario.margin_m);
   CHECK(floor.arrived() == 2);
 }
+
+}  // namespace sidestep::disturbance_test

@@ -6,7 +6,8 @@
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-using namespace sidestep;
+namespace sidestep::drift_test {
+
 using namespace std::chrono_literals;
 
 TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on their references") {
@@ -40,3 +41,5 @@ TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on t
   CHECK(own_stops == 0);
   CHECK(max_position_error_m < scenario.tracking_bound_m);
 }
+
+}  // namespace sidestep::drift_test

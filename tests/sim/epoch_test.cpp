@@ -11,9 +11,7 @@
 #include "coordinator/coordinator.hpp"
 #include "simulator/world/firmware.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::epoch_test {
 
 constexpr Duration kCycle{16'666'667};
 
@@ -119,8 +117,6 @@ struct Floor {
   }
 };
 
-}  // namespace
-
 TEST_CASE("a restarted agent does not return to a coordinator that its robot has left") {
   Floor floor;
   floor.both_obey(floor.second);
@@ -175,3 +171,5 @@ TEST_CASE("an agent whose robot obeys a later one cannot register in a new epoch
   floor.require_clear();
   CHECK(floor.right.rest_x() < 0.9);
 }
+
+}  // namespace sidestep::epoch_test

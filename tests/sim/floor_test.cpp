@@ -5,9 +5,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::floor_test {
 
 Scenario shipped(const std::string& name) {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
@@ -29,8 +27,6 @@ struct OffReference {
   std::uint64_t count = 0;
   std::optional<Time> first_at;
 };
-
-}  // namespace
 
 TEST_CASE("in undisturbed runs no robot is ever off its reference") {
   const auto [name, seeds] = GENERATE(
@@ -92,8 +88,6 @@ TEST_CASE("among opponents every robot arrives, and is at rest when touched") {
   CHECK(crashes > 0);  // else the test would prove nothing
 }
 
-namespace {
-
 /// A system and a writer for disturbances.
 struct Disturbed {
   Disturbed(const Scenario& s, std::uint64_t seed)
@@ -118,8 +112,6 @@ struct Disturbed {
   SimBus bus;
   Writer<msg::Disturbance> disturbances;
 };
-
-}  // namespace
 
 TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -191,3 +183,5 @@ TEST_CASE("a robot is taken off the floor and put down elsewhere while the other
   CHECK(report.contacts == 0);
   CHECK(report.firmware_violations == 0);
 }
+
+}  // namespace sidestep::floor_test

@@ -6,9 +6,7 @@
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::opponents_test {
 
 /// Samples positions on the floor with a minimum distance from each other.
 struct PositionSampler {
@@ -57,8 +55,6 @@ Scenario random_scene(std::uint64_t seed) {
   return scenario;
 }
 
-}  // namespace
-
 TEST_CASE("among random opponents no robot is moving when it is touched, over a hundred seeds") {
   std::uint64_t crashes = 0;
   int robots = 0, arrived = 0;
@@ -81,3 +77,5 @@ TEST_CASE("among random opponents no robot is moving when it is touched, over a 
   CHECK(crashes > 50);
   CHECK(arrived > robots / 2);
 }
+
+}  // namespace sidestep::opponents_test

@@ -4,17 +4,13 @@
 #include "common/config/scenario_loader.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::protocol_test {
 
 Scenario circle_scenario(int robots) {
   return parse_scenario(
       "field: {length_m: 8, width_m: 8}\ncircle: {count: " + std::to_string(robots) + ", spacing_m: 0.4}\n",
       "circle.yaml");
 }
-
-}  // namespace
 
 TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and reordering") {
   Scenario scenario = circle_scenario(12);
@@ -100,3 +96,5 @@ TEST_CASE("of two robots with equal claims neither always yields") {
   CHECK(won[0] >= 8);
   CHECK(won[1] >= 8);
 }
+
+}  // namespace sidestep::protocol_test

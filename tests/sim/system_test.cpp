@@ -9,9 +9,7 @@
 #include "deploy/monitor/process_names.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::system_test {
 
 Scenario shipped(const std::string& name) {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
@@ -49,8 +47,6 @@ struct MonitoredSystem {
     REQUIRE(speed_mps(robot) >= 0.8);
   }
 };
-
-}  // namespace
 
 TEST_CASE("in every shipped scenario all robots arrive without contact") {
   const std::string name =
@@ -164,3 +160,5 @@ TEST_CASE("robots stop without vision, and continue when it is back") {
   CHECK(run.system.run_until_arrived(run.system.begin() + from_seconds(25)));
   run.require_safe();
 }
+
+}  // namespace sidestep::system_test

@@ -5,9 +5,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::takeover_test {
 
 Scenario circle_scenario(int robots, int coordinators) {
   return parse_scenario("coordinators: " + std::to_string(coordinators) +
@@ -33,8 +31,6 @@ double seconds_until_faster(IdealFloor& floor) {
   }
   return 5;
 }
-
-}  // namespace
 
 TEST_CASE("the standby takes over when the active coordinator dies, and robots accelerate within 300 ms") {
   std::vector<double> seconds;
@@ -182,3 +178,5 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);
   CHECK(floor.arrived() == 8);
 }
+
+}  // namespace sidestep::takeover_test

@@ -4,9 +4,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::twin_agents_test {
 
 /// Counts the messages of one robot's agents, by incarnation.
 struct AgentTraffic {
@@ -22,8 +20,6 @@ struct AgentTraffic {
   SimBus bus;
   std::map<Incarnation, int> messages;
 };
-
-}  // namespace
 
 TEST_CASE("of two running agents of one robot the later one drives, and clearances hold") {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
@@ -68,3 +64,5 @@ TEST_CASE("of two running agents of one robot the later one drives, and clearanc
     }
   }
 }
+
+}  // namespace sidestep::twin_agents_test

@@ -6,9 +6,7 @@
 
 #include "tests/unit/coordinator/floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::coordinator_test {
 
 constexpr Epoch kEpoch = 100;
 
@@ -27,8 +25,6 @@ struct Floor {
     return *verdict;
   }
 };
-
-}  // namespace
 
 TEST_CASE("nothing is granted until every robot of the roster has registered") {
   Floor floor;
@@ -335,3 +331,5 @@ TEST_CASE("an absent robot registers without versions and is granted a rest vers
   CHECK(verdict.granted_version() == 12);
   CHECK(floor.coordinator.state().absent() == 0);
 }
+
+}  // namespace sidestep::coordinator_test

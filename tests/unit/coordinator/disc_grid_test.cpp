@@ -6,7 +6,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::disc_grid_test {
 
 TEST_CASE("a grid finds exactly the discs that touch a circle while discs are moved, added and removed") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
@@ -43,3 +43,5 @@ TEST_CASE("a grid finds exactly the discs that touch a circle while discs are mo
     REQUIRE(found == expected);
   }
 }
+
+}  // namespace sidestep::disc_grid_test

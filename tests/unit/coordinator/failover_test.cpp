@@ -8,9 +8,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::failover_test {
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr Duration kHour{3'600'000'000'000};
@@ -49,8 +47,6 @@ struct Standby {
 };
 
 constexpr Epoch kEpoch = 1'000'000'000'000;
-
-}  // namespace
 
 TEST_CASE("an active coordinator begins an epoch immediately, a standby waits a second for others") {
   Failover active({0, 5}, false, kBegin);
@@ -198,3 +194,5 @@ TEST_CASE("epochs far ahead are ignored, and plausible hostile ones cost one cha
   // By then the new epoch is plausible to the others.
   CHECK(is_plausible(active.epoch(), now));
 }
+
+}  // namespace sidestep::failover_test

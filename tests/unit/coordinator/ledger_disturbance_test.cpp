@@ -10,9 +10,7 @@
 #include "coordinator/ledger.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::ledger_disturbance_test {
 
 constexpr auto kNotContinuous = msg::REASON_NOT_CONTINUOUS;
 
@@ -70,8 +68,6 @@ double shortfall_m(const Ledger& ledger, RobotId i, RobotId j, double min_separa
   }
   return worst;
 }
-
-}  // namespace
 
 TEST_CASE("the stop of a robot that lost its reference replaces all its versions without checks") {
   Two two({0, 0}, {1, 0});
@@ -282,3 +278,5 @@ TEST_CASE("no grant brings two robots closer than external events have left them
   CHECK(pushes > 20);
   CHECK(ended >= 3);
 }
+
+}  // namespace sidestep::ledger_disturbance_test

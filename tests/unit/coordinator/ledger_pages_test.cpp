@@ -6,9 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::ledger_pages_test {
 
 Ledger ledger_of(std::size_t robots, double half_side_m, Rng& rng) {
   FloorRules rules;
@@ -27,8 +25,6 @@ Ledger ledger_of(std::size_t robots, double half_side_m, Rng& rng) {
   }
   return ledger;
 }
-
-}  // namespace
 
 TEST_CASE("the ledger's pages hold every version once, each within its page's bounding box") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -69,3 +65,5 @@ TEST_CASE("the robots of a page are close together on a crowded floor") {
     CHECK(page.max_y_m() - page.min_y_m() < 10);
   }
 }
+
+}  // namespace sidestep::ledger_pages_test

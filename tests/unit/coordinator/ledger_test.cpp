@@ -8,9 +8,7 @@
 #include "common/motion/robot_model.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::ledger_test {
 
 struct Two {
   Ledger ledger{floor_for_tests(), {1, 2}};
@@ -24,8 +22,6 @@ struct Two {
     return ledger.on_executing(executing, at_s(at), false);
   }
 };
-
-}  // namespace
 
 TEST_CASE("a clear candidate is granted, added, and removes nothing") {
   Two two(1);
@@ -205,3 +201,5 @@ TEST_CASE("all versions of different robots stay clear through random grants, lo
   CHECK(grants > 200);
   CHECK(conflicts > 200);
 }
+
+}  // namespace sidestep::ledger_test

@@ -7,9 +7,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/codec.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::agent_test {
 
 constexpr Incarnation kSelf = 1000;
 constexpr double kCycle_s = 1.0 / 60;
@@ -71,8 +69,6 @@ struct DrivenAgent {
   }
   bool plans(double now) { return agent.plan(at_s(now), at_s(now + kCycle_s)).has_value(); }
 };
-
-}  // namespace
 
 TEST_CASE("an agent plans towards its goal as long as vision observes its robot") {
   DrivenAgent d;
@@ -185,3 +181,5 @@ TEST_CASE("a robot's route leads around a moving obstacle") {
   REQUIRE(straight);
   CHECK(straight->query.desired_mps2.x() > 2);
 }
+
+}  // namespace sidestep::agent_test

@@ -6,9 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::clock_monitor_test {
 
 constexpr RobotId kRobot = 3;
 constexpr Incarnation kSelf = 1000;
@@ -69,8 +67,6 @@ struct ClockFixture {
     }
   }
 };
-
-}  // namespace
 
 TEST_CASE("motion requires recent measurements of both clocks") {
   ClockFixture f;
@@ -218,3 +214,5 @@ TEST_CASE("echoes of other senders' messages and impossible stamps are ignored")
   CHECK(after->low == before->low);
   CHECK(after->high == before->high);
 }
+
+}  // namespace sidestep::clock_monitor_test

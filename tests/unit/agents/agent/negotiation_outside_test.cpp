@@ -5,7 +5,7 @@
 #include "agents/agent/negotiation.hpp"
 #include "tests/unit/agents/agent/negotiation_fixture.hpp"
 
-using namespace sidestep;
+namespace sidestep::negotiation_outside_test {
 
 TEST_CASE(
     "the stop of a robot off its reference is the base of later versions, whose numbers exceed the stop's") {
@@ -105,3 +105,5 @@ TEST_CASE("a rest version that the robot did not take in time is proposed again"
   CHECK_FALSE(f.n.has_upcoming_version(at_s(1.32)));
   CHECK(f.n.registration().is_absent());
 }
+
+}  // namespace sidestep::negotiation_outside_test

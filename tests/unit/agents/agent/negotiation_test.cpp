@@ -7,7 +7,7 @@
 #include "common/messaging/codec.hpp"
 #include "tests/unit/agents/agent/negotiation_fixture.hpp"
 
-using namespace sidestep;
+namespace sidestep::negotiation_test {
 
 TEST_CASE("an agent proposes only after its robot has acknowledged it and the coordinator knows it") {
   NegotiationFixture f;
@@ -284,3 +284,5 @@ TEST_CASE("a verdict on an open or late proposal yields its round trip, an unexp
   CHECK(late.round_trip == at_s(1.1) - at_s(0.9));
   CHECK_FALSE(f.n.on_verdict(verdict, at_s(1.1)).round_trip);
 }
+
+}  // namespace sidestep::negotiation_test

@@ -8,9 +8,7 @@
 #include "common/messaging/codec.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::neighbours_test {
 
 const Time kNow = time_from_ns(5'000'000'000);
 
@@ -43,8 +41,6 @@ std::vector<VersionNumber> versions_within(Neighbours& neighbours, const Vec2& c
   std::ranges::sort(numbers);
   return numbers;
 }
-
-}  // namespace
 
 TEST_CASE("exactly the versions within the horizon of the latest pages are known") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -124,3 +120,5 @@ TEST_CASE("the nearest robots whose versions have all come to rest are found as 
   CHECK(places[0] == Vec2(1.5, 0));
   CHECK(places[1] == Vec2(1, 0));
 }
+
+}  // namespace sidestep::neighbours_test

@@ -4,9 +4,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::observed_obstacles_test {
 
 constexpr Duration kSlack{1'000'000};
 constexpr double kSpeed_mps = 1.5;
@@ -32,8 +30,6 @@ struct Fixture {
     obstacle.position_variance_m2(0.0001);
   }
 };
-
-}  // namespace
 
 TEST_CASE("an observation is kept with its uncertainty until a newer one of the same track arrives") {
   Fixture f;
@@ -110,3 +106,5 @@ TEST_CASE("beyond the capacity, the oldest observations are dropped") {
   for (const MovingObstacle& obstacle : recent)
     CHECK(obstacle.position_m.x() >= 2 * ObservedObstacles::kCapacity);
 }
+
+}  // namespace sidestep::observed_obstacles_test

@@ -3,11 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::proposal_pacing_test {
 
-namespace {
 constexpr Duration kCycle{16'666'667};
-}  // namespace
 
 TEST_CASE("on a fast network the lead is one cycle, and single slow answers do not change it") {
   ProposalPacing pacing(kCycle);
@@ -43,3 +41,5 @@ TEST_CASE("repeated late versions increase the lead, a single one does not") {
   for (int i = 0; i < 100; ++i) pacing.on_version_taken();
   CHECK(pacing.lead() == 1);
 }
+
+}  // namespace sidestep::proposal_pacing_test

@@ -8,9 +8,7 @@
 #include "common/motion/clearance.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::lanes_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 
@@ -147,8 +145,6 @@ void check_random_pairs(BatchedClearance& batch, Generator generate, std::uint64
   }
 }
 
-}  // namespace
-
 TEST_CASE("lanes decide as the exact clearance does, over millions of pairs and on every instruction set") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   for (const batch::Kernels& kernels : batch::available_kernels()) {
@@ -218,3 +214,5 @@ TEST_CASE("all lanes are clear only if each of them is, and none needs an exact 
   lanes.add(trajectory_bounds(long_motion), 0.5);
   CHECK_FALSE(compare());
 }
+
+}  // namespace sidestep::lanes_test

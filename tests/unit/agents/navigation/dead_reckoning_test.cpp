@@ -6,7 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
+namespace sidestep::dead_reckoning_test {
 
 TEST_CASE("after the maximum dead reckoning distance one robot in 370 exceeds the bound") {
   const double bound_m = 0.003;
@@ -31,3 +31,5 @@ TEST_CASE("accurate odometry allows long distances, and a poorly localised robot
   CHECK(max_dead_reckoning_m({0.001, 0.001}, 0.003) == 0);
   CHECK(max_dead_reckoning_m({0.01, 0}, 0.003) == 0);
 }
+
+}  // namespace sidestep::dead_reckoning_test

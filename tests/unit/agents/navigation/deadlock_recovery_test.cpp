@@ -3,11 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::deadlock_recovery_test {
 
-namespace {
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
-}  // namespace
 
 TEST_CASE("a blocked robot turns farther and farther right, and back once it is free") {
   const DeadlockRecoverySettings settings;
@@ -54,3 +52,5 @@ TEST_CASE("a robot that escapes a deadlock holds its angle for the release delay
   while (t - freed < settings.release_delay_s + 1) recovery.update(true, 1, at_s(t += 0.0166));
   CHECK(recovery.angle_rad() == 0);
 }
+
+}  // namespace sidestep::deadlock_recovery_test

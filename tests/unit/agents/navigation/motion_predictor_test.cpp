@@ -8,9 +8,7 @@
 #include "agents/navigation/trapezoidal_profile.hpp"
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::motion_predictor_test {
 
 constexpr MotionLimits kLimits;
 constexpr double kStep_s = batch::kPredictionStep_s;
@@ -65,8 +63,6 @@ std::vector<Vec2> reference_prediction(const Course& course) {
   }
   return positions;
 }
-
-}  // namespace
 
 TEST_CASE("every instruction set predicts what the scalar reference predicts") {
   const std::uint64_t seed = 7;
@@ -175,3 +171,5 @@ TEST_CASE("danger is positive exactly where two robots come nearer than their mi
   }
   CHECK(dangerous > 200);
 }
+
+}  // namespace sidestep::motion_predictor_test

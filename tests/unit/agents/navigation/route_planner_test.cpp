@@ -7,9 +7,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::route_planner_test {
 
 constexpr double kRadius_m = 0.09, kMargin_m = 0.02;
 const Field kField{4, 4};
@@ -51,8 +49,6 @@ double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, cons
   const auto [gx, gy] = cell(goal);
   return at(gx, gy);
 }
-
-}  // namespace
 
 TEST_CASE("without obstacles the route is straight") {
   RoutePlanner planner({}, kField, kRadius_m, kMargin_m, 0, {1, 1});
@@ -165,3 +161,5 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
   for (const Circle& disc : wall)
     CHECK((narrow_route->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
 }
+
+}  // namespace sidestep::route_planner_test

@@ -7,9 +7,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::steering_test {
 
 constexpr MotionLimits kLimits;
 constexpr double kRadius_m = 0.09, kMinSeparation_m = 0.19;
@@ -64,8 +62,6 @@ double nearest_m(const std::vector<Mover>& movers) {
   }
   return nearest;
 }
-
-}  // namespace
 
 TEST_CASE("a lone robot heads straight for its waypoint") {
   const std::uint64_t seed = 3;
@@ -187,3 +183,5 @@ TEST_CASE("a robot keeps its chosen detour") {
   CHECK(mover.last.changes >= 2);
   CHECK(mover.last.changes < 12);
 }
+
+}  // namespace sidestep::steering_test

@@ -6,11 +6,9 @@
 #include "common/motion/robot_model.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::trapezoidal_profile_test {
 
-namespace {
 const MotionLimits kLimits;
-}
 
 TEST_CASE("a trapezoidal profile ends at its distance, at rest, within its limits") {
   Rng rng(2);
@@ -51,3 +49,5 @@ TEST_CASE("two-dimensional motion control arrives from any velocity") {
     }
   }
 }
+
+}  // namespace sidestep::trapezoidal_profile_test

@@ -9,9 +9,7 @@
 #include "deploy/evaluation/planning/worlds.hpp"
 #include "tests/counted_allocations.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::allocation_test {
 
 /// Number of allocations for queries that the planner has planned before, with the same random samples.
 template <typename Planner>
@@ -28,8 +26,6 @@ std::size_t allocations_once_warm(Planner plan, const std::string& name) {
   }
   return allocation_count() - before;
 }
-
-}  // namespace
 
 TEST_CASE("warm planners do not allocate") {
   const std::string name = GENERATE(from_range(world_names()));
@@ -54,3 +50,5 @@ TEST_CASE("warm planners do not allocate") {
             },
             name) == 0);
 }
+
+}  // namespace sidestep::allocation_test

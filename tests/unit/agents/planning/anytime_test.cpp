@@ -7,15 +7,11 @@
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::anytime_test {
 
 using Trees = BidirectionalErrt<DiscDomain>;
 using AnytimeTrees = Anytime<DiscDomain, Trees>;
 const BidirectionalErrtSettings kNoCache{.cache_capacity = 0};
-
-}  // namespace
 
 TEST_CASE("paths become shorter with the budget and approach the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
@@ -71,3 +67,5 @@ TEST_CASE("planning ends at the deadline") {
   CHECK(now >= 500);
   CHECK(now < 520);
 }
+
+}  // namespace sidestep::anytime_test

@@ -8,9 +8,7 @@
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::robust_test {
 
 /// Whether a path that begins in obstacles comes no nearer to any of them, and touches none once it is out.
 bool leaves_and_stays_out(const PlanWorld& world, const std::vector<Vec2>& path) {
@@ -104,8 +102,6 @@ void approach_obstacles(std::uint64_t seed) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("a start in an obstacle is left without deeper penetration") {
   const auto seed = GENERATE(1u, 2u, 3u);
   leave_obstacles<LazyVisibility>(seed, 16);
@@ -157,3 +153,5 @@ TEST_CASE("a start that cannot be left is reported as blocked") {
     CHECK(leaves_and_stays_out(world, plan.states));
   }
 }
+
+}  // namespace sidestep::robust_test

@@ -9,9 +9,7 @@
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::allocation_test {
 
 const Time kStart = time_from_ns(5'000'000'000);
 constexpr Duration kCycle{16'666'667};
@@ -30,8 +28,6 @@ std::size_t allocations_once_warm(Work work) {
   for (int i = 0; i < 300; ++i) work();
   return allocation_count() - before;
 }
-
-}  // namespace
 
 TEST_CASE("the counter counts an allocation") {
   const std::size_t before = allocation_count();
@@ -110,3 +106,5 @@ TEST_CASE("neighbours are stored without allocations once warm") {
         }) == 0);
   CHECK(collected > 0);
 }
+
+}  // namespace sidestep::allocation_test

@@ -8,15 +8,11 @@
 #include "common/motion/clearance.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::candidate_set_test {
 
 const Time kStart = time_from_ns(5'000'000'000);
 constexpr Duration kHold{33'333'334};
 constexpr double kSpan_s = 0.6;
-
-}  // namespace
 
 TEST_CASE(
     "candidates are excluded or certainly clear only if the exact clearance says so, on every instruction "
@@ -75,3 +71,5 @@ TEST_CASE(
     CHECK(certainly_clear > 1000);
   }
 }
+
+}  // namespace sidestep::candidate_set_test

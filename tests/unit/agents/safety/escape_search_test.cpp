@@ -6,9 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::escape_search_test {
 
 constexpr Time kStart = time_from_ns(2'000'000'000);
 constexpr Duration kHoldTime{50'000'000};
@@ -48,8 +46,6 @@ TrajectoryIndex index_of(std::span<const Version> versions) {
   index.assign(versions);
   return index;
 }
-
-}  // namespace
 
 TEST_CASE("a base without conflicts has no escape candidates") {
   const Version base = braking(1, {0, 0}, {0.5, 0}), other = braking(2, {0.5, 0}, {0, 0});
@@ -106,3 +102,5 @@ TEST_CASE("no escape candidate comes nearer to another robot than the base or th
   }
   CHECK(found > 200);
 }
+
+}  // namespace sidestep::escape_search_test

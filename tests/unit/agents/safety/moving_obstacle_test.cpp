@@ -7,9 +7,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::moving_obstacle_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 
@@ -43,8 +41,6 @@ MovingObstacle random_obstacle(Rng& rng) {
   return {random_vector(rng, 2), rng.uniform(0.02, 0.3), kBegin + from_seconds(rng.uniform(-1, 0.6)),
           rng.chance(0.1) ? 0 : rng.uniform(0, 2)};
 }
-
-}  // namespace
 
 TEST_CASE("the passive safety check agrees with dense sampling, in both directions") {
   const std::uint64_t seed = GENERATE(range(1u, 25u));
@@ -116,3 +112,5 @@ TEST_CASE("an obstacle that is observed after the trajectory starts may have bee
   CHECK_FALSE(is_passively_safe(braking, obstacle, 0.1));
   CHECK(is_passively_safe(braking, {{-0.3, 0}, 0.05, kBegin, 1}, 0.1));
 }
+
+}  // namespace sidestep::moving_obstacle_test

@@ -8,9 +8,7 @@
 #include "common/motion/robot_model.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::safety_search_test {
 
 const Time kStart = time_from_ns(5'000'000'000);
 constexpr Duration kCycle{16'666'667};
@@ -76,8 +74,6 @@ Scene random_scene(Rng& rng) {
   }
   return scene;
 }
-
-}  // namespace
 
 TEST_CASE("without neighbours, the desired acceleration is the first candidate") {
   SafetySearch search({}, {});
@@ -218,3 +214,5 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
   CHECK(blocked > 100);
   CHECK(refused > 100);
 }
+
+}  // namespace sidestep::safety_search_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::trajectory_index_test {
 
 TEST_CASE("an index finds exactly the versions whose discs touch a circle, at any number and density") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -54,3 +54,5 @@ TEST_CASE("the bounding disc of an indexed version includes its inflation") {
   index.find({{0, 0}, 10}, found);
   CHECK(found.empty());
 }
+
+}  // namespace sidestep::trajectory_index_test

@@ -5,7 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
+namespace sidestep::camera_grid_test {
 
 TEST_CASE("cameras in a grid see the whole field with the overlaps") {
   const Field field{12, 9};
@@ -26,3 +26,5 @@ TEST_CASE("cameras in a grid see the whole field with the overlaps") {
   CHECK(cameras[0].position_m().head<2>() == Vec2(-3, -2.25));
   CHECK(cameras[3].position_m().head<2>() == Vec2(3, 2.25));
 }
+
+}  // namespace sidestep::camera_grid_test

@@ -7,9 +7,7 @@
 
 #include "tests/unit/common/camera/random_camera.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::camera_model_test {
 
 /// The projection as ssl-vision writes it: quaternion products, and Cardano's formula for the cubic.
 Vec2 reference_pixel(const CameraParameters& c, const Vec3& point_m) {
@@ -25,8 +23,6 @@ Vec2 reference_pixel(const CameraParameters& c, const Vec3& point_m) {
   }
   return c.focal_length_px * (ru > 0 ? rd / ru : 1) * undistorted + c.principal_point_px;
 }
-
-}  // namespace
 
 TEST_CASE("a camera projects as the league defines it") {
   const std::uint64_t seed = 3;
@@ -143,3 +139,5 @@ TEST_CASE("invalid camera parameters are rejected") {
   check_rejected([](CameraParameters& c) { c.translation_m.z() = NAN; });
   CHECK(validation_error(CameraParameters{}).empty());
 }
+
+}  // namespace sidestep::camera_model_test

@@ -5,9 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::lens_test {
 
 /// The root of s (1 + c s²) = 1 by bisection, on the branch that begins at s = 1 for c = 0.
 double reference_factor(double c) {
@@ -18,8 +16,6 @@ double reference_factor(double c) {
   }
   return static_cast<double>(low);
 }
-
-}  // namespace
 
 TEST_CASE("the distortion is inverted to the last bits") {
   const std::uint64_t seed = 17;
@@ -50,3 +46,5 @@ TEST_CASE("the factors are NaN outside the domain of the lens") {
   CHECK(s * s * lens::kMinUndistortedKr2 == Approx(lens::kMinDistortedKr2));
   CHECK(1 + 3 * lens::kMinDistortedKr2 == Approx(0.1));
 }
+
+}  // namespace sidestep::lens_test

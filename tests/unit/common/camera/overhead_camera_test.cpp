@@ -6,7 +6,7 @@
 
 #include "tests/unit/common/camera/random_camera.hpp"
 
-using namespace sidestep;
+namespace sidestep::overhead_camera_test {
 
 TEST_CASE("an overhead camera sees its whole rectangle and little more") {
   const std::uint64_t seed = 6;
@@ -67,3 +67,5 @@ TEST_CASE("a camera that cannot cover its rectangle is rejected") {
   mount.distortion = -1;
   CHECK_THROWS_AS(overhead_camera_model(mount), std::invalid_argument);
 }
+
+}  // namespace sidestep::overhead_camera_test

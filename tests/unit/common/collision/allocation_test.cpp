@@ -5,8 +5,7 @@
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::allocation_test {
 
 TEST_CASE("the counter counts an allocation") {
   const std::size_t before = allocation_count();
@@ -34,5 +33,4 @@ TEST_CASE("queries to a world do not allocate") {
   CHECK(found > 0);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::allocation_test

@@ -6,8 +6,7 @@
 #include "common/collision/batch/dispatch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::obstacle_world_test {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -235,5 +234,4 @@ TEST_CASE("a world rejects invalid shapes, queries and ids") {
   CHECK_THROWS_AS(world.shape(ObstacleId{0}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::obstacle_world_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/common/collision/random_world.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::shapes_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -125,5 +124,4 @@ TEST_CASE("shapes without an interior are valid") {
   CHECK_NOTHROW(check(ConvexPolygon{{{0, 0}, {1, 0}, {2, 0}, {1, 1}}}));
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::shapes_test

@@ -7,8 +7,7 @@
 #include "common/collision/obstacle_world.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::sweep_by_distance_test {
 
 TEST_CASE("sweeps by distance agree with exact sweeps") {
   const std::uint64_t seed = GENERATE(range(1, 20));
@@ -66,5 +65,4 @@ TEST_CASE("invalid sweeps are rejected") {
   CHECK_THROWS_AS(SweepByDistance(Vec2(0, 0), Vec2(1, 0), 0, far, 0), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sweep_by_distance_test

@@ -6,8 +6,7 @@
 
 #include "tests/unit/common/collision/random_terrain.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::terrain_tree_test {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -167,5 +166,4 @@ TEST_CASE("invalid terrain and invalid queries are rejected") {
   CHECK_THROWS_AS(tree.min_height_m({0, 0, kNan}, {0, 0, 1}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::terrain_tree_test

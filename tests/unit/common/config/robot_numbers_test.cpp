@@ -4,8 +4,7 @@
 
 #include "common/config/scenario.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::robot_numbers_test {
 
 Scenario scenario_of(const std::vector<std::pair<RobotId, Team>>& robots) {
   Scenario scenario;
@@ -17,8 +16,6 @@ Scenario scenario_of(const std::vector<std::pair<RobotId, Team>>& robots) {
   }
   return scenario;
 }
-
-}  // namespace
 
 TEST_CASE("a robot is found by its team and number") {
   const Scenario scenario = scenario_of({{3, Team::kBlue}, {16, Team::kYellow}, {19, Team::kYellow}});
@@ -42,4 +39,4 @@ TEST_CASE("two robots of a team with one number are rejected by id, of two teams
       Catch::Contains("robots 3 and 19 both have number 3") && Catch::Contains("yellow"));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::robot_numbers_test

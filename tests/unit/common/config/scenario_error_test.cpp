@@ -6,8 +6,7 @@
 #include "common/random/rng.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::scenario_error_test {
 
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/deploy/scenarios/";
 
@@ -17,8 +16,6 @@ std::string text_of(const std::string& path) {
   text << file.rdbuf();
   return text.str();
 }
-
-}  // namespace
 
 TEST_CASE("a margin below the safety budget is rejected with the required margin") {
   // The defaults match exactly: 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s.
@@ -280,4 +277,4 @@ TEST_CASE("a mutated scenario is either loaded or rejected with a ConfigError") 
   CHECK(rejected > 1000);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenario_error_test

@@ -8,12 +8,9 @@
 
 #include "tests/unit/common/config/scenario_errors.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::scenario_loader_test {
 
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/deploy/scenarios/";
-
-}  // namespace
 
 TEST_CASE("every shipped scenario loads") {
   int count = 0;
@@ -174,4 +171,4 @@ TEST_CASE("missing keys leave the defaults") {
   CHECK_FALSE(given.ball);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenario_loader_test

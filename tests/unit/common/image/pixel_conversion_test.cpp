@@ -7,7 +7,7 @@
 #include "common/image/colour_space.hpp"
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
+namespace sidestep::pixel_conversion_test {
 
 TEST_CASE("a YUV image has the brightness of each pixel and the mean colour of each pair") {
   const std::uint64_t seed = 5;
@@ -43,3 +43,5 @@ TEST_CASE("converting an RGB image to RGB copies it") {
   const Image copy = converted_to(PixelFormat::kRgb, rgb.view());
   for (std::size_t i = 0; i < 18; ++i) CHECK(copy.view().pixels[i] == 7 * i);
 }
+
+}  // namespace sidestep::pixel_conversion_test

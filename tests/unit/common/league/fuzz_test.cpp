@@ -4,8 +4,7 @@
 #include "common/random/rng.hpp"
 #include "tests/fuzz/league_inputs.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::fuzz_test {
 
 using Bytes = std::vector<std::byte>;
 
@@ -45,8 +44,6 @@ Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
   return bytes;
 }
 
-}  // namespace
-
 TEST_CASE("randomly mutated inputs do not break the readers of packets and logs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
@@ -60,4 +57,4 @@ TEST_CASE("randomly mutated inputs do not break the readers of packets and logs"
   SUCCEED("50000 inputs");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::fuzz_test

@@ -8,8 +8,7 @@
 
 #include "tests/unit/common/league/random_packets.hpp"
 
-namespace sidestep::league {
-namespace {
+namespace sidestep::league::log_file_test {
 
 using Catch::Matchers::Contains;
 using std::chrono::milliseconds;
@@ -93,8 +92,6 @@ std::string header(std::int64_t received_ns, std::int32_t type, std::int32_t siz
 }
 
 const std::string kFileHeader = std::string("SSL_LOG_FILE") + std::string("\0\0\0\1", 4);
-
-}  // namespace
 
 TEST_CASE("a written log is read back unchanged") {
   Rng rng(1);
@@ -205,4 +202,4 @@ TEST_CASE("seek finds the first record after an offset, forwards and backwards")
   CHECK(record.received == kBegin + milliseconds(20));
 }
 
-}  // namespace sidestep::league
+}  // namespace sidestep::league::log_file_test

@@ -9,8 +9,7 @@
 #include "common/random/rng.hpp"
 #include "tests/test_endpoint.hpp"
 
-namespace sidestep::league {
-namespace {
+namespace sidestep::league::multicast_test {
 
 using Catch::Matchers::Contains;
 using Bytes = std::vector<std::byte>;
@@ -46,8 +45,6 @@ bool is_readable(const MulticastReceiver& receiver) {
   pollfd readable{receiver.descriptor(), POLLIN, 0};
   return poll(&readable, 1, 0) > 0;
 }
-
-}  // namespace
 
 TEST_CASE("a multicast address and port are parsed, and other text is rejected with what was expected") {
   CHECK(parsed("224.5.23.2:10006") == "accepted as 224.5.23.2:10006");
@@ -133,4 +130,4 @@ TEST_CASE("an event loop delivers datagrams to its thread and sleeps in between"
   CHECK(wakeups <= kDatagrams);
 }
 
-}  // namespace sidestep::league
+}  // namespace sidestep::league::multicast_test

@@ -8,8 +8,7 @@
 
 #include "league/tracked.pb.h"
 
-namespace sidestep::league {
-namespace {
+namespace sidestep::league::tracked_packet_test {
 
 wire::tracked::Packet message_of(std::span<const std::byte> bytes) {
   wire::tracked::Packet message;
@@ -35,8 +34,6 @@ bool is_close(const std::optional<Vector>& a, const std::optional<Vector>& b) {
 bool is_close(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && (!a || std::abs(*a - *b) < 1e-5);
 }
-
-}  // namespace
 
 TEST_CASE("a tracked packet survives encoding and decoding") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -126,4 +123,4 @@ TEST_CASE("an invalid tracked packet is rejected with its reason") {
         }) == DecodeError::kTooMany);
 }
 
-}  // namespace sidestep::league
+}  // namespace sidestep::league::tracked_packet_test

@@ -8,8 +8,7 @@
 
 #include "league/vision.pb.h"
 
-namespace sidestep::league {
-namespace {
+namespace sidestep::league::vision_packet_test {
 
 std::vector<std::byte> bytes_of(const wire::vision::Packet& message) {
   const std::string text = message.SerializePartialAsString();
@@ -165,8 +164,6 @@ DecodeError error_after(Change change) {
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 TEST_CASE("a vision packet survives encoding and decoding") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -344,4 +341,4 @@ TEST_CASE("an invalid geometry is rejected with its reason") {
   CHECK(after([](G& g) { g.clear_field(); }) == DecodeError::kMalformed);
 }
 
-}  // namespace sidestep::league
+}  // namespace sidestep::league::vision_packet_test

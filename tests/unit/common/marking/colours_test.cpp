@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-using namespace sidestep;
+namespace sidestep::colours_test {
 
 TEST_CASE("every colour has its own index and name") {
   std::set<std::string_view> names;
@@ -47,3 +47,5 @@ TEST_CASE("any two colours are distinguishable to a camera") {
     }
   }
 }
+
+}  // namespace sidestep::colours_test

@@ -6,9 +6,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::layout_file_test {
 
 const std::string kPair = R"(name: pair
 centre: {radius_m: 0.02, blue: blue, yellow: yellow}
@@ -37,8 +35,6 @@ void check_rejected(const std::string& old_text, const std::string& new_text, in
     CHECK(std::string(error.what()).find(expected) != std::string::npos);
   }
 }
-
-}  // namespace
 
 TEST_CASE("a layout is read from a file") {
   const MarkerLayout layout = parse_layout(kPair, "pair.yaml");
@@ -95,3 +91,5 @@ TEST_CASE("an invalid layout is rejected with its line") {
                                "empty.yaml"),
                   ConfigError);
 }
+
+}  // namespace sidestep::layout_file_test

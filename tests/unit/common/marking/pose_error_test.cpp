@@ -8,9 +8,7 @@
 #include "common/random/rng.hpp"
 #include "tests/unit/common/marking/random_layout.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::pose_error_test {
 
 struct Fit {
   Vec2 position_m;
@@ -72,8 +70,6 @@ void compare(const MarkerLayout& layout, Rng& rng) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("sampled pose errors match the prediction") {
   const std::uint64_t seed = 31;
   CAPTURE(seed);
@@ -96,3 +92,5 @@ TEST_CASE("the predicted error of the butterfly matches the closed form") {
   CHECK(error.heading_rad == Approx(0.001 / std::sqrt(sum_of_squares_m2)).epsilon(1e-4));
   CHECK(error.lateral_m > error.longitudinal_m);
 }
+
+}  // namespace sidestep::pose_error_test

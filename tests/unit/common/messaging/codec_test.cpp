@@ -6,7 +6,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::codec_test {
 
 TEST_CASE("encoding and decoding a version preserves it bit for bit") {
   Rng rng(1);
@@ -108,3 +108,5 @@ TEST_CASE("a version with an implausible intent is refused") {
   corrupted.intent().velocity_duration_s(-0.1F);
   CHECK_FALSE(decode(corrupted));
 }
+
+}  // namespace sidestep::codec_test

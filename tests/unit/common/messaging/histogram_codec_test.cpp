@@ -5,7 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
+namespace sidestep::histogram_codec_test {
 
 TEST_CASE("a message preserves a histogram") {
   const std::uint64_t seed = 9;
@@ -32,4 +32,4 @@ TEST_CASE("a hostile message gives a histogram that is wrong but harmless") {
   CHECK(encode(histogram).buckets()[5] == ~std::uint32_t{0});
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::histogram_codec_test

@@ -4,9 +4,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::impairment_test {
 
 constexpr Impairment::SenderId kAgent{1}, kVision{2};
 constexpr int kMessages = 100'000;
@@ -21,8 +19,6 @@ msg::NetworkFault valid_fault() {
   fault.delay_max_ns(50'000'000);
   return fault;
 }
-
-}  // namespace
 
 TEST_CASE("without a fault every message arrives once, without delay") {
   Impairment impairment;
@@ -109,3 +105,5 @@ TEST_CASE("faults with values out of range are refused") {
   CHECK(refused([](auto& fault) { fault.delay_max_ns(fault.delay_mean_ns() - 1); }));
   CHECK(refused([](auto& fault) { fault.delay_max_ns(std::numeric_limits<std::int64_t>::max()); }));
 }
+
+}  // namespace sidestep::impairment_test

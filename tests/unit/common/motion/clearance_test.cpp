@@ -6,9 +6,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::clearance_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 
@@ -40,8 +38,6 @@ double sampled_distance(const Trajectory& a, const Trajectory& b, int samples) {
   }
   return smallest;
 }
-
-}  // namespace
 
 TEST_CASE("the clearance never exceeds the distance at any time, over two million random pairs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
@@ -153,3 +149,5 @@ TEST_CASE("a static disc equals a robot at rest") {
     REQUIRE(is_clear(a, centre, 0.2) == is_clear(a, resting, 0.2));
   }
 }
+
+}  // namespace sidestep::clearance_test

@@ -5,9 +5,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::escape_test {
 
 /// Sampled, so never below the true distance.
 double sampled_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
@@ -17,8 +15,6 @@ double sampled_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
     smallest = std::min(smallest, (a.state_at(t).position_m - b.state_at(t).position_m).norm());
   return smallest;
 }
-
-}  // namespace
 
 TEST_CASE("the remaining trajectory equals the trajectory from a time on") {
   Rng rng(4);
@@ -57,3 +53,5 @@ TEST_CASE(
   }
   CHECK(smaller > 50);
 }
+
+}  // namespace sidestep::escape_test

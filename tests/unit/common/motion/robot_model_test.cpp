@@ -5,11 +5,9 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::robot_model_test {
 
-namespace {
 const MotionLimits kLimits;
-}
 
 TEST_CASE("A(v) reaches F ahead and sideways and D behind") {
   const Vec2 v(1, 0);
@@ -40,3 +38,5 @@ TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect th
   CHECK(furthest_ahead > 2.95);
   CHECK(furthest_behind < -4.9);
 }
+
+}  // namespace sidestep::robot_model_test

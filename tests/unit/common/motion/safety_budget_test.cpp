@@ -7,7 +7,7 @@
 #include "common/motion/clearance.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::safety_budget_test {
 
 TEST_CASE("the budget line shows the composition of the margin and the spare part") {
   CHECK(budget_line({}, 0.01) ==
@@ -52,3 +52,5 @@ TEST_CASE("tracking errors and clock offsets within the budget do not bring robo
   // Without an effect of the clock offsets, the test would prove nothing.
   CHECK(max_clock_share > 0.001);
 }
+
+}  // namespace sidestep::safety_budget_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::trajectory_bounds_test {
 
 TEST_CASE("a trajectory stays in the disc of its bounds") {
   const std::uint64_t seed = GENERATE(1u, 2u);
@@ -45,3 +45,5 @@ TEST_CASE("bounds are batchable with at most two non-empty phases of moderate si
   CHECK_FALSE(trajectory_bounds(three).is_batchable);
   CHECK(trajectory_bounds(three).disc.radius_m < 0.02);
 }
+
+}  // namespace sidestep::trajectory_bounds_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::trajectory_test {
 
 TEST_CASE("a trajectory matches numerical integration") {
   Rng rng(1);
@@ -61,3 +61,5 @@ TEST_CASE("no trajectory exceeds its reach") {
     }
   }
 }
+
+}  // namespace sidestep::trajectory_test

@@ -6,11 +6,9 @@
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-using namespace sidestep;
+namespace sidestep::validity_test {
 
-namespace {
 const MotionLimits kLimits;
-}
 
 TEST_CASE("violations of limits, rest and workspace are detected") {
   FloorRules rules;
@@ -59,3 +57,5 @@ TEST_CASE("a NaN is beyond the limits") {
   Trajectory bad(t, {{0, 0}, {nan, 0}});
   CHECK(check_limits(bad, kLimits) != Validity::kValid);
 }
+
+}  // namespace sidestep::validity_test

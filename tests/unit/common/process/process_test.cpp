@@ -9,8 +9,7 @@
 #include "common/process/command_line.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::process_test {
 
 using Catch::Matchers::Contains;
 
@@ -39,8 +38,6 @@ Program test_program() {
   program.start = [](Bus&, const Scenario&) { return nullptr; };
   return program;
 }
-
-}  // namespace
 
 TEST_CASE("wrong usage and an invalid scenario exit with 2, --help exits with 0, and nothing starts") {
   Program program = test_program();
@@ -135,4 +132,4 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   CHECK_THAT(outcome.err, Contains("agent-3: domain "));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::process_test

@@ -5,15 +5,12 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-namespace sidestep {
-namespace {
+namespace sidestep::rng_test {
 
 constexpr std::uint64_t kSeed = 11;
 constexpr int kSamples = 60'000;
 // A count deviates from its expectation by more than this many standard deviations once in 16,000 times.
 constexpr double kMaxDeviations = 4;
-
-}  // namespace
 
 TEST_CASE("a seed gives the same bits everywhere") {
   Rng rng(1);
@@ -68,4 +65,4 @@ TEST_CASE("forked generators share no numbers") {
   CHECK(same == 0);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::rng_test

@@ -8,9 +8,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::clock_offset_test {
 
 const Time kBegin = time_from_ns(1'800'000'000'000'000'000);  // a typical host clock
 constexpr Duration kPeriod{16'666'667};
@@ -42,8 +40,6 @@ ClockExchange exchange_ms(double sent, double peer_received, double peer_sent, d
   const auto at = [](double ms) { return kBegin + from_seconds(ms * 1e-3); };
   return {at(sent), at(peer_received), at(peer_sent), at(received)};
 }
-
-}  // namespace
 
 TEST_CASE("the measured interval contains the true offset for any delays, losses and drift") {
   const std::uint64_t seed = GENERATE(range(1u, 41u));
@@ -195,3 +191,5 @@ TEST_CASE("the offset of two clocks is the difference of their offsets against a
   CHECK_FALSE(difference(robot, coordinator).is_beyond(Duration{20}));
   CHECK(difference(coordinator, robot).is_beyond(Duration{19}));
 }
+
+}  // namespace sidestep::clock_offset_test

@@ -8,7 +8,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
+namespace sidestep::histogram_test {
 
 TEST_CASE("a quantile is at most one bucket above the sorted reference") {
   const std::uint64_t seed = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
@@ -79,4 +79,4 @@ TEST_CASE("merging two histograms equals adding all durations to one") {
   for (double q = 0; q <= 1; q += 0.01) CHECK(merged.quantile(q) == both.quantile(q));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::histogram_test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::fault_target_test {
 
 TEST_CASE("fault targets are named as in reports, and other names are refused") {
   const auto number = [](const std::string& text) { return parse_fault_target(text)->number; };
@@ -24,3 +24,5 @@ TEST_CASE("fault targets are named as in reports, and other names are refused") 
     CHECK_FALSE(parse_fault_target(text));
   }
 }
+
+}  // namespace sidestep::fault_target_test

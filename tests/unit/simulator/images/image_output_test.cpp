@@ -9,8 +9,7 @@
 #include "common/marking/butterfly.hpp"
 #include "common/messaging/sim/bus.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::image_output_test {
 
 const std::string kFloor = R"(
 field: {length_m: 4, width_m: 3}
@@ -52,8 +51,6 @@ std::vector<std::uint8_t> rendered(const Scenario& scenario, const CameraModel& 
   const Image image = renderer.render(floor_scene(scenario).scene());
   return {image.view().pixels, image.view().pixels + image.view().bytes()};
 }
-
-}  // namespace
 
 TEST_CASE("a scenario's floor contains its objects, without absent robots") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
@@ -122,4 +119,4 @@ TEST_CASE("an image shows the objects in its camera's view") {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::image_output_test

@@ -9,8 +9,7 @@
 #include "simulator/league/league_geometry.hpp"
 #include "simulator/rendering/field_surface.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::league_frames_test {
 
 constexpr Time kNow = time_from_ns(1'700'000'000'000'000'000);
 
@@ -42,8 +41,6 @@ Vec2 projected(const league::CameraCalibration& camera, const Vec3& point_m) {
   const Vec3 seen = rotation * point_m + camera.translation_m;
   return camera.principal_point_px + camera.focal_length_px * Vec2(seen.x() / seen.z(), seen.y() / seen.z());
 }
-
-}  // namespace
 
 TEST_CASE("frames become packets with both teams and all data that a receiver needs") {
   const Scenario scenario = two_teams();
@@ -166,4 +163,4 @@ TEST_CASE("scenarios that packets cannot represent are refused") {
   CHECK_THROWS_AS(LeagueFrames(scenario, cameras.views()), std::invalid_argument);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::league_frames_test

@@ -5,10 +5,9 @@
 #include "common/random/rng.hpp"
 #include "simulator/rendering/coverage/kernels.hpp"
 
-using namespace sidestep;
-using namespace sidestep::coverage;
+namespace sidestep::coverage_test {
 
-namespace {
+using namespace sidestep::coverage;
 
 Points random_points(Rng& rng) {
   Points points;
@@ -32,8 +31,6 @@ std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy, c
   }
   return {is_inside, is_near};
 }
-
-}  // namespace
 
 TEST_CASE("all instruction sets give the same counts") {
   const std::uint64_t seed = 81;
@@ -101,3 +98,5 @@ TEST_CASE("a pixel's samples are evenly spread about its centre") {
     for (const int count : in_place) CHECK(count == 1);
   }
 }
+
+}  // namespace sidestep::coverage_test

@@ -7,9 +7,7 @@
 #include "simulator/rendering/round_ball.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::dot_centroid_test {
 
 /// The centroid of the difference between two frames.
 Vec2 centroid_of_difference(const cv::Mat3b& a, const cv::Mat3b& b, int channel) {
@@ -91,8 +89,6 @@ ErrorStatistics dot_errors(const OverheadCamera& overhead_camera, int count, Rng
   return errors;
 }
 
-}  // namespace
-
 TEST_CASE("a rendered dot lies where the camera projects it") {
   const std::uint64_t seed = 41;
   CAPTURE(seed);
@@ -143,3 +139,5 @@ TEST_CASE("a rendered ball lies where its viewing rays hit it") {
   CHECK(errors.count > 60);
   check(errors, 0.02);
 }
+
+}  // namespace sidestep::dot_centroid_test

@@ -6,7 +6,7 @@
 #include "simulator/rendering/field_surface.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
-using namespace sidestep;
+namespace sidestep::floor_test {
 
 TEST_CASE("lines are where the league's rules place them") {
   const FieldLines a(Field{12, 9}), b(Field{9, 6});
@@ -59,3 +59,5 @@ TEST_CASE("a white line in the image runs where the camera projects it") {
   CHECK(rows > 300);
   CHECK(std::abs(sum / rows) < 0.01);
 }
+
+}  // namespace sidestep::floor_test

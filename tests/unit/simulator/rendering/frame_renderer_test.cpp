@@ -11,9 +11,7 @@
 #include "common/marking/butterfly.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::frame_renderer_test {
 
 const Field kField{12, 9};
 
@@ -45,8 +43,6 @@ bool are_equal(const Image& a, const Image& b) {
 FrameRenderer renderer_with(const RenderSpec& spec, std::uint64_t seed = 1) {
   return FrameRenderer(overhead_camera_model(quarter_field()), kField, butterfly(), spec, Rng(seed));
 }
-
-}  // namespace
 
 TEST_CASE("the same seed gives the same frames and another seed others") {
   Rng rng(71);
@@ -211,3 +207,5 @@ TEST_CASE("robots outside the camera's view are omitted") {
     CHECK(are_equal(renderer.render(Scene{{&robot, 1}}), empty));
   }
 }
+
+}  // namespace sidestep::frame_renderer_test

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::sensor_noise_test {
 
 struct Moments {
   double mean, sd;
@@ -26,8 +24,6 @@ Moments moments(const std::vector<std::uint8_t>& bytes, std::size_t first, std::
 
 /// Rounding to whole levels adds a variance of 1/12.
 double rounded_sd(double sd) { return std::sqrt(sd * sd + 1.0 / 12); }
-
-}  // namespace
 
 TEST_CASE("noise has the given deviation in red, green and blue") {
   Rng rng(61);
@@ -99,3 +95,5 @@ TEST_CASE("without noise a frame is unchanged") {
   noise.add(clean.data(), 5, rng, out.data());
   CHECK(out == clean);
 }
+
+}  // namespace sidestep::sensor_noise_test

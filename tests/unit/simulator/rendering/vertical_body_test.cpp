@@ -9,9 +9,7 @@
 #include "common/camera/overhead_camera.hpp"
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::vertical_body_test {
 
 const Light kGround(40, 100, 50);
 
@@ -79,8 +77,6 @@ OverheadCamera random_camera(Rng& rng) {
   overhead_camera.height_px = 240;
   return overhead_camera;
 }
-
-}  // namespace
 
 TEST_CASE("a drawn body matches individually traced viewing rays") {
   const std::uint64_t seed = 51;
@@ -187,3 +183,5 @@ TEST_CASE("a body that moves during the exposure looks like the mean over its po
     CHECK(std::sqrt(squares / changed) < 4);
   }
 }
+
+}  // namespace sidestep::vertical_body_test

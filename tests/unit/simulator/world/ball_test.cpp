@@ -4,8 +4,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-namespace sidestep {
-namespace {
+namespace sidestep::ball_test {
 
 void roll(Ball& ball, int steps, const Field& field, std::span<const Circle> obstacles = {},
           std::span<const Body> robots = {}) {
@@ -65,5 +64,4 @@ TEST_CASE("a ball exactly below a robot's centre is moved out on one side") {
   CHECK(ball.state().position_m.norm() == Approx(0.09 + 0.0215));
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::ball_test

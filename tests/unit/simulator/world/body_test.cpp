@@ -8,8 +8,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::body_test {
 
 // Integrates the differential equation in tiny steps.
 State integrated(State state, Vec2& acceleration, const Vec2& desired, double lag_s) {
@@ -179,5 +178,4 @@ TEST_CASE("a body off the floor does not move, and comes back at rest") {
   CHECK(body.velocity_mps() == Vec2(0, 0));
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::body_test

@@ -6,8 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace sidestep {
-namespace {
+namespace sidestep::cameras_test {
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
@@ -163,5 +162,4 @@ TEST_CASE("opponents are detected as obstacles, with noise and dropouts, up to t
   CHECK(frame.obstacle_count() == msg::MAX_OBSTACLES);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::cameras_test

@@ -8,8 +8,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::contacts_test {
 
 constexpr double kRadius_m = 0.09;
 
@@ -140,5 +139,4 @@ TEST_CASE("the smallest clearance is retained although the robots separate again
   CHECK(contacts.totals().min_clearance_m == Approx(0.4 - 2 * kRadius_m).margin(1e-4));
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::contacts_test

@@ -11,8 +11,7 @@
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::disturbances_test {
 
 using std::chrono::milliseconds;
 using test::disturbance;
@@ -362,5 +361,4 @@ TEST_CASE("under any disturbance the firmware keeps its rules and ends where it 
   }
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::disturbances_test

@@ -5,8 +5,7 @@
 
 #include "tests/unit/simulator/world/commands.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::firmware_monitor_test {
 
 using std::chrono::milliseconds;
 using test::command_with;
@@ -216,5 +215,4 @@ TEST_CASE("a lifted robot executes one rest version, at any place, and nothing e
   }
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::firmware_monitor_test

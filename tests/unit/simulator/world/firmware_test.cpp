@@ -10,8 +10,7 @@
 #include "simulator/world/firmware_monitor.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::firmware_test {
 
 using std::chrono::milliseconds;
 using test::bare_command;
@@ -339,5 +338,4 @@ TEST_CASE("the monitor finds no broken rule under any commands") {
   CHECK(robot.counts().refused_fenced > 0);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::firmware_test

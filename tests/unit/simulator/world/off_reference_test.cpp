@@ -6,8 +6,7 @@
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::off_reference_test {
 
 using std::chrono::milliseconds;
 using test::disturbance;
@@ -256,5 +255,4 @@ TEST_CASE("the number of a robot's own stop is above all received numbers, pendi
   CHECK(floor.world.firmware_violations() == 0);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::off_reference_test

@@ -11,8 +11,7 @@
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::opponents_test {
 
 using std::chrono::milliseconds;
 
@@ -169,5 +168,4 @@ TEST_CASE("crashes match a check of every pair in every step") {
   CHECK(expected.crashes > 20);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::opponents_test

@@ -8,8 +8,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::pose_estimator_test {
 
 using std::chrono::milliseconds;
 
@@ -115,5 +114,4 @@ TEST_CASE("a single outlier moves the estimate only slightly") {
   CHECK((run.estimator.position_m() - run.position(run.now)).norm() < 0.003);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::pose_estimator_test

@@ -10,8 +10,7 @@
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::simulator_node_clock_test {
 
 using std::chrono::milliseconds;
 using test::separated_robots;
@@ -101,5 +100,4 @@ TEST_CASE("facts stay true if the host's clock is set back") {
   CHECK(node.world().firmware_violations() == 0);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::simulator_node_clock_test

@@ -11,8 +11,7 @@
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::simulator_node_test {
 
 using std::chrono::milliseconds;
 using test::separated_robots;
@@ -320,5 +319,4 @@ TEST_CASE("a version's start is timed by the robot's clock") {
   CHECK(first->header().stamp_ns() == to_ns(start - scenario.robots[0].clock_offset));
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::simulator_node_test

@@ -5,8 +5,7 @@
 
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::tracking_test {
 
 using test::RandomDrive;
 using test::separated_robots;
@@ -92,5 +91,4 @@ TEST_CASE("a robot without further commands comes to rest where its version ends
   }
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::tracking_test

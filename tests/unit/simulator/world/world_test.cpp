@@ -7,8 +7,7 @@
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::world_test {
 
 using std::chrono::milliseconds;
 using test::RandomDrive;
@@ -121,5 +120,4 @@ TEST_CASE("robots at rest stay where they are while time is skipped") {
   CHECK(world.reference_error_m(0) < 0.001);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::world_test

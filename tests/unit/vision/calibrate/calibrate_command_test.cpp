@@ -12,10 +12,9 @@
 #include "vision/cameras/camera_file.hpp"
 #include "vision/colours/colour_file.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::calibrate_command_test {
 
-namespace {
+using namespace sidestep::test;
 
 const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
 
@@ -57,8 +56,6 @@ std::size_t found(const std::string& scenario_file, const std::string& colours_f
   }
   return sum;
 }
-
-}  // namespace
 
 TEST_CASE("thresholds learned from one picture of the start find all robots") {
   const Folder folder;
@@ -122,3 +119,5 @@ TEST_CASE("invalid arguments and pictures are refused and nothing is written") {
   CHECK(run({kFloorFile, folder / "elsewhere.png"}) == kExitFailure);
   CHECK(calibrate({kFloorFile, folder / "frame.png", "--out", folder / "frame.png/c.yaml"}) == kExitFailure);
 }
+
+}  // namespace sidestep::calibrate_command_test

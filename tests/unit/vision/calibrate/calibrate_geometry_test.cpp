@@ -12,9 +12,7 @@
 #include "tests/unit/common/camera/random_camera.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::calibrate_geometry_test {
 
 /// The text of a camera's points at three heights, with noisy pixels.
 std::string points_text(std::uint32_t id, const CameraModel& camera, const Box& view_m, int count,
@@ -54,8 +52,6 @@ int calibrate(const std::vector<std::string>& arguments) {
   for (std::string& argument : all) argv.push_back(argument.data());
   return calibrate_command(static_cast<int>(argv.size()), argv.data());
 }
-
-}  // namespace
 
 TEST_CASE("known cameras are recovered from a file of points") {
   const std::uint64_t seed = 31;
@@ -161,3 +157,5 @@ TEST_CASE("points that do not determine the camera are refused with file and lin
   CHECK(calibrate({"--out", out}) == kExitUsage);
   CHECK_FALSE(std::filesystem::exists(out));
 }
+
+}  // namespace sidestep::calibrate_geometry_test

@@ -5,7 +5,8 @@
 
 #include "tests/unit/vision/calibrate/rendered_start.hpp"
 
-using namespace sidestep;
+namespace sidestep::learn_colours_test {
+
 using namespace sidestep::test;
 
 TEST_CASE("colours learned from one frame find robots and obstacles in different light") {
@@ -85,3 +86,5 @@ TEST_CASE("the labels of a floor are the discs in its camera's view") {
   few.patterns.resize(12);
   CHECK_THROWS_WITH(floor_labels_at_start(scenario, few, camera), Catch::Contains("robot 12 has number 12"));
 }
+
+}  // namespace sidestep::learn_colours_test

@@ -6,9 +6,7 @@
 
 #include "tests/unit/common/camera/random_camera.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::camera_calibration_test {
 
 /// Random points at the given heights in turn, with noisy pixels.
 std::vector<CalibrationPoint> noisy_points(const CameraModel& camera, const Box& view_m, int count,
@@ -31,8 +29,6 @@ CameraParameters initial_of(const CameraModel& camera) {
   initial.principal_point_px = Vec2(initial.width_px - 1, initial.height_px - 1) / 2;
   return initial;
 }
-
-}  // namespace
 
 TEST_CASE("a camera is recovered from points without noise") {
   const std::uint64_t seed = 9;
@@ -166,3 +162,5 @@ TEST_CASE("a tilted camera is determined by points on the floor") {
   REQUIRE(found.error.empty());
   CHECK(found.camera.focal_length_px == Approx(camera.parameters().focal_length_px).epsilon(0.01));
 }
+
+}  // namespace sidestep::camera_calibration_test

@@ -9,9 +9,7 @@
 #include "common/file/write_file.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::camera_file_test {
 
 const std::string kOne = R"(cameras:
   - id: 3
@@ -46,8 +44,6 @@ bool are_equal(const CameraParameters& a, const CameraParameters& b) {
          a.principal_point_px == b.principal_point_px && a.distortion == b.distortion &&
          a.rotation.coeffs() == b.rotation.coeffs() && a.translation_m == b.translation_m;
 }
-
-}  // namespace
 
 TEST_CASE("a file of cameras is read") {
   const auto cameras = parse_cameras(kOne, "cameras.yaml");
@@ -99,3 +95,5 @@ TEST_CASE("invalid files of cameras are refused with file and line") {
   CHECK_THROWS_AS(parse_cameras("cameras: []", "cameras.yaml"), ConfigError);
   CHECK_THROWS_AS(load_cameras("/nowhere/cameras.yaml"), ConfigError);
 }
+
+}  // namespace sidestep::camera_file_test

@@ -5,9 +5,7 @@
 
 #include "common/config/config_error.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::point_file_test {
 
 const std::string kOne = R"(cameras:
   - id: 3
@@ -32,8 +30,6 @@ void check_refused(const std::string& old_text, const std::string& new_text, int
     CHECK_THAT(error.what(), Catch::Contains(message));
   }
 }
-
-}  // namespace
 
 TEST_CASE("a file of calibration points is read") {
   const auto cameras = parse_points(kOne, "points.yaml");
@@ -85,3 +81,5 @@ TEST_CASE("invalid files of calibration points are refused with file and line") 
   CHECK_THROWS_AS(parse_points("cameras: []", "points.yaml"), ConfigError);
   CHECK_THROWS_AS(load_points("/nowhere/points.yaml"), ConfigError);
 }
+
+}  // namespace sidestep::point_file_test

@@ -7,9 +7,7 @@
 #include "common/marking/colours.hpp"
 #include "vision/colours/colour_learner.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::colour_file_test {
 
 const std::string kGood =
     "format: rgb\n"
@@ -20,8 +18,6 @@ const std::string kGood =
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
   return text.replace(text.find(what), what.size(), with);
 }
-
-}  // namespace
 
 TEST_CASE("thresholds are read from a file as they were written") {
   const ColourThresholds read = parse_colours(kGood, "f");
@@ -69,3 +65,5 @@ TEST_CASE("files without boxes and with too many boxes are refused") {
   for (int i = 0; i < 33; ++i) many += "  - {colour: pink, low: [0, 1, 2], high: [3, 4, 5]}\n";
   CHECK_THROWS_AS(parse_colours(many, "f"), ConfigError);
 }
+
+}  // namespace sidestep::colour_file_test

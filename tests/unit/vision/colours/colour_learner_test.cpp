@@ -5,9 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::colour_learner_test {
 
 struct Sample {
   Colour colour;
@@ -54,8 +52,6 @@ bool overlap(const ColourBox& a, const ColourBox& b) {
   return !apart(a.low.y, a.high.y, b.low.y, b.high.y) && !apart(a.low.u, a.high.u, b.low.u, b.high.u) &&
          !apart(a.low.v, a.high.v, b.low.v, b.high.v);
 }
-
-}  // namespace
 
 TEST_CASE("boxes contain the observed pixels of their colours and do not overlap") {
   const std::uint64_t seed = GENERATE(range(1, 41));
@@ -155,3 +151,5 @@ TEST_CASE("a colour that was never observed has no box") {
   ColourLearner learner;
   CHECK(learner.boxes().empty());
 }
+
+}  // namespace sidestep::colour_learner_test

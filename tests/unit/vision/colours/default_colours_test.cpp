@@ -8,10 +8,9 @@
 #include "tests/unit/vision/detection/score.hpp"
 #include "vision/colours/colour_learner.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::default_colours_test {
 
-namespace {
+using namespace sidestep::test;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
@@ -31,8 +30,6 @@ std::optional<std::uint32_t> classified_as(const ColourThresholds& thresholds, c
 
 constexpr std::array kMarkerAndBallColours{Colour::kOrange, Colour::kYellow, Colour::kBlue, Colour::kGreen,
                                            Colour::kPink};
-
-}  // namespace
 
 TEST_CASE("named colours are classified in all lights and the ground has no colour") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
@@ -93,3 +90,5 @@ TEST_CASE("robots are found and located with the default colours in bad light to
   CHECK(score.heading_rad() < 1.0 / 57.3);
   CHECK(balls >= 19);
 }
+
+}  // namespace sidestep::default_colours_test

@@ -4,10 +4,9 @@
 #include "tests/unit/vision/detection/rendered_field.hpp"
 #include "tests/unit/vision/detection/score.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::detector_test {
 
-namespace {
+using namespace sidestep::test;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
@@ -39,8 +38,6 @@ Score score_of_frames(RenderedField& floor, std::size_t robots_per_team, int fra
   }
   return score;
 }
-
-}  // namespace
 
 TEST_CASE("robots in frames are found, identified, and located within 1.5 mm RMS") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
@@ -156,3 +153,5 @@ TEST_CASE("an object in a colour that no robot wears is an obstacle of the right
   CHECK(frame.obstacles()[0].radius_m() == Approx(0.2).margin(0.02));
   CHECK(frame.robots().empty());
 }
+
+}  // namespace sidestep::detector_test

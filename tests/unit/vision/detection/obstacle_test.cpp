@@ -5,10 +5,9 @@
 #include "tests/unit/vision/detection/rendered_field.hpp"
 #include "vision/colours/default_colours.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::obstacle_test {
 
-namespace {
+using namespace sidestep::test;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
@@ -71,8 +70,6 @@ struct ObstacleFixture {
 
 const std::array<Rgb, 5> kPaints{SceneCylinder{}.colour, named(Colour::kRed).rgb, named(Colour::kCyan).rgb,
                                  named(Colour::kPurple).rgb, Rgb{118, 44, 150}};
-
-}  // namespace
 
 TEST_CASE("obstacles of unnamed colours are found with their positions and radii") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
@@ -288,3 +285,5 @@ TEST_CASE("a ball next to an obstacle is found") {
         0.01);
   CHECK(fixture.obstacles().size() == 1);
 }
+
+}  // namespace sidestep::obstacle_test

@@ -8,9 +8,7 @@
 #include "vision/detection/detector.hpp"
 #include "vision/tracking/tracker.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::obstacle_tracks_test {
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrameInterval{8'333'333};
@@ -58,8 +56,6 @@ struct TwoCameraFixture {
   }
 };
 
-}  // namespace
-
 TEST_CASE("an obstacle in the view of two cameras is one stationary track") {
   TwoCameraFixture fixture;
   for (const double y_m : {-2.0, -0.5, 1.3}) {
@@ -94,3 +90,5 @@ TEST_CASE("an obstacle that crosses from one camera to the other keeps its track
     CHECK(std::abs(track.vy_mps()) < 0.3);
   }
 }
+
+}  // namespace sidestep::obstacle_tracks_test

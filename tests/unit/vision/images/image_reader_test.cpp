@@ -15,8 +15,7 @@
 #include "vision/images/image_options.hpp"
 #include "vision/tracking/tracker.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::image_reader_test {
 
 constexpr Time kNow = time_from_ns(5'010'000'000);
 
@@ -56,8 +55,6 @@ std::vector<RobotId> robots_in(const msg::DetectionFrame& frame) {
   std::ranges::sort(robots);
   return robots;
 }
-
-}  // namespace
 
 TEST_CASE("the robots in each camera's image are found at their positions") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
@@ -226,4 +223,4 @@ TEST_CASE("cameras and colours that do not fit the scenario are refused with the
   std::remove(file.c_str());
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::image_reader_test

@@ -7,8 +7,7 @@
 #include "tests/unit/common/league/random_packets.hpp"
 #include "vision/tracking/frame.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::league_source_test {
 
 using std::chrono::milliseconds;
 
@@ -59,8 +58,6 @@ void synchronise(LeagueSource& source, Duration captured, const league::Endpoint
 }
 
 constexpr Duration kCaptured = std::chrono::seconds(10);
-
-}  // namespace
 
 TEST_CASE("robots of both teams are identified and unknown robots become obstacles") {
   LeagueSource source(two_teams());
@@ -211,4 +208,4 @@ TEST_CASE("corrupted and truncated packets give only valid frames") {
   CHECK(source.rejected() > 100);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::league_source_test

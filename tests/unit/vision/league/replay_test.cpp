@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <unistd.h>
 
-namespace sidestep {
-namespace {
+namespace sidestep::replay_test {
 
 using std::chrono::milliseconds;
 
@@ -52,8 +51,6 @@ std::vector<Sent> replayed(league::LogReader& reader, double speed) {
   }
   return sent;
 }
-
-}  // namespace
 
 TEST_CASE("a log is replayed with the timing of its reception") {
   const Log log({0, 10, 10, 25, 1000});
@@ -102,4 +99,4 @@ TEST_CASE("an empty log ends at once") {
   CHECK(replayed(reader, 1).empty());
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::replay_test

@@ -5,8 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::sender_clock_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -73,8 +72,6 @@ class Scene {
 /// Simulated time from 0, the correct time, and a clock that is days off.
 const Duration kZeros[] = {Duration{0}, kBegin.time_since_epoch(),
                            kBegin.time_since_epoch() - std::chrono::hours(50)};
-
-}  // namespace
 
 TEST_CASE("capture times are accurate up to minimum delay and drift for any epoch of the sender's clock") {
   for (const Duration zero : kZeros) {
@@ -212,4 +209,4 @@ TEST_CASE("a sending time from another clock is ignored") {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sender_clock_test

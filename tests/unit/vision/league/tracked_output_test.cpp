@@ -3,8 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace sidestep {
-namespace {
+namespace sidestep::tracked_output_test {
 
 Scenario two_robots() {
   Scenario scenario;
@@ -29,8 +28,6 @@ msg::TrackedRobot tracked(RobotId id, double x_m, std::int64_t observed_at_ns) {
   robot.observed_at_ns(observed_at_ns);
   return robot;
 }
-
-}  // namespace
 
 TEST_CASE("a world is converted to a tracked packet with teams and numbers") {
   TrackedOutput output(two_robots(), 77);
@@ -74,4 +71,4 @@ TEST_CASE("a sender has a different UUID for each incarnation") {
   CHECK(second.packet_of(world).uuid != name);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::tracked_output_test

@@ -4,10 +4,9 @@
 
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::identifier_test {
 
-namespace {
+using namespace sidestep::test;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
@@ -37,8 +36,6 @@ std::vector<PlacedRobot> moved(std::vector<PlacedRobot> robots, Rng& rng) {
   }
   return robots;
 }
-
-}  // namespace
 
 TEST_CASE("robots with all dots visible are identified at once") {
   Rng rng(1);
@@ -144,3 +141,5 @@ TEST_CASE("robots that are not in the roster are not identified") {
   CHECK(found.size() == roster.size());
   CHECK(tally(found, robots).wrong == 0);
 }
+
+}  // namespace sidestep::identifier_test

@@ -5,18 +5,15 @@
 #include "common/marking/pose_error.hpp"
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::pattern_finder_test {
 
-namespace {
+using namespace sidestep::test;
 
 const DetectedPattern* found_at(std::span<const DetectedPattern> found, const Vec2& position_m) {
   const auto robot = std::ranges::find_if(
       found, [&](const DetectedPattern& one) { return (one.pose.position_m - position_m).norm() < 0.02; });
   return robot == found.end() ? nullptr : &*robot;
 }
-
-}  // namespace
 
 TEST_CASE("every pattern of both teams is found with its position, heading and colours") {
   const std::uint64_t seed = GENERATE(range(1, 21));
@@ -134,3 +131,5 @@ TEST_CASE("pose errors are as large as predicted for the layout") {
   CHECK(std::sqrt(lateral2 / kRounds) == Approx(predicted.lateral_m).epsilon(0.05));
   CHECK(std::sqrt(heading2 / kRounds) == Approx(predicted.heading_rad).epsilon(0.05));
 }
+
+}  // namespace sidestep::pattern_finder_test

@@ -8,9 +8,7 @@
 #include "tests/unit/vision/segmentation/flood_fill.hpp"
 #include "vision/segmentation/batch/dispatch.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::segmenter_test {
 
 constexpr SegmentationSettings kAll{1, {0.5, -1}};  // all regions, no merging
 
@@ -69,8 +67,6 @@ Image image_of(const std::vector<std::string>& rows) {
 }
 
 const ColourBox kRed{{50, 0, 200}, {80, 255, 255}, 0};
-
-}  // namespace
 
 TEST_CASE("all kernels find the same regions as flood filling") {
   const std::uint64_t seed = GENERATE(range(1, 41));
@@ -198,3 +194,5 @@ TEST_CASE("segmenting a second frame allocates nothing") {
   segmenter.segment(image.view());
   CHECK(allocation_count() == before);
 }
+
+}  // namespace sidestep::segmenter_test

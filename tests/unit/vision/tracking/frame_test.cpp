@@ -7,10 +7,9 @@
 
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::frame_test {
 
-namespace {
+using namespace sidestep::test;
 
 msg::RobotDetection valid_robot() {
   msg::DetectionFrame frame;
@@ -31,8 +30,6 @@ void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
   CHECK(frame.robots()[0].position_m == Vec2(1, 2));
   CHECK(frame.rejected() == 1);
 }
-
-}  // namespace
 
 TEST_CASE("only a detection with an invalid number is dropped and counted") {
   const double bad =
@@ -125,3 +122,5 @@ TEST_CASE("a reused frame holds nothing of its previous message") {
   CHECK(frame.robots().empty());
   CHECK(frame.balls().empty());
 }
+
+}  // namespace sidestep::frame_test

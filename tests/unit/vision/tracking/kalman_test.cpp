@@ -6,9 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::kalman_test {
 
 constexpr double kAccelerationPsd = 0.3;
 constexpr double kNoise_m = 0.0015;
@@ -27,8 +25,6 @@ Eigen::Vector2d stepped(const Eigen::Vector2d& x, double dt_s, Rng& rng) {
   const Eigen::Matrix2d root = white_noise(dt_s).llt().matrixL();
   return transition(dt_s) * x + root * Eigen::Vector2d(rng.normal(), rng.normal());
 }
-
-}  // namespace
 
 TEST_CASE("the filter's errors match its covariance") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -117,3 +113,5 @@ TEST_CASE("a rolling ball is predicted to come to rest and to stay at rest") {
   CHECK(rolling.velocity().norm() < 1e-9);
   CHECK((rolling.position() - position).norm() < 1e-4);
 }
+
+}  // namespace sidestep::kalman_test

@@ -8,10 +8,9 @@
 
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::obstacle_tracker_test {
 
-namespace {
+using namespace sidestep::test;
 
 void add_obstacle(msg::DetectionFrame& frame, const Vec2& position_m, double radius_m = 0.1) {
   auto& d = frame.obstacles().at(frame.obstacle_count());
@@ -49,8 +48,6 @@ const msg::TrackedObstacle* nearest(const msg::WorldState& world, const Vec2& to
   }
   return best;
 }
-
-}  // namespace
 
 TEST_CASE("walkers keep their numbers and are reported at their last observations from two cameras") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
@@ -199,3 +196,5 @@ TEST_CASE("a robot that was pushed is published at its new position after two ob
   CHECK(robot->observed_at_ns() == to_ns(t));
   CHECK((observed_position_of(*robot) - Vec2(1 + jump_m, 1)).norm() < 0.003);
 }
+
+}  // namespace sidestep::obstacle_tracker_test

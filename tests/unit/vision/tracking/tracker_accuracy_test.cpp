@@ -4,10 +4,9 @@
 
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::tracker_accuracy_test {
 
-namespace {
+using namespace sidestep::test;
 
 const Duration kDelay = 35 * kMs;
 
@@ -17,8 +16,6 @@ struct Errors {
   void add(const Vec2& error) { squared_sum += error.squaredNorm(), count += 2; }
   double rms() const { return std::sqrt(squared_sum / count); }
 };
-
-}  // namespace
 
 TEST_CASE("filtered velocities and positions of a driving robot are more accurate than the camera's") {
   const std::uint64_t seed = GENERATE(21u, 22u, 23u);
@@ -178,3 +175,5 @@ TEST_CASE("a heading that wraps around at pi keeps its estimate and rate") {
   CHECK(std::sqrt(squared_error / count) < 0.025);
   CHECK(fixture.world_at(after_s(10)).rejected() == 0);
 }
+
+}  // namespace sidestep::tracker_accuracy_test

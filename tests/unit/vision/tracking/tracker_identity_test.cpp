@@ -3,10 +3,9 @@
 
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::tracker_identity_test {
 
-namespace {
+using namespace sidestep::test;
 
 /// Feeds noisy observations of a robot at rest from one time to another.
 void feed_at_rest(TrackerFixture& fixture, const Vec2& position_m, double from_s, double to_s, Rng& rng) {
@@ -16,8 +15,6 @@ void feed_at_rest(TrackerFixture& fixture, const Vec2& position_m, double from_s
     fixture.feed(frame);
   }
 }
-
-}  // namespace
 
 TEST_CASE("a robot is published after three consistent observations, not before") {
   TrackerFixture fixture(1);
@@ -267,3 +264,5 @@ TEST_CASE("a ball is found, tracked, kicked and lost, and a second one does not 
   CHECK(fixture.world_at(after_s(2)).ball().is_visible());
   CHECK_FALSE(fixture.world_at(after_s(2.6)).ball().is_visible());
 }
+
+}  // namespace sidestep::tracker_identity_test

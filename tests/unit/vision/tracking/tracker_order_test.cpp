@@ -4,10 +4,9 @@
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::tracker_order_test {
 
-namespace {
+using namespace sidestep::test;
 
 struct Arrival {
   Time at;
@@ -36,8 +35,6 @@ std::vector<Arrival> frames_of_two_cameras(Rng& rng, double duration_s) {
 }
 
 bool by_arrival(const Arrival& a, const Arrival& b) { return a.at < b.at; }
-
-}  // namespace
 
 TEST_CASE("late, reordered and duplicate frames give the same world, bit for bit, as frames in order") {
   const std::uint64_t seed = GENERATE(range(200u, 220u));
@@ -148,3 +145,5 @@ TEST_CASE("arbitrary numbers in frames leave the world finite") {
   }
   CHECK(fixture.world_at(kBegin).rejected() > 0);
 }
+
+}  // namespace sidestep::tracker_order_test

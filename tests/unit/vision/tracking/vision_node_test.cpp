@@ -7,10 +7,9 @@
 #include "common/messaging/sim/bus.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
-using namespace sidestep;
-using namespace sidestep::test;
+namespace sidestep::vision_node_test {
 
-namespace {
+using namespace sidestep::test;
 
 Scenario scenario_of(RobotId robots) {
   Scenario scenario;
@@ -61,8 +60,6 @@ std::vector<msg::WorldState> worlds_of_a_run(std::uint64_t seed, const NetworkSp
   net.run_until(after_s(5));
   return worlds;
 }
-
-}  // namespace
 
 TEST_CASE("the node publishes worlds at the cameras' rate, valid at their publication") {
   Rng rng(301);
@@ -160,3 +157,5 @@ TEST_CASE("a node with frames from its caller ignores the bus and calls its list
   CHECK(latest.robots()[0].robot() == 1);
   CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
 }
+
+}  // namespace sidestep::vision_node_test

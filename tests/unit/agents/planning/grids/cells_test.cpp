@@ -7,9 +7,7 @@
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::cells_test {
 
 struct Outcome {
   int solved = 0;
@@ -40,8 +38,6 @@ Outcome plan_world(Planner planner, const std::string& name, std::uint64_t seed)
   outcome.over_shortest /= outcome.solved;
   return outcome;
 }
-
-}  // namespace
 
 TEST_CASE("grid search finds paths little longer than the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
@@ -119,3 +115,5 @@ TEST_CASE("grids and cell decompositions report that no path exists") {
   CHECK(trapezoids.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(grid.plan(domain, start, {.samples = 50}, rng).reason == PlanReason::kBudgetSpent);
 }
+
+}  // namespace sidestep::cells_test

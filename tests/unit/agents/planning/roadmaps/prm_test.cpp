@@ -9,9 +9,7 @@
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::prm_test {
 
 using Roadmaps = Prm<DiscDomain>;
 
@@ -34,8 +32,6 @@ double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
   }
   return length.back();
 }
-
-}  // namespace
 
 TEST_CASE("roadmaps find valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u);
@@ -162,3 +158,5 @@ TEST_CASE("removing the last nodes restores a roadmap") {
   CHECK(map.edges().size() == edges);
   for (std::uint32_t node = 0; node < 50; ++node) CHECK(map.edges_of(node) == edges_before[node]);
 }
+
+}  // namespace sidestep::prm_test

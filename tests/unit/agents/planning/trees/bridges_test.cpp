@@ -5,9 +5,7 @@
 
 #include "tests/unit/agents/planning/ball_domain.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::bridges_test {
 
 using Tree = SearchTree<BallDomain>;
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -37,8 +35,6 @@ double shortest_by_brute_force(const Tree& a, const Tree& b,
   return d[0][a.size()];
 }
 
-}  // namespace
-
 TEST_CASE("the path over bridges is the shortest over the union of the trees") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 60));
   CAPTURE(seed);
@@ -63,3 +59,5 @@ TEST_CASE("the path over bridges is the shortest over the union of the trees") {
   CHECK(path.front() == from_start[0]);
   CHECK(path.back() == from_goal[0]);
 }
+
+}  // namespace sidestep::bridges_test

@@ -6,9 +6,7 @@
 #include "agents/planning/trees/linear_nearest.hpp"
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::kd_tree_test {
 
 /// Samples points as planners store them: uniform, in clusters, on lines, or repeated.
 template <std::size_t N>
@@ -44,11 +42,11 @@ void compare(std::uint64_t seed) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("the K-D tree finds the same neighbour as linear search") {
   const auto seed = GENERATE(range<std::uint64_t>(0, 8));
   compare<2>(seed);
   compare<3>(seed);
   compare<6>(seed);
 }
+
+}  // namespace sidestep::kd_tree_test

@@ -8,9 +8,7 @@
 #include "deploy/evaluation/planning/worlds.hpp"
 #include "tests/unit/agents/planning/ball_domain.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::tree_planners_test {
 
 constexpr double kSlack_m = 1e-9;
 
@@ -62,8 +60,6 @@ BallDomain divided_cube(bool with_hole) {
 }
 
 const BallDomain::State kCubeStart{-0.8, -0.8, 0.8};
-
-}  // namespace
 
 TEST_CASE("a tree finds valid paths in all worlds, the same ones from the same seed") {
   const auto seed = GENERATE(1u, 2u, 3u);
@@ -144,3 +140,5 @@ TEST_CASE("more bridges give shorter paths") {
   }
   CHECK(length[1] < length[0]);
 }
+
+}  // namespace sidestep::tree_planners_test

@@ -4,9 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::waypoint_cache_test {
 
 std::set<int> contents(const WaypointCache<int>& cache) {
   std::set<int> states;
@@ -20,8 +18,6 @@ WaypointCache<int> filled(CacheReplacement replacement, Rng& rng) {
   cache.store({3, 4}, rng);
   return cache;
 }
-
-}  // namespace
 
 TEST_CASE("a cache that is not full stores every waypoint") {
   Rng rng(1);
@@ -85,3 +81,5 @@ TEST_CASE("a cache with zero capacity stays empty") {
   cache.store({1, 2, 3}, rng);
   CHECK(cache.is_empty());
 }
+
+}  // namespace sidestep::waypoint_cache_test

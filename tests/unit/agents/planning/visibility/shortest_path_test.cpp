@@ -8,9 +8,7 @@
 #include "deploy/evaluation/planning/worlds.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::shortest_path_test {
 
 /// Independent slow reference: Dijkstra on a grid whose cells are joined with all cells up to three cells
 /// away, checked by sampling. Its paths are at most 1.4 % longer than the shortest path with the grid's width
@@ -153,8 +151,6 @@ void check_agreement(const PlanWorld& world, Rng& rng, std::size_t queries) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("the shortest path around a circle is two tangents and an arc") {
   // start ---.._  _..--- goal, both 2 m from the centre of a circle of 0.4 m; the robot's radius is 0.1 m
   const auto [exact, polyline, lazy] = plan_both(world_of({Circle{{0, 0}, 0.4}}), {-2, 0}, {2, 0});
@@ -295,3 +291,5 @@ TEST_CASE("the shortest path around an angled wall turns once at its corner") {
     CHECK(lazy == Approx(expected).epsilon(3e-3));
   }
 }
+
+}  // namespace sidestep::shortest_path_test

@@ -8,8 +8,7 @@
 #include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::agreement_test {
 
 // FCL computes distances between convex bodies iteratively.
 constexpr double kTolerance_m = 2e-6;
@@ -119,5 +118,4 @@ TEST_CASE("sweeps by FCL's distances agree with exact sweeps") {
   }
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::agreement_test

@@ -7,8 +7,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::solid_world_test {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -103,5 +102,4 @@ TEST_CASE("invalid solids are rejected") {
   CHECK_THROWS_AS(prism(Circle{{0, 0}, 1}, 0), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::solid_world_test

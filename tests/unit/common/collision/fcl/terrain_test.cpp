@@ -5,8 +5,7 @@
 #include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_terrain.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::terrain_test {
 
 TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
   const std::uint64_t seed = GENERATE(range(1, 4));
@@ -40,5 +39,4 @@ TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
   }
 }
 
-}  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::terrain_test

@@ -10,8 +10,7 @@
 #include "common/messaging/topics.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::bus_test {
 
 /// Publishes a random message until it has arrived on the other bus, and compares.
 template <typename Message>
@@ -33,8 +32,6 @@ void check_round_trip(const Topic<Message>& topic, DdsBus& from, DdsBus& to, std
   received->header().stamp_ns(sent.header().stamp_ns());
   CHECK(*received == sent);
 }
-
-}  // namespace
 
 TEST_CASE("every message type arrives over DDS unchanged") {
   DdsBus from(test_settings("from"));
@@ -186,4 +183,4 @@ TEST_CASE("a bus reports the loopback address on which it listens") {
   CHECK_THAT(bus.locators(), Catch::Matchers::Contains("UDPv4:[127.0.0.1]:"));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bus_test

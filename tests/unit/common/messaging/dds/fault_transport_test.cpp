@@ -6,9 +6,7 @@
 #include "common/messaging/impairment.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::fault_transport_test {
 
 constexpr std::uint32_t kRobot = 5;
 
@@ -56,8 +54,6 @@ msg::NetworkFault cut_fault() {
   fault.is_cut(true);
   return fault;
 }
-
-}  // namespace
 
 TEST_CASE("a cut blocks all messages except an operator's, until it is ended") {
   Connection connection;
@@ -113,3 +109,5 @@ TEST_CASE("after a fault is cleared all messages arrive without delay") {
   connection.there.impair(kUnimpairedLink, 1);
   CHECK(connection.send_until([&] { return connection.numbers.size() > 100; }));
 }
+
+}  // namespace sidestep::fault_transport_test

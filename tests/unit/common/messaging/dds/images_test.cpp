@@ -16,9 +16,7 @@
 #include "tests/needs_root.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::images_test {
 
 constexpr std::size_t kUsualBytes = 780 * 580 * 2;
 
@@ -63,8 +61,6 @@ void send(DdsBus& bus, Writer<msg::CameraImage>& writer, std::size_t bytes, int 
          [&bus, &writer, bytes, number] { send(bus, writer, bytes, number + 1); });
 }
 
-}  // namespace
-
 TEST_CASE("images of any size arrive unchanged, with and without shared memory") {
   const bool writer_shares = GENERATE(true, false), reader_shares = GENERATE(true, false);
   const std::size_t bytes = GENERATE(std::size_t{0}, kUsualBytes, std::size_t{2448 * 2048 * 3});
@@ -92,8 +88,6 @@ TEST_CASE("camera process", "[.camera]") {
   while (getppid() == parent) bus.run_until(bus.now() + kStep);
 }
 
-namespace {
-
 /// Runs the camera process until destruction.
 class Camera {
  public:
@@ -115,8 +109,6 @@ class Camera {
  private:
   pid_t process_;
 };
-
-}  // namespace
 
 TEST_CASE("images arrive at a reader whose shared memory is not the writer's") {
   SIDESTEP_NEEDS_ROOT();
@@ -161,3 +153,5 @@ TEST_CASE("a camera that is killed is followed by the next one") {
   }
   CHECK(watcher.wrong == 0);
 }
+
+}  // namespace sidestep::images_test

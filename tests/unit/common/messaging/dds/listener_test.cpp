@@ -6,8 +6,7 @@
 
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::listener_test {
 
 DiscoveredEndpoint endpoint(bool is_writer) {
   DiscoveredEndpoint result;
@@ -24,8 +23,6 @@ const DiscoveredEndpoint* find(const std::vector<DiscoveredEndpoint>& endpoints,
   });
   return found == endpoints.end() ? nullptr : &*found;
 }
-
-}  // namespace
 
 TEST_CASE("a listener lists writers and readers, and notices when they leave") {
   constexpr Topic<msg::Verdict> kEvent{
@@ -117,4 +114,4 @@ TEST_CASE("each policy that prevents a match is named in plain words") {
   CHECK(words_for([](DiscoveredEndpoint& r) { r.partitions = {"*"}; }) == "0 mismatches");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::listener_test

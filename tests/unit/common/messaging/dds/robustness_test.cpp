@@ -17,8 +17,7 @@
 #include "common/messaging/dds/types.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::robustness_test {
 
 template <typename Message>
 Topic<Message> test_topic(Qos qos, const char* type) {
@@ -40,8 +39,6 @@ std::set<std::string> shared_memory_of(pid_t process) {
   }
   return result;
 }
-
-}  // namespace
 
 TEST_CASE("a reader that requests more than the writer offers is reported on both sides") {
   DdsBus reader(test_settings());
@@ -122,8 +119,6 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
   hostile.delete_writer(writer);
 }
 
-namespace {
-
 /// Adds enough readers that announcing them takes several messages.
 void subscribe_to_many(DdsBus& bus) {
   for (std::uint32_t robot = 2; robot < 30; ++robot)
@@ -135,8 +130,6 @@ bool is_known(const DdsListener& listener, const std::string& participant) {
   return std::ranges::any_of(known,
                              [&](const DiscoveredEndpoint& e) { return e.participant == participant; });
 }
-
-}  // namespace
 
 TEST_CASE("publishes until it is killed", "[.victim]") {
   DdsSettings settings = test_settings("victim");
@@ -154,8 +147,6 @@ TEST_CASE("publishes until it is killed", "[.victim]") {
     bus.run_until(bus.now() + kStep);
   }
 }
-
-namespace {
 
 /// A child process, participant "victim", that publishes the number of the last world it has received until
 /// it is killed.
@@ -181,8 +172,6 @@ struct Victim {
   }
   pid_t pid = 0;
 };
-
-}  // namespace
 
 TEST_CASE("a process killed with kill -9 leaves no shared memory behind") {
   {
@@ -251,4 +240,4 @@ TEST_CASE(
   CHECK(lease_check_count() > 0);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::robustness_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::types_test {
 
 using Payload = GuardedType::Payload;
 
@@ -59,8 +58,6 @@ std::vector<std::uint8_t> big_endian_bytes_of(const Message& message) {
   std::copy(body.begin(), body.end(), result.begin() + 4);
   return result;
 }
-
-}  // namespace
 
 TEST_CASE("the DDS type of every topic has the name given in the topic table") {
   for (const TopicInfo& topic : all_topics()) {
@@ -170,4 +167,4 @@ TEST_CASE("samples have equal handles if and only if their keys are equal") {
   CHECK_FALSE(handle_of(5) == handle_of(6));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::types_test

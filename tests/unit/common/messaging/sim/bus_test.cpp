@@ -5,9 +5,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::bus_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 constexpr Topic<msg::CoordinatorState> kReliable{
@@ -50,8 +48,6 @@ Received send_through(const NetworkSpec& network, std::uint64_t seed, std::uint6
   net.run_until(kBegin + Duration{1'000'000} * count + std::chrono::seconds(10));
   return received;
 }
-
-}  // namespace
 
 TEST_CASE("timers fire in order of time, and in order of creation at equal times") {
   SimNetwork net(1, kBegin, {});
@@ -174,3 +170,5 @@ TEST_CASE("the readers of a message share its attachment, and another message ha
   const auto state = numbered(3);
   CHECK(first.attachment(&state) == nullptr);
 }
+
+}  // namespace sidestep::bus_test

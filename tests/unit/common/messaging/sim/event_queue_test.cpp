@@ -6,7 +6,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
+namespace sidestep::event_queue_test {
 
 TEST_CASE("events come in order of time, and of insertion at equal times, both near and far ahead") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
@@ -49,3 +49,5 @@ TEST_CASE("an event may be inserted before one whose time was already asked for"
   CHECK(queue.pop() == 1);
   CHECK(queue.is_empty());
 }
+
+}  // namespace sidestep::event_queue_test

@@ -5,9 +5,7 @@
 
 #include "common/messaging/sim/bus.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::links_test {
 
 using namespace std::chrono_literals;
 const Time kBegin = time_from_ns(1'000'000'000);
@@ -42,8 +40,6 @@ struct Rig {
     network.run_until(from + Duration{1ms} * count + 2s);
   }
 };
-
-}  // namespace
 
 TEST_CASE("a link has the specified loss and mean burst length") {
   struct Specified {
@@ -189,3 +185,5 @@ TEST_CASE("an observer receives every message without delay on a bad network") {
   network.run_until(kBegin + 1s);
   CHECK(received == 100);
 }
+
+}  // namespace sidestep::links_test

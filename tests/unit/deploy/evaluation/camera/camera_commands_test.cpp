@@ -13,9 +13,7 @@
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::camera_commands_test {
 
 const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
 
@@ -35,8 +33,6 @@ struct PictureFile {
       (std::filesystem::temp_directory_path() / ("frame-" + std::to_string(getpid()) + ".png")).string();
   ~PictureFile() { std::filesystem::remove(path); }
 };
-
-}  // namespace
 
 TEST_CASE("the frame of a scenario shows its robots where they start") {
   const PictureFile file;
@@ -94,3 +90,5 @@ TEST_CASE("the pattern command prints the evaluation of a layout") {
   CHECK_THROWS_AS(run("pattern " + kCrossing), ConfigError);
   CHECK_THROWS_AS(run("pattern --dot-mm -1"), UsageError);
 }
+
+}  // namespace sidestep::camera_commands_test

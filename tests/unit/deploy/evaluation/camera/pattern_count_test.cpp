@@ -11,9 +11,7 @@
 #include "common/marking/symmetry.hpp"
 #include "tests/unit/common/marking/random_layout.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::pattern_count_test {
 
 /// A rotated pattern as colours by position in millimetres.
 using ColourMap = std::map<std::pair<long, long>, std::uint64_t>;
@@ -74,8 +72,6 @@ std::uint64_t slow_count(const MarkerLayout& layout, std::uint64_t colours) {
   return accepted.size();
 }
 
-}  // namespace
-
 TEST_CASE("the number of patterns equals that of an exhaustive search") {
   const std::uint64_t seed = 21;
   CAPTURE(seed);
@@ -127,3 +123,5 @@ TEST_CASE("the patterns of the square differ in at least two dots") {
   CHECK(min_pattern_distance(layout) == 2);
   CHECK(countable_patterns(layout, used_colour_count(layout)) == 60);
 }
+
+}  // namespace sidestep::pattern_count_test

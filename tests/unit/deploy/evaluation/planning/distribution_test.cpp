@@ -5,7 +5,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
+namespace sidestep::distribution_test {
 
 TEST_CASE("the quantiles of a distribution do not depend on the order in which its values are added") {
   Rng rng(3);
@@ -36,3 +36,5 @@ TEST_CASE("the median and mean of no values are 0") {
   CHECK(Distribution().median() == 0);
   CHECK(Distribution().mean() == 0);
 }
+
+}  // namespace sidestep::distribution_test

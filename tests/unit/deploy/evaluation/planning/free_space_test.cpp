@@ -7,9 +7,7 @@
 
 #include "common/random/rng.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::free_space_test {
 
 /// Labels the connected cells of a grid by flood fill. Distances come from signed_distance alone.
 class Grid {
@@ -117,8 +115,6 @@ bool connects(const std::vector<std::string>& rows) {
   return FreeSpace(scene.world).connects(scene.a, scene.b);
 }
 
-}  // namespace
-
 TEST_CASE("free space connects what a flood fill joins and separates what a flood fill separates") {
   int joined = 0, separated = 0, undecided = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -191,3 +187,5 @@ TEST_CASE("two islands in one ring, and rings around both positions, are told ap
   CHECK_FALSE(connects({"#########",  //
                         "#...#...#", "#a..#..b#", "#...#...#", "#########"}));
 }
+
+}  // namespace sidestep::free_space_test

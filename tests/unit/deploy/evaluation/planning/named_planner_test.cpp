@@ -6,9 +6,7 @@
 
 #include "deploy/evaluation/planning/plan_picture.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::named_planner_test {
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t times = 0;
@@ -43,8 +41,6 @@ int count_straight(const std::string& planner, const PlanWorld& world) {
   for (const PlanQuery& query : world.queries) straight += planning.plan(query).states.size() == 2;
   return straight;
 }
-
-}  // namespace
 
 TEST_CASE("every planner plans by its name and draws what it explored") {
   const PlanWorld world = make_world("u", 3, 1);
@@ -108,3 +104,5 @@ TEST_CASE("each addition to a namesake is a row of its own") {
   CHECK_FALSE(cached.draw().cache.empty());
   CHECK(straight.draw().cache.empty());
 }
+
+}  // namespace sidestep::named_planner_test

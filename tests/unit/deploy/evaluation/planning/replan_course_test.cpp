@@ -3,15 +3,11 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::replan_course_test {
 
 Vec2 centre_of(const DiscDomain& domain, std::uint32_t circle) {
   return std::get<Circle>(domain.world().shape(ObstacleId{circle})).centre_m;
 }
-
-}  // namespace
 
 TEST_CASE("on a replan course the robot and the obstacles keep their speeds and stay on the field") {
   const auto seed = GENERATE(1u, 2u);
@@ -64,3 +60,5 @@ TEST_CASE("the same seed gives the same replan course, and a different seed a di
   CHECK(a.start_m() != c.start_m());
   CHECK(centre_of(a.domain(), 7) != centre_of(c.domain(), 7));
 }
+
+}  // namespace sidestep::replan_course_test

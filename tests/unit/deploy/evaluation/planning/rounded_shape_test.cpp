@@ -6,9 +6,7 @@
 #include "common/random/rng.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::rounded_shape_test {
 
 constexpr double kStep_m = 0.05;
 
@@ -32,8 +30,6 @@ double sampled_distance_m(const std::vector<Vec2>& a, const std::vector<Vec2>& b
     for (const Vec2& q : b) nearest2_m2 = std::min(nearest2_m2, (p - q).squaredNorm());
   return std::sqrt(nearest2_m2);
 }
-
-}  // namespace
 
 TEST_CASE("the closest points of two shapes are as close as dense samples of both and lie on both") {
   const auto seed = GENERATE(1u, 2u, 3u);
@@ -68,3 +64,5 @@ TEST_CASE("a rounded shape has the same distance from a point as the shape outsi
     }
   }
 }
+
+}  // namespace sidestep::rounded_shape_test

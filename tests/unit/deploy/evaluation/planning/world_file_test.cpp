@@ -6,9 +6,7 @@
 
 #include "common/config/scenario_loader.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::world_file_test {
 
 const std::string kQuery = "queries: [{start_m: [0, 0], goal_m: [1, 0]}]\n";
 
@@ -23,8 +21,6 @@ void check_refused(const std::string& text, int line, const std::string& reason)
   CHECK_THAT(message, Catch::StartsWith("file.yaml:" + std::to_string(line) + ": "));
   CHECK_THAT(message, Catch::Contains(reason));
 }
-
-}  // namespace
 
 TEST_CASE("a world is read back from its text") {
   const std::string name = GENERATE(from_range(world_names()));
@@ -64,3 +60,5 @@ TEST_CASE("errors in a world file are reported with their line") {
                 "clockwise");
   check_refused(kQuery + "obstacles:\n  - box: {min_m: [1, 0], max_m: [0, 1]}\n", 3, "min");
 }
+
+}  // namespace sidestep::world_file_test

@@ -7,7 +7,7 @@
 #include "deploy/evaluation/planning/free_space.hpp"
 #include "deploy/evaluation/planning/world_file.hpp"
 
-using namespace sidestep;
+namespace sidestep::worlds_test {
 
 TEST_CASE("worlds come from their seed and all queries are solvable") {
   const std::string name = GENERATE(from_range(world_names()));
@@ -54,3 +54,5 @@ TEST_CASE("the path check finds contacts of a micrometre between the corners of 
     CHECK_FALSE(is_valid_path(world, {{-3, -1}, {-3, 0.599999}, {3, 0.599999}}, 0));
   }
 }
+
+}  // namespace sidestep::worlds_test

@@ -8,9 +8,7 @@
 #include "common/process/process.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::study_command_test {
 
 /// Parses `sidestep study ARGUMENTS`, runs its action if there is one, and returns the exit code.
 int study(std::vector<std::string> arguments) {
@@ -24,8 +22,6 @@ int study(std::vector<std::string> arguments) {
   const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());
   return exit_code ? *exit_code : action();
 }
-
-}  // namespace
 
 TEST_CASE("a study with wrong arguments is refused before it begins") {
   const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
@@ -49,3 +45,5 @@ TEST_CASE("a study names the folder that it cannot write to before it begins") {
   std::ofstream(folder.path()) << "a file";
   CHECK_THROWS_WITH(study({name, "--out", folder.path()}), Catch::Contains(folder.path()));
 }
+
+}  // namespace sidestep::study_command_test

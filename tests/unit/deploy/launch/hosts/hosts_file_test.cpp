@@ -6,9 +6,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/launch/hosts/placement.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::hosts_file_test {
 
 const std::string kTwoHosts = R"(launcher: {interface: 10.1.0.9}
 hosts:
@@ -53,8 +51,6 @@ std::string placement_error(const std::string& text) {
   }
   return "";
 }
-
-}  // namespace
 
 TEST_CASE("a hosts file assigns each process to a host") {
   const Hosts hosts = parse_hosts(kTwoHosts, "hosts.yaml");
@@ -154,3 +150,5 @@ TEST_CASE("the shipped hosts files fit any scenario") {
     CHECK_NOTHROW(Placement(hosts, scenario));
   }
 }
+
+}  // namespace sidestep::hosts_file_test

@@ -8,7 +8,7 @@
 #include "common/motion/clearance.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-namespace sidestep {
+namespace sidestep::audit_path_test {
 
 TEST_CASE("an audit path agrees with the system's own trajectory") {
   const std::uint64_t seed = GENERATE(range(1, 20));
@@ -59,4 +59,4 @@ TEST_CASE("implausible versions are rejected") {
   CHECK_FALSE(is_sane(version));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::audit_path_test

@@ -3,9 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::audited_robot_test {
 
 /// Versions 1 to `count`, of which the first `excluded` were excluded at 10 ns.
 AuditedRobot robot_with(VersionNumber count, VersionNumber excluded) {
@@ -20,8 +18,6 @@ AuditedRobot robot_with(VersionNumber count, VersionNumber excluded) {
 }
 
 VersionNumber first_recent(const AuditedRobot& robot) { return robot.versions.at(robot.first_recent).number; }
-
-}  // namespace
 
 TEST_CASE("versions excluded long ago are skipped until new evidence arrives") {
   AuditedRobot robot = robot_with(5, 3);
@@ -59,3 +55,5 @@ TEST_CASE("a version is found near its former index") {
     for (std::size_t index = 0; index <= size; ++index) CHECK(robot.find_near(index, number) == expected);
   }
 }
+
+}  // namespace sidestep::audited_robot_test

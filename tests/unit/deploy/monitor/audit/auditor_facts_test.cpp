@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
 
-namespace sidestep {
+namespace sidestep::auditor_facts_test {
 
 using namespace std::chrono_literals;
 
@@ -190,4 +190,4 @@ TEST_CASE("ground truth that contradicts the promise is reported under its rule"
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::auditor_facts_test

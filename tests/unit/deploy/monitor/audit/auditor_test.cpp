@@ -8,7 +8,7 @@
 
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
 
-namespace sidestep {
+namespace sidestep::auditor_test {
 
 using namespace std::chrono_literals;
 
@@ -283,4 +283,4 @@ TEST_CASE("invalid messages are counted and otherwise ignored") {
   CHECK(totals.invalid > 10);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::auditor_test

@@ -3,10 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
-using namespace std::chrono_literals;
+namespace sidestep::disturbances_test {
 
-namespace {
+using namespace std::chrono_literals;
 
 constexpr Duration kPeriod = 10ms;
 constexpr double kContactDistance_m = 0.181;
@@ -33,8 +32,6 @@ struct Run {
   Disturbances disturbances;
   Time end_time, now = kPushTime;
 };
-
-}  // namespace
 
 TEST_CASE("a robot counts as disturbed until it is observed in place a while after the disturbance") {
   Run run(true, 500ms);
@@ -111,3 +108,5 @@ TEST_CASE("an obstacle is never disturbed") {
   CHECK(run.disturbances.on_contact(0, std::nullopt));
   CHECK(run.disturbances.on_contact(std::nullopt, 0));
 }
+
+}  // namespace sidestep::disturbances_test

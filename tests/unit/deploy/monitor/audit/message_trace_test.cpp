@@ -7,8 +7,7 @@
 
 #include "common/random/rng.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::message_trace_test {
 
 using namespace std::chrono_literals;
 
@@ -20,8 +19,6 @@ msg::Header head_of(std::uint64_t number, std::int64_t stamp_ns) {
   header.stamp_ns(stamp_ns);
   return header;
 }
-
-}  // namespace
 
 TEST_CASE("missed messages are counted by the gaps in message numbers") {
   MessageTrace trace(5ms);
@@ -65,4 +62,4 @@ TEST_CASE("the sending time is bounded although the sender's clock has an unknow
   CHECK(widest_ns == 5'000'000);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::message_trace_test

@@ -7,12 +7,9 @@
 
 #include "common/config/scenario_loader.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::progress_test {
 
 const Scenario kFive = parse_scenario("circle: {count: 5, spacing_m: 0.5}\n", "five.yaml");
-
-}  // namespace
 
 TEST_CASE("a progress line shows \"starting\", later the time since the first grant") {
   RunMetrics metrics(kFive);
@@ -73,4 +70,4 @@ TEST_CASE("a progress table has one line per robot and counts those that do not 
   CHECK(lines(progress_table(metrics, Time{}, -3)) == 2 + 1 + 1);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::progress_test

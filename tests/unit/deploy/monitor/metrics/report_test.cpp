@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-namespace sidestep {
-namespace {
+namespace sidestep::report_test {
 
 Report example() {
   Report report;
@@ -29,8 +28,6 @@ Report example() {
   report.conflicts = {{3, 7}};
   return report;
 }
-
-}  // namespace
 
 TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order") {
   const std::string text = to_json(example());
@@ -181,4 +178,4 @@ TEST_CASE("excused contacts do not fail a run, other contacts do") {
   CHECK(report.failure_reason() == "1 contacts");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::report_test

@@ -8,8 +8,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/histogram_codec.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::run_metrics_test {
 
 const Scenario kTwo = parse_scenario(
     "robots:\n"
@@ -72,8 +71,6 @@ constexpr auto kGranting = msg::CoordinatorMode::COORDINATOR_GRANTING;
 constexpr auto kDriving = msg::AgentState::AGENT_DRIVING;
 constexpr auto kFencing = msg::AgentState::AGENT_FENCING;
 constexpr auto kArrived = msg::AgentState::AGENT_ARRIVED;
-
-}  // namespace
 
 TEST_CASE("arrival time runs from the first grant until the robot settles at its last goal") {
   RunMetrics metrics(kTwo);
@@ -384,4 +381,4 @@ TEST_CASE("crashes are summed over the simulator's incarnations, and maximum spe
   CHECK(metrics.dropped_messages() == 1);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::run_metrics_test

@@ -14,8 +14,7 @@
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::recording_test {
 
 using namespace std::chrono_literals;
 
@@ -65,8 +64,6 @@ AuditedPlayback play(const std::string& path) {
   const PlaybackResult result = bus.play();
   return {auditor.totals(), result};
 }
-
-}  // namespace
 
 TEST_CASE("a recording plays back the messages of the run") {
   const TemporaryFile file;
@@ -168,4 +165,4 @@ TEST_CASE("a file that is not a recording is refused with its name") {
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), Catch::Contains("cannot be written"));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::recording_test

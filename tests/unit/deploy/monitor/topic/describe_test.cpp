@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace sidestep {
-namespace {
+namespace sidestep::describe_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -74,8 +73,6 @@ std::string to_lines(std::string enumerator, const std::string& prefix) {
   for (char& c : enumerator) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));
   return enumerator;
 }
-
-}  // namespace
 
 TEST_CASE("a description contains the members of each message in IDL order") {
   const std::string idl = without_comments(idl_text());
@@ -162,4 +159,4 @@ TEST_CASE("a count beyond its array shows the whole array and the unmodified cou
   CHECK(description["candidates"][1]["phases"].empty());
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::describe_test

@@ -12,8 +12,7 @@
 #include "deploy/monitor/topic/topic_table.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::topic_tools_test {
 
 using Catch::Matchers::Contains;
 
@@ -112,8 +111,6 @@ class Publisher {
   Writer<msg::WorldState> writer_;
   std::thread thread_;
 };
-
-}  // namespace
 
 TEST_CASE("a rate is the number of gaps per second, with the shortest and longest gap") {
   RateMeter meter;
@@ -226,4 +223,4 @@ TEST_CASE("wrong usage of sidestep topic exits with code 2") {
   CHECK(topic({"--help"}).exit_code == 0);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::topic_tools_test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::campaign_summary_test {
 
 TEST_CASE("the upper bound of a rate agrees with tables of the Poisson distribution") {
   // Tables of the Poisson distribution, one-sided 95 %.
@@ -58,3 +58,5 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK_THAT(forwards.text(), Catch::Contains("3 excused contacts of robots that were pushed"));
   CHECK_THAT(forwards.text(), Catch::Contains("smallest clearance, in metres: seed 7 (-0.002)"));
 }
+
+}  // namespace sidestep::campaign_summary_test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::distance_meter_test {
 
 TEST_CASE("distances are measured in total and since a given time, without position noise") {
   DistanceMeter meter(time_from_ns(5'000'000'000));
@@ -21,3 +21,5 @@ TEST_CASE("distances are measured in total and since a given time, without posit
   CHECK(meter.total_since_m() == Approx(1).margin(0.02));
   CHECK(meter.stationary_robots(0.05) == std::vector<RobotId>{4});
 }
+
+}  // namespace sidestep::distance_meter_test

@@ -6,10 +6,9 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 
-using namespace sidestep;
-using namespace std::chrono_literals;
+namespace sidestep::fault_player_test {
 
-namespace {
+using namespace std::chrono_literals;
 
 Scenario pair_of_robots() {
   return parse_scenario(
@@ -36,8 +35,6 @@ struct Verdicts {
   SimBus bus;
   std::uint64_t answered = 0;
 };
-
-}  // namespace
 
 TEST_CASE("a partition cuts links for its duration, also if two overlap") {
   const Scenario scenario = pair_of_robots();
@@ -114,3 +111,5 @@ TEST_CASE("a system that never starts to drive is reported as stuck") {
   trial.plan.faults.clear();
   CHECK(run_trial(trial).failures.empty());
 }
+
+}  // namespace sidestep::fault_player_test

@@ -10,7 +10,8 @@
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
-using namespace sidestep;
+namespace sidestep::fault_sampler_test {
+
 using namespace std::chrono_literals;
 
 TEST_CASE("random scenes have the specified size and density, and no two are alike") {
@@ -117,3 +118,5 @@ TEST_CASE("the same seed gives the same trial, and the scene does not depend on 
   CHECK(scene_summary(a.scenario) == scene_summary(shorter.scenario));
   CHECK(scene_summary(a.scenario) != scene_summary(other.scenario));
 }
+
+}  // namespace sidestep::fault_sampler_test

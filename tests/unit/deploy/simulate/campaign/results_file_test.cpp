@@ -6,9 +6,7 @@
 #include <fstream>
 #include <unistd.h>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::results_file_test {
 
 struct Folder {
   std::filesystem::path path =
@@ -27,8 +25,6 @@ TrialResult result_of(std::uint64_t seed) {
 }
 
 void append(const std::string& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
-
-}  // namespace
 
 TEST_CASE("results of a campaign are read again, except for an incomplete last line") {
   const Folder folder;
@@ -64,3 +60,5 @@ TEST_CASE("a file of another campaign, or without results, is refused with the r
   CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "campaign A"),
                     Catch::Contains("cannot be written"));
 }
+
+}  // namespace sidestep::results_file_test

@@ -8,9 +8,7 @@
 #include <stdexcept>
 #include <unistd.h>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::worker_pool_test {
 
 struct Outcome {
   std::map<std::uint64_t, std::string> lines, deaths;
@@ -26,8 +24,6 @@ Outcome run(int workers, std::uint64_t first, std::uint64_t last, const WorkerPo
   pool.run(jobs);
   return outcome;
 }
-
-}  // namespace
 
 TEST_CASE("every job is done once, for any number of workers") {
   const auto square = [](std::uint64_t job) {
@@ -52,3 +48,5 @@ TEST_CASE("a job that kills its worker is reported, and all other jobs are done"
   CHECK_THAT(outcome.deaths.at(5), Catch::Contains("signal 9"));
   CHECK(outcome.deaths.at(11) == "exit code 3");
 }
+
+}  // namespace sidestep::worker_pool_test

@@ -5,8 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 
-namespace sidestep {
-namespace {
+namespace sidestep::sim_system_test {
 
 using namespace std::chrono_literals;
 
@@ -18,8 +17,6 @@ std::string outcome(SimSystem& system) {
   report.plan = report.search = DurationHistogram{};
   return to_json(report);
 }
-
-}  // namespace
 
 TEST_CASE("the same seed gives the same run, another seed another one") {
   Scenario scenario = crossing();
@@ -109,4 +106,4 @@ TEST_CASE("an unknown process cannot be started") {
   CHECK_THROWS_WITH(system.restart("coordinator 1"), Catch::Contains("no process \"coordinator 1\""));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim_system_test

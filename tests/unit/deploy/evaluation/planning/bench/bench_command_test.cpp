@@ -6,9 +6,7 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::bench_command_test {
 
 /// The exit code of `bench planning ARGUMENTS` in one world with few queries.
 int bench(std::vector<std::string> arguments) {
@@ -32,8 +30,6 @@ std::vector<std::string> quick_with(std::initializer_list<std::string> more) {
   return arguments;
 }
 
-}  // namespace
-
 TEST_CASE("the planning benchmark exits with 0 when nothing is wrong") { CHECK(bench(kQuick) == 0); }
 
 TEST_CASE("the planning benchmark exits with 1 when a planner's path is not valid") {
@@ -51,3 +47,5 @@ TEST_CASE("the planning benchmark refuses wrong arguments") {
   CHECK(bench({"--queries", "0"}) == kExitUsage);
   CHECK(bench({"--ms", "-1"}) == kExitUsage);
 }
+
+}  // namespace sidestep::bench_command_test

@@ -8,17 +8,13 @@
 #include "deploy/evaluation/planning/bench/query_bench.hpp"
 #include "deploy/evaluation/planning/named_planner.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::bench_planner_test {
 
 std::vector<std::string> names_of(const std::vector<BenchPlanner>& planners) {
   std::vector<std::string> names;
   for (const BenchPlanner& planner : planners) names.push_back(planner.name);
   return names;
 }
-
-}  // namespace
 
 TEST_CASE("the benchmark has every planner of ours and every peer once") {
   std::vector<std::string> names = names_of(bench_planners()), expected = planner_names();
@@ -108,3 +104,5 @@ TEST_CASE("planted planners are what they are called, and others are refused") {
   CHECK(solved == 6);
   CHECK_THROWS_WITH(planted_planner("rrt"), Catch::Contains("\"rrt\""));
 }
+
+}  // namespace sidestep::bench_planner_test

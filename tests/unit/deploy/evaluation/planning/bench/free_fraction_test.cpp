@@ -6,7 +6,7 @@
 #include "common/random/rng.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
-using namespace sidestep;
+namespace sidestep::free_fraction_test {
 
 TEST_CASE("the free fraction of a motion ends a micrometre before its first contact") {
   const ObstacleWorld obstacles({Box{{1, -1}, {2, 1}}});
@@ -35,3 +35,5 @@ TEST_CASE("the free part of a motion is free and little more of it is not") {
   }
   CHECK(blocked > 500);
 }
+
+}  // namespace sidestep::free_fraction_test

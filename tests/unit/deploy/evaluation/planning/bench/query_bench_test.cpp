@@ -6,9 +6,7 @@
 
 #include "agents/planning/visibility/tangent_graph.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::query_bench_test {
 
 using Answer = std::function<TimedPlan(const BenchmarkWorld&, const PlanQuery&)>;
 
@@ -35,8 +33,6 @@ std::vector<std::string> failures(const std::vector<BenchPlanner>& planners) {
   const std::vector<PlanWorld> worlds{make_world("u", 20, 1), make_world("u", 20, 2)};
   return query_bench_failures(bench_queries(worlds, planners, 10, 1), planners);
 }
-
-}  // namespace
 
 TEST_CASE("the benchmark passes planners with valid paths and counts what they did") {
   const BenchPlanner good = planner_of("good", right_answer);
@@ -153,3 +149,5 @@ TEST_CASE("a table gives a 99th percentile only for a thousand queries, and rati
     ++times;
   CHECK(times == (queries < 1000 ? 2 : 3));  // median, p95, p99
 }
+
+}  // namespace sidestep::query_bench_test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::replan_bench_test {
 
 TEST_CASE("replans of planners are valid among circles that move") {
   CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache"}, 60, 1).empty());
@@ -12,3 +12,5 @@ TEST_CASE("replans of planners are valid among circles that move") {
 TEST_CASE("planners that keep a world are not asked in one that moves") {
   CHECK(bench_replanning({"visibility", "prm"}, 10, 1).empty());
 }
+
+}  // namespace sidestep::replan_bench_test

@@ -4,9 +4,7 @@
 #include <bit>
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::significance_test {
 
 /// Slow reference: enumerates every choice of the trials that succeed.
 double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other_successes,
@@ -21,8 +19,6 @@ double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other
   }
   return as_few / all;
 }
-
-}  // namespace
 
 TEST_CASE("Fisher's test gives the probability found by enumeration") {
   for (std::size_t trials = 1; trials <= 6; ++trials)
@@ -43,3 +39,5 @@ TEST_CASE("Fisher's test finds a difference in a thousand queries and none where
   CHECK(fewer_successes_p(850, 1000, 800, 1000) > 0.5);
   CHECK(fewer_successes_p(0, 0, 3, 3) == Approx(1));
 }
+
+}  // namespace sidestep::significance_test

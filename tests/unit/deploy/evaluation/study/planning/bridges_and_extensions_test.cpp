@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::bridges_and_extensions_test {
 
 TEST_CASE("the experiment on bridges and extensions depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -30,3 +30,5 @@ TEST_CASE("more bridges shorten paths at the cost of nodes, and more extensions 
   for (const char* bridges : {"1", "16"})
     CHECK(of("32", bridges, "median_length") > of("1", bridges, "median_length"));
 }
+
+}  // namespace sidestep::bridges_and_extensions_test

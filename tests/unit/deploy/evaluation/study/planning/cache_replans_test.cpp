@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::cache_replans_test {
 
 TEST_CASE("the experiment on caches depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -31,3 +31,5 @@ TEST_CASE("with a cache replans keep fewer nodes and paths are shorter") {
     }
   }
 }
+
+}  // namespace sidestep::cache_replans_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::cache_strategies_test {
 
 TEST_CASE("the experiment on cache strategies depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -27,3 +27,5 @@ TEST_CASE("with each strategy replans keep fewer nodes the more often they grow 
     CHECK(nodes("0", "p95_nodes") > 2 * nodes("0.7", "p95_nodes"));
   }
 }
+
+}  // namespace sidestep::cache_strategies_test

@@ -8,7 +8,7 @@
 #include "deploy/evaluation/study/planning/fcl_tree.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::collision_structures_test {
 
 TEST_CASE("the experiment on collision structures depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -47,3 +47,5 @@ TEST_CASE("the obstacles of a collision problem cover the same area, whatever th
   }
   CHECK(area_m2 == Approx(CollisionProblem::kCovered).epsilon(0.1));
 }
+
+}  // namespace sidestep::collision_structures_test

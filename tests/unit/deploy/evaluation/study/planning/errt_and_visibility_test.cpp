@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::errt_and_visibility_test {
 
 TEST_CASE("the experiment on trees and visibility graphs depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -34,3 +34,5 @@ TEST_CASE("visibility graphs find the shortest paths and trees longer ones") {
     }
   }
 }
+
+}  // namespace sidestep::errt_and_visibility_test

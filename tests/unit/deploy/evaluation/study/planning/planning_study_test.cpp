@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::planning_study_test {
 
 TEST_CASE("the quick study of planning writes all its tables and pictures") {
   StudyFolder folder;
@@ -21,3 +21,5 @@ TEST_CASE("the quick study of planning writes all its tables and pictures") {
     CHECK(folder.has_png(name));
   }
 }
+
+}  // namespace sidestep::planning_study_test

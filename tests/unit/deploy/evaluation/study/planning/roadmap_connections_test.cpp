@@ -5,9 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
-
-namespace {
+namespace sidestep::roadmap_connections_test {
 
 RoadmapConnections sizes(std::size_t worlds, std::size_t queries) {
   RoadmapConnections settings;
@@ -19,8 +17,6 @@ RoadmapConnections sizes(std::size_t worlds, std::size_t queries) {
   settings.queries = queries;
   return settings;
 }
-
-}  // namespace
 
 TEST_CASE("the experiment on roadmap connections depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -56,3 +52,5 @@ TEST_CASE("roadmaps with more edges solve more queries, and fewer after obstacle
   CHECK(of("sectors", "4", "0", "edges_per_node") < of("nearest", "4", "0", "edges_per_node"));
   CHECK(of("sectors", "4", "0", "solved_percent") > of("nearest", "4", "0", "solved_percent"));
 }
+
+}  // namespace sidestep::roadmap_connections_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::terrain_structures_test {
 
 TEST_CASE("the experiment on terrain structures depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& progress) {
@@ -30,3 +30,5 @@ TEST_CASE("large terrains are not timed with the linear list") {
   const auto rows = rows_of(terrain_structures({{8, 16}, 50, 1, 200}, 1, [](auto, auto) {}));
   for (const StudyRow& row : rows) CHECK((row.at("structure") != "linear" || row.at("triangles") == "128"));
 }
+
+}  // namespace sidestep::terrain_structures_test

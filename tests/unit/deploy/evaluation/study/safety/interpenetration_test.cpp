@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace sidestep;
+namespace sidestep::interpenetration_test {
 
 TEST_CASE("a disc that passes through another counts depth times time, and one contact") {
   // One disc passes through the centre of a resting one at 1 m/s. The depth is 0.2 m minus the distance,
@@ -29,3 +29,5 @@ TEST_CASE("discs that approach and part without contact count their clearance on
   CHECK(meter.contacts() == 0);
   CHECK(meter.min_clearance_m() == Approx(0.05));
 }
+
+}  // namespace sidestep::interpenetration_test

@@ -6,7 +6,7 @@
 #include "deploy/evaluation/study/safety/traversal.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::safety_study_test {
 
 TEST_CASE("the quick study shows that the safety search and the margin prevent contacts") {
   StudyFolder folder;
@@ -71,3 +71,5 @@ TEST_CASE("the same seed gives the same floor, and a different seed a different 
   }
   CHECK(moved > 0);
 }
+
+}  // namespace sidestep::safety_study_test

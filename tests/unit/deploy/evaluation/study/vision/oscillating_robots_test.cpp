@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-using namespace sidestep;
+namespace sidestep::oscillating_robots_test {
 
 TEST_CASE("oscillating robots stay on the field and apart, and their velocities match their motion") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
@@ -41,3 +41,5 @@ TEST_CASE("a field without space for the robots is refused") {
   CHECK_THROWS_AS(OscillatingRobots({1, 1}, 11, rng), std::invalid_argument);
   CHECK_THROWS_AS(OscillatingRobots({60, 40}, 17, rng), std::invalid_argument);
 }
+
+}  // namespace sidestep::oscillating_robots_test

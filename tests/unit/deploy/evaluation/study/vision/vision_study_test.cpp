@@ -8,7 +8,7 @@
 #include "deploy/evaluation/study/vision/recognition.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
-using namespace sidestep;
+namespace sidestep::vision_study_test {
 
 TEST_CASE("the results of all experiments depend only on the seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
@@ -61,3 +61,5 @@ TEST_CASE("the quick study of vision writes all its tables and pictures") {
     CHECK(folder.has_png(name));
   }
 }
+
+}  // namespace sidestep::vision_study_test
