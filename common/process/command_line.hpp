@@ -61,8 +61,8 @@ class Command {
   void require_subcommand() const;
   /// Text at the end of --help.
   void add_footer(const std::string& text) const;
-  /// An option if the name begins with dashes, else a positional argument. `Value` is std::string, bool (a
-  /// flag), any integer or floating-point type, or std::optional or std::vector of one of these.
+  /// An option if the name begins with dashes, else a positional argument. `Value` is one of the types for
+  /// which command_line.cpp instantiates this template.
   template <typename Value>
   Option add_option(const std::string& name, Value& value, const std::string& description = {}) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description = {}) const;
