@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   Program program;
   program.name = "sidestep-agent";
   program.description = "Drives one robot: plans its route and negotiates every motion with the coordinator.";
-  program.add_options = [&](const Command& app) {
+  program.add_options = [&](const CliCommand& app) {
     app.add_option("--robot", robot, "id of the robot in the scenario").required();
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };

@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/robot_messages.hpp"
 #include "coordinator/ledger.hpp"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
 
 namespace sidestep {
 
 /// The only place where versions are compared: registration, verdicts and the ledger of one epoch. It needs
-/// no clock. Messages may be late, repeated, wrong or hostile; an invalid one changes nothing.
+/// no clock. Messages may be late, repeated or wrong; an invalid one changes nothing.
 class Coordinator {
  public:
   /// In epoch 0 the coordinator stands by and answers no messages.
@@ -21,14 +21,13 @@ class Coordinator {
   /// Clears all state and begins an epoch, or stands by if `epoch` is 0.
   void begin_epoch(Epoch epoch);
 
-  /// The answer to a proposal. nullopt while standing by, or if the proposal's robot is not its sender or is
-  /// not on the roster.
-  [[nodiscard]] std::optional<msg::Verdict> on_proposal(const msg::Proposal& proposal);
+  /// The answer to a proposal. nullopt while standing by, or if the robot is not on the roster.
+  [[nodiscard]] std::optional<Verdict> on_proposal(const Proposal& proposal);
   /// The answer to a registration, with proposal_number 0 and REASON_GRANTED if the agent is registered now;
   /// nullopt as for on_proposal().
-  std::optional<msg::Verdict> on_registration(const msg::Registration& registration);
+  std::optional<Verdict> on_registration(const Registration& registration);
   /// A fact from a robot.
-  void on_feedback(const msg::Feedback& feedback);
+  void on_feedback(const Feedback& feedback);
   /// A robot has reported a fact that is inconsistent with the ledger. Nothing is granted until a new epoch
   /// begins.
   bool is_contradicted() const { return contradicted_; }
@@ -49,15 +48,15 @@ class Coordinator {
     bool registered = false;
     Incarnation incarnation = 0;
     VersionNumber newest_number = 0;  // highest version number proposed so far
-    std::array<msg::Verdict, kVerdictHistory> verdicts;
+    std::array<Verdict, kVerdictHistory> verdicts;
     std::uint64_t verdict_count = 0;  // verdicts in this incarnation
   };
 
   Record& record_of(RobotId robot) { return records_[robot]; }
-  msg::Reason register_agent(const msg::Registration& registration);
-  const msg::Verdict* find_verdict(const Record& record, std::uint64_t proposal_number) const;
-  void decide(const msg::Proposal& proposal, Record& record, msg::Verdict& verdict);
-  msg::Reason refusal_reason(const msg::Proposal& proposal, const Record& record) const;
+  msg::Reason register_agent(const Registration& registration);
+  const Verdict* find_verdict(const Record& record, VersionNumber proposal_number) const;
+  void decide(const Proposal& proposal, Record& record, Verdict& verdict);
+  msg::Reason refusal_reason(const Proposal& proposal, const Record& record) const;
 
   Ledger ledger_;
   Epoch epoch_;

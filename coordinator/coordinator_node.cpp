@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
+#include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "coordinator/ledger_pages.hpp"
 
@@ -24,15 +26,12 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id,
-                   [this](const msg::Feedback& feedback) { on_feedback(feedback); });
+                   [this, id = robot.id](const msg::Feedback& message) { take(decode(message, id)); });
   }
-  bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
-    failover_.on_coordinator_state(state, bus_.now());
-    apply_epoch();
-  });
-  bus_.subscribe(topics::kRegistration,
-                 [this](const msg::Registration& registration) { on_registration(registration); });
-  bus_.subscribe(topics::kProposal, [this](const msg::Proposal& proposal) { on_proposal(proposal); });
+  bus_.subscribe(topics::kCoordinator,
+                 [this](const msg::CoordinatorState& message) { take(decode(message, bus_.now())); });
+  bus_.subscribe(topics::kRegistration, [this](const msg::Registration& message) { take(decode(message)); });
+  bus_.subscribe(topics::kProposal, [this](const msg::Proposal& message) { take(decode(message)); });
   update_failover();
   publish_state_periodically();
   publish_ledger();
@@ -45,35 +44,48 @@ void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
   writer.publish(message, bus_.now());
 }
 
-template <typename Message>
-void CoordinatorNode::observe_epoch(const Message& message, Epoch epoch) {
-  if (message.header().sender() != message.robot() || !coordinator_.ledger().has_robot(message.robot()))
-    return;
-  failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
+template <typename Decoded>
+void CoordinatorNode::take(const std::optional<Decoded>& decoded) {
+  if (decoded)
+    handle(*decoded);
+  else
+    ++invalid_;
+}
+
+void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
+  failover_.on_heartbeat(heartbeat, bus_.now());
   apply_epoch();
 }
 
-void CoordinatorNode::on_registration(const msg::Registration& registration) {
-  observe_epoch(registration, registration.epoch());
+void CoordinatorNode::handle(const Registration& registration) {
+  observe_epoch(registration.robot, registration.epoch);
   const bool was_granting = coordinator_.is_granting();
-  if (auto answer = coordinator_.on_registration(registration)) {
-    publish(verdict_writers_.at(answer->robot()), *answer);
-  }
+  if (const auto verdict = coordinator_.on_registration(registration)) answer(*verdict);
   if (coordinator_.is_granting() != was_granting) publish_state();
 }
 
-void CoordinatorNode::on_feedback(const msg::Feedback& feedback) {
-  observe_epoch(feedback, feedback.obeyed_epoch());
+void CoordinatorNode::handle(const Feedback& feedback) {
+  observe_epoch(feedback.robot, feedback.obeyed_epoch);
   coordinator_.on_feedback(feedback);
   if (!coordinator_.is_contradicted()) return;
   failover_.begin_epoch(bus_.now());
   apply_epoch();
 }
 
-void CoordinatorNode::on_proposal(const msg::Proposal& proposal) {
-  observe_epoch(proposal, proposal.epoch());
-  if (auto verdict = coordinator_.on_proposal(proposal))
-    publish(verdict_writers_.at(verdict->robot()), *verdict);
+void CoordinatorNode::handle(const Proposal& proposal) {
+  observe_epoch(proposal.robot, proposal.epoch);
+  if (const auto verdict = coordinator_.on_proposal(proposal)) answer(*verdict);
+}
+
+void CoordinatorNode::observe_epoch(RobotId robot, Epoch epoch) {
+  if (!coordinator_.ledger().has_robot(robot)) return;
+  failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
+  apply_epoch();
+}
+
+void CoordinatorNode::answer(const Verdict& verdict) {
+  msg::Verdict message = encode(verdict);
+  publish(verdict_writers_.at(verdict.robot), message);
 }
 
 void CoordinatorNode::apply_epoch() {
@@ -91,7 +103,7 @@ void CoordinatorNode::update_failover() {
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
-  state.invalid(state.invalid() + failover_.invalid());
+  state.invalid(state.invalid() + failover_.invalid() + invalid_);
   publish(state_writer_, state);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "common/messaging/bus.hpp"
 #include "coordinator/coordinator.hpp"
@@ -9,8 +10,9 @@
 
 namespace sidestep {
 
-/// Connects a coordinator to the bus: answers proposals and registrations immediately, publishes the ledger
-/// every cycle and heartbeats, and takes over from other coordinators.
+/// Connects a coordinator to the bus: decodes messages and counts invalid ones, answers proposals and
+/// registrations immediately, publishes the ledger every cycle and heartbeats, and takes over from other
+/// coordinators.
 class CoordinatorNode {
  public:
   CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, bool is_standby);
@@ -22,12 +24,16 @@ class CoordinatorNode {
  private:
   template <typename Message>
   void publish(Writer<Message>& writer, Message& message);
-  /// Records the epoch that the sender obeys.
-  template <typename Message>
-  void observe_epoch(const Message& message, Epoch epoch);
-  void on_registration(const msg::Registration& registration);
-  void on_feedback(const msg::Feedback& feedback);
-  void on_proposal(const msg::Proposal& proposal);
+  /// Handles a decoded message; counts it as invalid if decoding failed.
+  template <typename Decoded>
+  void take(const std::optional<Decoded>& decoded);
+  void handle(const CoordinatorHeartbeat& heartbeat);
+  void handle(const Registration& registration);
+  void handle(const Feedback& feedback);
+  void handle(const Proposal& proposal);
+  /// Records the epoch that an agent or a robot obeys.
+  void observe_epoch(RobotId robot, Epoch epoch);
+  void answer(const Verdict& verdict);
   /// Adopts the epoch of failover_, or stands by if failover_ does, and publishes the new state.
   void apply_epoch();
   void update_failover();
@@ -43,7 +49,8 @@ class CoordinatorNode {
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
-  int standby_periods_ = 0;  // heartbeat periods while standing by
+  int standby_periods_ = 0;    // heartbeat periods while standing by
+  std::uint64_t invalid_ = 0;  // messages that decoding refused
 };
 
 }  // namespace sidestep

@@ -53,22 +53,17 @@ void Failover::record_heartbeat(Time now) {
   backoff_exponent_ = 0;
 }
 
-void Failover::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
-  const msg::Header& header = state.header();
+void Failover::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
   const auto own_sender = static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number;
-  const bool is_own = header.sender() == own_sender && header.incarnation() == self_.incarnation;
-  if (is_own || state.epoch() == 0 || state.coordinator_mode() == msg::COORDINATOR_STANDBY) return;
-  if (!is_plausible(state.epoch(), now)) {
-    ++invalid_;
-    return;
-  }
-  if (state.epoch() < highest_) return;
-  if (is_active() && state.epoch() == epoch_) {
+  const bool is_own = heartbeat.sender == own_sender && heartbeat.incarnation == self_.incarnation;
+  if (is_own || heartbeat.epoch == 0 || heartbeat.mode == msg::COORDINATOR_STANDBY) return;
+  if (heartbeat.epoch < highest_) return;
+  if (is_active() && heartbeat.epoch == epoch_) {
     // Two instances with the same number share an epoch, so the grants of neither can be trusted.
-    if (header.incarnation() < self_.incarnation) return begin_epoch(now);
+    if (heartbeat.incarnation < self_.incarnation) return begin_epoch(now);
     return stand_by(now);
   }
-  highest_ = state.epoch();
+  highest_ = heartbeat.epoch;
   if (is_active()) {
     stand_by(now);
   } else {

@@ -4,8 +4,7 @@
 #include <array>
 
 #include "common/config/scenario.hpp"
-#include "common/motion/version.hpp"
-#include "idl/negotiation.h"
+#include "common/protocol/negotiation_messages.hpp"
 
 namespace sidestep {
 
@@ -33,7 +32,7 @@ class Failover {
   Failover(const CoordinatorIdentity& self, bool is_standby, Time now);
 
   /// A heartbeat of any coordinator, including this one.
-  void on_coordinator_state(const msg::CoordinatorState& state, Time now);
+  void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   /// An agent or robot obeys this epoch. `is_granting`: whether this coordinator grants at present.
   void on_obeyed_epoch(Epoch epoch, bool is_granting, Time now);
   /// Takes over if the heartbeats have stopped.
@@ -46,7 +45,7 @@ class Failover {
   Epoch epoch() const { return epoch_; }
   /// Silence after which a standby takes over; longer if heartbeats have been irregular.
   Duration takeover_timeout() const;
-  /// Messages ignored because their epoch was implausible.
+  /// Number of obeyed epochs that were ignored because they were implausible.
   std::uint64_t invalid() const { return invalid_; }
 
  private:

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 
 namespace sidestep {
 namespace {

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   program.name = "sidestep-coordinator";
   program.description =
       "Keeps the ledger of the versions that robots may execute, and grants versions that are clear of it.";
-  program.add_options = [&](const Command& app) {
+  program.add_options = [&](const CliCommand& app) {
     app.add_flag("--standby", is_standby, "listen, and take over when no other coordinator is active");
     app.add_option("--number", number,
                    "number of this coordinator among several; default 0, or 1 with --standby")

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   const std::string_view first = argc > 1 ? argv[1] : "";
   if (first == "study" || first == "bench") return exec_evaluation(argv);
   CommandLine command_line("Distributed multi-robot navigation without collisions.", "sidestep");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   app.require_subcommand();
   std::function<int()> action;
   add_run_command(app, action);

@@ -19,7 +19,7 @@ struct Options {
   std::string league_interface = league::kLeagueInterface;
 };
 
-void add_options(const Command& app, Options& options) {
+void add_options(const CliCommand& app, Options& options) {
   app.add_option("--seed", options.seed, "seed of all noise and loss").show_default();
   app.add_optional_value("--ssl-vision", options.ssl_vision, kSimulatedVision,
                          "also send SSL-Vision packets, to this ADDRESS:PORT");
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   program.name = "sidestep-simulator";
   program.description =
       "Simulates the floor: robot bodies and their firmware, the ball, opponents, and the cameras above.";
-  program.add_options = [&options](const sidestep::Command& app) { sidestep::add_options(app, options); };
+  program.add_options = [&options](const sidestep::CliCommand& app) { sidestep::add_options(app, options); };
   program.fault_target = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::Bus& bus,
                              const sidestep::Scenario& scenario) -> std::shared_ptr<void> {

@@ -18,7 +18,7 @@ int run_service(int argc, char** argv) {
   Program program;
   program.name = "sidestep-vision";
   program.description = "Fuses the cameras' detections into one tracked world.";
-  program.add_options = [&options](const Command& app) {
+  program.add_options = [&options](const CliCommand& app) {
     add_league_options(app, options);
     add_image_options(app, options.images);
     app.add_footer(

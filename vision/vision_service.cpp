@@ -14,7 +14,7 @@ FrameSource source_of(const Scenario& scenario, const VisionOptions& options) {
 
 }  // namespace
 
-void add_league_options(const Command& app, VisionOptions& options) {
+void add_league_options(const CliCommand& app, VisionOptions& options) {
   const Option source =
       app.add_option(
              "--source", [&options](const std::string& name) { options.is_league_source = name == "ssl"; },

@@ -23,7 +23,7 @@ struct VisionOptions {
 };
 
 /// Adds --source, --ssl-vision, --tracked and --league-interface.
-void add_league_options(const Command& app, VisionOptions& options);
+void add_league_options(const CliCommand& app, VisionOptions& options);
 
 /// The vision service with the sources and outputs that the options select. Precondition: the bus makes no
 /// callbacks after the service's destruction. Throws as MulticastReceiver, LeagueSource and image_reader()

@@ -14,9 +14,7 @@
 #include "agents/navigation/route_planner.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
-#include "idl/disturbance.h"
 #include "idl/monitor.h"
-#include "idl/vision.h"
 
 namespace sidestep {
 
@@ -28,13 +26,14 @@ struct MotionPlan {
 };
 
 /// The decisions of one robot, once per cycle: from observations and messages to proposals and commands. All
+/// messages that it takes are decoded for the robot, and those that it returns are encoded by the caller. All
 /// times are by the robot's clock, as estimated by the caller.
 class Agent {
  public:
   /// The consequences of a verdict.
   struct VerdictResult {
-    std::optional<msg::Command> command;  ///< forwards the granted version
-    std::optional<Duration> round_trip;   ///< from the proposal to its verdict
+    std::optional<Command> command;      ///< forwards the granted version
+    std::optional<Duration> round_trip;  ///< from the proposal to its verdict
   };
 
   /// Precondition: `scenario` contains the robot, and `scratch` was made for the scenario.
@@ -43,15 +42,16 @@ class Agent {
 
   /// Returns whether the agent should propose again immediately, because the robot does not execute the
   /// version that the last proposal was based on.
-  bool on_feedback(const msg::Feedback& feedback);
+  bool on_feedback(const Feedback& feedback);
   /// `now`: upper bound of the time by the robot's clock.
-  void on_world(const msg::WorldState& world, Time now);
-  /// `attachment` as in Neighbours::on_page().
-  void on_ledger(const msg::LedgerPage& page, MessageAttachment* attachment = nullptr);
-  /// Learns where a lifted robot is to be put down.
-  void on_disturbance(const msg::Disturbance& disturbance);
-  void on_coordinator_state(const msg::CoordinatorState& state, Time now);
-  VerdictResult on_verdict(const msg::Verdict& verdict, Time now);
+  void on_world(const WorldObservations& world, Time now);
+  void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
+  /// Learns where the lifted robot is to be put down.
+  void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
+  void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
+    negotiation_.on_coordinator_state(heartbeat, now);
+  }
+  VerdictResult on_verdict(const Verdict& verdict, Time now);
   /// Closes the cycle that ends now: abandons its proposals that have no verdict.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
 
@@ -63,7 +63,7 @@ class Agent {
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
-  msg::Registration registration() { return negotiation_.registration(); }
+  Registration registration() { return negotiation_.registration(); }
   /// The earliest start for a new version: the next cycle, or a later one on a slow network.
   Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
@@ -74,25 +74,25 @@ class Agent {
   /// estimate.
   [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start);
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
-  [[nodiscard]] std::optional<msg::Proposal> search(const MotionPlan& plan, Time now);
+  [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
   /// Whether the robot is off the floor, and a rest version may be proposed where it is to be put down.
   bool needs_rest_version(Time now) const;
   /// The proposal of that rest version. Precondition: needs_rest_version().
-  [[nodiscard]] msg::Proposal propose_rest_version(Time now, Time start);
+  [[nodiscard]] Proposal propose_rest_version(Time now, Time start);
 
   /// The command of the cycle. It fences the robot, forwards the latest observation, and repeats a granted
   /// version until its start.
-  msg::Command command(Time now);
+  Command command(Time now);
 
-  /// Without the durations, which the caller measures.
+  /// Without the durations, which the caller measures, and the messages that it could not decode.
   msg::AgentStatus status(Time now) const;
 
  private:
-  /// Stores the robot's own state estimate. Returns false if the feedback is invalid or another robot's.
-  bool update_estimate(const msg::Feedback& feedback);
+  /// Stores the robot's own state estimate.
+  void update_estimate(const Feedback& feedback);
   /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
-  void update_goal(const msg::Feedback& feedback);
+  void update_goal(const Feedback& feedback);
   const Goal& goal() const { return robot_.goals[goal_index_]; }
   /// Replaces the route planner if stationary robots or moving obstacles have changed.
   void update_route_planner(Time now);
@@ -133,12 +133,11 @@ class Agent {
   bool arrived_ = false;
   State estimate_;                   // the robot's own
   double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed
-  std::optional<msg::PoseFix> fix_;  // observed, not yet forwarded
-  std::int64_t last_fix_ns_ = 0;
-  std::size_t world_index_ = 0;  // of the robot in the last world that contained it
+  std::optional<PoseFix> fix_;       // observed, not yet forwarded
+  Time last_fix_{};
   std::optional<Version> forwarded_;
   std::optional<Vec2> placement_m_;     // where the robot is to be put down
-  std::uint64_t invalid_ = 0;           // invalid observations
+  std::uint64_t invalid_ = 0;           // observations from the future
   std::uint64_t reference_losses_ = 0;  // number of times that the robot stopped off its reference
   VersionNumber last_own_stop_ = 0;     // newest of those stops
   Time last_steered_start_{};

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "common/messaging/histogram_codec.hpp"
+#include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "idl/disturbance.h"
 
 namespace sidestep {
 namespace {
@@ -37,30 +40,79 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       robot_(robot),
       cycle_(scenario.cycle),
       agent_(scenario, robot, incarnation, std::move(scratch), settings),
-      clocks_(robot, from_seconds(scenario.clock_bound_s)),
+      clocks_(from_seconds(scenario.clock_bound_s)),
+      world_(robot),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)) {
-  bus_.subscribe(topics::kFeedback, robot, [this](const msg::Feedback& feedback) {
-    measure_robot_clock(feedback);
-    const bool is_contradicted = agent_.on_feedback(feedback);
-    register_if_due();
-    if (is_contradicted) negotiate_if_time();
-  });
-  bus_.subscribe(topics::kVerdict, robot, [this](const msg::Verdict& v) { on_verdict(v); });
-  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& w) {
-    agent_.on_world(w, bus_.now() + clocks_.max_robot_offset(bus_.now()));
-  });
-  bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& d) { agent_.on_disturbance(d); });
-  bus_.subscribe(topics::kLedger,
-                 [this](const msg::LedgerPage& page) { agent_.on_ledger(page, bus_.attachment(&page)); });
-  bus_.subscribe(topics::kCoordinator,
-                 [this](const msg::CoordinatorState& state) { on_coordinator_state(state); });
+  subscribe();
   const Time now = robot_now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + cycle_offset(scenario, robot) + cycle_;
   schedule_next_cycle();
   publish_status();
+}
+
+void AgentNode::subscribe() {
+  bus_.subscribe(topics::kFeedback, robot_, [this](const msg::Feedback& m) { on_feedback(m); });
+  bus_.subscribe(topics::kVerdict, robot_, [this](const msg::Verdict& m) { on_verdict(m); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& m) { on_world(m); });
+  bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& m) { on_disturbance(m); });
+  bus_.subscribe(topics::kLedger, [this](const msg::LedgerPage& m) { on_page(m); });
+  bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& m) { on_coordinator_state(m); });
+}
+
+void AgentNode::on_feedback(const msg::Feedback& message) {
+  const auto feedback = decode(message, robot_);
+  if (!accept(feedback)) return;
+  measure_robot_clock(*feedback);
+  const bool is_contradicted = agent_.on_feedback(*feedback);
+  register_if_due();
+  if (is_contradicted) negotiate_if_time();
+}
+
+void AgentNode::on_verdict(const msg::Verdict& message) {
+  const auto verdict = decode(message, robot_);
+  if (!accept(verdict)) return;
+  clocks_.on_epoch(agent_.epoch());
+  clocks_.on_verdict(*verdict, bus_.now());
+  const auto result = agent_.on_verdict(*verdict, robot_now());
+  if (result.round_trip) negotiation_durations_.add(*result.round_trip);
+  if (!result.command) return;
+  commanded_ = true;
+  publish_command(*result.command);
+}
+
+void AgentNode::on_world(const msg::WorldState& message) {
+  agent_.on_world(world_.decode(message), bus_.now() + clocks_.max_robot_offset(bus_.now()));
+}
+
+void AgentNode::on_page(const msg::LedgerPage& message) {
+  const auto page = ReceivedPage::decode(message, bus_.attachment(&message));
+  if (accept(page)) agent_.on_page(*page);
+}
+
+void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
+  const auto heartbeat = decode(message, robot_now());
+  if (!accept(heartbeat)) return;
+  const Epoch last_epoch = agent_.epoch();
+  const bool could_propose = agent_.may_propose(robot_now());
+  agent_.on_coordinator_state(*heartbeat, robot_now());
+  if (agent_.is_superseded()) return;
+  // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
+  if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
+  register_if_due();
+  if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))
+    negotiate_if_time();
+}
+
+void AgentNode::on_disturbance(const msg::Disturbance& message) {
+  if (message.robot() != robot_ || message.disturbance_kind() != msg::DISTURBANCE_PLACE) return;
+  const Vec2 position(message.x_m(), message.y_m());
+  if (position.allFinite())
+    agent_.on_placement(position);
+  else
+    ++invalid_;
 }
 
 void AgentNode::begin_cycle() {
@@ -74,7 +126,7 @@ void AgentNode::begin_cycle() {
     if (const auto callback = std::exchange(on_superseded_, nullptr)) callback();
     return;
   }
-  if (!commanded_) publish_command(now);
+  if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
   if (measurement_wait_ > 0) --measurement_wait_;
@@ -89,7 +141,7 @@ Time AgentNode::cycle_after(Time now) const {
   return now - elapsed + (elapsed < Duration{0} ? Duration{0} : cycle_);
 }
 
-void AgentNode::measure_robot_clock(const msg::Feedback& feedback) {
+void AgentNode::measure_robot_clock(const Feedback& feedback) {
   clocks_.on_feedback(feedback, agent_.incarnation(), bus_.now());
   // The robot's clock estimate jumped: reschedule the next cycle.
   const Duration until_cycle = next_cycle_ - robot_now();
@@ -98,18 +150,6 @@ void AgentNode::measure_robot_clock(const msg::Feedback& feedback) {
 
 void AgentNode::schedule_next_cycle() {
   bus_.at(next_cycle_ - clocks_.robot_offset(), [this] { begin_cycle(); });
-}
-
-void AgentNode::on_coordinator_state(const msg::CoordinatorState& state) {
-  const Epoch last_epoch = agent_.epoch();
-  const bool could_propose = agent_.may_propose(robot_now());
-  agent_.on_coordinator_state(state, robot_now());
-  if (agent_.is_superseded()) return;
-  // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
-  if (agent_.epoch() != last_epoch) publish_command(robot_now());
-  register_if_due();
-  if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))
-    negotiate_if_time();
 }
 
 void AgentNode::register_if_due() {
@@ -142,52 +182,39 @@ void AgentNode::negotiate(Time start) {
   }
   const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start); });
   if (!plan) return;
-  auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
-  if (proposal) publish_proposal(std::move(*proposal));
+  const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
+  if (proposal) publish_proposal(*proposal);
 }
 
-void AgentNode::on_verdict(const msg::Verdict& verdict) {
-  clocks_.on_epoch(agent_.epoch());
-  clocks_.on_verdict(verdict, bus_.now());
-  auto result = agent_.on_verdict(verdict, robot_now());
-  if (result.round_trip) negotiation_durations_.add(*result.round_trip);
-  if (!result.command) return;
-  commanded_ = true;
-  publish(command_writer_, *result.command);
-}
-
-void AgentNode::publish_command(Time now) {
-  auto command = agent_.command(now);
-  publish(command_writer_, command);
+void AgentNode::publish_command(const Command& command) {
+  auto message = encode(command);
+  command_writer_.publish(message, bus_.now());
 }
 
 void AgentNode::publish_registration() {
-  auto registration = agent_.registration();
-  publish(registration_writer_, registration);
-  clocks_.on_request_sent(time_from_ns(registration.header().stamp_ns()));
+  auto message = encode(agent_.registration());
+  registration_writer_.publish(message, bus_.now());
+  clocks_.on_request_sent(time_from_ns(message.header().stamp_ns()));
 }
 
-void AgentNode::publish_proposal(msg::Proposal proposal) {
-  publish(proposal_writer_, proposal);
-  clocks_.on_request_sent(time_from_ns(proposal.header().stamp_ns()));
+void AgentNode::publish_proposal(const Proposal& proposal) {
+  auto message = encode(proposal);
+  proposal_writer_.publish(message, bus_.now());
+  clocks_.on_request_sent(time_from_ns(message.header().stamp_ns()));
 }
 
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
   if (agent_.is_superseded()) return;
   auto status = agent_.status(robot_now());
+  status.header().sender(robot_);
+  status.header().incarnation(agent_.incarnation());
+  status.invalid(status.invalid() + invalid_ + world_.invalid());
   clocks_.fill(status, bus_.now());
   status.negotiation(encode(negotiation_durations_));
   status.plan(encode(plan_durations_));
   status.search(encode(search_durations_));
-  publish(status_writer_, status);
-}
-
-template <typename Message>
-void AgentNode::publish(Writer<Message>& writer, Message& message) {
-  message.header().sender(robot_);
-  message.header().incarnation(agent_.incarnation());
-  writer.publish(message, bus_.now());
+  status_writer_.publish(status, bus_.now());
 }
 
 }  // namespace sidestep

@@ -3,14 +3,16 @@
 
 #include "agents/agent/agent.hpp"
 #include "agents/agent/clock_monitor.hpp"
+#include "agents/agent/world_view.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/time/histogram.hpp"
 
 namespace sidestep {
 
-/// Connects an agent to the bus and runs its control cycle. The cycles of all robots are spread evenly over
-/// the cycle time, so that their proposals do not coincide. Versions start and end by the robot's
-/// clock, so the agent uses the robot's time: the bus's time plus the measured offset.
+/// Connects an agent to the bus and runs its control cycle. Decodes and checks every message, once, and
+/// counts those that are invalid. The cycles of all robots are spread evenly over the cycle time, so that
+/// their proposals do not coincide. Versions start and end by the robot's clock, so the agent uses the
+/// robot's time: the bus's time plus the measured offset.
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
@@ -22,12 +24,24 @@ class AgentNode {
   void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
 
  private:
+  void subscribe();
+  void on_feedback(const msg::Feedback& message);
+  void on_verdict(const msg::Verdict& message);
+  void on_world(const msg::WorldState& message);
+  void on_page(const msg::LedgerPage& message);
+  void on_coordinator_state(const msg::CoordinatorState& message);
+  void on_disturbance(const msg::Disturbance& message);
+  /// Whether a message could be decoded. Counts the others.
+  template <typename Value>
+  bool accept(const std::optional<Value>& decoded) {
+    invalid_ += !decoded;
+    return decoded.has_value();
+  }
   void begin_cycle();
-  void on_coordinator_state(const msg::CoordinatorState& state);
   void register_if_due();
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();
-  void measure_robot_clock(const msg::Feedback& feedback);
+  void measure_robot_clock(const Feedback& feedback);
   Time robot_now() const;
   /// The start of this robot's first cycle after a time.
   Time cycle_after(Time now) const;
@@ -36,19 +50,18 @@ class AgentNode {
   void negotiate_if_time();
   /// Proposes a version that starts at `start`.
   void negotiate(Time start);
-  void on_verdict(const msg::Verdict& verdict);
-  void publish_command(Time now);
+  void publish_command(const Command& command);
   void publish_registration();
-  void publish_proposal(msg::Proposal proposal);
+  void publish_proposal(const Proposal& proposal);
   void publish_status();
-  template <typename Message>
-  void publish(Writer<Message>& writer, Message& message);
 
   Bus& bus_;
   RobotId robot_;
   Duration cycle_;
   Agent agent_;
   ClockMonitor clocks_;
+  WorldView world_;
+  std::uint64_t invalid_ = 0;  // messages that could not be decoded
   std::function<void()> on_superseded_;
   Time next_cycle_;            // by the robot's clock, like all times passed to the agent
   bool commanded_ = false;     // a command has been published in this cycle

@@ -101,7 +101,7 @@ void Agent::update_route_planner(Time now) {
 }
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start) {
-  const Duration fix_age = now - time_from_ns(last_fix_ns_);
+  const Duration fix_age = now - last_fix_;
   // A fix far in the future means that a clock has been set.
   const bool is_lost = fix_age > settings_.max_fix_age || fix_age < -settings_.max_fix_age;
   if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
@@ -165,7 +165,7 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
 
 double Agent::inflation_from(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
-  const bool was_observed_at_rest = last_fix_ns_ > to_ns(base.trajectory.end());
+  const bool was_observed_at_rest = last_fix_ > base.trajectory.end();
   return is_at_rest && was_observed_at_rest ? 0 : base.inflation_m;
 }
 
@@ -181,7 +181,7 @@ Vec2 Agent::recovery_direction(const Vec2& position, const Route& route) const {
   return straight;
 }
 
-std::optional<msg::Proposal> Agent::search(const MotionPlan& plan, Time now) {
+std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   const SearchQuery& query = plan.query;
   TrajectoryIndex& others = scratch_->others;
   neighbours_.collect(query.at_start.position_m, search_horizon_m(), others);

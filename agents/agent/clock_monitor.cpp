@@ -5,17 +5,14 @@
 
 namespace sidestep {
 
-void ClockMonitor::on_feedback(const msg::Feedback& feedback, Incarnation own, Time received) {
-  if (feedback.robot() != robot_id_ || feedback.obeyed_incarnation() != own) return;
-  if (feedback.command_stamp_ns() == 0) return;  // no command received yet
-  if (feedback.header().incarnation() != robot_incarnation_) {
-    robot_incarnation_ = feedback.header().incarnation();
+void ClockMonitor::on_feedback(const Feedback& feedback, Incarnation own, Time received) {
+  const auto& command = feedback.command;
+  if (feedback.obeyed_incarnation != own || !command) return;
+  if (feedback.robot_incarnation != robot_incarnation_) {
+    robot_incarnation_ = feedback.robot_incarnation;
     robot_.reset();
   }
-  const bool is_consistent =
-      robot_.add({time_from_ns(feedback.command_stamp_ns()), time_from_ns(feedback.command_received_at_ns()),
-                  time_from_ns(feedback.valid_at_ns()), received});
-  invalid_ += !is_consistent;
+  invalid_ += !robot_.add({command->sent_at, command->received_at, feedback.valid_at, received});
   if (const auto known = robot_.at(received)) robot_offset_ = known->nearest_to_zero();
 }
 
@@ -27,12 +24,11 @@ void ClockMonitor::on_epoch(Epoch epoch) {
   coordinator_.reset();
 }
 
-void ClockMonitor::on_verdict(const msg::Verdict& verdict, Time received) {
-  if (verdict.robot() != robot_id_ || verdict.epoch() != epoch_ || verdict.request_stamp_ns() == 0) return;
-  const Time sent = time_from_ns(verdict.request_stamp_ns());
-  if (std::ranges::find(requests_, sent) == requests_.end()) return;  // another agent's request, or too old
-  const Time stamped = time_from_ns(verdict.header().stamp_ns());
-  invalid_ += !coordinator_.add({sent, stamped, stamped, received});
+void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
+  const Time asked = verdict.request_sent_at;
+  if (verdict.epoch != epoch_ || asked == Time{}) return;
+  if (std::ranges::find(requests_, asked) == requests_.end()) return;  // another agent's request, or too old
+  invalid_ += !coordinator_.add({asked, verdict.sent_at, verdict.sent_at, received});
 }
 
 std::optional<OffsetInterval> ClockMonitor::robot_coordinator_offset(Time now) const {

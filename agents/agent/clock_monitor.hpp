@@ -4,11 +4,10 @@
 #include <array>
 #include <optional>
 
-#include "common/motion/version.hpp"
+#include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/robot_messages.hpp"
 #include "common/time/clock_offset.hpp"
 #include "idl/monitor.h"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
 
 namespace sidestep {
 
@@ -22,17 +21,17 @@ class ClockMonitor {
   static constexpr Duration kMaxMeasurementAge{2'000'000'000};
 
   /// `bound`: upper bound of the offset between a robot's clock and the coordinator's.
-  ClockMonitor(RobotId robot, Duration bound) : robot_id_(robot), bound_(bound) {}
+  explicit ClockMonitor(Duration bound) : bound_(bound) {}
 
   /// Uses the echoed stamp of a command. A robot echoes commands of the agent that it obeys, so the echo is
   /// ignored unless that agent's incarnation is `own`.
-  void on_feedback(const msg::Feedback& feedback, Incarnation own, Time received);
+  void on_feedback(const Feedback& feedback, Incarnation own, Time received);
   /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
   /// A new epoch belongs to another coordinator, with another clock.
   void on_epoch(Epoch epoch);
   /// Uses answers of the current epoch to recorded requests.
-  void on_verdict(const msg::Verdict& verdict, Time received);
+  void on_verdict(const Verdict& verdict, Time received);
 
   /// Both clocks have recent measurements, and an offset within the bound is consistent with them.
   [[nodiscard]] bool allows_motion(Time now) const;
@@ -53,7 +52,6 @@ class ClockMonitor {
   void fill(msg::AgentStatus& status, Time now) const;
 
  private:
-  RobotId robot_id_;
   Duration bound_;
   ClockOffset robot_, coordinator_;  // offsets from the agent's clock
   Incarnation robot_incarnation_ = 0;

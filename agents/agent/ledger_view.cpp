@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/ledger_view.hpp"
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 
 namespace sidestep {
 

@@ -18,7 +18,7 @@ struct LedgerView {
     bool is_valid;  ///< if false, the version could not be decoded
   };
 
-  /// Allocates nothing once warm.
+  /// Decodes an untrusted page. Allocates nothing once warm.
   void assign(const msg::LedgerPage& page);
 
   // All in the order of the page's versions.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/messaging/codec.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -20,35 +18,30 @@ constexpr Incarnation kIncarnationSpread = 1'000'003;
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
     : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pacing_(cycle) {}
 
-void Negotiation::on_feedback(const msg::Feedback& feedback) {
-  if (feedback.robot() != robot_) return;
-  if (feedback.obeyed_incarnation() > incarnation_) {
+void Negotiation::on_feedback(const Feedback& feedback) {
+  if (feedback.obeyed_incarnation > incarnation_) {
     // An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that
     // this agent's clock is behind an earlier agent's.
     if (fenced_) superseded_ = true;
-    if (!fenced_) incarnation_ = feedback.obeyed_incarnation() + 1 + incarnation_ % kIncarnationSpread;
+    if (!fenced_) incarnation_ = feedback.obeyed_incarnation + 1 + incarnation_ % kIncarnationSpread;
     return;
   }
-  if (feedback.obeyed_incarnation() < incarnation_) return;  // does not acknowledge this agent
-  const auto executing = decode(feedback.executing());
-  if (!executing || executing->robot != robot_ || feedback.obeyed_epoch() > kMaxEpoch) {
-    ++counts_.invalid;
-    return;
-  }
-  robot_epoch_ = std::max<Epoch>(robot_epoch_, feedback.obeyed_epoch());
+  if (feedback.obeyed_incarnation < incarnation_) return;  // does not acknowledge this agent
+  robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
   if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {
-    finish_fencing(feedback, *executing);
+    finish_fencing(feedback);
     return;
   }
-  apply_fact(feedback, *executing);
+  apply_fact(feedback);
 }
 
-void Negotiation::apply_fact(const msg::Feedback& feedback, const Version& executing) {
-  const Time at = time_from_ns(feedback.valid_at_ns());
+void Negotiation::apply_fact(const Feedback& feedback) {
+  const Version& executing = feedback.executing;
+  const Time at = feedback.valid_at;
   const std::size_t before = held_.versions().size();
   const bool has_advanced = executing.number != executing_;
-  if (feedback.is_lifted() && executing.number == 0) {
+  if (feedback.is_absent()) {
     if (at < latest_fact_) return;
     held_.forget_started(at);
     executing_ = 0;
@@ -79,13 +72,12 @@ void Negotiation::rebase(const Version& executing) {
   contradicted_ = true;
 }
 
-void Negotiation::finish_fencing(const msg::Feedback& feedback, const Version& executing) {
+void Negotiation::finish_fencing(const Feedback& feedback) {
   fenced_ = true;
   held_.clear();
-  const bool is_absent = feedback.is_lifted() && executing.number == 0;
-  if (!is_absent) held_.add(executing);
-  executing_ = executing.number;
-  next_number_ = std::max({next_number_, feedback.obeyed_incarnation(), executing.number + 1});
+  if (!feedback.is_absent()) held_.add(feedback.executing);
+  executing_ = feedback.executing.number;
+  next_number_ = std::max({next_number_, feedback.obeyed_incarnation, executing_ + 1});
 }
 
 void Negotiation::adopt_epoch(Epoch epoch) {
@@ -116,27 +108,23 @@ void Negotiation::check_assumptions() {
   }
 }
 
-void Negotiation::on_coordinator_state(const msg::CoordinatorState& state, Time now) {
-  if (state.epoch() == 0) return;  // a standby
-  if (!is_plausible(state.epoch(), now)) {
-    ++counts_.invalid;
-    return;
-  }
-  if (state.epoch() < epoch_) {
+void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
+  if (heartbeat.epoch == 0) return;  // a standby
+  if (heartbeat.epoch < epoch_) {
     // This coordinator does not know the highest epoch, and no other one is alive: a registration tells it
     // the epoch.
-    if (now - last_state_at_ > kCoordinatorTimeout) registration_pending_ = true;
+    if (now - last_heartbeat_at_ > kCoordinatorTimeout) registration_pending_ = true;
     return;
   }
-  if (state.epoch() > epoch_) adopt_epoch(state.epoch());
-  last_state_at_ = now;
-  missing_ = std::ranges::find(state.missing(), robot_) != state.missing().end();
-  granting_ = state.coordinator_mode() == msg::COORDINATOR_GRANTING;
+  if (heartbeat.epoch > epoch_) adopt_epoch(heartbeat.epoch);
+  last_heartbeat_at_ = now;
+  missing_ = std::ranges::find(heartbeat.missing, robot_) != heartbeat.missing.end();
+  granting_ = heartbeat.mode == msg::COORDINATOR_GRANTING;
 }
 
 bool Negotiation::may_propose(Time now) const {
   return fenced_ && !superseded_ && robot_epoch_ == epoch_ && !registration_pending_ && granting_ &&
-         now - last_state_at_ < kCoordinatorTimeout && !held_.is_full();
+         now - last_heartbeat_at_ < kCoordinatorTimeout && !held_.is_full();
 }
 
 bool Negotiation::has_upcoming_version(Time now) const {
@@ -158,15 +146,9 @@ std::optional<Time> Negotiation::retry_start(Time now) const {
   return is_due ? std::optional(last.start()) : std::nullopt;
 }
 
-msg::Registration Negotiation::registration() {
+Registration Negotiation::registration() {
   registration_pending_ = false;
-  msg::Registration registration;
-  registration.robot(robot_);
-  registration.epoch(epoch_);
-  registration.is_absent(held_.versions().empty());
-  registration.version_count(static_cast<std::uint8_t>(held_.versions().size()));
-  std::ranges::transform(held_.versions(), registration.versions().begin(), encode);
-  return registration;
+  return {robot_, incarnation_, epoch_, Time{}, held_};
 }
 
 const Version& Negotiation::base_at(Time start) const {
@@ -181,8 +163,8 @@ const Version& Negotiation::base_at(Time start) const {
   }
 }
 
-msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                                   double inflation_m, const std::optional<Intent>& intent) {
+Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
+                              double inflation_m, const std::optional<Intent>& intent) {
   contradicted_ = false;
   const bool is_again = proposal_count_ > 0 && newest_proposal().start() == candidates.front().start();
   proposals_for_start_ = is_again ? proposals_for_start_ + 1 : 1;
@@ -195,37 +177,34 @@ msg::Proposal Negotiation::propose(std::span<const Trajectory> candidates, Versi
   sent.lead = lead();
   sent.answered = false;
   sent.open = true;
-  msg::Proposal proposal;
-  proposal.robot(robot_);
-  proposal.epoch(epoch_);
-  proposal.candidate_count(static_cast<std::uint8_t>(candidates.size()));
+  Proposal proposal{robot_, incarnation_, epoch_, Time{}, next_number_, candidates.size()};
   for (const Trajectory& trajectory : candidates) {
     Version& version = sent.candidates[sent.count];
     version = {robot_, incarnation_, next_number_++, base, trajectory, inflation_m, intent};
-    proposal.candidates()[sent.count++] = encode(version);
+    proposal.candidates[sent.count++] = version;
   }
   return proposal;
 }
 
-Negotiation::VerdictResult Negotiation::on_verdict(const msg::Verdict& verdict, Time now) {
-  if (superseded_ || verdict.robot() != robot_ || verdict.epoch() != epoch_) return {};
+Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time now) {
+  if (superseded_ || verdict.epoch != epoch_) return {};
   const auto sent = std::ranges::find_if(proposals_, [&](const SentProposal& a) {
-    return !a.answered && a.number() == verdict.proposal_number();
+    return !a.answered && a.number() == verdict.proposal_number;
   });
   if (sent == proposals_.end()) return {};
   const bool was_open = std::exchange(sent->open, false);
   sent->answered = true;
   const Duration round_trip = now - sent->proposed_at;
   pacing_.on_round_trip(round_trip);
-  if (verdict.granted_version() == 0) {
+  if (verdict.granted_version == 0) {
     ++counts_.denials;
     // The coordinator knows an earlier agent of the robot but not this one: the registration was lost.
-    if (verdict.reasons().front() == msg::REASON_NOT_ALL_REGISTERED) registration_pending_ = true;
+    if (verdict.reasons.front() == msg::REASON_NOT_ALL_REGISTERED) registration_pending_ = true;
     return {std::nullopt, round_trip};
   }
   const auto end = sent->candidates.begin() + static_cast<std::ptrdiff_t>(sent->count);
   const auto granted = std::find_if(sent->candidates.begin(), end,
-                                    [&](const Version& v) { return v.number == verdict.granted_version(); });
+                                    [&](const Version& v) { return v.number == verdict.granted_version; });
   if (granted == end) {
     ++counts_.invalid;
     return {};

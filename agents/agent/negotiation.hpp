@@ -7,14 +7,15 @@
 
 #include "agents/agent/proposal_pacing.hpp"
 #include "common/motion/version_set.hpp"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
+#include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/robot_messages.hpp"
 
 namespace sidestep {
 
 /// The agent's side of the safety protocol (coordinator/PROTOCOL.md): fences its robot, registers with the
 /// coordinator, proposes, and forwards granted versions only. When no verdict arrives in time it does
-/// nothing, and the robot brakes.
+/// nothing, and the robot brakes. It takes messages that are decoded for its robot. The caller sends those
+/// that it returns, and sets their time of sending.
 class Negotiation {
  public:
   /// What a verdict means for the agent.
@@ -33,9 +34,9 @@ class Negotiation {
   Negotiation(RobotId robot, Incarnation incarnation, Duration cycle);
 
   /// Handles a fact from the robot. The first one that acknowledges this incarnation ends the fencing.
-  void on_feedback(const msg::Feedback& feedback);
-  void on_coordinator_state(const msg::CoordinatorState& state, Time now);
-  VerdictResult on_verdict(const msg::Verdict& verdict, Time now);
+  void on_feedback(const Feedback& feedback);
+  void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
+  VerdictResult on_verdict(const Verdict& verdict, Time now);
 
   /// The incarnation and the epoch that commands carry. The incarnation changes only before the robot has
   /// acknowledged this agent.
@@ -64,7 +65,7 @@ class Negotiation {
   /// Feedback since the last proposal shows that the robot does not execute the version that was assumed.
   bool is_contradicted() const { return contradicted_; }
 
-  msg::Registration registration();
+  Registration registration();
   /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
   /// is_absent().
   const Version& base_at(Time start) const;
@@ -72,9 +73,8 @@ class Negotiation {
   const Version& executing() const { return *held_.find(executing_); }
   /// Precondition: 1 to MAX_CANDIDATES candidates with the same start, which all continue `base`; for an
   /// absent robot, a rest version on base 0. `inflation_m` is the base's, or 0 if they begin at rest.
-  [[nodiscard]] msg::Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                                      double inflation_m = 0,
-                                      const std::optional<Intent>& intent = std::nullopt);
+  [[nodiscard]] Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
+                                 double inflation_m = 0, const std::optional<Intent>& intent = std::nullopt);
 
   /// Closes the cycle that ends now: abandons its proposals that have no verdict, and counts them as missed.
   void close_cycle(Time now);
@@ -93,8 +93,8 @@ class Negotiation {
     VersionNumber number() const { return candidates.front().number; }
     Time start() const { return candidates.front().trajectory.start(); }
   };
-  void finish_fencing(const msg::Feedback& feedback, const Version& executing);
-  void apply_fact(const msg::Feedback& feedback, const Version& executing);
+  void finish_fencing(const Feedback& feedback);
+  void apply_fact(const Feedback& feedback);
   /// Replaces all versions by one that the robot executes and this agent does not know.
   void rebase(const Version& executing);
   bool has_base_of(const Version& version) const;
@@ -114,8 +114,8 @@ class Negotiation {
   Epoch epoch_ = 0;                          // highest that was received
   Epoch robot_epoch_ = 0;                    // highest that the robot has acknowledged
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
-  bool missing_ = false, granting_ = false;  // by the coordinator's last state
-  Time last_state_at_{};                     // when that state arrived
+  bool missing_ = false, granting_ = false;  // by the coordinator's last heartbeat
+  Time last_heartbeat_at_{};                 // when that heartbeat arrived
   VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   Time latest_fact_{};  // by the robot's clock

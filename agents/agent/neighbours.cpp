@@ -11,24 +11,9 @@ constexpr std::uint32_t kTrackedPages = 64;  // bits of nonempty_pages_
 
 /// Whether the page's bounding rectangle is beyond the horizon. A wrong rectangle can only cost a denial,
 /// because the coordinator decides.
-bool is_far(const msg::LedgerPage& page, const Vec2& centre, double horizon) {
-  return page.min_x_m() - centre.x() > horizon || centre.x() - page.max_x_m() > horizon ||
-         page.min_y_m() - centre.y() > horizon || centre.y() - page.max_y_m() > horizon;
-}
-
-/// Adopts the view in the attachment if it holds one. Otherwise decodes the page, reusing the old view's
-/// memory if it has no other readers.
-void update_view(const msg::LedgerPage& page, std::shared_ptr<LedgerView>& view,
-                 MessageAttachment* attachment) {
-  if (attachment) {
-    if (auto shared = attachment->get<LedgerView>()) {
-      view = std::move(shared);
-      return;
-    }
-  }
-  if (!view || view.use_count() > 1) view = std::make_shared<LedgerView>();
-  view->assign(page);
-  if (attachment) attachment->set(view);
+bool is_far(const Box& bounds, const Vec2& centre, double horizon) {
+  return bounds.min_m.x() - centre.x() > horizon || centre.x() - bounds.max_m.x() > horizon ||
+         bounds.min_m.y() - centre.y() > horizon || centre.y() - bounds.max_m.y() > horizon;
 }
 
 }  // namespace
@@ -38,35 +23,32 @@ void Neighbours::set_horizon(const Vec2& centre, double horizon) {
   horizon_m_ = horizon;
 }
 
-bool Neighbours::can_skip(const msg::LedgerPage& page) const {
-  const std::uint32_t index = page.page_index();
-  return index < kTrackedPages && (nonempty_pages_ >> index & 1) == 0 && is_far(page, centre_m_, horizon_m_);
+bool Neighbours::can_skip(const ReceivedPage& received) const {
+  const std::uint32_t index = received.index();
+  return index < kTrackedPages && (nonempty_pages_ >> index & 1) == 0 &&
+         is_far(received.bounds_m(), centre_m_, horizon_m_);
 }
 
-void Neighbours::on_page(const msg::LedgerPage& message, MessageAttachment* attachment) {
-  if (can_skip(message)) return;
-  const std::uint32_t index = message.page_index();
-  if (index >= kMaxRobots || message.epoch() > kMaxEpoch) {
-    ++invalid_;
-    return;
-  }
+void Neighbours::on_page(const ReceivedPage& received) {
+  if (can_skip(received)) return;
+  const std::uint32_t index = received.index();
   if (pages_.size() <= index) pages_.resize(index + 1);
   Page& page = pages_[index];
-  const bool is_older = message.epoch() < page.epoch ||
-                        (message.epoch() == page.epoch && message.header().message_number() <= page.number);
+  const bool is_older =
+      received.epoch() < page.epoch || (received.epoch() == page.epoch && received.number() <= page.number);
   if (is_older) return;
-  page.epoch = message.epoch();
-  page.number = message.header().message_number();
-  store(message, page, attachment);
+  page.epoch = received.epoch();
+  page.number = received.number();
+  store(received, page);
   if (index >= kTrackedPages) return;
   const std::uint64_t bit = std::uint64_t{1} << index;
   nonempty_pages_ = page.nearby.empty() ? nonempty_pages_ & ~bit : nonempty_pages_ | bit;
 }
 
-void Neighbours::store(const msg::LedgerPage& message, Page& page, MessageAttachment* attachment) {
+void Neighbours::store(const ReceivedPage& received, Page& page) {
   page.nearby.clear();
-  if (is_far(message, centre_m_, horizon_m_)) return;
-  update_view(message, page.view, attachment);
+  if (is_far(received.bounds_m(), centre_m_, horizon_m_)) return;
+  received.update(page.view);
   const auto& entries = page.view->entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
     const LedgerView::Entry& entry = entries[i];

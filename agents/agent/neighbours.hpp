@@ -5,10 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "agents/agent/ledger_view.hpp"
+#include "agents/agent/received_page.hpp"
 #include "agents/safety/trajectory_index.hpp"
-#include "common/messaging/attachment.hpp"
-#include "idl/negotiation.h"
 
 namespace sidestep {
 
@@ -22,9 +20,9 @@ class Neighbours {
   /// Pages that arrive from now on are filtered: versions that begin farther than `horizon_m` from `centre_m`
   /// are dropped.
   void set_horizon(const Vec2& centre_m, double horizon_m);
-  /// Stores a page of the ledger, unless a newer message of that page is known. `attachment`, if not null, is
-  /// the slot in which all readers of the message share their decoded view of it.
-  void on_page(const msg::LedgerPage& page, MessageAttachment* attachment = nullptr);
+  /// Stores a page of the ledger, unless a newer message of that page is known. Decodes its versions only if
+  /// it is within the horizon.
+  void on_page(const ReceivedPage& received);
 
   /// Fills the index with the versions that begin within `horizon_m` of `centre_m`. Valid until the next
   /// page.
@@ -35,6 +33,7 @@ class Neighbours {
   /// Rest positions of the robots that have been at rest since `since` and hold no version that moves later.
   /// Returns the `max_count` nearest ones, ordered by robot id. Valid until the next call.
   std::span<const Vec2> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
+  /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
 
  private:
@@ -44,7 +43,7 @@ class Neighbours {
     std::shared_ptr<LedgerView> view;
     std::vector<std::uint32_t> nearby;  // indices into the view of the versions within the horizon
   };
-  void store(const msg::LedgerPage& message, Page& page, MessageAttachment* attachment);
+  void store(const ReceivedPage& received, Page& page);
   struct Stationary {
     RobotId robot;
     Vec2 position_m;
@@ -54,7 +53,7 @@ class Neighbours {
   bool is_moving(RobotId robot, Time since) const;
 
   /// Whether the page is out of range and nothing is stored of its previous message.
-  bool can_skip(const msg::LedgerPage& page) const;
+  bool can_skip(const ReceivedPage& received) const;
 
   // Most pages are out of range. The members that can_skip() reads come first, to share a cache line.
   Vec2 centre_m_{0, 0};

@@ -7,38 +7,22 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxCoordinate_m = 1e4;
-constexpr double kMaxRadius_m = 10;
 // In each axis, an error of a normal distribution exceeds 4 sigma once in 16,000 cases.
 constexpr double kSigmas = 4;
 
-// The comparisons are false for NaN.
-bool is_valid(const msg::TrackedObstacle& observed) {
-  return std::abs(observed.x_m()) <= kMaxCoordinate_m && std::abs(observed.y_m()) <= kMaxCoordinate_m &&
-         observed.radius_m() >= 0 && observed.radius_m() <= kMaxRadius_m &&
-         observed.position_variance_m2() >= 0 && observed.position_variance_m2() <= kMaxRadius_m;
-}
-
 }  // namespace
 
-void ObservedObstacles::on_world(const msg::WorldState& world, Time now) {
-  if (world.obstacle_count() > msg::MAX_OBSTACLES) {
-    ++invalid_;
-    return;
-  }
-  for (std::size_t i = 0; i < world.obstacle_count(); ++i) {
-    const msg::TrackedObstacle& observed = world.obstacles()[i];
-    const bool is_from_the_future = observed.observed_at_ns() > to_ns(now + max_clock_difference_);
-    if (is_from_the_future || !is_valid(observed)) {
+void ObservedObstacles::on_world(const WorldObservations& world, Time now) {
+  for (std::size_t i = 0; i < world.obstacle_count; ++i) {
+    const ObservedObstacle& observed = world.obstacles[i];
+    if (observed.observed_at > now + max_clock_difference_) {
       ++invalid_;
       continue;
     }
-    if (observed.observed_at_ns() < to_ns(now - kMaxObservationAge)) continue;
-    store({world.header().incarnation(), observed.obstacle()},
-          {{observed.x_m(), observed.y_m()},
-           observed.radius_m() + kSigmas * std::sqrt(observed.position_variance_m2()),
-           time_from_ns(observed.observed_at_ns()) - max_clock_difference_,
-           max_speed_mps_});
+    if (observed.observed_at < now - kMaxObservationAge) continue;
+    store({world.vision, observed.track},
+          {observed.position_m, observed.radius_m + kSigmas * std::sqrt(observed.position_variance_m2),
+           observed.observed_at - max_clock_difference_, max_speed_mps_});
   }
 }
 

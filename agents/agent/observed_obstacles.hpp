@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "agents/agent/world_view.hpp"
 #include "agents/safety/moving_obstacle.hpp"
-#include "idl/vision.h"
 
 namespace sidestep {
 
@@ -24,10 +24,12 @@ class ObservedObstacles {
   ObservedObstacles(double max_speed_mps, Duration max_clock_difference)
       : max_speed_mps_(max_speed_mps), max_clock_difference_(max_clock_difference) {}
 
-  /// Stores valid observations. If the capacity is exceeded, the oldest observations are dropped.
-  void on_world(const msg::WorldState& world, Time now);
+  /// Stores observations that may have been made by now. If the capacity is exceeded, the oldest observations
+  /// are dropped.
+  void on_world(const WorldObservations& world, Time now);
   /// The observations that are younger than kMaxObservationAge. Valid until the next call.
   std::span<const MovingObstacle> recent(Time now);
+  /// Number of observations from the future.
   std::uint64_t invalid() const { return invalid_; }
 
  private:

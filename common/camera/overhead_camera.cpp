@@ -59,7 +59,8 @@ CameraModel overhead_camera_model(const OverheadCamera& camera) {
   double focal_length_px = 1e6;
   const auto corners = corners_of(camera.view_m);
   for (std::size_t side = 0; side < corners.size(); ++side) {
-    const Vec2 from = corners[side], to = corners[(side + 1) % corners.size()];
+    const Vec2& from = corners[side];
+    const Vec2& to = corners[(side + 1) % corners.size()];
     for (int i = 0; i < kPointsPerSide; ++i) {
       const Vec2 p = from + (to - from) * i / kPointsPerSide;
       for (const double z : {0.0, camera.object_height_m})

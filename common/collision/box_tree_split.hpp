@@ -29,7 +29,8 @@ inline float half_perimeter(const FloatBox& box) {
 template <typename Item>
 std::size_t split_by_heuristic(std::span<Item> items) {
   const auto leaves = [](std::size_t count) {
-    return static_cast<float>((count + collision::kLanes - 1) / collision::kLanes);
+    const std::size_t full = (count + collision::kLanes - 1) / collision::kLanes;
+    return static_cast<float>(full);
   };
   const auto by_x = [](const Item& a, const Item& b) {
     return a.box.min_x_m + a.box.max_x_m < b.box.min_x_m + b.box.max_x_m;

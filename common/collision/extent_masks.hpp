@@ -51,7 +51,7 @@ class ExtentMasks {
 
   std::size_t words_ = 1;
   Vec2 origin_m_;
-  float per_m_[4], shift_[4];
+  float per_m_[4] = {}, shift_[4] = {};
   std::vector<std::uint64_t> rows_;
   std::vector<Extents> extents_;  // by slot
 };

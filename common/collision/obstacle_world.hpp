@@ -49,10 +49,10 @@ class ObstacleWorld {
   bool touches(const Vec2& at_m, double radius_m) const { return touches(at_m, at_m, radius_m); }
   /// Whether a disc that moves straight from one position to another touches an obstacle.
   bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const {
-    const collision::Answer answer = sweep_(view_, from_m.data(), to_m.data(), radius_m);
-    if (answer == collision::Answer::kUndecided) [[unlikely]]
+    const collision::SweepResult result = sweep_(view_, from_m.data(), to_m.data(), radius_m);
+    if (result == collision::SweepResult::kUndecided) [[unlikely]]
       return touches_exactly(from_m, to_m, radius_m);
-    return answer == collision::Answer::kTouches;
+    return result == collision::SweepResult::kTouches;
   }
   /// The first contact of a disc that moves straight; none if the whole path is free. Paths in contact within
   /// rounding may be reported either way.

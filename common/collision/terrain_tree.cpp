@@ -152,6 +152,7 @@ TerrainTree::TerrainTree(std::vector<Vec3> points, std::vector<Corners> triangle
   std::iota(order.begin(), order.end(), 0u);
   build(0, static_cast<std::uint32_t>(order.size()), centroids, order);
   std::vector<Corners> ordered;
+  ordered.reserve(order.size());
   for (const std::uint32_t at : order) ordered.push_back(triangles_[at]);
   triangles_ = std::move(ordered);
 }

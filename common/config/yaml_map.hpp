@@ -83,7 +83,7 @@ void read_list(YamlMap& map, const std::string& key, std::size_t max_count, Read
   const std::vector<YAML::Node> elements = list_from(map.require(key), location, max_count);
   if (elements.empty()) location.fail("expected at least one element");
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    YamlMap inner(elements[i], location.of(elements[i], key + "[" + std::to_string(i) + "]"));
+    YamlMap inner(elements[i], location.of(elements[i], location.what + "[" + std::to_string(i) + "]"));
     read(inner);
     inner.finish();
   }

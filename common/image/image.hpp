@@ -36,7 +36,9 @@ struct ImageView {
   int height_px = 0;
   const std::uint8_t* pixels = nullptr;  ///< contiguous rows
 
-  std::size_t row_bytes() const { return static_cast<std::size_t>(width_px * bytes_per_pixel(format)); }
+  std::size_t row_bytes() const {
+    return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(bytes_per_pixel(format));
+  }
   std::size_t bytes() const { return row_bytes() * static_cast<std::size_t>(height_px); }
   const std::uint8_t* row(int y) const { return pixels + row_bytes() * static_cast<std::size_t>(y); }
 };

@@ -17,12 +17,13 @@ cv::Vec3b bgr(const Rgb& colour) { return {colour.b, colour.g, colour.r}; }
 cv::Mat3b bgr_of(const ImageView& image) {
   cv::Mat3b picture(image.height_px, image.width_px);
   for (int y = 0; y < image.height_px; ++y) {
-    const std::uint8_t* bytes = image.row(y);
+    const std::uint8_t* const bytes = image.row(y);
     for (int x = 0; x < image.width_px; ++x) {
       if (image.format == PixelFormat::kRgb) {
-        picture(y, x) = {bytes[3 * x + 2], bytes[3 * x + 1], bytes[3 * x]};
+        const std::uint8_t* const rgb = bytes + std::ptrdiff_t{3} * x;
+        picture(y, x) = {rgb[2], rgb[1], rgb[0]};
       } else {
-        const std::uint8_t* const pair = bytes + 4 * (x / 2);
+        const std::uint8_t* const pair = bytes + std::ptrdiff_t{4} * (x / 2);
         picture(y, x) = bgr(rgb_of({bytes[2 * x + 1], pair[0], pair[2]}));
       }
     }

@@ -12,9 +12,9 @@ namespace {
 constexpr Duration kForever = Duration::max();
 
 /// Steps through the phases of a trajectory from a time on.
-class Walker {
+class TrajectoryCursor {
  public:
-  Walker(const Trajectory& trajectory, Time from) : trajectory_(trajectory) {
+  TrajectoryCursor(const Trajectory& trajectory, Time from) : trajectory_(trajectory) {
     state_ = trajectory.at_start();
     Duration into = from - trajectory.start();
     const auto phases = trajectory.phases();
@@ -30,13 +30,13 @@ class Walker {
   const State& state() const { return state_; }
   const Vec2& acceleration() const { return acceleration_; }
   /// The time until the acceleration changes.
-  Duration left() const { return left_; }
+  Duration remaining() const { return remaining_; }
 
   void advance(Duration step) {
-    if (left_ == kForever) return;
+    if (remaining_ == kForever) return;
     state_ = state_after(state_, acceleration_, to_seconds(step));
-    left_ -= step;
-    if (left_ > Duration::zero()) return;
+    remaining_ -= step;
+    if (remaining_ > Duration::zero()) return;
     ++index_;
     begin_phase();
   }
@@ -47,41 +47,41 @@ class Walker {
     while (index_ < phases.size() && phases[index_].duration == Duration::zero()) ++index_;
     if (index_ < phases.size()) {
       acceleration_ = phases[index_].acceleration_mps2;
-      left_ = phases[index_].duration;
+      remaining_ = phases[index_].duration;
     } else {
       acceleration_ = state_.velocity_mps = Vec2::Zero();
-      left_ = kForever;
+      remaining_ = kForever;
     }
   }
 
   const Trajectory& trajectory_;
   State state_;
   Vec2 acceleration_{0, 0};
-  Duration left_ = kForever;
+  Duration remaining_ = kForever;
   std::size_t index_ = 0;
 };
 
 /// Relative motion d + v t + a t^2 / 2 on [0, seconds].
-struct Piece {
+struct RelativeMotion {
   Vec2 d, v, a;
   double seconds;
 
   double squared_distance(double t) const { return (d + t * (v + (0.5 * t) * a)).squaredNorm(); }
 };
 
-/// Half the derivative of the squared distance of a piece: c0 + c1 t + c2 t^2 + c3 t^3.
-struct Slope {
+/// Half the derivative of the squared distance of a motion: c0 + c1 t + c2 t^2 + c3 t^3.
+struct DistanceDerivative {
   double c0, c1, c2, c3;
 
-  explicit Slope(const Piece& p)
-      : c0(p.d.dot(p.v)),
-        c1(p.v.squaredNorm() + p.d.dot(p.a)),
-        c2(1.5 * p.v.dot(p.a)),
-        c3(0.5 * p.a.squaredNorm()) {}
+  explicit DistanceDerivative(const RelativeMotion& motion)
+      : c0(motion.d.dot(motion.v)),
+        c1(motion.v.squaredNorm() + motion.d.dot(motion.a)),
+        c2(1.5 * motion.v.dot(motion.a)),
+        c3(0.5 * motion.a.squaredNorm()) {}
   double at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
-  double derivative(double t) const { return c1 + t * (2 * c2 + t * (3 * c3)); }
+  double second_derivative(double t) const { return c1 + t * (2 * c2 + t * (3 * c3)); }
 
-  /// The extrema of the slope in ascending order; returns their number.
+  /// The extrema of the derivative in ascending order; returns their number.
   int extrema(std::array<double, 2>& roots) const {
     const double a = 3 * c3, b = c2;  // a t^2 + 2 b t + c1 = 0
     const double discriminant = b * b - a * c1;
@@ -95,14 +95,15 @@ struct Slope {
     return count;
   }
 
-  /// The zero in [low, high]. Precondition: the slope is negative at low, positive at high, and monotonic.
+  /// The zero in [low, high]. Precondition: the derivative is negative at low, positive at high, and
+  /// monotonic.
   double zero(double low, double high) const {
     double t = 0.5 * (low + high);
     for (int i = 0; i < 100 && high - low > 1e-15 * high; ++i) {
       const double value = at(t);
       if (value == 0) return t;
       (value < 0 ? low : high) = t;
-      const double rate = derivative(t);
+      const double rate = second_derivative(t);
       const double newton = rate > 0 ? t - value / rate : low;
       const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
       if (std::abs(next - t) <= 1e-14) return next;
@@ -112,56 +113,56 @@ struct Slope {
   }
 };
 
-/// The minimum squared distance in the interior of the piece; the caller handles its ends.
-double min_squared_distance(const Piece& piece) {
-  const Slope slope(piece);
+/// The minimum squared distance in the interior of the motion; the caller handles its ends.
+double min_squared_distance(const RelativeMotion& motion) {
+  const DistanceDerivative derivative(motion);
   std::array<double, 2> extrema{};
-  const int count = slope.extrema(extrema);
+  const int count = derivative.extrema(extrema);
   double minimum = std::numeric_limits<double>::infinity();
-  double low = 0, slope_low = slope.c0;
+  double low = 0, derivative_low = derivative.c0;
   for (int i = 0; i <= count; ++i) {
-    double high = i < count ? extrema[static_cast<std::size_t>(i)] : piece.seconds;
+    double high = i < count ? extrema[static_cast<std::size_t>(i)] : motion.seconds;
     if (!(high > low)) continue;
-    high = std::min(high, piece.seconds);
-    const double slope_high = slope.at(high);
-    if (slope_low < 0 && slope_high > 0) {
-      minimum = std::min(minimum, piece.squared_distance(slope.zero(low, high)));
+    high = std::min(high, motion.seconds);
+    const double derivative_high = derivative.at(high);
+    if (derivative_low < 0 && derivative_high > 0) {
+      minimum = std::min(minimum, motion.squared_distance(derivative.zero(low, high)));
     } else {
       // A minimum at a bound of the bracket.
-      minimum = std::min(minimum, piece.squared_distance(high));
+      minimum = std::min(minimum, motion.squared_distance(high));
     }
     low = high;
-    slope_low = slope_high;
-    if (high >= piece.seconds) break;
+    derivative_low = derivative_high;
+    if (high >= motion.seconds) break;
   }
   return minimum;
 }
 
 /// Conservative: false only if the motion along the line of centres cannot come within `far_m`.
-bool may_come_within(const Piece& piece, double far_m) {
-  const double distance = piece.d.norm();
-  const double closing = std::min(0.0, piece.seconds * piece.d.dot(piece.v)) +
-                         std::min(0.0, 0.5 * piece.seconds * piece.seconds * piece.d.dot(piece.a));
+bool may_come_within(const RelativeMotion& motion, double far_m) {
+  const double distance = motion.d.norm();
+  const double closing = std::min(0.0, motion.seconds * motion.d.dot(motion.v)) +
+                         std::min(0.0, 0.5 * motion.seconds * motion.seconds * motion.d.dot(motion.a));
   return distance * distance + closing < (far_m + kClearanceTolerance_m) * distance;
 }
 
-/// The minimum squared distance over the pieces of the relative motion. Ends early when `stop(squared
-/// distance)` is true, and skips the interior of pieces that stay beyond `far_m`.
+/// The minimum squared distance over the phases of the relative motion. Ends early when `stop(squared
+/// distance)` is true, and skips the interior of phases that stay beyond `far_m`.
 template <typename Stop>
 double min_squared_distance(const Trajectory& a, const Trajectory& b, double far_m, Stop stop) {
   const Time from = std::max(a.start(), b.start());
-  Walker walk_a(a, from), walk_b(b, from);
-  double minimum = (walk_a.state().position_m - walk_b.state().position_m).squaredNorm();
+  TrajectoryCursor cursor_a(a, from), cursor_b(b, from);
+  double minimum = (cursor_a.state().position_m - cursor_b.state().position_m).squaredNorm();
   while (!stop(minimum)) {
-    const Duration step = std::min(walk_a.left(), walk_b.left());
+    const Duration step = std::min(cursor_a.remaining(), cursor_b.remaining());
     if (step == kForever) break;
-    const Piece piece{walk_a.state().position_m - walk_b.state().position_m,
-                      walk_a.state().velocity_mps - walk_b.state().velocity_mps,
-                      walk_a.acceleration() - walk_b.acceleration(), to_seconds(step)};
-    if (may_come_within(piece, far_m)) minimum = std::min(minimum, min_squared_distance(piece));
-    walk_a.advance(step);
-    walk_b.advance(step);
-    minimum = std::min(minimum, (walk_a.state().position_m - walk_b.state().position_m).squaredNorm());
+    const RelativeMotion motion{cursor_a.state().position_m - cursor_b.state().position_m,
+                                cursor_a.state().velocity_mps - cursor_b.state().velocity_mps,
+                                cursor_a.acceleration() - cursor_b.acceleration(), to_seconds(step)};
+    if (may_come_within(motion, far_m)) minimum = std::min(minimum, min_squared_distance(motion));
+    cursor_a.advance(step);
+    cursor_b.advance(step);
+    minimum = std::min(minimum, (cursor_a.state().position_m - cursor_b.state().position_m).squaredNorm());
   }
   return minimum;
 }

@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
+#include <type_traits>
 #include <utility>
 
 #include "common/process/exit_code.hpp"
@@ -14,6 +16,21 @@ namespace {
 
 ValueCheck from_library(const CLI::Validator& validator) {
   return {validator.get_description(), [validator](const std::string& text) { return validator(text); }};
+}
+
+template <typename Value>
+constexpr bool is_real_number =
+    std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>> ||
+    std::is_same_v<Value, std::vector<double>>;
+
+/// The library's checks of ranges let NaN through.
+CLI::Validator finite() {
+  const auto problem = [](const std::string& text) {
+    double value = 0;
+    const bool is_finite = !CLI::detail::lexical_cast(text, value) || std::isfinite(value);
+    return is_finite ? "" : text + " is not a finite number";
+  };
+  return CLI::Validator(problem, "");
 }
 
 /// Turns the project's exception into the library's, which adds the option's name.
@@ -87,47 +104,51 @@ Option Option::excludes(const Option& other) const {
 
 bool Option::is_given() const { return option_->count() > 0; }
 
-Command Command::add_subcommand(const std::string& name, const std::string& description) const {
-  return Command(*app_->add_subcommand(name, description));
+CliCommand CliCommand::add_subcommand(const std::string& name, const std::string& description) const {
+  return CliCommand(*app_->add_subcommand(name, description));
 }
 
-void Command::require_subcommand() const { app_->require_subcommand(1); }
+void CliCommand::require_subcommand() const { app_->require_subcommand(1); }
 
-void Command::add_footer(const std::string& text) const { app_->footer(text); }
+void CliCommand::add_footer(const std::string& text) const { app_->footer(text); }
 
 template <typename Value>
-Option Command::add_option(const std::string& name, Value& value, const std::string& description) const {
-  return Option(*app_->add_option(name, value, description));
+Option CliCommand::add_option(const std::string& name, Value& value, const std::string& description) const {
+  CLI::Option& option = *app_->add_option(name, value, description);
+  if constexpr (is_real_number<Value>) option.check(finite());
+  return Option(option);
 }
 
-template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
-template Option Command::add_option(const std::string&, double&, const std::string&) const;
-template Option Command::add_option(const std::string&, int&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::uint32_t&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::optional<std::string>&,
-                                    const std::string&) const;
-template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::optional<int>&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::optional<std::uint32_t>&,
-                                    const std::string&) const;
-template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::vector<double>&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::vector<int>&, const std::string&) const;
-template Option Command::add_option(const std::string&, std::vector<std::uint32_t>&,
-                                    const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::string&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, double&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, int&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::uint32_t&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::uint64_t&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::optional<std::string>&,
+                                       const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::optional<double>&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::optional<int>&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::optional<std::uint32_t>&,
+                                       const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::vector<std::string>&,
+                                       const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::vector<double>&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::vector<int>&, const std::string&) const;
+template Option CliCommand::add_option(const std::string&, std::vector<std::uint32_t>&,
+                                       const std::string&) const;
 
-Option Command::add_flag(const std::string& name, bool& value, const std::string& description) const {
+Option CliCommand::add_flag(const std::string& name, bool& value, const std::string& description) const {
   return Option(*app_->add_flag(name, value, description));
 }
 
-Option Command::add_option(const std::string& name, std::function<void(const std::string&)> take,
-                           const std::string& description) const {
+Option CliCommand::add_option(const std::string& name, std::function<void(const std::string&)> take,
+                              const std::string& description) const {
   return Option(*app_->add_option_function<std::string>(name, translated(std::move(take)), description));
 }
 
-Option Command::add_optional_value(const std::string& name, std::optional<std::string>& value,
-                                   const std::string& default_value, const std::string& description) const {
+Option CliCommand::add_optional_value(const std::string& name, std::optional<std::string>& value,
+                                      const std::string& default_value,
+                                      const std::string& description) const {
   const auto take = [&value, default_value](const std::vector<std::string>& given) {
     const bool is_left_out = given.empty() || given.front().empty();
     value = is_left_out ? default_value : given.front();
@@ -138,9 +159,9 @@ Option Command::add_optional_value(const std::string& name, std::optional<std::s
   return Option(*option);
 }
 
-Option Command::option(const std::string& name) const { return Option(*app_->get_option(name)); }
+Option CliCommand::option(const std::string& name) const { return Option(*app_->get_option(name)); }
 
-void Command::on_parsed(std::function<void()> callback) const {
+void CliCommand::on_parsed(std::function<void()> callback) const {
   app_->callback(translated(std::move(callback)));
 }
 

@@ -53,16 +53,16 @@ class Option {
 };
 
 /// Handle of a command or subcommand, to which options are added. Variables must outlive the parsing.
-class Command {
+class CliCommand {
  public:
-  explicit Command(CLI::App& app) : app_(&app) {}
+  explicit CliCommand(CLI::App& app) : app_(&app) {}
 
-  Command add_subcommand(const std::string& name, const std::string& description) const;
+  CliCommand add_subcommand(const std::string& name, const std::string& description) const;
   void require_subcommand() const;
   /// Text at the end of --help.
   void add_footer(const std::string& text) const;
   /// An option if the name begins with dashes, else a positional argument. `Value` is one of the types for
-  /// which command_line.cpp instantiates this template.
+  /// which command_line.cpp instantiates this template. NaN and infinity are refused.
   template <typename Value>
   Option add_option(const std::string& name, Value& value, const std::string& description = {}) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description = {}) const;
@@ -88,7 +88,7 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  Command root() const { return Command(*app_); }
+  CliCommand root() const { return CliCommand(*app_); }
 
   /// Parses the program's arguments. Returns an exit code if the program should end: 0 after printing --help,
   /// or kExitUsage after reporting wrong usage on stderr. Otherwise returns nullopt.

@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-void add_dds_options(const Command& app, DdsSettings& settings) {
+void add_dds_options(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99").check(in_range(0, 99)).show_default();
   app.add_option("--interface", settings.interface, "address of the network interface to use, or 'all'")
       .show_default();
@@ -36,7 +36,7 @@ int run_guarded(const std::string& name, const std::function<int()>& work) {
 
 int run_process(int argc, char** argv, const Program& program) {
   CommandLine command_line(program.description, program.name);
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   std::string scenario_file;
   DdsSettings dds;
   app.add_option("--scenario", scenario_file, "scenario file").required();

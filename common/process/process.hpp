@@ -20,7 +20,7 @@ struct Program {
   std::string name;         ///< e.g. sidestep-agent; prefix of every message
   std::string description;  ///< one sentence for --help
   /// Adds the program's own options to --scenario, --domain and --interface. May be empty.
-  std::function<void(const Command&)> add_options;
+  std::function<void(const CliCommand&)> add_options;
   /// The name of the DDS participant, e.g. agent-3; called after the options are parsed. Empty: `name`.
   std::function<std::string()> participant;
   /// The target id for `sidestep fault network` (common/messaging/senders.hpp); called after the options are
@@ -36,7 +36,7 @@ struct Program {
 int run_process(int argc, char** argv, const Program& program);
 
 /// Adds --domain and --interface.
-void add_dds_options(const Command& app, DdsSettings& settings);
+void add_dds_options(const CliCommand& app, DdsSettings& settings);
 
 /// Calls `work` and returns its exit code. Prints exceptions on stderr and returns kExitUsage for
 /// ConfigError and std::invalid_argument, kExitFailure for all others.

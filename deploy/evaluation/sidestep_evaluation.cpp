@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   using namespace sidestep;
   CommandLine command_line("Studies and benchmarks of Sidestep.", "sidestep");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   app.require_subcommand();
   std::function<int()> action;
   add_bench_command(app, action);

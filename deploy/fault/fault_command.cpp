@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-void add_fault_command(const Command& root, std::function<int()>& action) {
-  const Command fault = root.add_subcommand("fault", "Disturbs a running system: its network, its robots");
+void add_fault_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand fault = root.add_subcommand("fault", "Disturbs a running system: its network, its robots");
   fault.require_subcommand();
   add_network_command(fault, action);
   add_robot_commands(fault, action);

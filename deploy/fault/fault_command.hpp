@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `sidestep fault`. Parsing one of its commands sets `action`, which returns the exit code and throws
 /// std::runtime_error with the reason if the fault cannot be applied.
-void add_fault_command(const Command& root, std::function<int()>& action);
+void add_fault_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -49,30 +49,30 @@ int apply(const LinkOptions& options, const LinkFault& fault) {
 
 }  // namespace
 
-void add_link_commands(const Command& fault, std::function<int()>& action) {
+void add_link_commands(const CliCommand& fault, std::function<int()>& action) {
   const auto options = std::make_shared<LinkOptions>();
   const auto add = [&](const char* name, const char* description) {
-    const Command command = fault.add_subcommand(name, description);
+    const CliCommand command = fault.add_subcommand(name, description);
     command.add_option("HOST", options->host, "the namespace as named in the hosts file; all: every host")
         .required();
     return command;
   };
-  const Command partition =
+  const CliCommand partition =
       add("partition", "Cuts a host off from all others (needs namespace hosts and root)");
   partition.add_option("--one-way", options->one_way, "drop only incoming or only outgoing packets")
       .check(one_of({"in", "out"}));
   partition.on_parsed(
       [options, &action] { action = [options] { return apply(*options, fault_from(*options, true)); }; });
 
-  const Command link = add("link", "Drops incoming packets of a host (needs namespace hosts and root)");
+  const CliCommand link = add("link", "Drops incoming packets of a host (needs namespace hosts and root)");
   link.add_option("--loss", options->loss, "loss probability").required().check(in_range(0.0, 1.0));
   link.on_parsed(
       [options, &action] { action = [options] { return apply(*options, fault_from(*options, false)); }; });
-  for (const Command& command : {partition, link}) {
+  for (const CliCommand& command : {partition, link}) {
     command.add_option("--seconds", options->seconds, "duration [until `fault heal`]").check(positive());
   }
 
-  const Command heal_command = add("heal", "Ends `partition` and `link` of a host");
+  const CliCommand heal_command = add("heal", "Ends `partition` and `link` of a host");
   heal_command.on_parsed([options, &action] {
     action = [options] {
       heal(namespaces_of_host(options->host));

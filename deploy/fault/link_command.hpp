@@ -8,6 +8,6 @@
 namespace sidestep {
 
 /// Adds `partition`, `link` and `heal` to `sidestep fault`: packet filters in the kernel for namespace hosts.
-void add_link_commands(const Command& fault, std::function<int()>& action);
+void add_link_commands(const CliCommand& fault, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -95,10 +95,10 @@ std::string usage_error(const NetworkOptions& options) {
 
 }  // namespace
 
-void add_network_command(const Command& fault, std::function<int()>& action) {
+void add_network_command(const CliCommand& fault, std::function<int()>& action) {
   const auto options = std::make_shared<NetworkOptions>();
   options->dds.participant = "sidestep-fault";
-  const Command command = fault.add_subcommand(
+  const CliCommand command = fault.add_subcommand(
       "network", "Loses, delays and duplicates messages at processes started with --faults");
   command
       .add_option("--target", options->target,

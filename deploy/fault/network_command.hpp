@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `network` to `sidestep fault`: impairs the messages received by processes that were started with
 /// --faults.
-void add_network_command(const Command& fault, std::function<int()>& action);
+void add_network_command(const CliCommand& fault, std::function<int()>& action);
 
 }  // namespace sidestep

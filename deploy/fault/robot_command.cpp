@@ -64,46 +64,46 @@ int disturb(const RobotOptions& options, Kind kind) {
 
 }  // namespace
 
-void add_robot_commands(const Command& fault, std::function<int()>& action) {
+void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
   const auto options = std::make_shared<RobotOptions>();
   options->dds.participant = "sidestep-fault";
   const auto add = [&](const char* name, const char* description, Kind kind) {
-    const Command command = fault.add_subcommand(name, description);
+    const CliCommand command = fault.add_subcommand(name, description);
     command.add_option("ROBOT", options->robot, "robot id").required().check(in_range(0U, kMaxRobots - 1));
     add_dds_options(command, options->dds);
     command.on_parsed(
         [options, kind, &action] { action = [options, kind] { return disturb(*options, kind); }; });
     return command;
   };
-  const auto add_seconds = [&](const Command command) {
+  const auto add_seconds = [&](const CliCommand command) {
     command.add_option("--seconds", options->seconds, "duration")
         .check(in_range(0.001, 3600.0))
         .show_default();
   };
-  const auto add_pair = [&](const Command& command, const char* name, std::vector<double>& pair, double max,
-                            const char* description) {
+  const auto add_pair = [&](const CliCommand& command, const char* name, std::vector<double>& pair,
+                            double max, const char* description) {
     command.add_option(name, pair, description).required().comma_separated(2).check(in_range(-max, max));
   };
   const ValueCheck angle = in_range(-2 * std::numbers::pi, 2 * std::numbers::pi);
 
-  const Command push = add("push", "Changes a robot's velocity instantly", Kind::DISTURBANCE_PUSH);
+  const CliCommand push = add("push", "Changes a robot's velocity instantly", Kind::DISTURBANCE_PUSH);
   add_pair(push, "--velocity", options->velocity_mps, 20, "velocity change X,Y in m/s");
-  const Command slip = add("slip", "Reduces the grip of a robot's wheels", Kind::DISTURBANCE_SLIP);
+  const CliCommand slip = add("slip", "Reduces the grip of a robot's wheels", Kind::DISTURBANCE_SLIP);
   slip.add_option("--grip", options->grip, "share of the commanded acceleration that takes effect")
       .required()
       .check(in_range(0.0, 1.0));
   add_seconds(slip);
-  const Command block = add("block", "Blocks a wheel of a robot", Kind::DISTURBANCE_BLOCK);
+  const CliCommand block = add("block", "Blocks a wheel of a robot", Kind::DISTURBANCE_BLOCK);
   block.add_option("--heading", options->heading_rad, "the wheel's direction in the body frame, in rad")
       .check(angle);
   add_seconds(block);
   add("lift", "Takes a robot off the floor", Kind::DISTURBANCE_LIFT);
-  const Command place =
+  const CliCommand place =
       add("place", "Puts a lifted robot down once its rest there is granted", Kind::DISTURBANCE_PLACE);
   add_pair(place, "--at", options->position_m, 1000, "position X,Y in m");
   place.add_option("--heading", options->heading_rad, "in rad").check(angle);
   add("reboot", "Restarts a robot's firmware", Kind::DISTURBANCE_REBOOT);
-  const Command clock =
+  const CliCommand clock =
       add("clock", "Sets a robot's clock relative to its host's clock", Kind::DISTURBANCE_CLOCK);
   clock.add_option("--offset-ms", options->offset_ms, "positive: ahead, negative: behind")
       .required()

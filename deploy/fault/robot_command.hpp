@@ -8,6 +8,6 @@
 namespace sidestep {
 
 /// Adds the commands for a single robot to `sidestep fault`: push, slip, block, lift, place, reboot, clock.
-void add_robot_commands(const Command& fault, std::function<int()>& action);
+void add_robot_commands(const CliCommand& fault, std::function<int()>& action);
 
 }  // namespace sidestep

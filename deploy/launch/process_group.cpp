@@ -118,7 +118,11 @@ ProcessGroup::ProcessGroup(const std::string& log_path) {
 }
 
 ProcessGroup::~ProcessGroup() {
-  terminate(Milliseconds{0});
+  try {
+    terminate(Milliseconds{0});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "cannot end all processes: %s\n", error.what());
+  }
   std::fclose(log_);
 }
 

@@ -22,7 +22,7 @@ struct ChildSpec {
 
 /// A child was restarted or died.
 struct ChildEvent {
-  enum class Kind { kStarted, kDied } kind;
+  enum class Kind { kStarted, kDied } kind = Kind::kStarted;
   std::string name;
   pid_t pid = 0;
   std::string reason;  ///< of the death, e.g. "exit code 3" or "signal 9 (SIGKILL)"

@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-void add_run_command(const Command& root, std::function<int()>& action) {
+void add_run_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<RunOptions>();
   options->dds.participant = "sidestep-run";
-  const Command command =
+  const CliCommand command =
       root.add_subcommand("run", "Runs a scenario over DDS, with one process for each part of the system");
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
       .required();

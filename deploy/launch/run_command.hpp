@@ -8,6 +8,6 @@
 namespace sidestep {
 
 /// Adds `sidestep run`. Parsing it sets `action`, which returns and throws as run() does.
-void add_run_command(const Command& root, std::function<int()>& action);
+void add_run_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -38,11 +38,11 @@ int run_seeds(Options& options) {
 
 }  // namespace
 
-void add_simulate_command(const Command& root, std::function<int()>& action) {
+void add_simulate_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<Options>();
   SimulateOptions& run = options->run;
   CampaignOptions& campaign = options->campaign;
-  const Command command = root.add_subcommand(
+  const CliCommand command = root.add_subcommand(
       "simulate", "Runs a scenario in one process and virtual time; the same seed gives the same run");
   const Option scenario = command.add_option(
       "SCENARIO", run.scenario_file,

@@ -140,14 +140,15 @@ void FrameRenderer::blur(const cv::Rect& rect) {
   for (int y = rect.y; y < rect.br().y; ++y) {
     std::uint8_t* const row = clean_.data() + row_bytes() * static_cast<std::size_t>(y);
     convert_pixels(spec_.format, blurred[y - around.y][rect.x - around.x].val, rect.width,
-                   row + rect.x * bytes_per_pixel(spec_.format));
+                   row + std::ptrdiff_t{rect.x} * bytes_per_pixel(spec_.format));
   }
 }
 
 void FrameRenderer::restore(const cv::Rect& rect) {
   floor_(rect).copyTo(canvas_(rect));
-  const auto begin = static_cast<std::size_t>(rect.x * bytes_per_pixel(spec_.format));
-  const auto bytes = static_cast<std::size_t>(rect.width * bytes_per_pixel(spec_.format));
+  const auto pixel_bytes = static_cast<std::size_t>(bytes_per_pixel(spec_.format));
+  const std::size_t begin = static_cast<std::size_t>(rect.x) * pixel_bytes;
+  const std::size_t bytes = static_cast<std::size_t>(rect.width) * pixel_bytes;
   for (int y = rect.y; y < rect.br().y; ++y) {
     const std::size_t at = row_bytes() * static_cast<std::size_t>(y) + begin;
     std::memcpy(clean_.data() + at, clean_floor_.data() + at, bytes);

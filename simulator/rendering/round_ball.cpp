@@ -48,7 +48,7 @@ class BallView {
  private:
   Vec3 centre_m_, camera_m_;
   double reach_m_ = 0;
-  SampleAxis offsets_x_, offsets_y_;
+  SampleAxis offsets_x_{}, offsets_y_{};
 };
 
 }  // namespace

@@ -73,7 +73,7 @@ class BodyView {
   /// Paints a pixel by the counts of its samples.
   void paint(const Vec2& place_m, cv::Vec3b& pixel) const {
     const Vec2 p = in_frame(place_m);
-    Points moved;
+    Points moved{};
     coverage::PixelSamples samples{static_cast<float>(p.x()), static_cast<float>(p.y()), &offsets_};
     if (motion_m_ > 0) {
       move(samples, moved);
@@ -152,7 +152,7 @@ class BodyView {
   const coverage::Kernels& kernels_ = coverage::best_kernels();
   coverage::CrossSection section_;
   coverage::ViewingRays rays_;
-  Points offsets_, shifts_;
+  Points offsets_{}, shifts_{};
 };
 
 /// Paints a body in squares of pixels, which are divided into quarters unless all their pixels are equal.

@@ -11,7 +11,7 @@ namespace sidestep {
 
 /// A straight line on the field, under the league's name for it.
 struct MarkedLine {
-  const char* name;
+  const char* name = "";
   Segment segment_m;
 };
 

@@ -4,43 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/messaging/codec.hpp"
-
 namespace sidestep {
 namespace {
 
-constexpr double kMaxCoordinate_m = 1e4;  // beyond any floor
 constexpr double kMaxInflation_m = 1;
-// Higher values would leave no numbers for later incarnations and versions.
-constexpr Incarnation kMaxIncarnation = Incarnation{1} << 62;
-constexpr VersionNumber kMaxVersionNumber = VersionNumber{1} << 63;
-
-struct CheckedCommand {
-  Incarnation incarnation;
-  Epoch epoch;
-  std::optional<Version> version;
-};
-
-bool is_sane(const msg::PoseFix& fix) {
-  return std::abs(fix.x_m()) < kMaxCoordinate_m && std::abs(fix.y_m()) < kMaxCoordinate_m &&
-         std::isfinite(fix.heading_rad());
-}
-
-// nullopt if any part of the command is invalid for this robot.
-std::optional<CheckedCommand> check(const msg::Command& command, RobotId robot) {
-  CheckedCommand checked{command.header().incarnation(), command.epoch(), std::nullopt};
-  if (command.robot() != robot || command.header().sender() != robot) return std::nullopt;
-  if (checked.incarnation == 0 || checked.incarnation > kMaxIncarnation) return std::nullopt;
-  if (checked.epoch > kMaxEpoch || !std::isfinite(command.desired_heading_rad())) return std::nullopt;
-  if (command.has_fix() && !is_sane(command.fix())) return std::nullopt;
-  if (command.has_version()) {
-    checked.version = decode(command.version());
-    if (!checked.version || checked.version->robot != robot) return std::nullopt;
-    if (checked.version->number == 0 || checked.version->number > kMaxVersionNumber) return std::nullopt;
-    if (checked.version->incarnation > checked.incarnation) return std::nullopt;
-  }
-  return checked;
-}
 
 }  // namespace
 
@@ -57,38 +24,36 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
       estimator_(start_m, heading_rad, now, settings.estimator),
       target_heading_rad_(heading_rad) {}
 
-void Firmware::on_command(const msg::Command& command, Time now) {
+void Firmware::on_command(const Command& command, Time now) {
   while (switch_next(now)) {
   }
-  const auto checked = check(command, robot_);
-  if (!checked) {
-    ++counts_.refused_malformed;
-    return;
-  }
   highest_seen_ =
-      std::max({highest_seen_, checked->incarnation, checked->version ? checked->version->number : 0});
-  if (checked->incarnation < obeyed_) {
+      std::max({highest_seen_, command.incarnation, command.version ? command.version->number : 0});
+  if (command.incarnation < obeyed_) {
     ++counts_.refused_fenced;
     return;
   }
-  obey(checked->incarnation);
-  command_stamp_ns_ = command.header().stamp_ns();
-  command_received_at_ = now;
+  obey(command.incarnation);
+  last_command_ = {command.sent_at, now};
   // A new agent may not know the latest epoch that the robot learned from an earlier agent. Its versions are
   // refused until it learns that epoch from feedback.
-  const bool is_old_epoch = checked->epoch < obeyed_epoch_;
-  obeyed_epoch_ = std::max(obeyed_epoch_, checked->epoch);
-  target_heading_rad_ = wrapped_rad(command.desired_heading_rad());
-  if (command.has_fix()) {
-    const auto& fix = command.fix();
-    estimator_.correct(time_from_ns(fix.captured_at_ns()), {fix.x_m(), fix.y_m()}, fix.heading_rad());
-  }
-  if (!checked->version) return;
+  const bool is_old_epoch = command.epoch < obeyed_epoch_;
+  obeyed_epoch_ = std::max(obeyed_epoch_, command.epoch);
+  target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
+  if (command.fix)
+    estimator_.correct(command.fix->captured_at, command.fix->position_m, command.fix->heading_rad);
+  if (!command.version) return;
   if (is_old_epoch) {
     ++counts_.refused_fenced;
   } else {
-    take(*checked->version, now);
+    take(*command.version, now);
   }
+}
+
+void Firmware::on_malformed_command(Time now) {
+  while (switch_next(now)) {
+  }
+  ++counts_.refused_malformed;
 }
 
 void Firmware::obey(Incarnation incarnation) {
@@ -264,7 +229,7 @@ void Firmware::start_own_stop(Time now) {
   highest_executed_ = stop.number;
   is_off_reference_ = true;
   pending_count_ = 0;
-  ++counts_.own_stops;
+  ++own_stops_;
 }
 
 void Firmware::lift(Time now) {
@@ -295,36 +260,27 @@ void Firmware::restart(Time now) {
   start_own_stop(now);
 }
 
-msg::Feedback Firmware::feedback(Time now) {
+Feedback Firmware::feedback(Time now) {
   while (switch_next(now)) {
   }
   last_fact_ = std::max(last_fact_, now);
   const Vec2 position =
       estimator_.position_m() + estimator_.velocity_mps() * to_seconds(now - estimator_.time());
   const Vec2 reference = executing_.trajectory.state_at(now).position_m;
-  msg::Feedback facts;
-  facts.robot(robot_);
-  facts.obeyed_incarnation(obeyed_);
-  facts.obeyed_epoch(obeyed_epoch_);
-  facts.valid_at_ns(to_ns(now));
-  facts.executing(encode(executing_));
-  facts.is_off_reference(is_off_reference_);
-  facts.is_lifted(is_lifted_);
-  facts.command_stamp_ns(command_stamp_ns_);
-  facts.command_received_at_ns(to_ns(command_received_at_));
-  facts.x_m(position.x());
-  facts.y_m(position.y());
-  facts.vx_mps(estimator_.velocity_mps().x());
-  facts.vy_mps(estimator_.velocity_mps().y());
-  facts.heading_rad(wrapped_rad(estimator_.heading_rad()));
-  facts.tracking_error_m((position - reference).norm());
-  facts.position_error_rms_m(estimator_.position_error_rms_m());
-  facts.odometry_scale_stddev(estimator_.odometry_scale_stddev());
-  facts.activated(counts_.activated);
-  facts.refused_late(counts_.refused_late);
-  facts.refused_base(counts_.refused_base);
-  facts.refused_fenced(counts_.refused_fenced);
-  facts.refused_malformed(counts_.refused_malformed);
+  Feedback facts;
+  facts.robot = robot_;
+  facts.obeyed_incarnation = obeyed_;
+  facts.obeyed_epoch = obeyed_epoch_;
+  facts.valid_at = now;
+  facts.executing = executing_;
+  facts.is_off_reference = is_off_reference_;
+  facts.is_lifted = is_lifted_;
+  facts.command = last_command_;
+  facts.estimate = {position, estimator_.velocity_mps()};
+  facts.heading_rad = wrapped_rad(estimator_.heading_rad());
+  facts.tracking_error_m = (position - reference).norm();
+  facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
+  facts.counts = counts_;
   return facts;
 }
 

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "common/motion/limits.hpp"
 #include "common/motion/safety_budget.hpp"
-#include "common/motion/version.hpp"
-#include "idl/robot.h"
+#include "common/protocol/robot_messages.hpp"
 #include "simulator/world/body.hpp"
 #include "simulator/world/pose_estimator.hpp"
 
@@ -23,16 +23,6 @@ struct FirmwareSettings {
   double turning_gain_ps = 25;
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   double deceleration_mps2 = MotionLimits{}.deceleration_mps2;  ///< D, for stops that the firmware generates
-};
-
-/// Counts of versions and commands by outcome.
-struct FirmwareCounts {
-  std::uint64_t activated = 0;
-  std::uint64_t refused_late = 0;
-  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
-  std::uint64_t refused_fenced = 0;
-  std::uint64_t refused_malformed = 0;
-  std::uint64_t own_stops = 0;  ///< stops that the firmware generated when off its reference
 };
 
 /// The firmware of a robot (coordinator/PROTOCOL.md, "Roles"). It executes one whole version and
@@ -59,10 +49,11 @@ class Firmware {
   Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
            const FirmwareSettings& settings);
 
-  /// Obeys a command, or refuses and counts it. A malformed command changes nothing; a non-finite heading
-  /// makes it malformed. A fix that is too old, repeated or from the future is ignored without refusing the
-  /// command.
-  void on_command(const msg::Command& command, Time now);
+  /// Obeys a command, or refuses and counts it. A fix that is too old, repeated or from the future is ignored
+  /// without refusing the command. Precondition: the command is for this robot.
+  void on_command(const Command& command, Time now);
+  /// Counts a command that could not be decoded.
+  void on_malformed_command(Time now);
 
   /// Makes the next switch of version that is due; false if none is. Every other call with a time first makes
   /// all switches due by then, so that a reported "executing f at t" remains true.
@@ -83,8 +74,8 @@ class Firmware {
   /// number seen.
   void reboot() { is_rebooting_ = true; }
 
-  /// The facts at this time, without the header. Precondition: time never goes back between calls.
-  msg::Feedback feedback(Time now);
+  /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls.
+  Feedback feedback(Time now);
 
   const Version& executing() const { return executing_; }
   /// Whether it executes a stop of its own.
@@ -93,6 +84,8 @@ class Firmware {
   Incarnation obeyed_incarnation() const { return obeyed_; }
   Epoch obeyed_epoch() const { return obeyed_epoch_; }
   const FirmwareCounts& counts() const { return counts_; }
+  /// Number of stops of its own since the last restart.
+  std::uint64_t own_stops() const { return own_stops_; }
   /// The start of the next pending version; Time::max() if none is pending.
   Time next_start() const { return pending_count_ > 0 ? pending_[0].trajectory.start() : Time::max(); }
 
@@ -120,11 +113,11 @@ class Firmware {
   bool is_rebooting_ = false;
   Time last_fact_ = Time::min();
   Time out_of_bound_since_ = Time::max();  ///< Time::max(): within the tracking bound
-  std::int64_t command_stamp_ns_ = 0;
-  Time command_received_at_{};
+  std::optional<Feedback::CommandEcho> last_command_;
   std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
   int pending_count_ = 0;
   FirmwareCounts counts_;
+  std::uint64_t own_stops_ = 0;
 
   FirmwareSettings settings_;
   double decay_;

@@ -9,22 +9,16 @@ namespace {
 
 constexpr double kMaxInflation_m = 1;
 
-// Commands with higher numbers are refused as malformed.
-std::uint64_t acceptable_number(std::uint64_t number) {
-  return number <= std::uint64_t{1} << 62 ? number : 0;
-}
-
 }  // namespace
 
-void FirmwareMonitor::command_arrived(const msg::Command& command, Time now) {
-  const auto& version = command.version();
-  highest_seen_ = std::max(highest_seen_, acceptable_number(command.header().incarnation()));
-  if (command.has_version())
-    highest_seen_ = std::max(highest_seen_, acceptable_number(version.version_number()));
-  const bool is_old_epoch = command.epoch() < acknowledged_epoch_;
-  if (!command.has_version() || is_old_epoch || version.start_ns() <= to_ns(now)) return;
-  const Arrival arrival{version.version_number(), version.base(), version.incarnation(),
-                        time_from_ns(version.start_ns())};
+void FirmwareMonitor::command_arrived(const Command& command, Time now) {
+  highest_seen_ = std::max(highest_seen_, command.incarnation);
+  if (!command.version) return;
+  const Version& version = *command.version;
+  highest_seen_ = std::max(highest_seen_, version.number);
+  const bool is_old_epoch = command.epoch < acknowledged_epoch_;
+  if (is_old_epoch || version.trajectory.start() <= now) return;
+  const Arrival arrival{version.number, version.base, version.incarnation, version.trajectory.start()};
   if (arrival.number <= highest_arrived_ && arrived_in_time(arrival)) return;
   highest_arrived_ = std::max(highest_arrived_, arrival.number);
   arrivals_[static_cast<std::size_t>(arrival_count_++ % arrivals_.size())] = arrival;
@@ -98,15 +92,15 @@ void FirmwareMonitor::put_down() {
   is_lifted_ = false;
 }
 
-void FirmwareMonitor::reported(const msg::Feedback& fact) {
-  check_rule(fact.executing().version_number() == executing_.number);
-  check_rule(fact.is_off_reference() == is_own_ && fact.is_lifted() == is_lifted_);
-  check_rule(fact.obeyed_incarnation() >= acknowledged_ && fact.obeyed_epoch() >= acknowledged_epoch_);
-  check_rule(is_lifted_ || executing_.trajectory.start() <= time_from_ns(fact.valid_at_ns()));
-  check_rule(fact.command_received_at_ns() <= fact.valid_at_ns());
-  acknowledged_ = std::max(acknowledged_, static_cast<Incarnation>(fact.obeyed_incarnation()));
-  acknowledged_epoch_ = std::max(acknowledged_epoch_, static_cast<Epoch>(fact.obeyed_epoch()));
-  last_fact_ = std::max(last_fact_, time_from_ns(fact.valid_at_ns()));
+void FirmwareMonitor::reported(const Feedback& fact) {
+  check_rule(fact.executing.number == executing_.number);
+  check_rule(fact.is_off_reference == is_own_ && fact.is_lifted == is_lifted_);
+  check_rule(fact.obeyed_incarnation >= acknowledged_ && fact.obeyed_epoch >= acknowledged_epoch_);
+  check_rule(is_lifted_ || executing_.trajectory.start() <= fact.valid_at);
+  check_rule(!fact.command || fact.command->received_at <= fact.valid_at);
+  acknowledged_ = std::max(acknowledged_, fact.obeyed_incarnation);
+  acknowledged_epoch_ = std::max(acknowledged_epoch_, fact.obeyed_epoch);
+  last_fact_ = std::max(last_fact_, fact.valid_at);
 }
 
 }  // namespace sidestep

@@ -6,25 +6,24 @@
 
 #include "common/motion/limits.hpp"
 #include "common/motion/safety_budget.hpp"
-#include "common/motion/version.hpp"
-#include "idl/robot.h"
+#include "common/protocol/robot_messages.hpp"
 
 namespace sidestep {
 
 /// Observes one robot's firmware from outside and counts the rules that it breaks (coordinator/PROTOCOL.md,
-/// "Roles"). Shares no code with the firmware: it is told of commands received, versions begun and
-/// facts reported. All times are by the robot's clock.
+/// "Roles"). Shares no code with the firmware: it is told of commands received, except malformed ones, of
+/// versions begun and of facts reported. All times are by the robot's clock.
 class FirmwareMonitor {
  public:
   explicit FirmwareMonitor(const Version& initial, double tracking_bound_m = SafetyBudget{}.tracking_bound_m,
                            double deceleration_mps2 = MotionLimits{}.deceleration_mps2)
       : executing_(initial), tracking_bound_m_(tracking_bound_m), deceleration_mps2_(deceleration_mps2) {}
 
-  void command_arrived(const msg::Command& command, Time now);
+  void command_arrived(const Command& command, Time now);
   void switched(const Version& to);
   /// The firmware executes a stop of its own.
   void started_own_stop(const Version& to);
-  void reported(const msg::Feedback& fact);
+  void reported(const Feedback& fact);
   /// Disturbances of the robot.
   void lifted();
   void put_down();

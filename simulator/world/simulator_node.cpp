@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
+#include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
-#include "simulator/world/disturbance_check.hpp"
+#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 namespace {
@@ -80,21 +81,24 @@ void SimulatorNode::advance(Time now) {
   publish_pending_feedback(now);
 }
 
-void SimulatorNode::on_command(std::size_t robot, const msg::Command& command) {
+void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
   if (radio_rng_.chance(command_loss_)) return;
   const Time now = clock();
   advance(now);
-  world_.on_command(robot, command, now);
+  if (const auto command = decode(message, world_.id(robot)))
+    world_.on_command(robot, *command, now);
+  else
+    world_.on_malformed_command(robot, now);
   publish_pending_feedback(now);
   watch_start(robot, now);
 }
 
-void SimulatorNode::on_disturbance(const msg::Disturbance& disturbance) {
+void SimulatorNode::on_disturbance(const msg::Disturbance& message) {
   const Time now = clock();
   advance(now);
-  const auto robot = robot_index_.find(disturbance.robot());
-  if (robot == robot_index_.end() || !is_valid(disturbance, field_, radius_m_) ||
-      !world_.disturb(robot->second, disturbance, now)) {
+  const auto robot = robot_index_.find(message.robot());
+  const auto disturbance = decode(message, field_, radius_m_);
+  if (robot == robot_index_.end() || !disturbance || !world_.disturb(robot->second, *disturbance, now)) {
     ++disturbances_refused_;
     return;
   }
@@ -117,10 +121,10 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
-  msg::Feedback facts = world_.feedback(robot, now);
-  facts.header().sender(world_.id(robot));
-  facts.header().incarnation(incarnation_);
-  feedback_[robot].publish(facts, now);
+  Feedback facts = world_.feedback(robot, now);
+  facts.robot_incarnation = incarnation_;
+  msg::Feedback message = encode(facts);
+  feedback_[robot].publish(message, now);
   feedback_due_[robot] = now + cycle_;
   world_.clear_pending_feedback(robot);
   watch_start(robot, now);

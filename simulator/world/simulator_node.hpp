@@ -46,8 +46,8 @@ class SimulatorNode {
   Time clock();
   void wake();
   void advance(Time now);
-  void on_command(std::size_t robot, const msg::Command& command);
-  void on_disturbance(const msg::Disturbance& disturbance);
+  void on_command(std::size_t robot, const msg::Command& message);
+  void on_disturbance(const msg::Disturbance& message);
   void watch_start(std::size_t robot, Time now);
   void on_start(std::size_t robot);
   void publish_feedback(std::size_t robot, Time now);

@@ -137,7 +137,7 @@ void World::clear_pending_feedback(std::size_t index) {
   std::erase(pending_feedback_, static_cast<std::uint32_t>(index));
 }
 
-void World::on_command(std::size_t index, const msg::Command& command, Time now) {
+void World::on_command(std::size_t index, const Command& command, Time now) {
   Robot& robot = robots_[index];
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
@@ -149,10 +149,16 @@ void World::on_command(std::size_t index, const msg::Command& command, Time now)
     request_feedback(index);
 }
 
-msg::Feedback World::feedback(std::size_t index, Time now) {
+void World::on_malformed_command(std::size_t index, Time now) {
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
-  msg::Feedback facts = robots_[index].firmware.feedback(clock);
+  robots_[index].firmware.on_malformed_command(clock);
+}
+
+Feedback World::feedback(std::size_t index, Time now) {
+  const Time clock = robot_time(index, now);
+  switch_versions(index, clock);
+  Feedback facts = robots_[index].firmware.feedback(clock);
   robots_[index].monitor.reported(facts);
   return facts;
 }

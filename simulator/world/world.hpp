@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/protocol/robot_disturbance.hpp"
 #include "common/random/rng.hpp"
-#include "idl/disturbance.h"
 #include "idl/monitor.h"
-#include "idl/robot.h"
 #include "simulator/world/ball.hpp"
 #include "simulator/world/body.hpp"
 #include "simulator/world/contacts.hpp"
@@ -34,14 +33,16 @@ class World {
   /// The time of the last step.
   Time time() const { return time_; }
 
-  /// Applies a disturbance; false if the robot's state does not allow it. Precondition: is_valid() (see
-  /// disturbance_check.hpp).
-  [[nodiscard]] bool disturb(std::size_t robot, const msg::Disturbance& disturbance, Time now);
+  /// Applies a disturbance; false if the robot's state does not allow it. Precondition: the fields that its
+  /// kind uses are in range (disturbance_codec.hpp).
+  [[nodiscard]] bool disturb(std::size_t robot, const RobotDisturbance& disturbance, Time now);
 
   /// A command reaches a robot. Precondition: time() <= now < time() + kPhysicsStep.
-  void on_command(std::size_t robot, const msg::Command& command, Time now);
-  /// The robot's facts, without the header.
-  msg::Feedback feedback(std::size_t robot, Time now);
+  void on_command(std::size_t robot, const Command& command, Time now);
+  /// A command that could not be decoded reaches a robot. Precondition: as above.
+  void on_malformed_command(std::size_t robot, Time now);
+  /// The robot's facts, without robot_incarnation.
+  Feedback feedback(std::size_t robot, Time now);
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
   /// clear_pending_feedback(); each listed once.

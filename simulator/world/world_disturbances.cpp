@@ -11,25 +11,24 @@ constexpr double kPlaceTolerance_m = 0.005;
 
 }  // namespace
 
-bool World::disturb(std::size_t index, const msg::Disturbance& disturbance, Time now) {
+bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time now) {
   Robot& robot = robots_[index];
   Body& body = bodies_[index];
-  const auto kind = disturbance.disturbance_kind();
-  const Time end = now + Duration{disturbance.duration_ns()};
+  const auto kind = disturbance.kind;
   switch (kind) {
     case msg::DISTURBANCE_PUSH:
       if (!body.is_on_floor()) return false;
-      body.push({disturbance.vx_mps(), disturbance.vy_mps()});
+      body.push(disturbance.push_mps);
       record_disturbance(index, now);
       return true;
     case msg::DISTURBANCE_SLIP:
-      body.set_grip(disturbance.grip());
-      start_disturbance({index, kind, end, Vec2(0, 0), 0});
+      body.set_grip(disturbance.grip);
+      start_disturbance({index, kind, now + disturbance.duration, Vec2(0, 0), 0});
       record_disturbance(index, now);
       return true;
     case msg::DISTURBANCE_BLOCK:
-      body.set_blocked(disturbance.heading_rad());
-      start_disturbance({index, kind, end, Vec2(0, 0), 0});
+      body.set_blocked(disturbance.heading_rad);
+      start_disturbance({index, kind, now + disturbance.duration, Vec2(0, 0), 0});
       record_disturbance(index, now);
       return true;
     case msg::DISTURBANCE_LIFT:
@@ -37,8 +36,7 @@ bool World::disturb(std::size_t index, const msg::Disturbance& disturbance, Time
       return true;
     case msg::DISTURBANCE_PLACE:
       if (body.is_on_floor()) return false;
-      start_disturbance(
-          {index, kind, Time::max(), {disturbance.x_m(), disturbance.y_m()}, disturbance.heading_rad()});
+      start_disturbance({index, kind, Time::max(), disturbance.place_m, disturbance.heading_rad});
       return true;
     case msg::DISTURBANCE_REBOOT:
       if (!body.is_on_floor()) {
@@ -51,7 +49,7 @@ bool World::disturb(std::size_t index, const msg::Disturbance& disturbance, Time
       return true;
     case msg::DISTURBANCE_CLOCK:
       robot_time(index, now);
-      robot.clock_offset = Duration{disturbance.clock_offset_ns()};
+      robot.clock_offset = disturbance.clock_offset;
       return true;
   }
   return false;

@@ -60,7 +60,8 @@ void frame(benchmark::State& state) {
   Rng rng(2);
   std::vector<SceneRobot> robots;
   for (std::uint32_t i = 0; i < state.range(3); ++i) {
-    const Vec2 place(-5.8 + 1.1 * (i % 6), -4.2 + 1.1 * (i / 6));
+    const std::uint32_t column = i % 6, row = i / 6;
+    const Vec2 place(-5.8 + 1.1 * column, -4.2 + 1.1 * row);
     robots.push_back({i % 2 == 0 ? Team::kBlue : Team::kYellow, i % 16, place, rng.uniform(-3, 3)});
   }
   const Scene scene{robots, {}, SceneBall{Vec3(-3.3, -2.5, 0.0215)}};

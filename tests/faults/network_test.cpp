@@ -104,9 +104,9 @@ TEST_CASE(
       return r.robot() == robot && std::abs(r.x_m()) > 1.1 && r.x_m() * r.vx_mps() > 0.5;
     });
   };
-  const auto apply = [&](std::vector<std::string> arguments) {
+  const auto apply = [&](const std::vector<std::string>& arguments) {
     CAPTURE(arguments);
-    REQUIRE(run.command(fault(run, std::move(arguments))) == "exit code 0");
+    REQUIRE(run.command(fault(run, arguments)) == "exit code 0");
   };
   const auto apply_leaving = [&](RobotId robot, std::vector<std::string> arguments) {
     REQUIRE(run.wait_until([&] { return is_leaving(robot); }));

@@ -168,7 +168,7 @@ std::vector<std::vector<std::byte>> league_seeds(std::uint64_t seed) {
       log.insert(log.end(), vision.begin(), vision.end());
       add(kLog, log);
     }
-    std::vector<std::byte> steps(20 * 40);
+    std::vector<std::byte> steps(800);
     for (std::byte& byte : steps) byte = static_cast<std::byte>(rng.chance(0.3) ? rng.bits() : 0);
     add(kClock, steps);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linked into every program built with the thread sanitizer. The sanitizer's library of g++ 12 does not
-// intercept this function, with which Fast DDS locks mutexes with a deadline. It would consider each such
-// mutex unlocked and report false data races.
+// intercept pthread_mutex_clocklock(), with which Fast DDS locks mutexes with a deadline. Without this
+// replacement it would consider each such mutex unlocked and report false data races.
 #include <cstdint>
 #include <pthread.h>
 #include <time.h>
@@ -12,7 +12,7 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 std::int64_t in_ns(const timespec& t) { return std::int64_t{t.tv_sec} * kSecond_ns + t.tv_nsec; }
 
-std::int64_t shown_by(clockid_t clock) {
+std::int64_t now_ns(clockid_t clock) {
   timespec t{};
   clock_gettime(clock, &t);
   return in_ns(t);
@@ -22,7 +22,7 @@ std::int64_t shown_by(clockid_t clock) {
 
 extern "C" int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
                                        const timespec* until) noexcept {
-  const std::int64_t until_ns = in_ns(*until) - shown_by(clock) + shown_by(CLOCK_REALTIME);
+  const std::int64_t until_ns = in_ns(*until) - now_ns(clock) + now_ns(CLOCK_REALTIME);
   const timespec real_until{until_ns / kSecond_ns, until_ns % kSecond_ns};
   return pthread_mutex_timedlock(mutex, &real_until);
 }

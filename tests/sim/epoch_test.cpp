@@ -6,7 +6,7 @@
 
 #include "agents/agent/negotiation.hpp"
 #include "agents/safety/safety_search.hpp"
-#include "common/messaging/codec.hpp"
+#include "common/messaging/negotiation_codec.hpp"
 #include "common/motion/clearance.hpp"
 #include "coordinator/coordinator.hpp"
 #include "simulator/world/firmware.hpp"
@@ -22,16 +22,10 @@ FloorRules test_floor_rules() {
 }
 
 struct Robot {
-  RobotId id;
   Firmware firmware;
-  Robot(RobotId robot, Vec2 position)
-      : id(robot), firmware(robot, position, 0, time_from_ns(1'000'000'000), {}) {}
+  Robot(RobotId robot, Vec2 position) : firmware(robot, position, 0, time_from_ns(1'000'000'000), {}) {}
 
-  msg::Feedback fact(Time now) {
-    auto feedback = firmware.feedback(now);
-    feedback.header().sender(id);
-    return feedback;
-  }
+  Feedback fact(Time now) { return firmware.feedback(now); }
   double rest_x() const { return firmware.executing().trajectory.rest_position_m().x(); }
   double speed_at(Time t) const { return firmware.executing().trajectory.state_at(t).velocity_mps.norm(); }
 };
@@ -41,22 +35,28 @@ struct Driver {
   Negotiation negotiation;
   Driver(RobotId robot, Incarnation incarnation) : id(robot), negotiation(robot, incarnation, kCycle) {}
 
-  template <typename Message>
-  Message addressed(Message message) {
-    message.robot(id);
-    message.header().sender(id);
-    message.header().incarnation(negotiation.incarnation());
-    message.epoch(negotiation.epoch());
-    return message;
+  /// A command with the agent's incarnation and epoch.
+  Command command() const {
+    Command command;
+    command.robot = id;
+    command.incarnation = negotiation.incarnation();
+    command.epoch = negotiation.epoch();
+    return command;
   }
-  /// Sends the robot a command with the agent's incarnation and epoch, and processes its feedback.
+  /// Sends the robot a command without a version, and processes its feedback.
   void fence(Robot& robot, Time now) {
-    robot.firmware.on_command(addressed(msg::Command()), now);
+    robot.firmware.on_command(command(), now);
     negotiation.on_feedback(robot.fact(now));
   }
+  void receive_heartbeat(const Coordinator& coordinator, Time now) {
+    const msg::CoordinatorState state = coordinator.state();
+    const auto heartbeat = decode(state, now);
+    REQUIRE(heartbeat);
+    negotiation.on_coordinator_state(*heartbeat, now);
+  }
   void register_with(Coordinator& coordinator, Time now) {
-    if (negotiation.needs_registration()) coordinator.on_registration(addressed(negotiation.registration()));
-    negotiation.on_coordinator_state(coordinator.state(), now);
+    if (negotiation.needs_registration()) coordinator.on_registration(negotiation.registration());
+    receive_heartbeat(coordinator, now);
   }
   /// Proposes to drive along x at up to 1 m/s for some cycles, and executes the versions that are granted.
   void drive(Coordinator& coordinator, Robot& robot, double direction, int cycles, Time& now) {
@@ -64,22 +64,20 @@ struct Driver {
       now += kCycle;
       coordinator.on_feedback(robot.fact(now));
       fence(robot, now);
-      negotiation.on_coordinator_state(coordinator.state(), now);
+      receive_heartbeat(coordinator, now);
       if (!negotiation.may_propose(now)) continue;
       const Time start = now + kCycle;
       const Version base = negotiation.base_at(start);
       const Vec2 desired(robot.speed_at(start) < 1 ? 2.9 * direction : 0, 0);
       const Trajectory candidate =
           accelerate_then_stop(start, base.trajectory.state_at(start), desired, kCycle, 5);
-      const auto verdict =
-          coordinator.on_proposal(addressed(negotiation.propose({&candidate, 1}, base.number, now)));
+      const auto verdict = coordinator.on_proposal(negotiation.propose({&candidate, 1}, base.number, now));
       if (!verdict) continue;
       const std::optional<Version> granted = negotiation.on_verdict(*verdict, now + kCycle / 4).granted;
       if (!granted) continue;
-      auto command = addressed(msg::Command());
-      command.has_version(true);
-      command.version(encode(*granted));
-      robot.firmware.on_command(command, now + kCycle / 2);
+      Command forward = command();
+      forward.version = granted;
+      robot.firmware.on_command(forward, now + kCycle / 2);
     }
   }
   void rest(Coordinator& coordinator, Robot& robot, Time& now) {
@@ -104,7 +102,7 @@ struct Floor {
   }
   void both_obey(Coordinator& coordinator) {
     for (auto [driver, robot] : {std::pair{&left_driver, &left}, std::pair{&right_driver, &right}}) {
-      driver->negotiation.on_coordinator_state(coordinator.state(), now);
+      driver->receive_heartbeat(coordinator, now);
       driver->fence(*robot, now);
       driver->register_with(coordinator, now);
     }
@@ -128,14 +126,14 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   // The new agent first receives heartbeats of the old coordinator, which does not know of the new one.
   Driver successor(1, 2000);
   successor.fence(floor.right, floor.now);
-  successor.negotiation.on_coordinator_state(floor.first.state(), floor.now);
+  successor.receive_heartbeat(floor.first, floor.now);
   successor.register_with(floor.first, floor.now);
   successor.drive(floor.first, floor.right, -1, 60, floor.now);
   floor.require_clear();
   CHECK(floor.right.rest_x() == 1);
 
   // With the new coordinator the robot approaches the other one up to the required separation.
-  successor.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  successor.receive_heartbeat(floor.second, floor.now);
   successor.register_with(floor.second, floor.now);
   successor.drive(floor.second, floor.right, -1, 60, floor.now);
   floor.require_clear();
@@ -147,23 +145,23 @@ TEST_CASE("an agent whose robot obeys a later one cannot register in a new epoch
   Driver fenced_agent = floor.left_driver;  // receives no feedback from here on
   Driver successor(0, 2000);
   successor.fence(floor.left, floor.now);
-  successor.negotiation.on_coordinator_state(floor.first.state(), floor.now);
+  successor.receive_heartbeat(floor.first, floor.now);
   successor.fence(floor.left, floor.now);
   successor.register_with(floor.first, floor.now);
   successor.drive(floor.first, floor.left, 1, 24, floor.now);
   successor.rest(floor.first, floor.left, floor.now);
   REQUIRE(floor.left.rest_x() > 0.2);
 
-  fenced_agent.negotiation.on_coordinator_state(floor.second.state(), floor.now);
-  floor.left.firmware.on_command(fenced_agent.addressed(msg::Command()), floor.now);
+  fenced_agent.receive_heartbeat(floor.second, floor.now);
+  floor.left.firmware.on_command(fenced_agent.command(), floor.now);
   fenced_agent.register_with(floor.second, floor.now);
   CHECK_FALSE(floor.second.is_granting());
-  floor.right_driver.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  floor.right_driver.receive_heartbeat(floor.second, floor.now);
   floor.right_driver.fence(floor.right, floor.now);
   floor.right_driver.register_with(floor.second, floor.now);
   CHECK_FALSE(floor.second.is_granting());
 
-  successor.negotiation.on_coordinator_state(floor.second.state(), floor.now);
+  successor.receive_heartbeat(floor.second, floor.now);
   successor.fence(floor.left, floor.now);
   successor.register_with(floor.second, floor.now);
   CHECK(floor.second.is_granting());

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/robot_codec.hpp"
 
 namespace sidestep {
 namespace {
@@ -25,8 +25,9 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
     robot.executing = {spec.id, 0, 0, 0, Trajectory::resting(time_from_ns(0), spec.start_m)};
     robot.is_lifted = spec.is_absent;
     robot.writer = bus.advertise(topics::kFeedback, spec.id);
-    bus.subscribe(topics::kCommand, spec.id,
-                  std::function([this, &robot](const msg::Command& command) { on_command(robot, command); }));
+    bus.subscribe(topics::kCommand, spec.id, [this, &robot](const msg::Command& message) {
+      if (const auto command = decode(message, robot.id)) on_command(robot, *command);
+    });
     report_periodically(robot);
   }
   world_writer_ = bus.advertise(topics::kWorld);
@@ -86,30 +87,28 @@ void IdealRobots::publish_world() {
   world_writer_.publish(world, now);
 }
 
-void IdealRobots::on_command(Robot& robot, const msg::Command& command) {
+void IdealRobots::on_command(Robot& robot, const Command& command) {
   const Time now = bus_.now() + robot.clock_offset;
   advance(robot, now);
-  if (command.header().incarnation() < robot.obeyed) return;
-  robot.command_stamp_ns = command.header().stamp_ns();
-  robot.command_received = now;
-  robot.highest = std::max<VersionNumber>(robot.highest, command.header().incarnation());
-  const bool has_new_fence =
-      command.header().incarnation() > robot.obeyed || command.epoch() > robot.obeyed_epoch;
-  if (command.header().incarnation() > robot.obeyed) {
-    robot.obeyed = command.header().incarnation();
+  if (command.incarnation < robot.obeyed) return;
+  robot.last_command = {command.sent_at, now};
+  robot.highest = std::max<VersionNumber>(robot.highest, command.incarnation);
+  const bool has_new_fence = command.incarnation > robot.obeyed || command.epoch > robot.obeyed_epoch;
+  if (command.incarnation > robot.obeyed) {
+    robot.obeyed = command.incarnation;
     std::erase_if(robot.pending, [&](const Version& v) { return v.incarnation < robot.obeyed; });
   }
-  const bool is_old_epoch = command.epoch() < robot.obeyed_epoch;
-  robot.obeyed_epoch = std::max(robot.obeyed_epoch, command.epoch());
+  const bool is_old_epoch = command.epoch < robot.obeyed_epoch;
+  robot.obeyed_epoch = std::max(robot.obeyed_epoch, command.epoch);
   if (has_new_fence) report(robot);
-  if (!command.has_version() || is_old_epoch) return;
-  const auto version = decode(command.version());
-  if (version) robot.highest = std::max(robot.highest, version->number);
-  const auto is_same = [&](const Version& held) { return held.number == version->number; };
-  if (!version || version->trajectory.start() <= now || std::ranges::any_of(robot.pending, is_same)) return;
-  robot.pending.push_back(*version);
+  if (!command.version || is_old_epoch) return;
+  const Version& version = *command.version;
+  robot.highest = std::max(robot.highest, version.number);
+  const auto is_same = [&](const Version& held) { return held.number == version.number; };
+  if (version.trajectory.start() <= now || std::ranges::any_of(robot.pending, is_same)) return;
+  robot.pending.push_back(version);
   std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
-  bus_.at(version->trajectory.start() - robot.clock_offset, [this, &robot] { report(robot); });
+  bus_.at(version.trajectory.start() - robot.clock_offset, [this, &robot] { report(robot); });
 }
 
 void IdealRobots::advance(Robot& robot, Time now) {
@@ -128,23 +127,18 @@ void IdealRobots::advance(Robot& robot, Time now) {
 void IdealRobots::report(Robot& robot) {
   const Time now = bus_.now() + robot.clock_offset;
   advance(robot, now);
-  const State state = robot.executing.trajectory.state_at(now);
-  msg::Feedback feedback;
-  feedback.robot(robot.id);
-  feedback.header().sender(robot.id);
-  feedback.obeyed_incarnation(robot.obeyed);
-  feedback.obeyed_epoch(robot.obeyed_epoch);
-  feedback.valid_at_ns(to_ns(now));
-  feedback.command_stamp_ns(robot.command_stamp_ns);
-  feedback.command_received_at_ns(to_ns(robot.command_received));
-  feedback.executing(encode(robot.executing));
-  feedback.is_off_reference(robot.is_off_reference);
-  feedback.is_lifted(robot.is_lifted);
-  feedback.x_m(state.position_m.x());
-  feedback.y_m(state.position_m.y());
-  feedback.vx_mps(state.velocity_mps.x());
-  feedback.vy_mps(state.velocity_mps.y());
-  robot.writer.publish(feedback, bus_.now());
+  Feedback facts;
+  facts.robot = robot.id;
+  facts.obeyed_incarnation = robot.obeyed;
+  facts.obeyed_epoch = robot.obeyed_epoch;
+  facts.valid_at = now;
+  facts.command = robot.last_command;
+  facts.executing = robot.executing;
+  facts.is_off_reference = robot.is_off_reference;
+  facts.is_lifted = robot.is_lifted;
+  facts.estimate = robot.executing.trajectory.state_at(now);
+  msg::Feedback message = encode(facts);
+  robot.writer.publish(message, bus_.now());
 }
 
 void IdealRobots::report_periodically(Robot& robot) {

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
-#include "common/motion/version.hpp"
+#include "common/protocol/robot_messages.hpp"
 
 namespace sidestep {
 
@@ -42,8 +43,7 @@ class IdealRobots {
     Incarnation obeyed = 0;
     Epoch obeyed_epoch = 0;
     Duration clock_offset{0};
-    std::int64_t command_stamp_ns = 0;  // of the obeyed agent's last command
-    Time command_received{};            // arrival of that command
+    std::optional<Feedback::CommandEcho> last_command;
     Version executing;
     VersionNumber highest = 0;  // of all version numbers and incarnations received
     bool is_off_reference = false, is_lifted = false;
@@ -51,7 +51,7 @@ class IdealRobots {
     Writer<msg::Feedback> writer;
   };
   State state_at(RobotId robot, Time t);
-  void on_command(Robot& robot, const msg::Command& command);
+  void on_command(Robot& robot, const Command& command);
   void advance(Robot& robot, Time now);
   void report(Robot& robot);
   void report_periodically(Robot& robot);

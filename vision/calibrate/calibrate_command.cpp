@@ -60,7 +60,7 @@ int calibrate_command(int argc, char** argv) {
       "--geometry: "
       "calibrates cameras from points with known positions.",
       kName);
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   CalibrateOptions options;
   const Option geometry =
       app.add_option("--geometry", options.points_file,

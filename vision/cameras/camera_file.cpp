@@ -2,7 +2,6 @@
 #include "vision/cameras/camera_file.hpp"
 
 #include <fmt/format.h>
-#include <set>
 
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
@@ -40,16 +39,7 @@ NumberedCamera read_camera(YamlMap& map) {
 }  // namespace
 
 std::vector<NumberedCamera> parse_cameras(const std::string& text, const std::string& file_name) {
-  YamlMap map = document_map(text, file_name, kExpected);
-  std::vector<NumberedCamera> cameras;
-  std::set<std::uint32_t> ids;
-  read_list(map, "cameras", camera_keys::kMaxCameras, [&](YamlMap& inner) {
-    cameras.push_back(read_camera(inner));
-    if (!ids.insert(cameras.back().id).second)
-      inner.location_of("id").fail(fmt::format("another camera has the id {}", cameras.back().id));
-  });
-  map.finish();
-  return cameras;
+  return camera_keys::read_cameras<NumberedCamera>(document_map(text, file_name, kExpected), read_camera);
 }
 
 std::vector<NumberedCamera> load_cameras(const std::string& path) {

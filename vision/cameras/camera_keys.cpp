@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/camera_keys.hpp"
 
+#include <fmt/format.h>
+
 namespace sidestep::camera_keys {
 
 std::uint32_t read_id(YamlMap& map) {
@@ -17,6 +19,10 @@ void read_image_size(YamlMap& map, CameraParameters& camera) {
   };
   camera.width_px = pixels(0);
   camera.height_px = pixels(1);
+}
+
+void require_new_id(YamlMap& map, std::uint32_t id, std::set<std::uint32_t>& ids) {
+  if (!ids.insert(id).second) map.location_of("id").fail(fmt::format("another camera has the id {}", id));
 }
 
 }  // namespace sidestep::camera_keys

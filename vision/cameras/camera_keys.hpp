@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
+#include <vector>
 
 #include "common/camera/camera_model.hpp"
 #include "common/config/yaml_map.hpp"
@@ -19,5 +21,20 @@ inline constexpr Range kCoordinate_m{-1000, 1000};
 [[nodiscard]] std::uint32_t read_id(YamlMap& map);
 /// Sets width and height from the key `image_px`.
 void read_image_size(YamlMap& map, CameraParameters& camera);
+/// Throws a ConfigError if `ids` contains `id`, else adds it. `map` is the camera's mapping.
+void require_new_id(YamlMap& map, std::uint32_t id, std::set<std::uint32_t>& ids);
+
+/// The cameras of a file with the one key `cameras`. `read_camera` reads one of them from a YamlMap&.
+template <typename Camera, typename Read>
+[[nodiscard]] std::vector<Camera> read_cameras(YamlMap file, Read read_camera) {
+  std::vector<Camera> cameras;
+  std::set<std::uint32_t> ids;
+  read_list(file, "cameras", kMaxCameras, [&](YamlMap& map) {
+    cameras.push_back(read_camera(map));
+    require_new_id(map, cameras.back().id, ids);
+  });
+  file.finish();
+  return cameras;
+}
 
 }  // namespace sidestep::camera_keys

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/point_file.hpp"
 
-#include <fmt/format.h>
-#include <set>
-
 #include "common/config/yaml_document.hpp"
 #include "vision/cameras/camera_keys.hpp"
 
@@ -42,16 +39,7 @@ CameraPoints read_camera(YamlMap& map) {
 }  // namespace
 
 std::vector<CameraPoints> parse_points(const std::string& text, const std::string& file_name) {
-  YamlMap map = document_map(text, file_name, kExpected);
-  std::vector<CameraPoints> cameras;
-  std::set<std::uint32_t> ids;
-  read_list(map, "cameras", camera_keys::kMaxCameras, [&](YamlMap& inner) {
-    cameras.push_back(read_camera(inner));
-    if (!ids.insert(cameras.back().id).second)
-      inner.location_of("id").fail(fmt::format("another camera has the id {}", cameras.back().id));
-  });
-  map.finish();
-  return cameras;
+  return camera_keys::read_cameras<CameraPoints>(document_map(text, file_name, kExpected), read_camera);
 }
 
 std::vector<CameraPoints> load_points(const std::string& path) {

@@ -48,8 +48,8 @@ class ObstacleFinder {
   /// Adjacent regions.
   struct Blob {
     Region largest;
-    int left_px, right_px, top_px, bottom_px;
-    std::uint32_t area_px;
+    int left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;
+    std::uint32_t area_px = 0;
   };
   bool is_region_on_robot(const Region& region, const VerticalCylinders& robots) const;
   bool is_on_robot(const Vec2& pixel, const VerticalCylinders& robots) const;

@@ -3,7 +3,7 @@
 
 namespace sidestep {
 
-void add_image_options(const Command& command, ImageOptions& options) {
+void add_image_options(const CliCommand& command, ImageOptions& options) {
   command.add_option(
       "--colours", options.colours_file,
       "thresholds of the colours in images, see sidestep-vision calibrate [default thresholds]");

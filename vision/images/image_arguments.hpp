@@ -7,6 +7,6 @@
 namespace sidestep {
 
 /// Adds --colours, --cameras and --layout.
-void add_image_options(const Command& command, ImageOptions& options);
+void add_image_options(const CliCommand& command, ImageOptions& options);
 
 }  // namespace sidestep

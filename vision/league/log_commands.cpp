@@ -30,7 +30,7 @@ struct LogOptions {
   double speed = 1;
 };
 
-void add_log_options(const Command& app, LogOptions& options) {
+void add_log_options(const CliCommand& app, LogOptions& options) {
   app.add_option("FILE", options.file, "log file, version 1").required();
   app.add_option("--ssl-vision", options.vision, "ADDRESS:PORT of vision packets").show_default();
   app.add_option("--tracked", options.tracked, "ADDRESS:PORT of tracked packets").show_default();
@@ -123,7 +123,7 @@ int record(const LogOptions& options) {
 int replay_command(int argc, char** argv) {
   CommandLine command_line("Sends the packets of a log with the timing with which they were received.",
                            "sidestep-vision replay");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   LogOptions options;
   add_log_options(app, options);
   app.add_option("--seek", options.seek_s, "start this many seconds after the first packet")
@@ -136,7 +136,7 @@ int replay_command(int argc, char** argv) {
 
 int record_command(int argc, char** argv) {
   CommandLine command_line("Records the league's multicast packets in a log.", "sidestep-vision record");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   LogOptions options;
   add_log_options(app, options);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;

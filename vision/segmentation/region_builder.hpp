@@ -39,10 +39,10 @@ class RegionBuilder {
     std::uint32_t region;
   };
   struct Sums {
-    std::uint32_t parent;  ///< its own index for a root
+    std::uint32_t parent = 0;  ///< its own index for a root
     std::uint32_t area_px = 0;
     std::uint64_t x_px = 0, y_px = 0;
-    int left_px, right_px, top_px, bottom_px;
+    int left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;
   };
 
   std::uint32_t root_of(std::uint32_t region);

@@ -34,7 +34,7 @@ class ObstacleTracker {
   std::uint64_t rejected() const { return rejected_; }
 
  private:
-  static constexpr std::size_t kMaxTracks = 2 * msg::MAX_OBSTACLES;
+  static constexpr std::size_t kMaxTracks = std::size_t{2} * msg::MAX_OBSTACLES;
   struct Track {
     std::uint32_t number = 0;  ///< 0: not confirmed yet
     int hits = 0;

@@ -104,7 +104,7 @@ int view(const ViewOptions& options) {
 int view_command(int argc, char** argv) {
   CommandLine command_line("Writes pictures of a running system's images, annotated with the detections.",
                            "sidestep-vision view");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   ViewOptions options;
   options.dds.participant = "sidestep-view";
   app.add_option("--scenario", options.scenario_file, "scenario file").required();

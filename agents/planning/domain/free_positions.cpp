@@ -12,7 +12,7 @@ constexpr int kDirections = 64;
 constexpr double kSpacing_rad = 2 * std::numbers::pi / kDirections;
 constexpr int kBisections = 20;
 
-struct Found {
+struct FreePosition {
   Vec2 position_m;
   double distance_m;
   double angle_rad;
@@ -23,7 +23,7 @@ class DirectionalSearch {
   DirectionalSearch(const Vec2& position_m, double step_m, const std::function<bool(const Vec2&)>& is_free)
       : position_m_(position_m), step_m_(step_m), is_free_(is_free) {}
 
-  std::optional<Found> search(double angle_rad, double max_distance_m) const {
+  std::optional<FreePosition> search(double angle_rad, double max_distance_m) const {
     const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
     double blocked_m = 0, free_m = step_m_;
     while (!is_free_(position_m_ + free_m * direction)) {
@@ -35,11 +35,11 @@ class DirectionalSearch {
       const double middle_m = (blocked_m + free_m) / 2;
       (is_free_(position_m_ + middle_m * direction) ? free_m : blocked_m) = middle_m;
     }
-    return Found{position_m_ + free_m * direction, free_m, angle_rad};
+    return FreePosition{position_m_ + free_m * direction, free_m, angle_rad};
   }
 
   /// Searches between the direction and its neighbours.
-  void refine(Found& found) const {
+  void refine(FreePosition& found) const {
     for (double step_rad = kSpacing_rad / 2; step_rad > kSpacing_rad / 64; step_rad /= 2) {
       const double middle_rad = found.angle_rad;
       for (const double angle : {middle_rad - step_rad, middle_rad + step_rad}) {
@@ -60,14 +60,14 @@ class DirectionalSearch {
 std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m, double max_distance_m,
                                       const std::function<bool(const Vec2&)>& is_free) {
   const DirectionalSearch direction_search(position_m, step_m, is_free);
-  std::vector<Found> found;
+  std::vector<FreePosition> found;
   for (int i = 0; i < kDirections; ++i)
     if (const auto one = direction_search.search(i * kSpacing_rad, max_distance_m)) found.push_back(*one);
   std::sort(found.begin(), found.end(),
-            [](const Found& a, const Found& b) { return a.distance_m < b.distance_m; });
+            [](const FreePosition& a, const FreePosition& b) { return a.distance_m < b.distance_m; });
   if (!found.empty()) direction_search.refine(found.front());
   std::vector<Vec2> positions;
-  for (const Found& one : found) positions.push_back(one.position_m);
+  for (const FreePosition& one : found) positions.push_back(one.position_m);
   return positions;
 }
 

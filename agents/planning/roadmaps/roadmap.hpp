@@ -34,8 +34,8 @@ class Roadmap {
   using Node = std::uint32_t;
 
   struct Edge {
-    Node a, b;
-    double length;
+    Node a = 0, b = 0;
+    double length = 0;
     std::uint32_t checked = 0;  ///< version of the world for which is_free holds
     bool is_free = false;
 

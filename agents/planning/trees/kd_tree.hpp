@@ -106,7 +106,7 @@ class KdTree {
     const Leaf all = leaves_[full];
     clear_leaf(leaves_[full]);
     const auto axis = widest_axis(all);
-    std::array<std::uint8_t, kLeafCapacity> order;
+    std::array<std::uint8_t, kLeafCapacity> order{};
     for (std::size_t i = 0; i < kLeafCapacity; ++i) {
       std::size_t slot = i;
       while (slot > 0 && all.coordinate[axis][order[slot - 1]] > all.coordinate[axis][i]) {

@@ -32,7 +32,7 @@ class KnownObstacles {
  private:
   struct Known {
     Box box;  // inflated by the disc's radius
-    const Shape* shape;
+    const Shape* shape = nullptr;
   };
   bool blocks_motion(const Known& known, const Segment& motion, const Box& box) const;
 

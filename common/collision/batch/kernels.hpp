@@ -88,7 +88,7 @@ struct TreeView {
   std::uint32_t root;
 };
 
-enum class Answer : unsigned { kClear = 0, kTouches = 1, kUndecided = 2 };
+enum class SweepResult : unsigned { kClear = 0, kTouches = 1, kUndecided = 2 };
 
 /// The obstacles of a world, and the view of the structure in use; the other views are unset.
 struct WorldView {
@@ -101,8 +101,8 @@ struct WorldView {
 /// Whether a disc that moves along a segment touches an obstacle. Undecided for motions that are not finite
 /// or too far away, for negative radii and, with the linear kernel, for contacts within rounding of a circle:
 /// these need the exact comparison with all obstacles.
-using SweepKernel = Answer (*)(const WorldView& world, const double* from_m, const double* to_m,
-                               double radius_m);
+using SweepKernel = SweepResult (*)(const WorldView& world, const double* from_m, const double* to_m,
+                                    double radius_m);
 
 /// The inner loops of collision detection for one instruction set.
 struct Kernels {

@@ -44,12 +44,12 @@ inline unsigned overlaps(const BoxBlock& boxes, const SweptBox& box) {
   return bits;
 }
 
-Answer linear(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+SweepResult linear(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
   const BodiesView& bodies = world.bodies;
   const LinearView& view = world.linear;
   const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
   if (!disc.is_valid) [[unlikely]]
-    return Answer::kUndecided;
+    return SweepResult::kUndecided;
   const Vector gap_error = all<Vector>(disc.gap_error_m2);
   unsigned undecided = 0;
   const CircleBlock* circles = view.circles;
@@ -58,7 +58,7 @@ Answer linear(const WorldView& world, const double* from_m, const double* to_m, 
     Vector smallest = smallest_gaps(circles[0], disc);
     for (std::size_t i = 1; i < kBlocksPerBatch; ++i)
       smallest = smaller(smallest, smallest_gaps(circles[i], disc));
-    if (not_above(smallest, -gap_error) != 0) return Answer::kTouches;
+    if (not_above(smallest, -gap_error) != 0) return SweepResult::kTouches;
     undecided |= not_above(smallest, gap_error);
   }
   Vector smallest = all<Vector>(kFar_m2);
@@ -66,17 +66,17 @@ Answer linear(const WorldView& world, const double* from_m, const double* to_m, 
   undecided |= not_above(smallest, gap_error);
   // The result of the last circles is computed without branches.
   const auto touched = static_cast<unsigned>(not_above(smallest, -gap_error) != 0);
-  const unsigned answer = touched | (static_cast<unsigned>(undecided != 0) & ~touched) << 1;
-  if (view.box_blocks == 0 || answer != 0) return static_cast<Answer>(answer);
+  const unsigned result = touched | (static_cast<unsigned>(undecided != 0) & ~touched) << 1;
+  if (view.box_blocks == 0 || result != 0) return static_cast<SweepResult>(result);
   const SweptBox box = swept_box(bodies, disc);
   for (std::size_t block = 0; block < view.box_blocks; ++block) {
     const std::uint32_t* slots = view.box_slots + block * kLanes;
     for (unsigned bits = overlaps(view.boxes[block], box); bits != 0; bits &= bits - 1) {
       if (touches_undecided(bodies, disc, from_m, to_m, radius_m, slots[lowest(bits)]))
-        return Answer::kTouches;
+        return SweepResult::kTouches;
     }
   }
-  return Answer::kClear;
+  return SweepResult::kClear;
 }
 
 /// The buckets of the bounds of the swept area: minimum x and y, maximum x and y.
@@ -100,41 +100,42 @@ struct Rows {
 };
 
 inline Rows rows(const MasksView& view, const FourInts& bucket, std::size_t words) {
-  Rows found;
+  Rows found{};
   for (std::size_t i = 0; i < 4; ++i)
     found.row[i] = view.rows + (i * kBuckets + static_cast<std::uint32_t>(bucket[i])) * words;
   return found;
 }
 
-Answer one_word_masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+SweepResult one_word_masks(const WorldView& world, const double* from_m, const double* to_m,
+                           double radius_m) {
   const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
-    return Answer::kUndecided;
+    return SweepResult::kUndecided;
   const std::uint64_t bits =
       rows(world.masks, buckets(world.masks, world.bodies, query.disc), 1).candidates(0);
-  if (bits == 0) return Answer::kClear;
-  return static_cast<Answer>(touches_marked(query, bits, [](unsigned bit) { return bit; }));
+  if (bits == 0) return SweepResult::kClear;
+  return static_cast<SweepResult>(touches_marked(query, bits, [](unsigned bit) { return bit; }));
 }
 
-Answer masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+SweepResult masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
   const MasksView& view = world.masks;
   const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
-    return Answer::kUndecided;
+    return SweepResult::kUndecided;
   const Rows found = rows(view, buckets(view, world.bodies, query.disc), view.words);
   for (std::size_t word = 0; word < view.words; ++word) {
     const std::uint64_t bits = found.candidates(word);
     const auto slot = [word](unsigned bit) { return static_cast<std::uint32_t>(word) * 64 + bit; };
-    if (bits != 0 && touches_marked(query, bits, slot)) return Answer::kTouches;
+    if (bits != 0 && touches_marked(query, bits, slot)) return SweepResult::kTouches;
   }
-  return Answer::kClear;
+  return SweepResult::kClear;
 }
 
-Answer tree(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
+SweepResult tree(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
   const BodiesView& bodies = world.bodies;
   const Query query{bodies, moving_disc(bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
-    return Answer::kUndecided;
+    return SweepResult::kUndecided;
   const SweptBox box = swept_box(bodies, query.disc);
   std::uint32_t open[kMaxDepth * kLanes];
   std::size_t count = 1;
@@ -144,12 +145,12 @@ Answer tree(const WorldView& world, const double* from_m, const double* to_m, do
     unsigned bits = overlaps(node.boxes, box);
     if (node.is_leaf) {
       const auto slot = [&node](unsigned bit) { return node.children[bit % kLanes]; };
-      if (bits != 0 && touches_marked(query, bits, slot)) return Answer::kTouches;
+      if (bits != 0 && touches_marked(query, bits, slot)) return SweepResult::kTouches;
     } else {
       for (; bits != 0; bits &= bits - 1) open[count++] = node.children[lowest(bits)];
     }
   }
-  return Answer::kClear;
+  return SweepResult::kClear;
 }
 
 }  // namespace

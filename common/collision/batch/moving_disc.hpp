@@ -19,7 +19,7 @@ struct MovingDisc {
 /// The bit pattern of a number. Patterns of non-negative numbers are in the order of the numbers; those of
 /// negative numbers and NaN are larger than the pattern of any finite non-negative number.
 inline std::uint32_t bit_pattern(float value) {
-  std::uint32_t bits;
+  std::uint32_t bits = 0;
   __builtin_memcpy(&bits, &value, sizeof bits);
   return bits;
 }
@@ -27,7 +27,7 @@ inline std::uint32_t bit_pattern(float value) {
 inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, const double* to_m,
                               double radius_m) {
   const TwoDoubles origin = load_two(bodies.origin_m);
-  MovingDisc d;
+  MovingDisc d{};
   d.ends_m = joined(load_two(from_m) - origin, load_two(to_m) - origin);
   const FourFloats path = __builtin_shufflevector(d.ends_m, d.ends_m, 2, 3, 2, 3) - d.ends_m;
   const FourFloats squares = path * path;
@@ -99,7 +99,7 @@ inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, c
 
 /// Whether a shape with edges is touched: an end of the path is near an edge, the begin of an edge is near
 /// the path, path and edge cross, or the path begins inside all edges.
-inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::uint32_t first) {
+inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, std::uint32_t first) {
   const EdgeBlock* block = bodies.edges + first;
   const FourFloats error = all<FourFloats>(bodies.error_m);
   bool undecided = false, inside = true;
@@ -129,23 +129,23 @@ inline Answer touches_edges(const BodiesView& bodies, const MovingDisc& d, std::
                larger(smaller(begin, end) + path_error, path_error - larger(begin, end)));
     const unsigned touched = not_above(gap, all<FourFloats>(-d.gap_error_m2));
     const unsigned apart_bits = not_above(all<FourFloats>(0), apart);
-    if (touched != 0 || apart_bits != 0xf) return Answer::kTouches;
+    if (touched != 0 || apart_bits != 0xf) return SweepResult::kTouches;
     undecided |= not_above(gap, all<FourFloats>(d.gap_error_m2)) != 0;
     inside &= not_above(from, edge_error) == 0;
     if (following == 0) break;
   }
-  return inside ? Answer::kTouches : undecided ? Answer::kUndecided : Answer::kClear;
+  return inside ? SweepResult::kTouches : undecided ? SweepResult::kUndecided : SweepResult::kClear;
 }
 
 /// Decides an undecided obstacle: a shape with edges, or a circle in contact within rounding.
 inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, const double* from_m,
                               const double* to_m, double radius_m, std::uint32_t slot) {
   const BodyRecord& record = bodies.records[slot];
-  Answer answer = Answer::kUndecided;
-  if (record.radius_m != record.radius_m) answer = touches_edges(bodies, disc, record.edges);
-  if (answer == Answer::kUndecided) [[unlikely]]
+  SweepResult result = SweepResult::kUndecided;
+  if (record.radius_m != record.radius_m) result = touches_edges(bodies, disc, record.edges);
+  if (result == SweepResult::kUndecided) [[unlikely]]
     return bodies.touches(bodies.bodies, slot, from_m, to_m, radius_m);
-  return answer == Answer::kTouches;
+  return result == SweepResult::kTouches;
 }
 
 /// Whether any obstacle is touched among the undecided ones of the first four set bits.

@@ -53,6 +53,7 @@ Solid prism(const Shape& shape, double height_m) {
     // error is 0.03 % of the radius.
     constexpr int kCorners = 128;
     std::vector<Vec2> corners;
+    corners.reserve(kCorners);
     const double corner_radius_m = circle->radius_m / std::cos(std::numbers::pi / kCorners);
     for (int i = 0; i < kCorners; ++i)
       corners.push_back(circle->centre_m +

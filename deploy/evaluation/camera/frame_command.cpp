@@ -86,8 +86,8 @@ int write_frame(const FrameOptions& options) {
 
 }  // namespace
 
-void add_frame_command(const Command& root, std::function<int()>& action) {
-  const Command command =
+void add_frame_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command =
       root.add_subcommand("frame", "Renders a camera's view of a scenario's floor at the start");
   const auto options = std::make_shared<FrameOptions>();
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")

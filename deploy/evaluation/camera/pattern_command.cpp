@@ -36,12 +36,12 @@ std::string describe_layout(const MarkerLayout& layout, double dot_sd_m) {
   return text;
 }
 
-void add_pattern_command(const Command& root, std::function<int()>& action) {
+void add_pattern_command(const CliCommand& root, std::function<int()>& action) {
   struct Options {
     std::string layout_file;
     double dot_mm = 1;
   };
-  const Command command = root.add_subcommand(
+  const CliCommand command = root.add_subcommand(
       "pattern",
       "Evaluates a layout of markers: how many robots it identifies, and how accurate their poses are");
   const auto options = std::make_shared<Options>();

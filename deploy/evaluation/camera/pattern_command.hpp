@@ -17,6 +17,6 @@ namespace sidestep {
 
 /// Adds `pattern`, which prints the evaluation of a layout. Parsing it sets `action` to the command, which
 /// returns the exit code, and may throw ConfigError for the layout's file.
-void add_pattern_command(const Command& root, std::function<int()>& action);
+void add_pattern_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

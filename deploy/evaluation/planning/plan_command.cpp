@@ -69,8 +69,8 @@ int plan(const PlanOptions& options) {
 
 }  // namespace
 
-void add_plan_command(const Command& root, std::function<int()>& action) {
-  const Command command = root.add_subcommand("plan", "Plans a path in a world and draws it");
+void add_plan_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command = root.add_subcommand("plan", "Plans a path in a world and draws it");
   const auto options = std::make_shared<PlanOptions>();
   command
       .add_option("WORLD", options->world,

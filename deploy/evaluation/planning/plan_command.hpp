@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `plan`. Parsing it sets `action`, which returns the exit code, and may throw ConfigError for a world
 /// file or std::runtime_error with the reason of any other failure.
-void add_plan_command(const Command& root, std::function<int()>& action);
+void add_plan_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -21,15 +21,15 @@ Vec2 sample_position(const PlanWorld& world, Rng& rng) {
 
 Vec2 sample_free_position(const PlanWorld& world, Rng& rng) {
   for (;;) {
-    const Vec2 position = sample_position(world, rng);
+    Vec2 position = sample_position(world, rng);
     if (is_free(world, position)) return position;
   }
 }
 
 Vec2 sample_free_position(const PlanWorld& world, const Box& within, Rng& rng) {
   for (;;) {
-    const Vec2 position(rng.uniform(within.min_m.x(), within.max_m.x()),
-                        rng.uniform(within.min_m.y(), within.max_m.y()));
+    Vec2 position(rng.uniform(within.min_m.x(), within.max_m.x()),
+                  rng.uniform(within.min_m.y(), within.max_m.y()));
     if (is_free(world, position)) return position;
   }
 }

@@ -24,9 +24,9 @@ std::string seed_number(const std::string& text) {
 
 std::string not_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
 
-Command add_study(const Command& study, const std::string& name, const std::string& description,
-                  StudyOptions& options) {
-  const Command command = study.add_subcommand(name, description);
+CliCommand add_study(const CliCommand& study, const std::string& name, const std::string& description,
+                     StudyOptions& options) {
+  const CliCommand command = study.add_subcommand(name, description);
   command.add_option("--out", options.folder, "folder for the tables and plots").required().check(not_empty);
   command.add_option("--seed", options.seed, "seed of everything random").check(seed_number).show_default();
   command.add_flag("--quick", options.is_quick, "a small version of every experiment");
@@ -35,21 +35,21 @@ Command add_study(const Command& study, const std::string& name, const std::stri
 
 }  // namespace
 
-void add_study_command(const Command& root, std::function<int()>& action) {
-  const Command study =
+void add_study_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand study =
       root.add_subcommand("study", "Experiments on the system, see deploy/evaluation/study");
   study.require_subcommand();
   const auto options = std::make_shared<StudyOptions>();
-  const Command safety =
+  const CliCommand safety =
       add_study(study, "safety",
                 "The safety search: traversals with and without it, margins against noise, time", *options);
   safety.add_option("--jobs", options->jobs, "number of parallel processes").check(positive()).show_default();
   safety.on_parsed([&action, options] { action = [options] { return study_safety(*options); }; });
-  const Command planning = add_study(
+  const CliCommand planning = add_study(
       study, "planning",
       "Planners and collision structures: caches, trees, graphs, roadmaps, obstacles, terrain", *options);
   planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
-  const Command vision =
+  const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });
 }

@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `study`. Parsing one of its commands sets `action`, which returns the exit code and may throw
 /// std::runtime_error with the reason of a failure.
-void add_study_command(const Command& root, std::function<int()>& action);
+void add_study_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

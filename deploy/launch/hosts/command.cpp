@@ -40,7 +40,7 @@ std::string find_program(const std::string& name) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(std::string(path ? path : "") + ":/usr/sbin:/sbin");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string candidate = folder + "/" + name;
+    std::string candidate = fmt::format("{}/{}", folder, name);
     if (!folder.empty() && access(candidate.c_str(), X_OK) == 0) return candidate;
   }
   throw std::runtime_error("cannot find the program " + name + " on this machine");
@@ -59,6 +59,7 @@ std::string run_command(std::vector<std::string> argv, const std::string& input)
   posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDERR_FILENO);
   std::vector<char*> arguments;
+  arguments.reserve(argv.size() + 1);
   for (std::string& argument : argv) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   pid_t pid = -1;
@@ -69,7 +70,7 @@ std::string run_command(std::vector<std::string> argv, const std::string& input)
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
-  const std::string output = content_of(out.get());
+  std::string output = content_of(out.get());
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return output;
   throw std::runtime_error(fmt::format("{} failed: {}", command_line, output.substr(0, output.find('\n'))));
 }

@@ -21,7 +21,7 @@ constexpr std::uint32_t kMaxNumber = kMaxRobots - 1;
 
 std::string identifier_from(const YAML::Node& node, const YamlLocation& location,
                             const std::string& extra_characters) {
-  const std::string text = text_from(node, location);
+  std::string text = text_from(node, location);
   const auto is_plain = [&](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            extra_characters.find(c) != std::string::npos;
@@ -34,14 +34,14 @@ std::string identifier_from(const YAML::Node& node, const YamlLocation& location
 }
 
 std::string name_from(const YAML::Node& node, const YamlLocation& location) {
-  const std::string name = identifier_from(node, location, "-_");
+  std::string name = identifier_from(node, location, "-_");
   if (name.size() > kMaxNameLength)
     location.fail(fmt::format("expected at most {} characters", kMaxNameLength));
   return name;
 }
 
 std::string address_from(const YAML::Node& node, const YamlLocation& location) {
-  const std::string text = text_from(node, location);
+  std::string text = text_from(node, location);
   in_addr parsed{};
   if (inet_pton(AF_INET, text.c_str(), &parsed) != 1) {
     location.fail(fmt::format("expected an IPv4 address, got \"{}\"", text.substr(0, 40)));

@@ -94,10 +94,10 @@ int audit_live(const AuditOptions& options) {
 
 }  // namespace
 
-void add_audit_command(const Command& root, std::function<int()>& action) {
+void add_audit_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<AuditOptions>();
   options->dds.participant = "sidestep-audit";
-  const Command audit = root.add_subcommand(
+  const CliCommand audit = root.add_subcommand(
       "audit", "Checks a running system, or a recording, for violations of the safety rules");
   const Option scenario = audit.add_option("SCENARIO", options->scenario_file,
                                            "scenario file [with --recording: the scenario in the recording]");

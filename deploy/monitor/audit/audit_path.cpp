@@ -120,7 +120,7 @@ AuditPath::AuditPath(const msg::Version& version)
 AuditPath::Node AuditPath::at_s(double elapsed_s) const {
   if (elapsed_s <= 0) return nodes_[0];
   int i = 0;
-  while (i < count_ && nodes_[static_cast<std::size_t>(i + 1)].elapsed_s <= elapsed_s) ++i;
+  while (i < count_ && nodes_[static_cast<std::size_t>(i) + 1].elapsed_s <= elapsed_s) ++i;
   const Node& n = nodes_[static_cast<std::size_t>(i)];
   if (i == count_) return {elapsed_s, n.x, n.y, 0, 0, 0, 0};
   const double t = elapsed_s - n.elapsed_s;

@@ -9,6 +9,8 @@
 
 namespace sidestep {
 
+inline constexpr double kLengthTolerance_m = 2e-6;  ///< for rounding in paths and their distances
+
 /// Whether all numbers of the version are finite and physically plausible and its phase count fits the array.
 [[nodiscard]] bool is_sane(const msg::Version& version);
 

@@ -9,7 +9,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kLengthTolerance_m = 2e-6;    // rounding
 constexpr double kContinuityTolerance = 1e-7;  // in m and in m/s
 constexpr double kSpeedTolerance_mps = 1e-5;
 constexpr double kEffortTolerance = 2e-3;

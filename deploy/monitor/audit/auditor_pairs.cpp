@@ -9,8 +9,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kLengthTolerance_m = 2e-6;
-
 std::int64_t entry_ns(const KnownVersion& known, Epoch epoch) {
   return known.granted_in == epoch ? known.granted_by_ns : kAlways;
 }

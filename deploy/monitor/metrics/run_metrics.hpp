@@ -72,7 +72,7 @@ class RunMetrics {
 
  private:
   struct RobotRecord {
-    const RobotSpec* spec;
+    const RobotSpec* spec = nullptr;
     Vec2 position_m{0, 0};
     double speed_mps = 0;
     std::optional<Time> settled_since;    ///< since when it has been at the last goal and nearly at rest

@@ -39,10 +39,10 @@ int record_messages(const RecordOptions& options) {
 
 }  // namespace
 
-void add_record_command(const Command& root, std::function<int()>& action) {
+void add_record_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<RecordOptions>();
   options->dds.participant = "sidestep-record";
-  const Command command =
+  const CliCommand command =
       root.add_subcommand("record", "Records all messages of a running system except camera images");
   command.add_option("SCENARIO", options->scenario_file, "scenario file").required();
   command.add_option("--out", options->recording_file, "recording to write").required();

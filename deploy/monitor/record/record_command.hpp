@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `sidestep record`. Parsing it sets `action`, which returns the exit code and may throw
 /// std::runtime_error.
-void add_record_command(const Command& root, std::function<int()>& action);
+void add_record_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

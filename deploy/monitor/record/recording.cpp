@@ -177,7 +177,7 @@ PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(
 }
 
 bool PlaybackBus::read_block(std::string& damage) {
-  std::array<std::uint8_t, 8> frame;
+  std::array<std::uint8_t, 8> frame{};
   const std::size_t got = std::fread(frame.data(), 1, frame.size(), file_.get());
   if (got == 0) return false;
   ByteReader reader{frame};

@@ -10,27 +10,29 @@
 
 namespace sidestep {
 
-void add_topic_command(const Command& root, std::function<int()>& action) {
-  const Command topic = root.add_subcommand("topic", "Inspects the topics of a DDS domain");
+void add_topic_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand topic = root.add_subcommand("topic", "Inspects the topics of a DDS domain");
   topic.require_subcommand();
   const auto options = std::make_shared<TopicOptions>();
 
-  const Command list =
+  const CliCommand list =
       topic.add_subcommand("list", "Lists all topics: type, writers, readers, QoS, mismatches");
   list.add_option("--seconds", options->seconds, "duration of discovery").check(positive()).show_default();
   list.on_parsed([options, &action] { action = [options] { return list_topics(*options); }; });
 
-  const Command hz = topic.add_subcommand("hz", "Measures rate, gaps and bandwidth of a topic of any type");
+  const CliCommand hz =
+      topic.add_subcommand("hz", "Measures rate, gaps and bandwidth of a topic of any type");
   hz.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
   hz.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   hz.on_parsed([options, &action] { action = [options] { return measure_rate(*options); }; });
 
-  const Command echo = topic.add_subcommand("echo", "Prints the messages of a topic as JSON, one per line");
+  const CliCommand echo =
+      topic.add_subcommand("echo", "Prints the messages of a topic as JSON, one per line");
   echo.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
   echo.add_option("--count", options->count, "number of messages [until Ctrl-C]").check(positive());
   echo.on_parsed([options, &action] { action = [options] { return echo_topic(*options); }; });
 
-  for (const Command& command : {list, hz, echo}) add_dds_options(command, options->dds);
+  for (const CliCommand& command : {list, hz, echo}) add_dds_options(command, options->dds);
 }
 
 }  // namespace sidestep

@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Adds `sidestep topic list|hz|echo`. Parsing one of them sets `action`, which returns the exit code and may
 /// throw std::runtime_error.
-void add_topic_command(const Command& root, std::function<int()>& action);
+void add_topic_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -7,10 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "common/geometry/vec2.hpp"
 #include "common/messaging/sim/links.hpp"
-#include "common/motion/version.hpp"
-#include "idl/disturbance.h"
+#include "common/protocol/robot_disturbance.hpp"
 
 namespace sidestep {
 
@@ -38,16 +36,6 @@ struct Kill {
 /// Starts a dead process, or a robot's second agent.
 struct Start {
   std::string process;
-};
-
-/// A disturbance of a robot by an operator.
-struct RobotDisturbance {
-  RobotId robot = 0;
-  msg::DisturbanceKind kind = msg::DISTURBANCE_PUSH;
-  Vec2 push_mps{0, 0};
-  double grip = 1;         ///< while slipping
-  double heading_rad = 0;  ///< of the blocked wheel
-  Duration duration{0};
 };
 
 using Fault = std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance>;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "simulator/world/disturbance_codec.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -60,16 +62,9 @@ void FaultPlayer::operator()(const Pause& pause) {
   }
 }
 
-void FaultPlayer::operator()(const RobotDisturbance& fault) {
-  msg::Disturbance disturbance;
-  disturbance.robot(fault.robot);
-  disturbance.disturbance_kind(fault.kind);
-  disturbance.vx_mps(fault.push_mps.x());
-  disturbance.vy_mps(fault.push_mps.y());
-  disturbance.grip(fault.grip);
-  disturbance.heading_rad(fault.heading_rad);
-  disturbance.duration_ns(fault.duration.count());
-  system_.disturb(disturbance);
+void FaultPlayer::operator()(const RobotDisturbance& disturbance) {
+  msg::Disturbance message = encode(disturbance);
+  system_.disturb(message);
 }
 
 void FaultPlayer::end_partitions(Duration until) {

@@ -24,7 +24,7 @@ class FaultPlayer {
   void operator()(const Pause& pause);
   void operator()(const Kill& kill) { system_.kill(kill.process); }
   void operator()(const Start& start) { system_.restart(start.process); }
-  void operator()(const RobotDisturbance& fault);
+  void operator()(const RobotDisturbance& disturbance);
 
  private:
   struct Link {

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::coordinator_test {
@@ -14,13 +16,25 @@ struct Floor {
   Coordinator coordinator{floor_for_tests(), {1, 2}, kEpoch};
   Version a = rest_version(1, {0, 0}), b = rest_version(2, {1, 0});
 
+  // Messages are decoded as in CoordinatorNode.
+  std::optional<Verdict> receive(const msg::Proposal& message) {
+    const auto proposal = decode(message);
+    return proposal ? coordinator.on_proposal(*proposal) : std::nullopt;
+  }
+  std::optional<Verdict> receive(const msg::Registration& message) {
+    const auto registration = decode(message);
+    return registration ? coordinator.on_registration(*registration) : std::nullopt;
+  }
+  void receive(const msg::Feedback& message) {
+    if (const auto feedback = decode(message, message.robot())) coordinator.on_feedback(*feedback);
+  }
   void register_both() {
-    coordinator.on_registration(registration_of(a, kEpoch));
-    coordinator.on_registration(registration_of(b, kEpoch));
+    receive(registration_of(a, kEpoch));
+    receive(registration_of(b, kEpoch));
     REQUIRE(coordinator.is_granting());
   }
-  msg::Verdict ask(const msg::Proposal& proposal) {
-    const auto verdict = coordinator.on_proposal(proposal);
+  Verdict ask(const msg::Proposal& proposal) {
+    const auto verdict = receive(proposal);
     REQUIRE(verdict);
     return *verdict;
   }
@@ -29,12 +43,12 @@ struct Floor {
 TEST_CASE("nothing is granted until every robot of the roster has registered") {
   Floor floor;
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
-  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
-  floor.coordinator.on_registration(registration_of(floor.a, kEpoch));
-  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
+  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
+  floor.receive(registration_of(floor.a, kEpoch));
+  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
   CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
-  floor.coordinator.on_registration(registration_of(floor.b, kEpoch));
-  CHECK(floor.ask(proposal).granted_version() == 10);
+  floor.receive(registration_of(floor.b, kEpoch));
+  CHECK(floor.ask(proposal).granted_version == 10);
 }
 
 TEST_CASE("the first clear candidate is granted, and the verdict gives the reasons for the others") {
@@ -44,11 +58,11 @@ TEST_CASE("the first clear candidate is granted, and the verdict gives the reaso
       floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6), continued(floor.a, 11, 1, {0, 3}),
                              continued(floor.a, 12, 1, {0, -3})},
                             kEpoch));
-  CHECK(verdict.granted_version() == 11);
-  CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
-  CHECK(verdict.blockers()[0] == 2);
-  CHECK(verdict.reasons()[1] == msg::REASON_GRANTED);
-  CHECK(verdict.reasons()[2] == msg::REASON_NOT_EVALUATED);
+  CHECK(verdict.granted_version == 11);
+  CHECK(verdict.reasons[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.blockers[0] == 2);
+  CHECK(verdict.reasons[1] == msg::REASON_GRANTED);
+  CHECK(verdict.reasons[2] == msg::REASON_NOT_EVALUATED);
 }
 
 TEST_CASE("a repeated proposal gets the same verdict again") {
@@ -56,17 +70,17 @@ TEST_CASE("a repeated proposal gets the same verdict again") {
   floor.register_both();
   const auto first = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   const auto second = proposal_of({continued(floor.a, 11, 1, {0, -3})}, kEpoch);
-  CHECK(floor.ask(first).granted_version() == 10);
-  CHECK(floor.ask(second).granted_version() == 11);
-  CHECK(floor.ask(first).granted_version() == 10);
+  CHECK(floor.ask(first).granted_version == 10);
+  CHECK(floor.ask(second).granted_version == 11);
+  CHECK(floor.ask(first).granted_version == 10);
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
 }
 
 TEST_CASE("versions must be proposed in increasing order") {
   Floor floor;
   floor.register_both();
-  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version() == 10);
-  CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons()[0] ==
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons[0] ==
         msg::REASON_OLD_VERSION);
 }
 
@@ -74,21 +88,21 @@ TEST_CASE("proposals for another epoch or from an older agent are refused") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
-  CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons()[0] == msg::REASON_WRONG_EPOCH);
-  CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons()[0] == msg::REASON_OLD_INCARNATION);
+  CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons[0] == msg::REASON_WRONG_EPOCH);
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons[0] == msg::REASON_OLD_INCARNATION);
   // A new agent must register before it may propose.
   Version q = p;
   q.incarnation = 2;
-  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons()[0] == msg::REASON_NOT_ALL_REGISTERED);
-  floor.coordinator.on_registration(registration_of(floor.a, kEpoch, 2));
-  CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons()[0] == msg::REASON_OLD_INCARNATION);
-  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted_version() == 10);
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
+  floor.receive(registration_of(floor.a, kEpoch, 2));
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons[0] == msg::REASON_OLD_INCARNATION);
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted_version == 10);
 }
 
 TEST_CASE("a new agent's registration cannot add versions that were never granted") {
   Floor floor;
   floor.register_both();
-  floor.coordinator.on_registration(registration_of(rest_version(1, {0.9, 0}, 77), kEpoch, 2));
+  floor.receive(registration_of(rest_version(1, {0.9, 0}, 77), kEpoch, 2));
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 0);
   CHECK(floor.coordinator.state().invalid() == 1);
@@ -103,28 +117,28 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   CHECK(floor.coordinator.state().epoch() == 0);
   CHECK(floor.coordinator.state().missing().empty());
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
-  CHECK_FALSE(floor.coordinator.on_proposal(proposal));
-  CHECK_FALSE(floor.coordinator.on_proposal(proposal_of({continued(floor.a, 10, 1, {0, 3})}, 0)));
-  CHECK_FALSE(floor.coordinator.on_registration(registration_of(floor.a, 0)));
-  floor.coordinator.on_feedback(fact(floor.a, 1));
+  CHECK_FALSE(floor.receive(proposal));
+  CHECK_FALSE(floor.receive(proposal_of({continued(floor.a, 10, 1, {0, 3})}, 0)));
+  CHECK_FALSE(floor.receive(registration_of(floor.a, 0)));
+  floor.receive(fact(floor.a, 1));
   CHECK(floor.coordinator.ledger().versions(1).empty());
   floor.coordinator.begin_epoch(kEpoch + 5);
   CHECK(floor.coordinator.state().missing().size() == 2);
-  CHECK(floor.ask(proposal).reasons()[0] == msg::REASON_WRONG_EPOCH);
+  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_WRONG_EPOCH);
 }
 
 TEST_CASE("every registration is answered, and the answer echoes its time stamp") {
   Floor floor;
   const auto answer = [&](msg::Registration registration) {
     registration.header().stamp_ns(4711);
-    const auto verdict = floor.coordinator.on_registration(registration);
+    const auto verdict = floor.receive(registration);
     REQUIRE(verdict);
-    CHECK(verdict->robot() == registration.robot());
-    CHECK(verdict->epoch() == kEpoch);
-    CHECK(verdict->proposal_number() == 0);
-    CHECK(verdict->granted_version() == 0);
-    CHECK(verdict->request_stamp_ns() == 4711);
-    return verdict->reasons()[0];
+    CHECK(verdict->robot == registration.robot());
+    CHECK(verdict->epoch == kEpoch);
+    CHECK(verdict->proposal_number == 0);
+    CHECK(verdict->granted_version == 0);
+    CHECK(verdict->request_sent_at == time_from_ns(4711));
+    return verdict->reasons[0];
   };
   CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::REASON_WRONG_EPOCH);
   CHECK(answer(registration_of(floor.a, kEpoch - 50)) == msg::REASON_WRONG_EPOCH);
@@ -135,9 +149,9 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
   auto malformed = registration_of(floor.b, kEpoch);
   malformed.version_count(0);
   CHECK(answer(malformed) == msg::REASON_MALFORMED);
-  CHECK_FALSE(floor.coordinator.on_registration(registration_of(rest_version(3, {0, 0}), kEpoch)));
+  CHECK_FALSE(floor.receive(registration_of(rest_version(3, {0, 0}), kEpoch)));
   malformed.header().sender(1);
-  CHECK_FALSE(floor.coordinator.on_registration(malformed));
+  CHECK_FALSE(floor.receive(malformed));
   CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
 }
 
@@ -146,12 +160,12 @@ TEST_CASE("a verdict echoes the time stamp of its proposal, also of a repeated o
   floor.register_both();
   auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   proposal.header().stamp_ns(100);
-  CHECK(floor.ask(proposal).request_stamp_ns() == 100);
+  CHECK(floor.ask(proposal).request_sent_at == time_from_ns(100));
   proposal.header().stamp_ns(200);
-  CHECK(floor.ask(proposal).request_stamp_ns() == 200);
-  CHECK(floor.ask(proposal).granted_version() == 10);
+  CHECK(floor.ask(proposal).request_sent_at == time_from_ns(200));
+  CHECK(floor.ask(proposal).granted_version == 10);
   proposal.epoch(kEpoch - 1);
-  CHECK(floor.ask(proposal).request_stamp_ns() == 200);
+  CHECK(floor.ask(proposal).request_sent_at == time_from_ns(200));
 }
 
 TEST_CASE("a registration that lists a version twice is refused") {
@@ -159,7 +173,7 @@ TEST_CASE("a registration that lists a version twice is refused") {
   auto registration = registration_of(floor.a, kEpoch);
   registration.version_count(2);
   registration.versions()[1] = encode(rest_version(1, {1, 1}));
-  floor.coordinator.on_registration(registration);
+  floor.receive(registration);
   CHECK(floor.coordinator.state().missing().size() == 2);
   CHECK(floor.coordinator.state().invalid() == 1);
 }
@@ -168,8 +182,8 @@ TEST_CASE("a fact from a robot removes the versions that it has left") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
-  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version() == 10);
-  floor.coordinator.on_feedback(fact(p, 1.5));
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
+  floor.receive(fact(p, 1.5));
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 10);
 }
@@ -182,7 +196,7 @@ TEST_CASE("hostile proposals get a refusal or no answer, and change nothing") {
   const auto spoil = [&](auto change) {
     auto proposal = good;
     change(proposal);
-    return floor.ask(proposal).reasons()[0];
+    return floor.ask(proposal).reasons[0];
   };
   auto malformed = msg::REASON_MALFORMED;
   CHECK(spoil([&](auto& p) { p.candidates()[0].x_m(nan); }) == malformed);
@@ -202,10 +216,14 @@ TEST_CASE("hostile proposals get a refusal or no answer, and change nothing") {
   CHECK(spoil([&](auto& p) { p.candidate_count(255); }) == malformed);
   for (const auto change :
        {+[](msg::Proposal& p) { p.robot(3); }, +[](msg::Proposal& p) { p.robot(4'000'000'000); },
-        +[](msg::Proposal& p) { p.header().sender(2); }}) {
+        +[](msg::Proposal& p) { p.header().sender(2); },
+        +[](msg::Proposal& p) {
+          p.robot(3);
+          p.header().sender(3);
+        }}) {
     auto proposal = good;
     change(proposal);
-    CHECK_FALSE(floor.coordinator.on_proposal(proposal));
+    CHECK_FALSE(floor.receive(proposal));
   }
   CHECK(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(2).size() == 1);
@@ -249,26 +267,27 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
   for (int i = 0; i < 100'000; ++i) {
     auto proposal = proposal_of({continued(floor.a, static_cast<VersionNumber>(i), 1, {0, 3})}, kEpoch);
     noise(proposal.candidates()[0]);
-    (void)floor.coordinator.on_proposal(proposal);
+    floor.receive(proposal);
     auto registration = registration_of(floor.b, kEpoch, rng.below(3));
     noise(registration.versions()[0]);
     registration.version_count(static_cast<std::uint8_t>(rng.bits()));
-    floor.coordinator.on_registration(registration);
+    floor.receive(registration);
     auto feedback = fact(floor.a, 1);
     noise(feedback.executing());
-    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits()));
+    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits()) >> rng.below(8));
     feedback.is_off_reference(rng.chance(0.5));
-    floor.coordinator.on_feedback(feedback);
+    floor.receive(feedback);
     contradictions += floor.coordinator.is_contradicted();
-    if (floor.coordinator.is_contradicted()) {
+    // An own stop with a very high number would make all later facts stale.
+    if (floor.coordinator.is_contradicted() || i % 100 == 0) {
       floor.coordinator.begin_epoch(kEpoch);
       floor.register_both();
     }
     REQUIRE_FALSE(floor.coordinator.ledger().versions(1).empty());
     REQUIRE_FALSE(floor.coordinator.ledger().versions(2).empty());
   }
-  CHECK(contradictions > 300);
-  CHECK(floor.coordinator.state().grants() > 300);
+  CHECK(contradictions > 3000);
+  CHECK(floor.coordinator.state().grants() > 3000);
 }
 
 TEST_CASE(
@@ -276,9 +295,9 @@ TEST_CASE(
   Floor floor;
   floor.register_both();
   const Version unknown = continued(floor.a, 10, 1, {0, 3});
-  floor.coordinator.on_feedback(fact(unknown, 1.5));
+  floor.receive(fact(unknown, 1.5));
   CHECK(floor.coordinator.is_contradicted());
-  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version() == 0);
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 0);
   floor.coordinator.begin_epoch(kEpoch + 1);
   CHECK_FALSE(floor.coordinator.is_contradicted());
   CHECK_FALSE(floor.coordinator.is_granting());
@@ -291,12 +310,12 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   Version stop = rest_version(1, {0.85, 0}, 1'000'000);
   stop.inflation_m = 0.01;
   auto feedback = fact(stop, 1);
-  floor.coordinator.on_feedback(feedback);
+  floor.receive(feedback);
   CHECK(floor.coordinator.is_contradicted());  // the fact does not say that the robot lost its reference
   floor.coordinator.begin_epoch(kEpoch);
   floor.register_both();
   feedback.is_off_reference(true);
-  floor.coordinator.on_feedback(feedback);
+  floor.receive(feedback);
   CHECK(floor.coordinator.is_granting());
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
@@ -307,7 +326,7 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   // A version that does not end at rest is refused, also off reference.
   feedback.executing().vx_mps(1);
   feedback.executing().version_number(2'000'000);
-  floor.coordinator.on_feedback(feedback);
+  floor.receive(feedback);
   CHECK(floor.coordinator.state().invalid() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
 }
@@ -316,19 +335,18 @@ TEST_CASE("an absent robot registers without versions and is granted a rest vers
   Floor floor;
   auto absent = registration_of(floor.a, kEpoch);
   absent.is_absent(true);
-  CHECK(floor.coordinator.on_registration(absent)->reasons()[0] == msg::REASON_MALFORMED);
+  CHECK(floor.receive(absent)->reasons[0] == msg::REASON_MALFORMED);
   absent.version_count(0);
-  CHECK(floor.coordinator.on_registration(absent)->reasons()[0] == msg::REASON_GRANTED);
-  floor.coordinator.on_registration(registration_of(floor.b, kEpoch));
+  CHECK(floor.receive(absent)->reasons[0] == msg::REASON_GRANTED);
+  floor.receive(registration_of(floor.b, kEpoch));
   REQUIRE(floor.coordinator.is_granting());
   CHECK(floor.coordinator.state().absent() == 1);
-  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons()[0] ==
-        msg::REASON_ABSENT);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons[0] == msg::REASON_ABSENT);
   Version blocked = rest_version(1, {0.85, 0}, 11), free = rest_version(1, {0.5, 0.5}, 12);
   blocked.incarnation = free.incarnation = 1;
   const auto verdict = floor.ask(proposal_of({blocked, free}, kEpoch));
-  CHECK(verdict.reasons()[0] == msg::REASON_CONFLICT);
-  CHECK(verdict.granted_version() == 12);
+  CHECK(verdict.reasons[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.granted_version == 12);
   CHECK(floor.coordinator.state().absent() == 0);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "common/motion/validity.hpp"
 #include "common/random/rng.hpp"
 #include "idl/negotiation.h"

@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-void add_bench_command(const Command& root, std::function<int()>& action) {
-  const Command bench = root.add_subcommand("bench", "Benchmarks parts of the system against their peers");
+void add_bench_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand bench = root.add_subcommand("bench", "Benchmarks parts of the system against their peers");
   bench.require_subcommand();
-  const Command command = bench.add_subcommand(
+  const CliCommand command = bench.add_subcommand(
       "planning",
       "All planners in all worlds: time, length, validity. Exits with 1 when a path is not valid, or when a "
       "namesake of an OMPL planner solves significantly fewer queries than it (p < 0.01)");

@@ -8,6 +8,6 @@
 namespace sidestep {
 
 /// Adds `bench planning`. Parsing it sets `action`, which returns the exit code.
-void add_bench_command(const Command& root, std::function<int()>& action);
+void add_bench_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

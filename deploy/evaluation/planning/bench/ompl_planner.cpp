@@ -83,7 +83,7 @@ std::vector<Vec2> positions_of(og::PathGeometric& path) {
 
 struct OmplPlanner::Parts {
   std::string name;
-  double range_m;
+  double range_m = 0;
   Vec2 cell_m;
   ob::StateSpacePtr space;
   ob::SpaceInformationPtr information;
@@ -103,14 +103,14 @@ struct OmplPlanner::Parts {
 
   template <typename Planner>
   std::shared_ptr<Planner> make_with_goal_bias() const {
-    const auto planner = std::make_shared<Planner>(information);
+    auto planner = std::make_shared<Planner>(information);
     planner->setRange(range_m);
     planner->setGoalBias(kNamesakeGoalBias);
     return planner;
   }
 
   ob::ProblemDefinitionPtr problem(const PlanQuery& query) const {
-    const auto problem = std::make_shared<ob::ProblemDefinition>(information);
+    auto problem = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start(space), goal(space);
     for (unsigned axis = 0; axis < 2; ++axis) {
       start[axis] = query.start_m[axis];

@@ -13,7 +13,7 @@ namespace sidestep {
 namespace {
 
 /// The size of each experiment.
-struct Sizes {
+struct PlanningSizes {
   CacheReplans cache;
   CacheStrategies strategies;
   BridgesAndExtensions bridges;
@@ -22,8 +22,8 @@ struct Sizes {
   CollisionStructures collision;
   TerrainStructures terrain;
 };
-Sizes quick_sizes() {
-  Sizes sizes;
+PlanningSizes quick_planning_sizes() {
+  PlanningSizes sizes;
   sizes.cache = {.replans = 200};
   sizes.strategies = {.waypoint_probabilities = {0, 0.4}, .courses = 1, .replans = 100};
   sizes.bridges = {.extensions = {1, 8}, .bridges = {1, 4}, .worlds = 2, .queries = 5};
@@ -38,7 +38,7 @@ Sizes quick_sizes() {
 
 int study_planning(const StudyOptions& options) {
   require_study_output(options);
-  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  const PlanningSizes sizes = options.is_quick ? quick_planning_sizes() : PlanningSizes{};
   const auto run = [&](const std::string& name, const auto& experiment, const auto& settings) {
     const StudyTable table = experiment(settings, options.seed, StudyProgress(name));
     write_study_table(table, "planning", options);

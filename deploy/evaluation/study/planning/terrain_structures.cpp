@@ -16,20 +16,20 @@
 namespace sidestep {
 namespace {
 
-constexpr std::array kNames{"linear", "terrain tree", "FCL mesh", "FCL mesh (exact solver)"};
+constexpr std::array kTerrainStructures{"linear", "terrain tree", "FCL mesh", "FCL mesh (exact solver)"};
 constexpr std::array kQueries{"collision", "clearance"};
 // A clearance with a larger error is wrong. A wrong decision about contact is excused up to this clearance.
 constexpr double kTolerance_m = 1e-6;
 
 /// A structure with its answers (0 or 1 for a collision, metres for a clearance) and query times.
-struct Contender {
+struct TerrainContender {
   std::size_t name;
   std::array<std::function<double(const Flight&)>, kQueries.size()> answer;
   std::array<Distribution, kQueries.size()> ns{};
 };
 
 template <typename Terrain>
-Contender contender(std::size_t name, const std::shared_ptr<Terrain>& terrain) {
+TerrainContender contender(std::size_t name, const std::shared_ptr<Terrain>& terrain) {
   constexpr double kRadius_m = TerrainProblem::kRadius_m;
   return {name,
           {[terrain](const Flight& f) { return terrain->touches(f.from_m, f.to_m, kRadius_m) ? 1.0 : 0.0; },
@@ -51,8 +51,8 @@ class BallOverTerrain {
   TerrainTree tree_;
 };
 
-std::vector<Contender> contenders_of(const TerrainProblem& problem, bool has_linear) {
-  std::vector<Contender> contenders;
+std::vector<TerrainContender> contenders_of(const TerrainProblem& problem, bool has_linear) {
+  std::vector<TerrainContender> contenders;
   if (has_linear) contenders.push_back(contender(0, std::make_shared<LinearTerrain>(problem)));
   contenders.push_back(contender(1, std::make_shared<BallOverTerrain>(problem)));
   std::size_t name = 2;
@@ -86,7 +86,7 @@ double percent(std::size_t count, std::size_t of) {
 
 /// Compares a structure's answers with the reference's.
 std::vector<std::string> row_of(const TerrainProblem& problem, const std::vector<double>& clearances_m,
-                                const Contender& contender, std::size_t query) {
+                                const TerrainContender& contender, std::size_t query) {
   std::size_t touching = 0, wrong = 0;
   for (std::size_t i = 0; i < problem.flights.size(); ++i) {
     const double answer = contender.answer[query](problem.flights[i]);
@@ -98,7 +98,7 @@ std::vector<std::string> row_of(const TerrainProblem& problem, const std::vector
   }
   const Distribution& ns = contender.ns[query];
   const std::size_t queries = problem.flights.size();
-  return cells(problem.triangles.size(), kQueries[query], kNames[contender.name], queries,
+  return cells(problem.triangles.size(), kQueries[query], kTerrainStructures[contender.name], queries,
                fmt::format("{:.1f}", percent(touching, queries)),
                fmt::format("{:.1f}", percent(wrong, queries)), fmt::format("{:.0f}", ns.median()),
                fmt::format("{:.0f}", ns.quantile(0)), fmt::format("{:.0f}", ns.quantile(1)));
@@ -120,13 +120,13 @@ StudyTable terrain_structures(const TerrainStructures& settings, std::uint64_t s
             .y_label = "time of a query [ns]",
             .has_log_x = true,
             .has_log_y = true};
-    for (const char* name : kNames) plot.lines.push_back({name, {}});
+    for (const char* name : kTerrainStructures) plot.lines.push_back({name, {}});
   }
   Rng order(seed);
   std::size_t done = 0;
   for (const std::size_t squares : settings.squares) {
     const TerrainProblem problem(squares, settings.queries, seed);
-    std::vector<Contender> contenders =
+    std::vector<TerrainContender> contenders =
         contenders_of(problem, problem.triangles.size() <= settings.max_linear_triangles);
     std::vector<std::size_t> sequence(contenders.size());
     std::iota(sequence.begin(), sequence.end(), 0u);
@@ -139,7 +139,7 @@ StudyTable terrain_structures(const TerrainStructures& settings, std::uint64_t s
     }
     const std::vector<double> clearances_m = clearances_of(problem);
     for (std::size_t query = 0; query < kQueries.size(); ++query) {
-      for (const Contender& contender : contenders) {
+      for (const TerrainContender& contender : contenders) {
         table.rows.push_back(row_of(problem, clearances_m, contender, query));
         const Distribution& ns = contender.ns[query];
         table.plots[query].lines[contender.name].points.push_back(

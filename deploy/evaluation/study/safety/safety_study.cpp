@@ -18,7 +18,7 @@ namespace sidestep {
 namespace {
 
 /// The size of each experiment.
-struct Sizes {
+struct SafetySizes {
   std::vector<int> robots{2, 4, 8, 16, 24, 32};
   int trials = 10;
   double seconds = 30;
@@ -29,7 +29,7 @@ struct Sizes {
   std::vector<int> searchers{2, 5, 10, 20, 50, 100, 200, 500, 1000};
   int search_trials = 100;
 };
-Sizes quick_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
+SafetySizes quick_safety_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
 
 /// One run: the key of its row in the table, and how to measure it.
 struct Run {
@@ -57,7 +57,7 @@ std::vector<std::string> traversal_columns(std::vector<std::string> columns) {
   return columns;
 }
 
-Experiment traversals(const StudyOptions& options, const Sizes& sizes) {
+Experiment traversals(const StudyOptions& options, const SafetySizes& sizes) {
   Experiment experiment;
   experiment.table.name = "traversals";
   experiment.table.columns = traversal_columns({"mode", "robots", "seconds", "seed"});
@@ -86,7 +86,7 @@ Experiment traversals(const StudyOptions& options, const Sizes& sizes) {
   return experiment;
 }
 
-Experiment margins(const StudyOptions& options, const Sizes& sizes) {
+Experiment margins(const StudyOptions& options, const SafetySizes& sizes) {
   Experiment experiment;
   experiment.table.name = "margins";
   experiment.table.columns = traversal_columns(
@@ -122,7 +122,7 @@ Experiment margins(const StudyOptions& options, const Sizes& sizes) {
   return experiment;
 }
 
-Experiment search_times(const StudyOptions& options, const Sizes& sizes) {
+Experiment search_times(const StudyOptions& options, const SafetySizes& sizes) {
   Experiment experiment;
   experiment.table.name = "search";
   experiment.table.columns = {"robots", "seed", "search_us_per_robot"};
@@ -184,7 +184,7 @@ void fill_in(Experiment& experiment, const std::vector<std::string>& results) {
 
 int study_safety(const StudyOptions& options) {
   require_study_output(options);
-  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  const SafetySizes sizes = options.is_quick ? quick_safety_sizes() : SafetySizes{};
   for (Experiment& experiment :
        std::vector{traversals(options, sizes), margins(options, sizes), search_times(options, sizes)}) {
     fill_in(experiment, measure(experiment));

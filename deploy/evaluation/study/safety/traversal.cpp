@@ -35,7 +35,8 @@ std::vector<int> shuffled(int count, Rng& rng) {
 
 /// The position of a slot on a side: -1 left, 1 right.
 Vec2 slot_position_m(int slot, int side) {
-  const double x = kFirstColumn_m + kSlotSpacing_m * (slot / kRows);
+  const int column = slot / kRows;
+  const double x = kFirstColumn_m + kSlotSpacing_m * column;
   return {side * x, kSlotSpacing_m * (slot % kRows - 0.5 * (kRows - 1))};
 }
 

@@ -4,7 +4,6 @@
 
 #include "agents/navigation/motion_control.hpp"
 #include "agents/safety/safety_search.hpp"
-#include "common/messaging/codec.hpp"
 #include "deploy/evaluation/study/safety/traversal.hpp"
 #include "simulator/world/firmware.hpp"
 
@@ -44,13 +43,11 @@ class UncoordinatedRobot {
         goal() - there.position_m, there.velocity_mps, scenario_.limits, scenario_.cycle, scenario_.cycle);
     const Trajectory trajectory = accelerate_then_stop(start, there, desired.acceleration_mps2, desired.hold,
                                                        scenario_.limits.deceleration_mps2);
-    msg::Command command;
-    command.robot(spec_.id);
-    command.header().sender(spec_.id);
-    command.header().incarnation(1);
-    command.epoch(1);
-    command.has_version(true);
-    command.version(encode(Version{spec_.id, 1, base.number + 1, base.number, trajectory}));
+    Command command;
+    command.robot = spec_.id;
+    command.incarnation = 1;
+    command.epoch = 1;
+    command.version = {spec_.id, 1, base.number + 1, base.number, trajectory};
     firmware_.on_command(command, now);
   }
 

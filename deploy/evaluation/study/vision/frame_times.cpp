@@ -11,7 +11,6 @@ namespace sidestep {
 namespace {
 
 constexpr Field kDivisionA{12, 9};
-constexpr std::size_t kRobotsPerTeam = 11, kSceneFrames = 250;
 
 }  // namespace
 
@@ -32,7 +31,7 @@ StudyTable frame_times(const FrameTimes& settings, std::uint64_t seed, const Pro
     std::vector<double> times_us;
     std::size_t tracked = 0;
     for (std::size_t round = 0; round < settings.rounds; ++round) {
-      if (round % kSceneFrames == 0) testbed.reset(kRobotsPerTeam);
+      if (round % settings.frames_per_scene == 0) testbed.reset(kRobotsPerTeam);
       testbed.step();
       const double begin_us = cpu_us();
       testbed.run_vision();

@@ -7,6 +7,7 @@ namespace sidestep {
 
 struct FrameTimes {
   std::size_t rounds = 2000;  ///< frames per camera
+  std::size_t frames_per_scene = 250;
 };
 
 /// Processor time from frames to the world state: 22 robots on a division-A field under one, two and four

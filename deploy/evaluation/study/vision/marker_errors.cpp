@@ -2,7 +2,6 @@
 #include "deploy/evaluation/study/vision/marker_errors.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "common/marking/butterfly.hpp"
@@ -13,10 +12,7 @@
 namespace sidestep {
 namespace {
 
-constexpr Field kQuarter{6, 4.5};
-constexpr std::size_t kRobotsPerTeam = 11, kSceneFrames = 10;
 constexpr double kMaxDotError_m = 0.012;
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// Spread of errors about their mean, per axis.
 class Spread {
@@ -121,7 +117,7 @@ StudyTable marker_errors(const MarkerErrors& settings, std::uint64_t seed, const
   PlotLine predicted_centroids{"s / sqrt(n)", {}}, predicted_headings{"s / sqrt(sum r^2)", {}};
   std::size_t done = 0;
   Rng rng(seed);
-  const Scenario scenario = testbed_scenario(kQuarter, 1, 1);
+  const Scenario scenario = testbed_scenario(kQuarterField, 1, 1);
   const ColourThresholds colours = learned_colours(scenario, {}, rng);
   for (const double noise : settings.noises) {
     RenderSpec spec;
@@ -129,7 +125,7 @@ StudyTable marker_errors(const MarkerErrors& settings, std::uint64_t seed, const
     VisionTestbed testbed(scenario, spec, colours, rng);
     Errors errors;
     for (std::size_t frame = 0; frame < settings.frames; ++frame) {
-      if (frame % kSceneFrames == 0) testbed.reset(kRobotsPerTeam);
+      if (frame % settings.frames_per_scene == 0) testbed.reset(kRobotsPerTeam);
       testbed.step();
       testbed.run_vision();
       add_frame(testbed, errors);

@@ -10,6 +10,7 @@ namespace sidestep {
 struct MarkerErrors {
   std::size_t frames = 300;                     ///< per row
   std::vector<double> noises{1, 2.5, 4, 6, 8};  ///< of the sensor per channel, in levels of 255
+  std::size_t frames_per_scene = 10;
 };
 
 /// How errors of single dots propagate to a robot's pose, in frames with increasing noise (Bruce,

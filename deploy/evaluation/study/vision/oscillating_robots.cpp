@@ -23,7 +23,8 @@ std::vector<Vec2> cell_centres(const Field& field, std::size_t count, Vec2& size
   size_m = {field.length_m / static_cast<double>(columns()), field.width_m / static_cast<double>(rows)};
   std::vector<Vec2> centres;
   for (std::size_t i = 0; i < columns() * rows; ++i) {
-    const Vec2 index(static_cast<double>(i % columns()) + 0.5, static_cast<double>(i / columns()) + 0.5);
+    const std::size_t column = i % columns(), row = i / columns();
+    const Vec2 index(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     centres.push_back(size_m.cwiseProduct(index) - 0.5 * Vec2(field.length_m, field.width_m));
   }
   return centres;

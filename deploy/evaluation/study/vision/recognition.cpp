@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "deploy/evaluation/study/vision/vision_testbed.hpp"
 #include "vision/colours/default_colours.hpp"
@@ -11,10 +10,8 @@
 namespace sidestep {
 namespace {
 
-constexpr Field kQuarter{6, 4.5};
-constexpr std::size_t kSceneFrames = 250, kCoverFrames = 50, kUncoveredFrames = 20;
+constexpr std::size_t kCoverFrames = 50, kUncoveredFrames = 20;
 constexpr double kMatchTolerance_m = 0.03;  // a detection farther from its robot is misidentified
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct Condition {
   const char* name;
@@ -76,9 +73,9 @@ PlotLine distribution_of(const Condition& condition, const std::vector<double>& 
   return line;
 }
 
-Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
+Score score_of(const Condition& condition, const Recognition& settings, Rng& rng,
                const std::function<void()>& advance) {
-  const Scenario scenario = testbed_scenario(kQuarter, 1, 1);
+  const Scenario scenario = testbed_scenario(kQuarterField, 1, 1);
   RenderSpec spec;
   spec.exposure_s = 0.004;
   spec.far_light = condition.far_light;
@@ -87,8 +84,8 @@ Score score_of(const Condition& condition, std::size_t frames, Rng& rng,
   spec.colour_gain = condition.colour_gain;  // drifts after learning
   VisionTestbed testbed(scenario, spec, colours, rng);
   Score score;
-  for (std::size_t frame = 0; frame < frames; ++frame) {
-    if (frame % kSceneFrames == 0) {
+  for (std::size_t frame = 0; frame < settings.frames; ++frame) {
+    if (frame % settings.frames_per_scene == 0) {
       testbed.reset(condition.robots_per_team);
       // All robots are identified once before their dots are covered.
       for (std::size_t i = 0; condition.covered_dots > 0 && i < kUncoveredFrames; ++i) {
@@ -119,7 +116,7 @@ StudyTable recognition(const Recognition& settings, std::uint64_t seed, const Pr
   std::size_t done = 0;
   Rng rng(seed);
   for (const Condition& condition : kConditions) {
-    Score score = score_of(condition, settings.frames, rng,
+    Score score = score_of(condition, settings, rng,
                            [&] { advance(++done, settings.frames * std::size(kConditions)); });
     std::ranges::sort(score.errors_m);
     plot.lines.push_back(distribution_of(condition, score.errors_m));

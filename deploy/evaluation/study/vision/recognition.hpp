@@ -7,6 +7,7 @@ namespace sidestep {
 
 struct Recognition {
   std::size_t frames = 10000;  ///< per row
+  std::size_t frames_per_scene = 250;
 };
 
 /// Detection in frames of a camera over a quarter of a division-A field, 780 x 580 pixels in 4:2:2, with

@@ -9,18 +9,20 @@ namespace sidestep {
 namespace {
 
 /// Sizes of the experiments.
-struct Sizes {
+struct VisionSizes {
   Recognition recognition;
   MarkerErrors errors;
   FrameTimes times;
 };
-Sizes quick_sizes() { return {{.frames = 100}, {.frames = 20, .noises = {2, 6}}, {.rounds = 100}}; }
+VisionSizes quick_vision_sizes() {
+  return {{.frames = 100}, {.frames = 20, .noises = {2, 6}}, {.rounds = 100}};
+}
 
 }  // namespace
 
 int study_vision(const StudyOptions& options) {
   require_study_output(options);
-  const Sizes sizes = options.is_quick ? quick_sizes() : Sizes{};
+  const VisionSizes sizes = options.is_quick ? quick_vision_sizes() : VisionSizes{};
   const auto run = [&](const std::string& name, const auto& experiment, const auto& settings) {
     const StudyTable table = experiment(settings, options.seed, StudyProgress(name));
     write_study_table(table, "vision", options);

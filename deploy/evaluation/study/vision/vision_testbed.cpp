@@ -86,7 +86,7 @@ void VisionTestbed::run_vision() {
 }
 
 ColourThresholds learned_colours(const Scenario& scenario, const RenderSpec& spec, Rng& rng) {
-  constexpr std::size_t kScenes = 5, kRobotsPerTeam = 11;
+  constexpr std::size_t kScenes = 5;
   VisionTestbed testbed(scenario, spec, default_colours(spec.format), rng);
   std::vector<msg::CameraImage> images;
   std::vector<FloorLabels> labels;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,10 @@
 #include "vision/tracking/tracker.hpp"
 
 namespace sidestep {
+
+inline constexpr Field kQuarterField{6, 4.5};  ///< of division A
+inline constexpr std::size_t kRobotsPerTeam = 11;
+inline constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// The number of the robot that wears a pattern; the inverse of number_of().
 constexpr RobotId robot_with_pattern(Team team, std::uint32_t pattern) {

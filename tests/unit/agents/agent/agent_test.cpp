@@ -2,10 +2,8 @@
 #include "agents/agent/agent.hpp"
 
 #include <catch2/catch.hpp>
-#include <limits>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/codec.hpp"
 
 namespace sidestep::agent_test {
 
@@ -21,50 +19,50 @@ Scenario two_goals() {
       "two-goals.yaml");
 }
 
+/// Feedback of the robot at rest.
+Feedback resting_at(const Vec2& position, double at, Epoch epoch = 7) {
+  Feedback feedback;
+  feedback.robot = 3;
+  feedback.obeyed_incarnation = kSelf;
+  feedback.obeyed_epoch = epoch;
+  feedback.valid_at = at_s(at);
+  feedback.executing = {3, 0, 0, 0, Trajectory::resting(at_s(0), position)};
+  feedback.estimate.position_m = position;
+  return feedback;
+}
+
+/// The coordinator grants, and the agent has registered.
+void become_ready(Agent& agent) {
+  CoordinatorHeartbeat heartbeat;
+  heartbeat.epoch = 7;
+  heartbeat.mode = msg::COORDINATOR_GRANTING;
+  agent.on_coordinator_state(heartbeat, at_s(0.6));
+  (void)agent.registration();
+}
+
+WorldObservations observation(double x, double observed_at) {
+  WorldObservations world;
+  world.self = PoseFix{at_s(observed_at), {x, 0}, 0};
+  return world;
+}
+
 struct DrivenAgent {
   Scenario scenario = two_goals();
   Agent agent;
 
   explicit DrivenAgent(const PlanningSettings& settings = {})
       : agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario), settings) {
-    report({0, 0}, 0.5);
-    msg::CoordinatorState state;
-    state.epoch(7);
-    state.coordinator_mode(msg::COORDINATOR_GRANTING);
-    agent.on_coordinator_state(state, at_s(0.6));
-    (void)agent.registration();
+    agent.on_feedback(resting_at({0, 0}, 0.5));
+    become_ready(agent);
   }
-  /// Feedback of a robot at rest.
-  void report(const Vec2& position, double at) {
-    msg::Feedback feedback;
-    feedback.robot(3);
-    feedback.obeyed_incarnation(kSelf);
-    feedback.obeyed_epoch(7);
-    feedback.valid_at_ns(to_ns(at_s(at)));
-    feedback.executing(encode(Version{3, 0, 0, 0, Trajectory::resting(at_s(0), position)}));
-    feedback.x_m(position.x());
-    feedback.y_m(position.y());
-    agent.on_feedback(feedback);
-  }
-  void observe(double x, double observed_at, double now, RobotId robot = 3) {
-    msg::WorldState world;
-    msg::TrackedRobot& observed = world.robots().emplace_back();
-    observed.robot(robot);
-    observed.observed_at_ns(to_ns(at_s(observed_at)));
-    observed.observed_x_m(x);
-    agent.on_world(world, at_s(now));
+  void observe(double x, double observed_at, double now) {
+    agent.on_world(observation(x, observed_at), at_s(now));
   }
   /// As observe(), with a moving obstacle.
   void observe_obstacle(double x, double y, double observed_at, double now) {
-    msg::WorldState world;
-    msg::TrackedRobot& observed = world.robots().emplace_back();
-    observed.robot(3);
-    observed.observed_at_ns(to_ns(at_s(observed_at)));
-    world.obstacle_count(1);
-    world.obstacles()[0].observed_at_ns(to_ns(at_s(observed_at)));
-    world.obstacles()[0].x_m(x);
-    world.obstacles()[0].y_m(y);
-    world.obstacles()[0].radius_m(0.09);
+    WorldObservations world = observation(0, observed_at);
+    world.obstacle_count = 1;
+    world.obstacles[0] = {0, at_s(observed_at), {x, y}, 0.09, 0};
     agent.on_world(world, at_s(now));
   }
   bool plans(double now) { return agent.plan(at_s(now), at_s(now + kCycle_s)).has_value(); }
@@ -93,13 +91,17 @@ TEST_CASE("planning settings replace the defaults") {
   CHECK_FALSE(d.plans(1.06));
 }
 
-TEST_CASE("impossible observations are dropped, and later valid ones are still used") {
+TEST_CASE("an observation from the future is dropped and counted, and later valid ones are still used") {
   DrivenAgent d;
-  d.observe(std::numeric_limits<double>::quiet_NaN(), 0.6, 0.61);
-  CHECK_FALSE(d.plans(0.62));
   d.observe(0, 1e6, 0.61);
+  WorldObservations latest = observation(0, 0);
+  latest.self->captured_at = Time::max();
+  d.agent.on_world(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
-  d.observe(0, 0.6, 0.61, 4);
+  CHECK(d.agent.status(at_s(1)).invalid() == 2);
+  d.agent.on_world(WorldObservations(), at_s(0.61));
+  latest.self->captured_at = Time::min();
+  d.agent.on_world(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
   d.observe(0, 0.61, 0.62);
   CHECK(d.plans(0.63));
@@ -110,49 +112,35 @@ TEST_CASE("an observation is forwarded to the robot once") {
   DrivenAgent d;
   d.observe(0.001, 0.6, 0.61);
   const auto first = d.agent.command(at_s(1)), second = d.agent.command(at_s(1));
-  CHECK(first.has_fix());
-  CHECK(first.fix().x_m() == 0.001);
-  CHECK_FALSE(first.has_version());
-  CHECK_FALSE(second.has_fix());
+  REQUIRE(first.fix);
+  CHECK(first.fix->position_m == Vec2(0.001, 0));
+  CHECK(first.fix->captured_at == at_s(0.6));
+  CHECK_FALSE(first.version);
+  CHECK_FALSE(second.fix);
+  // Vision repeats its last observation of a robot that it does not see.
+  d.observe(0.001, 0.6, 0.62);
+  CHECK_FALSE(d.agent.command(at_s(1)).fix);
 }
 
 TEST_CASE("goals are visited in order, and the robot turns to a goal's heading") {
   DrivenAgent d;
   CHECK(d.agent.status(at_s(1)).goal_index() == 0);
   CHECK(d.agent.status(at_s(1)).distance_to_go_m() == Approx(1));
-  CHECK(d.agent.command(at_s(1)).desired_heading_rad() == 0);
+  CHECK(d.agent.command(at_s(1)).desired_heading_rad == 0);
   Agent fresh(d.scenario, 3, kSelf, std::make_shared<PlanningScratch>(d.scenario));
-  msg::Feedback at_goal;
-  at_goal.robot(3);
-  at_goal.obeyed_incarnation(kSelf);
-  at_goal.valid_at_ns(to_ns(at_s(2)));
-  at_goal.x_m(1);
-  at_goal.executing(encode(Version{3, 0, 0, 0, Trajectory::resting(at_s(1), {1, 0})}));
-  fresh.on_feedback(at_goal);
+  fresh.on_feedback(resting_at({1, 0}, 2, 0));
   CHECK(fresh.status(at_s(1)).goal_index() == 1);
   CHECK(fresh.status(at_s(1)).distance_to_go_m() == Approx(1));
-  CHECK(fresh.command(at_s(1)).desired_heading_rad() == 1.5);
+  CHECK(fresh.command(at_s(1)).desired_heading_rad == 1.5);
 }
 
 TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   Scenario scenario = two_goals();
   scenario.robots[0].goals = {{{0, 0}, std::nullopt}};
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
-  msg::Feedback feedback;
-  feedback.robot(3);
-  feedback.obeyed_incarnation(kSelf);
-  feedback.valid_at_ns(to_ns(at_s(0.5)));
-  feedback.executing(encode(Version{3, 0, 0, 0, Trajectory::resting(at_s(0), {0, 0})}));
-  agent.on_feedback(feedback);
-  msg::CoordinatorState state;
-  state.epoch(7);
-  state.coordinator_mode(msg::COORDINATOR_GRANTING);
-  agent.on_coordinator_state(state, at_s(0.6));
-  (void)agent.registration();
-  msg::WorldState world;
-  world.robots().emplace_back().robot(3);
-  world.robots()[0].observed_at_ns(to_ns(at_s(0.6)));
-  agent.on_world(world, at_s(0.61));
+  agent.on_feedback(resting_at({0, 0}, 0.5, 0));
+  become_ready(agent);
+  agent.on_world(observation(0, 0.6), at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
   CHECK(agent.status(at_s(1)).agent_state() == msg::AGENT_ARRIVED);
 }

@@ -2,13 +2,11 @@
 #include "agents/agent/clock_monitor.hpp"
 
 #include <catch2/catch.hpp>
-#include <limits>
 
 #include "common/random/rng.hpp"
 
 namespace sidestep::clock_monitor_test {
 
-constexpr RobotId kRobot = 3;
 constexpr Incarnation kSelf = 1000;
 constexpr Epoch kEpoch = 7;
 const Duration kBound = from_seconds(0.0005);
@@ -21,38 +19,35 @@ Time at_s(double seconds) { return time_from_ns(1'000'000'000'000'000) + from_se
 struct ClockFixture {
   double robot_s = 0, coordinator_s = 0, spread_s = 0.0002;
   Rng rng{1};
-  ClockMonitor clocks{kRobot, kBound};
+  ClockMonitor clocks{kBound};
 
   ClockFixture() { clocks.on_epoch(kEpoch); }
   double delay() { return 0.0002 + rng.uniform(0, spread_s); }
-  msg::Feedback feedback(double sent) {
+  Feedback feedback(double sent) {
     const double received = sent + delay(), answered = received + 0.003;
-    msg::Feedback f;
-    f.robot(kRobot);
-    f.header().incarnation(5);
-    f.obeyed_incarnation(kSelf);
-    f.command_stamp_ns(to_ns(at_s(sent)));
-    f.command_received_at_ns(to_ns(at_s(received + robot_s)));
-    f.valid_at_ns(to_ns(at_s(answered + robot_s)));
+    Feedback f;
+    f.robot_incarnation = 5;
+    f.obeyed_incarnation = kSelf;
+    f.command = {at_s(sent), at_s(received + robot_s)};
+    f.valid_at = at_s(answered + robot_s);
     return f;
   }
-  msg::Verdict verdict(double asked) {
+  Verdict verdict(double asked) {
     clocks.on_request_sent(at_s(asked));
-    msg::Verdict v;
-    v.robot(kRobot);
-    v.epoch(kEpoch);
-    v.request_stamp_ns(to_ns(at_s(asked)));
-    v.header().stamp_ns(to_ns(at_s(asked + delay() + coordinator_s)));
+    Verdict v;
+    v.epoch = kEpoch;
+    v.request_sent_at = at_s(asked);
+    v.sent_at = at_s(asked + delay() + coordinator_s);
     return v;
   }
   void measure_robot(double sent) {
-    const msg::Feedback f = feedback(sent);
-    const Time answered = time_from_ns(f.valid_at_ns()) - from_seconds(robot_s);
+    const Feedback f = feedback(sent);
+    const Time answered = f.valid_at - from_seconds(robot_s);
     clocks.on_feedback(f, kSelf, answered + from_seconds(delay()));
   }
   void measure_coordinator(double asked) {
-    const msg::Verdict v = verdict(asked);
-    const Time answered = time_from_ns(v.header().stamp_ns()) - from_seconds(coordinator_s);
+    const Verdict v = verdict(asked);
+    const Time answered = v.sent_at - from_seconds(coordinator_s);
     clocks.on_verdict(v, answered + from_seconds(delay()));
   }
   std::uint64_t invalid(double now) const {
@@ -145,22 +140,22 @@ TEST_CASE("clock measurements start anew with a new epoch and with a restarted r
   REQUIRE(f.clocks.allows_motion(at_s(0.2)));
   f.clocks.on_epoch(kEpoch + 1);
   CHECK_FALSE(f.clocks.allows_motion(at_s(0.2)));
-  msg::Verdict late = f.verdict(0.2);
+  Verdict late = f.verdict(0.2);
   f.clocks.on_verdict(late, at_s(0.201));
   CHECK_FALSE(f.clocks.allows_motion(at_s(0.21)));
   late = f.verdict(0.22);
-  late.epoch(kEpoch + 1);
+  late.epoch = kEpoch + 1;
   f.clocks.on_verdict(late, at_s(0.221));
   CHECK(f.clocks.allows_motion(at_s(0.23)));
 
-  msg::Feedback rebooted = f.feedback(0.24);
-  rebooted.header().incarnation(6);
-  rebooted.command_stamp_ns(0);
+  Feedback rebooted = f.feedback(0.24);
+  rebooted.robot_incarnation = 6;
+  rebooted.command.reset();
   f.clocks.on_feedback(rebooted, kSelf, at_s(0.245));
   CHECK(f.clocks.allows_motion(at_s(0.25)));
   f.robot_s = 0.3;
   rebooted = f.feedback(0.26);
-  rebooted.header().incarnation(6);
+  rebooted.robot_incarnation = 6;
   f.clocks.on_feedback(rebooted, kSelf, at_s(0.265));
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
@@ -168,45 +163,36 @@ TEST_CASE("clock measurements start anew with a new epoch and with a restarted r
 TEST_CASE("echoes of other senders' messages and impossible stamps are ignored") {
   ClockFixture f;
   f.measure_robot(0);
-  msg::Verdict foreign = f.verdict(0.01);
-  foreign.request_stamp_ns(foreign.request_stamp_ns() + 1);
+  Verdict foreign = f.verdict(0.01);
+  foreign.request_sent_at += Duration{1};
   f.clocks.on_verdict(foreign, at_s(0.011));
-  foreign = f.verdict(0.01);
-  foreign.robot(kRobot + 1);
-  f.clocks.on_verdict(foreign, at_s(0.011));
-  foreign = f.verdict(0.01);
-  foreign.request_stamp_ns(0);
+  foreign.request_sent_at = Time{};
   f.clocks.on_verdict(foreign, at_s(0.011));
   CHECK_FALSE(f.clocks.allows_motion(at_s(0.02)));
   CHECK(f.invalid(0.02) == 0);
   f.measure_coordinator(0.02);
   REQUIRE(f.clocks.allows_motion(at_s(0.03)));
 
-  constexpr std::int64_t kHostile[] = {-1, std::numeric_limits<std::int64_t>::max(),
-                                       std::numeric_limits<std::int64_t>::min()};
   const auto before = f.clocks.robot_coordinator_offset(at_s(0.03));
   std::uint64_t refused = 0;
-  for (const std::int64_t stamp : kHostile) {
-    msg::Verdict v = f.verdict(0.03);
-    v.header().stamp_ns(stamp);
+  for (const Time stamp : {time_from_ns(-1), Time::max(), Time::min()}) {
+    Verdict v = f.verdict(0.03);
+    v.sent_at = stamp;
     f.clocks.on_verdict(v, at_s(0.031));
-    msg::Feedback hostile = f.feedback(0.03);
-    hostile.command_stamp_ns(stamp);
+    Feedback hostile = f.feedback(0.03);
+    hostile.command->sent_at = stamp;
     f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
     hostile = f.feedback(0.03);
-    hostile.command_received_at_ns(stamp);
+    hostile.command->received_at = stamp;
     f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
     hostile = f.feedback(0.03);
-    hostile.valid_at_ns(stamp);
+    hostile.valid_at = stamp;
     f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
     refused += 4;
   }
-  msg::Feedback other = f.feedback(0.03);
-  other.obeyed_incarnation(kSelf + 1);
-  other.valid_at_ns(1);
-  f.clocks.on_feedback(other, kSelf, at_s(0.034));
-  other = f.feedback(0.03);
-  other.robot(kRobot + 1);
+  Feedback other = f.feedback(0.03);
+  other.obeyed_incarnation = kSelf + 1;
+  other.valid_at = time_from_ns(1);
   f.clocks.on_feedback(other, kSelf, at_s(0.034));
   CHECK(f.invalid(0.04) == refused);
   const auto after = f.clocks.robot_coordinator_offset(at_s(0.03));

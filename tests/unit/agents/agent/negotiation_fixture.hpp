@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "agents/agent/negotiation.hpp"
-#include "common/messaging/codec.hpp"
 
 namespace sidestep {
 
@@ -16,23 +15,32 @@ inline constexpr Epoch kEpoch = 50;
 
 inline Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-inline msg::Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf,
-                          Epoch epoch = kEpoch) {
-  msg::Feedback feedback;
-  feedback.robot(kRobot);
-  feedback.valid_at_ns(to_ns(at_s(at)));
-  feedback.obeyed_incarnation(obeyed);
-  feedback.obeyed_epoch(epoch);
-  feedback.executing(encode(executing));
+inline Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf, Epoch epoch = kEpoch) {
+  Feedback feedback;
+  feedback.robot = kRobot;
+  feedback.valid_at = at_s(at);
+  feedback.obeyed_incarnation = obeyed;
+  feedback.obeyed_epoch = epoch;
+  feedback.executing = executing;
   return feedback;
 }
 
-inline msg::CoordinatorState coordinator_state(Epoch epoch, const std::vector<std::uint32_t>& missing = {}) {
-  msg::CoordinatorState state;
-  state.epoch(epoch);
-  state.coordinator_mode(missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING);
-  state.missing(missing);
+/// Valid as long as `missing`.
+inline CoordinatorHeartbeat heartbeat(Epoch epoch, const std::vector<RobotId>& missing = {}) {
+  CoordinatorHeartbeat state;
+  state.epoch = epoch;
+  state.mode = missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING;
+  state.missing = missing;
   return state;
+}
+
+/// The coordinator's answer to a proposal; it grants nothing.
+inline Verdict verdict_on(const Proposal& proposal, Epoch epoch = kEpoch) {
+  Verdict verdict;
+  verdict.robot = kRobot;
+  verdict.epoch = epoch;
+  verdict.proposal_number = proposal.number;
+  return verdict;
 }
 
 /// One agent's negotiation, with the messages that its robot and the coordinator send.
@@ -42,23 +50,21 @@ struct NegotiationFixture {
 
   void become_ready() {
     n.on_feedback(fact(initial, 0.5));
-    n.on_coordinator_state(coordinator_state(kEpoch), at_s(0.9));
+    n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
     (void)n.registration();
     REQUIRE(n.may_propose(at_s(0.95)));
   }
-  msg::Proposal propose(double start, double now) {
+  Proposal propose(double start, double now) {
     const Version& base = n.base_at(at_s(start));
     Trajectory trajectory(at_s(start), base.trajectory.state_at(at_s(start)));
     trajectory.append(from_seconds(0.1), {1, 0});
     append_stop(trajectory, 5);
     return n.propose({&trajectory, 1}, base.number, at_s(now));
   }
-  std::optional<Version> grant(const msg::Proposal& proposal, double now, Epoch epoch = kEpoch) {
-    msg::Verdict verdict;
-    verdict.robot(kRobot);
-    verdict.epoch(epoch);
-    verdict.proposal_number(proposal.candidates()[0].version_number());
-    verdict.granted_version(proposal.candidates()[0].version_number());
+  /// Grants the first candidate.
+  std::optional<Version> grant(const Proposal& proposal, double now, Epoch epoch = kEpoch) {
+    Verdict verdict = verdict_on(proposal, epoch);
+    verdict.granted_version = proposal.candidates[0]->number;
     return n.on_verdict(verdict, at_s(now)).granted;
   }
 };

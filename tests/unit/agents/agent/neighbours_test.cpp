@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::neighbours_test {
@@ -31,6 +31,12 @@ msg::LedgerPage page_of(std::uint32_t index, std::uint64_t number, std::span<con
     page.versions().push_back(encode(version));
   }
   return page;
+}
+
+void receive(Neighbours& neighbours, const msg::LedgerPage& message) {
+  const auto page = ReceivedPage::decode(message);
+  REQUIRE(page);
+  neighbours.on_page(*page);
 }
 
 std::vector<VersionNumber> versions_within(Neighbours& neighbours, const Vec2& centre, double horizon) {
@@ -63,7 +69,7 @@ TEST_CASE("exactly the versions within the horizon of the latest pages are known
       const auto robot = static_cast<RobotId>(rng.below(20));
       versions.push_back(resting_version(robot, ++number, about + random_vector(rng, 2)));
     }
-    neighbours.on_page(page_of(index, ++number, versions));
+    receive(neighbours, page_of(index, ++number, versions));
     expected[index].clear();
     for (const Version& version : versions) {
       if (version.robot != 0 &&
@@ -82,14 +88,14 @@ TEST_CASE("older pages and pages of older epochs change nothing") {
   Neighbours neighbours(0);
   neighbours.set_horizon({0, 0}, 2);
   const Version a = resting_version(1, 10, {1, 0}), b = resting_version(1, 11, {1, 1});
-  neighbours.on_page(page_of(0, 5, {&a, 1}));
-  neighbours.on_page(page_of(0, 4, {&b, 1}));
+  receive(neighbours, page_of(0, 5, {&a, 1}));
+  receive(neighbours, page_of(0, 4, {&b, 1}));
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
   auto old = page_of(0, 6, {&b, 1});
   old.epoch(0);
-  neighbours.on_page(old);
+  receive(neighbours, old);
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
-  neighbours.on_page(page_of(0, 6, {&b, 1}));
+  receive(neighbours, page_of(0, 6, {&b, 1}));
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{11});
 }
 
@@ -100,8 +106,22 @@ TEST_CASE("a page with an invalid rectangle is still used") {
   auto page = page_of(0, 1, {&a, 1});
   page.min_x_m(std::nan(""));
   page.max_y_m(std::nan(""));
-  neighbours.on_page(page);
+  receive(neighbours, page);
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
+}
+
+TEST_CASE("malformed versions within the horizon are counted, and the others are still used") {
+  Neighbours neighbours(0);
+  neighbours.set_horizon({0, 0}, 2);
+  const std::vector<Version> versions{resting_version(1, 10, {1, 0}), resting_version(2, 11, {0, 1}),
+                                      resting_version(3, 12, {-1, 0}), resting_version(0, 13, {0, -1})};
+  auto page = page_of(0, 1, versions);
+  page.versions()[0].phase_count(99);
+  page.versions()[1].vx_mps(std::nan(""));
+  page.versions()[3].phase_count(99);  // its own version
+  receive(neighbours, page);
+  CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{12});
+  CHECK(neighbours.invalid() == 2);
 }
 
 TEST_CASE("the nearest robots whose versions have all come to rest are found as stationary") {
@@ -114,7 +134,7 @@ TEST_CASE("the nearest robots whose versions have all come to rest are found as 
   Version leaving = resting_version(5, 50, {0.5, 0});
   leaving.trajectory.append(std::chrono::seconds(9), {0, 0});
   versions.push_back(leaving);
-  neighbours.on_page(page_of(0, 1, versions));
+  receive(neighbours, page_of(0, 1, versions));
   const auto places = neighbours.find_stationary(kNow + std::chrono::seconds(1), {0, 0}, 2);
   REQUIRE(places.size() == 2);
   CHECK(places[0] == Vec2(1.5, 0));

@@ -2,7 +2,6 @@
 #include "agents/agent/observed_obstacles.hpp"
 
 #include <catch2/catch.hpp>
-#include <limits>
 
 namespace sidestep::observed_obstacles_test {
 
@@ -14,20 +13,14 @@ Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 struct Fixture {
   ObservedObstacles obstacles{kSpeed_mps, kSlack};
 
-  static msg::WorldState world(std::uint32_t track, double x, double observed_at, std::uint64_t vision = 1) {
-    msg::WorldState state;
-    state.header().incarnation(vision);
-    add(state, track, x, observed_at);
-    return state;
+  static WorldObservations world(std::uint32_t track, double x, double observed_at, Incarnation vision = 1) {
+    WorldObservations observations;
+    observations.vision = vision;
+    add(observations, track, x, observed_at);
+    return observations;
   }
-  static void add(msg::WorldState& state, std::uint32_t track, double x, double observed_at) {
-    msg::TrackedObstacle& obstacle = state.obstacles()[state.obstacle_count()];
-    state.obstacle_count(static_cast<std::uint8_t>(state.obstacle_count() + 1));
-    obstacle.obstacle(track);
-    obstacle.observed_at_ns(to_ns(at_s(observed_at)));
-    obstacle.x_m(x);
-    obstacle.radius_m(0.1);
-    obstacle.position_variance_m2(0.0001);
+  static void add(WorldObservations& observations, std::uint32_t track, double x, double observed_at) {
+    observations.obstacles[observations.obstacle_count++] = {track, at_s(observed_at), {x, 0}, 0.1, 0.0001};
   }
 };
 
@@ -50,7 +43,7 @@ TEST_CASE("an observation is kept with its uncertainty until a newer one of the 
 TEST_CASE("an obstacle that is no longer observed is kept for a second, and its reach grows") {
   Fixture f;
   f.obstacles.on_world(Fixture::world(5, 1, 10), at_s(10.02));
-  f.obstacles.on_world(msg::WorldState(), at_s(10.5));
+  f.obstacles.on_world(WorldObservations(), at_s(10.5));
   REQUIRE(f.obstacles.recent(at_s(10.9)).size() == 1);
   CHECK(f.obstacles.recent(at_s(10.9))[0].reach_m(at_s(10.9)) ==
         Approx(0.14 + 0.9 * kSpeed_mps).margin(0.01));
@@ -64,35 +57,30 @@ TEST_CASE("tracks of a restarted vision process do not replace those of its pred
   CHECK(f.obstacles.recent(at_s(10.2)).size() == 2);
 }
 
-TEST_CASE("impossible observations are counted and dropped, and the rest of the message is still used") {
+TEST_CASE("observations from the future are counted and dropped, and the others are still used") {
   Fixture f;
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const auto check_refused = [&](auto spoil) {
+  const Time now = at_s(10.02);
+  for (const Time observed_at : {at_s(10.03), Time::max()}) {
     const auto before = f.obstacles.invalid();
-    msg::WorldState state = Fixture::world(5, 1, 10);
-    spoil(state.obstacles()[0]);
-    Fixture::add(state, 6, 2, 10);
-    f.obstacles.on_world(state, at_s(10.02));
+    WorldObservations world = Fixture::world(5, 1, 10);
+    world.obstacles[0].observed_at = observed_at;
+    Fixture::add(world, 6, 2, 10);
+    f.obstacles.on_world(world, now);
     CHECK(f.obstacles.invalid() == before + 1);
-    REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);
-    CHECK(f.obstacles.recent(at_s(10.02))[0].position_m == Vec2(2, 0));
-  };
-  check_refused([](msg::TrackedObstacle& o) { o.x_m(kNan); });
-  check_refused([](msg::TrackedObstacle& o) { o.y_m(1e300); });
-  check_refused([](msg::TrackedObstacle& o) { o.radius_m(-0.1); });
-  check_refused([](msg::TrackedObstacle& o) { o.radius_m(kNan); });
-  check_refused([](msg::TrackedObstacle& o) { o.position_variance_m2(-1); });
-  check_refused([](msg::TrackedObstacle& o) { o.position_variance_m2(kNan); });
-  check_refused([](msg::TrackedObstacle& o) { o.observed_at_ns(to_ns(at_s(10.03))); });
-  check_refused([](msg::TrackedObstacle& o) { o.observed_at_ns(std::numeric_limits<std::int64_t>::max()); });
-  msg::WorldState state = Fixture::world(7, 1, 10);
-  state.obstacle_count(msg::MAX_OBSTACLES + 1);
-  f.obstacles.on_world(state, at_s(10.02));
-  CHECK(f.obstacles.recent(at_s(10.02)).size() == 1);
-  state = Fixture::world(7, 1, 10);
-  state.obstacles()[0].observed_at_ns(std::numeric_limits<std::int64_t>::min());
-  f.obstacles.on_world(state, at_s(10.02));
-  CHECK(f.obstacles.recent(at_s(10.02)).size() == 1);
+    REQUIRE(f.obstacles.recent(now).size() == 1);
+    CHECK(f.obstacles.recent(now)[0].position_m == Vec2(2, 0));
+  }
+}
+
+TEST_CASE("old observations are dropped, and not counted as invalid") {
+  Fixture f;
+  WorldObservations world = Fixture::world(7, 1, 10);
+  for (const Time observed_at : {at_s(9), Time::min()}) {
+    world.obstacles[0].observed_at = observed_at;
+    f.obstacles.on_world(world, at_s(10.02));
+    CHECK(f.obstacles.recent(at_s(10.02)).empty());
+  }
+  CHECK(f.obstacles.invalid() == 0);
 }
 
 TEST_CASE("beyond the capacity, the oldest observations are dropped") {

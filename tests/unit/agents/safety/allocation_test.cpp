@@ -2,10 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "agents/agent/neighbours.hpp"
+#include "agents/agent/world_view.hpp"
 #include "agents/batch/dispatch.hpp"
 #include "agents/batch/lanes.hpp"
 #include "agents/safety/safety_search.hpp"
-#include "common/messaging/codec.hpp"
+#include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
@@ -99,12 +102,37 @@ TEST_CASE("neighbours are stored without allocations once warm") {
   CHECK(allocations_once_warm([&] {
           msg::LedgerPage& page = pages[number % pages.size()];
           page.header().message_number(++number);
-          neighbours.on_page(page);
+          neighbours.on_page(*ReceivedPage::decode(page));
           neighbours.collect({0, 0}, 1.6, index);
           collected += index.size();
           collected += neighbours.find_stationary(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
         }) == 0);
   CHECK(collected > 0);
+}
+
+TEST_CASE("an agent's messages are decoded and encoded without allocations") {
+  Rng rng(4);
+  Feedback feedback;
+  feedback.executing = random_version(0, rng);
+  const msg::Feedback fact = encode(feedback);
+  const msg::Verdict verdict;
+  msg::CoordinatorState state;
+  state.missing({1, 2, 3});
+  msg::WorldState world;
+  world.obstacle_count(msg::MAX_OBSTACLES);
+  for (RobotId robot = 0; robot < 100; ++robot) world.robots().emplace_back().robot(robot);
+  const Command command{0, 1, 0, Time{}, feedback.executing};
+  const Proposal proposal{0, 1, 0, Time{}, 0, 1, {feedback.executing}};
+  const Registration registration{0, 1, 0, Time{}, VersionSet()};
+  WorldView view(99);
+  std::size_t decoded = 0;
+  CHECK(allocations_once_warm([&] {
+          decoded += decode(fact, 0).has_value() + decode(verdict, 0).has_value();
+          decoded += decode(state, kStart).has_value() + view.decode(world).self.has_value();
+          decoded += encode(command).has_version() + encode(proposal).candidate_count() +
+                     encode(registration).is_absent();
+        }) == 0);
+  CHECK(decoded == 7 * 600);
 }
 
 }  // namespace sidestep::allocation_test

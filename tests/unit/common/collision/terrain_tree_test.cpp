@@ -81,7 +81,7 @@ TEST_CASE("the tree agrees with a comparison of all triangles") {
     const Vec3 middle(rng.uniform(-5, 5), rng.uniform(-5, 5), rng.uniform(-5, 5));
     for (int k = 0; k < 3; ++k) points.push_back(middle + Vec3(rng.uniform(), rng.uniform(), rng.uniform()));
     corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    triangles.push_back({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
+    triangles.push_back({points.end()[-3], points.end()[-2], points.end()[-1]});
   }
   const TerrainTree tree(points, corners);
   for (int i = 0; i < 200; ++i) {

@@ -21,8 +21,8 @@ TEST_CASE("a YUV image has the brightness of each pixel and the mean colour of e
   REQUIRE(yuv.view().height_px == 32);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 64; x += 2) {
-      const std::uint8_t* const from = rgb.view().row(y) + 3 * x;
-      const std::uint8_t* const pair = yuv.view().row(y) + 2 * x;
+      const std::uint8_t* const from = rgb.view().row(y) + std::ptrdiff_t{3} * x;
+      const std::uint8_t* const pair = yuv.view().row(y) + std::ptrdiff_t{2} * x;
       const auto brightness = [](const std::uint8_t* c) {
         return bt601::kRed * c[0] + bt601::kGreen * c[1] + bt601::kBlue * c[2];
       };

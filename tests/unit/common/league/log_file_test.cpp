@@ -138,7 +138,7 @@ TEST_CASE("a truncated log keeps all complete records") {
 
 TEST_CASE("a file that is not a log is rejected with the position and the expected content") {
   CHECK_THAT(error_of(""), Contains("x.log: byte 0: not a log"));
-  CHECK_THAT(error_of("SSL_LOG_FILX\0\0\0\1"), Contains("x.log: byte 0: not a log"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILX\0\0\0\1", 16)), Contains("x.log: byte 0: not a log"));
   CHECK_THAT(error_of("\x1f\x8b and so on, long enough to be one"), Contains("gunzip"));
   CHECK_THAT(error_of("SSL_LOG_FILE"), Contains("x.log: byte 12: the file ends"));
   CHECK_THAT(error_of(std::string("SSL_LOG_FILE\0\0\0\2", 16)), Contains("x.log: byte 12: format version 2"));

@@ -89,7 +89,7 @@ TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") 
 TEST_CASE("an option without a value has its default, and an option that is not given has none") {
   const auto parsed = [](std::vector<std::string> arguments) {
     CommandLine command_line("test", "test");
-    const Command app = command_line.root();
+    const CliCommand app = command_line.root();
     std::optional<std::string> value;
     bool flag = false;
     app.add_optional_value("--to", value, "nowhere", "sends it");
@@ -109,7 +109,7 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   const int signal_number = GENERATE(SIGINT, SIGTERM);
   Program program = test_program();
   int robot = 0;
-  program.add_options = [&](const Command& app) { app.add_option("--robot", robot); };
+  program.add_options = [&](const CliCommand& app) { app.add_option("--robot", robot); };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   std::size_t robots_in_scenario = 0;
   bool is_node_destroyed = false;

@@ -5,8 +5,9 @@
 #include <map>
 #include <vector>
 
+#include "common/messaging/version_codec.hpp"
 #include "simulator/world/cameras.hpp"
-#include "simulator/world/disturbance_check.hpp"
+#include "simulator/world/disturbance_codec.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
@@ -20,15 +21,14 @@ using test::separated_robots;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-msg::Disturbance place(RobotId robot, const Vec2& at_m, double heading_rad) {
-  auto message = disturbance(robot, msg::DISTURBANCE_PLACE);
-  message.x_m(at_m.x());
-  message.y_m(at_m.y());
-  message.heading_rad(heading_rad);
-  return message;
+RobotDisturbance place(RobotId robot, const Vec2& at_m, double heading_rad) {
+  auto placing = disturbance(robot, msg::DISTURBANCE_PLACE);
+  placing.place_m = at_m;
+  placing.heading_rad = heading_rad;
+  return placing;
 }
 
-msg::Command rest_version(RobotId robot, VersionNumber number, Time start, const Vec2& at_m) {
+Command rest_version(RobotId robot, VersionNumber number, Time start, const Vec2& at_m) {
   return test::command_with({robot, 1, number, 0, Trajectory::resting(start, at_m)});
 }
 
@@ -51,9 +51,9 @@ TEST_CASE("a lifted robot is no obstacle, invisible, and executes nothing") {
   CHECK(world.pending_feedback().size() == 1);
   CHECK_FALSE(truth_has(world, 0));
   CHECK(truth_has(world, 1));
-  const msg::Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_lifted());
-  CHECK(facts.executing().version_number() == 0);
+  const Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_lifted);
+  CHECK(facts.executing.number == 0);
   Cameras cameras(scenario, kBegin, 1);
   msg::DetectionFrame frame;
   cameras.capture(cameras.next_capture(), {world.bodies()}, frame);
@@ -89,12 +89,12 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   SECTION("at the requested place") {
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.001, -2}), now);
     run(9);
-    CHECK(world.feedback(0, now).executing().version_number() == 0);
+    CHECK(world.feedback(0, now).executing.number == 0);
     run(3);
-    const msg::Feedback facts = world.feedback(0, now);
-    CHECK(facts.executing().version_number() == 10);
-    CHECK_FALSE(facts.is_lifted());
-    CHECK(facts.x_m() == Approx(3.001));
+    const Feedback facts = world.feedback(0, now);
+    CHECK(facts.executing.number == 10);
+    CHECK_FALSE(facts.is_lifted);
+    CHECK(facts.estimate.position_m.x() == Approx(3.001));
     CHECK(truth_has(world, 0));
     CHECK((world.bodies()[0].position_m() - Vec2(3.001, -2)).norm() < 1e-6);
     CHECK(world.bodies()[0].heading_rad() == Approx(1.5));
@@ -106,14 +106,14 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     run(1000);
     CHECK(world.reference_error_m(0) < 0.003);
     CHECK(world.firmware(0).executing().number == 11);
-    CHECK(world.firmware(0).counts().own_stops == 0);
+    CHECK(world.firmware(0).own_stops() == 0);
   }
   SECTION("not at another place") {
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.01, -2}), now);
     run(100);
     CHECK_FALSE(truth_has(world, 0));
-    CHECK(world.feedback(0, now).is_lifted());
-    CHECK(world.feedback(0, now).executing().version_number() == 10);
+    CHECK(world.feedback(0, now).is_lifted);
+    CHECK(world.feedback(0, now).executing.number == 10);
     // Only lifting the robot again voids the first rest version and permits another.
     world.on_command(0, rest_version(0, 11, now + milliseconds(10), {3, -2}), now);
     run(100);
@@ -129,7 +129,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     append_stop(dash, 5);
     world.on_command(0, test::command_with({0, 1, 10, 0, dash}), now);
     run(100);
-    CHECK(world.feedback(0, now).executing().version_number() == 0);
+    CHECK(world.feedback(0, now).executing.number == 0);
     CHECK(world.firmware(0).counts().refused_base == 1);
   }
   CHECK(world.firmware_violations() == 0);
@@ -148,7 +148,7 @@ TEST_CASE("a version from before the robot was lifted is never executed afterwar
   REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
   world.on_command(0, rest_version(0, 4, now + milliseconds(20), mark), now);
   world.advance(now += milliseconds(50));
-  CHECK(world.feedback(0, now).executing().version_number() == 0);
+  CHECK(world.feedback(0, now).executing.number == 0);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -159,31 +159,31 @@ TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same ag
   dash.append(milliseconds(500), Vec2(3, 0));
   append_stop(dash, 5);
   auto command = test::command_with({0, 3, 10, 0, dash});
-  command.epoch(7);
+  command.epoch = 7;
   world.on_command(0, command, kBegin);
   const bool moves = GENERATE(false, true);
   Time now = kBegin + milliseconds(moves ? 400 : 2000);
   world.advance(now);
   const Vec2 before = world.bodies()[0].velocity_mps();
-  const msg::Feedback last = world.feedback(0, now);
+  const Feedback last = world.feedback(0, now);
   REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_REBOOT), now));
   world.advance(now += milliseconds(2));
-  const msg::Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_off_reference());
-  CHECK(facts.executing().base() == 10);
-  CHECK(facts.executing().version_number() > 10);
-  CHECK(facts.executing().incarnation() == 3);
-  CHECK(facts.executing().start_ns() > last.valid_at_ns());
-  CHECK(std::abs(facts.executing().vx_mps() - before.x()) < 0.05);
-  CHECK(facts.obeyed_incarnation() == 3);
-  CHECK(facts.obeyed_epoch() == 7);
-  CHECK(facts.activated() == 0);
-  CHECK(facts.command_stamp_ns() == 0);
+  const Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_off_reference);
+  CHECK(facts.executing.base == 10);
+  CHECK(facts.executing.number > 10);
+  CHECK(facts.executing.incarnation == 3);
+  CHECK(facts.executing.trajectory.start() > last.valid_at);
+  CHECK(std::abs(facts.executing.trajectory.at_start().velocity_mps.x() - before.x()) < 0.05);
+  CHECK(facts.obeyed_incarnation == 3);
+  CHECK(facts.obeyed_epoch == 7);
+  CHECK(facts.counts.activated == 0);
+  CHECK_FALSE(facts.command);
   world.advance(now + milliseconds(1000));
   CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
   CHECK(world.reference_error_m(0) < 0.003);
   // In motion it may lose the new reference once more, until its motor model has converged.
-  CHECK(world.firmware(0).counts().own_stops <= (moves ? 2 : 1));
+  CHECK(world.firmware(0).own_stops() <= (moves ? 2 : 1));
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -194,12 +194,13 @@ TEST_CASE("a robot's facts are by its own clock, which stands still after being 
   Time now = kBegin + milliseconds(10);
   world.advance(now);
   auto command = rest_version(0, 5, now + milliseconds(20), scenario.robots[0].start_m);
-  command.header().stamp_ns(12345);
+  command.sent_at = time_from_ns(12345);
   world.on_command(0, command, now);
-  msg::Feedback facts = world.feedback(0, now);
-  CHECK(facts.valid_at_ns() == to_ns(now + milliseconds(7)));
-  CHECK(facts.command_stamp_ns() == 12345);
-  CHECK(facts.command_received_at_ns() == facts.valid_at_ns());
+  Feedback facts = world.feedback(0, now);
+  CHECK(facts.valid_at == now + milliseconds(7));
+  REQUIRE(facts.command);
+  CHECK(facts.command->sent_at == time_from_ns(12345));
+  CHECK(facts.command->received_at == facts.valid_at);
   CHECK(world.next_start(0) == now + milliseconds(13));
   world.advance(now += milliseconds(12));
   CHECK(world.firmware(0).executing().number == 0);
@@ -207,18 +208,18 @@ TEST_CASE("a robot's facts are by its own clock, which stands still after being 
   CHECK(world.firmware(0).executing().number == 5);
 
   auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
-  clock.clock_offset_ns(Duration(milliseconds(-30)).count());
+  clock.clock_offset = milliseconds(-30);
   REQUIRE(world.disturb(0, clock, now));
   const Time frozen_at = now + milliseconds(7);
   world.advance(now += milliseconds(20));
-  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == frozen_at);
+  CHECK(world.feedback(0, now).valid_at == frozen_at);
   world.advance(now += milliseconds(30));
-  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == now - milliseconds(30));
-  clock.clock_offset_ns(Duration(milliseconds(400)).count());
+  CHECK(world.feedback(0, now).valid_at == now - milliseconds(30));
+  clock.clock_offset = milliseconds(400);
   REQUIRE(world.disturb(0, clock, now));
-  CHECK(time_from_ns(world.feedback(0, now).valid_at_ns()) == now + milliseconds(400));
+  CHECK(world.feedback(0, now).valid_at == now + milliseconds(400));
   world.advance(now += milliseconds(500));
-  CHECK(world.firmware(0).counts().own_stops == 0);
+  CHECK(world.firmware(0).own_stops() == 0);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -233,23 +234,23 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   world.advance(now += milliseconds(100));
   CHECK(disturbance_end_ns() < 0);
   auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);  // does not affect the body
-  clock.clock_offset_ns(Duration(milliseconds(5)).count());
+  clock.clock_offset = milliseconds(5);
   REQUIRE(world.disturb(0, clock, now));
   CHECK(disturbance_end_ns() < 0);
   auto slip = disturbance(0, msg::DISTURBANCE_SLIP);
-  slip.duration_ns(Duration(milliseconds(500)).count());
+  slip.duration = milliseconds(500);
   REQUIRE(world.disturb(0, slip, now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
   REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
-  slip.duration_ns(Duration(milliseconds(200)).count());  // replaces the first
+  slip.duration = milliseconds(200);  // replaces the first
   REQUIRE(world.disturb(0, slip, now));
   const Time end = now + milliseconds(200);
   CHECK(disturbance_end_ns() == to_ns(end));
   world.advance(now += milliseconds(600));
   CHECK(disturbance_end_ns() == to_ns(end));
   auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
-  block.duration_ns(Duration(milliseconds(100)).count());
+  block.duration = milliseconds(100);
   REQUIRE(world.disturb(0, block, now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(100)));
   world.advance(now += milliseconds(600));
@@ -260,45 +261,64 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   }
 }
 
+TEST_CASE("encoding and decoding a disturbance preserves it") {
+  RobotDisturbance before = place(3, {3, 2}, -1);
+  before.push_mps = {1, 2};
+  before.grip = 0.5;
+  before.clock_offset = milliseconds(6);
+  before.duration = milliseconds(7);
+  const auto after = decode(encode(before), {9, 6}, 0.09);
+  REQUIRE(after);
+  CHECK(after->robot == before.robot);
+  CHECK(after->kind == before.kind);
+  CHECK(after->push_mps == before.push_mps);
+  CHECK(after->grip == before.grip);
+  CHECK(after->place_m == before.place_m);
+  CHECK(after->heading_rad == before.heading_rad);
+  CHECK(after->clock_offset == before.clock_offset);
+  CHECK(after->duration == before.duration);
+}
+
 TEST_CASE("an invalid disturbance is refused") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Field field{9, 6};
-  const auto valid = [&](const msg::Disturbance& message) { return is_valid(message, field, 0.09); };
+  const auto is_valid = [&](const RobotDisturbance& disturbance) {
+    return decode(encode(disturbance), {9, 6}, 0.09).has_value();
+  };
   auto push = disturbance(0, msg::DISTURBANCE_PUSH);
-  push.x_m(nan);  // not used by a push
-  CHECK(valid(push));
-  push.vx_mps(nan);
-  CHECK_FALSE(valid(push));
-  push.vx_mps(-11);
-  CHECK_FALSE(valid(push));
+  push.place_m.x() = nan;  // not used by a push
+  CHECK(is_valid(push));
+  push.push_mps.x() = nan;
+  CHECK_FALSE(is_valid(push));
+  push.push_mps.x() = -11;
+  CHECK_FALSE(is_valid(push));
   for (const auto kind : {msg::DISTURBANCE_SLIP, msg::DISTURBANCE_BLOCK}) {
     auto lasting = disturbance(0, kind);
-    CHECK(valid(lasting));
-    lasting.duration_ns(-1);
-    CHECK_FALSE(valid(lasting));
-    lasting.duration_ns(std::numeric_limits<std::int64_t>::max());
-    CHECK_FALSE(valid(lasting));
-    lasting.duration_ns(1000);
-    lasting.grip(nan);
-    lasting.heading_rad(nan);
-    CHECK_FALSE(valid(lasting));
-    lasting.grip(1.1);
-    lasting.heading_rad(1e9);
-    CHECK_FALSE(valid(lasting));
+    CHECK(is_valid(lasting));
+    lasting.duration = Duration{-1};
+    CHECK_FALSE(is_valid(lasting));
+    lasting.duration = Duration::max();
+    CHECK_FALSE(is_valid(lasting));
+    lasting.duration = Duration{1000};
+    lasting.grip = nan;
+    lasting.heading_rad = nan;
+    CHECK_FALSE(is_valid(lasting));
+    lasting.grip = 1.1;
+    lasting.heading_rad = 1e9;
+    CHECK_FALSE(is_valid(lasting));
   }
-  CHECK(valid(place(0, {4.4, 2.9}, 3)));
-  CHECK_FALSE(valid(place(0, {4.42, 0}, 0)));
-  CHECK_FALSE(valid(place(0, {nan, 0}, 0)));
-  CHECK_FALSE(valid(place(0, {0, 0}, nan)));
+  CHECK(is_valid(place(0, {4.4, 2.9}, 3)));
+  CHECK_FALSE(is_valid(place(0, {4.42, 0}, 0)));
+  CHECK_FALSE(is_valid(place(0, {nan, 0}, 0)));
+  CHECK_FALSE(is_valid(place(0, {0, 0}, nan)));
   auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
-  clock.clock_offset_ns(Duration(std::chrono::hours(-1)).count());
-  CHECK(valid(clock));
-  clock.clock_offset_ns(std::numeric_limits<std::int64_t>::min());
-  CHECK_FALSE(valid(clock));
-  CHECK_FALSE(valid(disturbance(0, static_cast<msg::DisturbanceKind>(7))));
-  CHECK_FALSE(valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
-  CHECK(valid(disturbance(0, msg::DISTURBANCE_LIFT)));
-  CHECK(valid(disturbance(0, msg::DISTURBANCE_REBOOT)));
+  clock.clock_offset = std::chrono::hours(-1);
+  CHECK(is_valid(clock));
+  clock.clock_offset = Duration::min();
+  CHECK_FALSE(is_valid(clock));
+  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(7))));
+  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
+  CHECK(is_valid(disturbance(0, msg::DISTURBANCE_LIFT)));
+  CHECK(is_valid(disturbance(0, msg::DISTURBANCE_REBOOT)));
 }
 
 // Any disturbance at any time: the firmware keeps its rules, facts stay true, numbers are never reused, and
@@ -325,30 +345,30 @@ TEST_CASE("under any disturbance the firmware keeps its rules and ends where it 
     world.advance(now);
     for (std::size_t i = 0; i < agents.size(); ++i) {
       agents[i].act(now);
-      const msg::Feedback facts = world.feedback(i, now);
-      const auto number = facts.executing().version_number();
-      const auto [same, is_new] = known[i].emplace(number, facts.executing());
-      if (!is_new && number > 0) REQUIRE(same->second == facts.executing());
-      REQUIRE(time_from_ns(facts.valid_at_ns()) >= latest[i].at);
-      if (!facts.is_lifted() && number != latest[i].executing && latest[i].executing > 0) {
-        REQUIRE(facts.executing().start_ns() > to_ns(latest[i].at));
+      const Feedback facts = world.feedback(i, now);
+      const VersionNumber number = facts.executing.number;
+      const msg::Version executing = encode(facts.executing);
+      const auto [same, is_new] = known[i].emplace(number, executing);
+      if (!is_new && number > 0) REQUIRE(same->second == executing);
+      REQUIRE(facts.valid_at >= latest[i].at);
+      if (!facts.is_lifted && number != latest[i].executing && latest[i].executing > 0) {
+        REQUIRE(facts.executing.trajectory.start() > latest[i].at);
         REQUIRE(number > latest[i].executing);
       }
-      latest[i] = {time_from_ns(facts.valid_at_ns()), number};
+      latest[i] = {facts.valid_at, number};
     }
     if (now > kBegin + std::chrono::seconds(6) || !rng.chance(0.005)) continue;
     const std::size_t robot = rng.below(world.robot_count());
-    msg::Disturbance message = disturbance(world.id(robot), static_cast<msg::DisturbanceKind>(rng.below(7)));
-    message.vx_mps(rng.uniform(-2, 2));
-    message.vy_mps(rng.uniform(-2, 2));
-    message.grip(rng.uniform());
-    message.duration_ns(static_cast<std::int64_t>(rng.below(500'000'000)));
-    message.heading_rad(rng.uniform(-3, 3));
-    message.x_m(agents[robot].place_m.x());
-    message.y_m(agents[robot].place_m.y());
-    message.clock_offset_ns(static_cast<std::int64_t>(rng.below(6'000'000)) - 3'000'000);
-    REQUIRE(is_valid(message, scenario.field, scenario.radius_m));
-    (void)world.disturb(robot, message, now);
+    RobotDisturbance any = disturbance(world.id(robot), static_cast<msg::DisturbanceKind>(rng.below(7)));
+    any.push_mps.x() = rng.uniform(-2, 2);
+    any.push_mps.y() = rng.uniform(-2, 2);
+    any.grip = rng.uniform();
+    any.duration = Duration{static_cast<std::int64_t>(rng.below(500'000'000))};
+    any.heading_rad = rng.uniform(-3, 3);
+    any.place_m = agents[robot].place_m;
+    any.clock_offset = Duration{static_cast<std::int64_t>(rng.below(6'000'000)) - 3'000'000};
+    REQUIRE(decode(encode(any), scenario.field, scenario.radius_m));
+    (void)world.disturb(robot, any, now);
     if (now > kBegin + std::chrono::seconds(5)) {
       for (IdealAgent& agent : agents) agent.drives = false;
     }

@@ -25,10 +25,10 @@ struct Scene {
     monitor.command_arrived(command_with(v), kBegin + milliseconds(ms));
   }
   void report(const Version& executing, int ms, Incarnation obeyed = 1) {
-    msg::Feedback fact;
-    fact.executing(encode(executing));
-    fact.valid_at_ns(to_ns(kBegin + milliseconds(ms)));
-    fact.obeyed_incarnation(obeyed);
+    Feedback fact;
+    fact.executing = executing;
+    fact.valid_at = kBegin + milliseconds(ms);
+    fact.obeyed_incarnation = obeyed;
     monitor.reported(fact);
   }
 };
@@ -131,10 +131,10 @@ TEST_CASE("an own stop that keeps the rules is no violation") {
   const double speed = GENERATE(0.0, 1.0);
   const Version stop = own_stop(0.01, speed);
   scene.monitor.started_own_stop(stop);
-  msg::Feedback fact;
-  fact.executing(encode(stop));
-  fact.is_off_reference(true);
-  fact.valid_at_ns(to_ns(kBegin + milliseconds(21)));
+  Feedback fact;
+  fact.executing = stop;
+  fact.is_off_reference = true;
+  fact.valid_at = kBegin + milliseconds(21);
   scene.monitor.reported(fact);
   Version onwards = version((1 << 20) + 1, 1 << 20, 400);
   onwards.trajectory = Trajectory::resting(onwards.trajectory.start(), stop.trajectory.rest_position_m());
@@ -172,13 +172,13 @@ TEST_CASE("an own stop that breaks a rule is counted") {
 
 TEST_CASE("a report of a false state is counted") {
   Scene scene;
-  msg::Feedback fact;
-  fact.executing(encode(version(0, 0, 0, 0)));
-  fact.valid_at_ns(to_ns(kBegin + milliseconds(21)));
-  SECTION("off reference") { fact.is_off_reference(true); }
-  SECTION("lifted") { fact.is_lifted(true); }
+  Feedback fact;
+  fact.executing = version(0, 0, 0, 0);
+  fact.valid_at = kBegin + milliseconds(21);
+  SECTION("off reference") { fact.is_off_reference = true; }
+  SECTION("lifted") { fact.is_lifted = true; }
   SECTION("on the floor while lifted") { scene.monitor.lifted(); }
-  SECTION("a command received in the future") { fact.command_received_at_ns(fact.valid_at_ns() + 1); }
+  SECTION("a command received in the future") { fact.command = {kBegin, fact.valid_at + Duration{1}}; }
   scene.monitor.reported(fact);
   CHECK(scene.monitor.violations() == 1);
 }

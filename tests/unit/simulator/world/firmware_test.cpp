@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/messaging/robot_codec.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/firmware_monitor.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
@@ -30,23 +31,31 @@ Version version(VersionNumber number, VersionNumber base, int start_ms, Incarnat
 
 Firmware firmware() { return {kRobot, kStart, 0.5, kBegin, {}}; }
 
+// Decodes a message as the simulator's node does.
+void receive(Firmware& robot, const msg::Command& message, Time now) {
+  if (const auto command = decode(message, kRobot))
+    robot.on_command(*command, now);
+  else
+    robot.on_malformed_command(now);
+}
+
 TEST_CASE("a robot without commands executes version 0 at rest at its start position") {
   auto robot = firmware();
   const auto facts = robot.feedback(at(5));
-  CHECK(facts.robot() == kRobot);
-  CHECK(facts.obeyed_incarnation() == 0);
-  CHECK(facts.executing().version_number() == 0);
-  CHECK(facts.executing().x_m() == kStart.x());
-  CHECK(facts.executing().y_m() == kStart.y());
-  CHECK(facts.executing().phase_count() == 0);
-  CHECK(facts.heading_rad() == 0.5);
+  CHECK(facts.robot == kRobot);
+  CHECK(facts.obeyed_incarnation == 0);
+  CHECK_FALSE(facts.command);
+  CHECK(facts.executing.number == 0);
+  CHECK(facts.executing.trajectory.at_start().position_m == kStart);
+  CHECK(facts.executing.trajectory.phases().empty());
+  CHECK(facts.heading_rad == 0.5);
 }
 
 TEST_CASE("a version based on the executed one is switched to at its start time, not earlier") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(5));
-  CHECK(robot.feedback(at(19)).executing().version_number() == 0);
-  CHECK(robot.feedback(at(20)).executing().version_number() == 101);
+  CHECK(robot.feedback(at(19)).executing.number == 0);
+  CHECK(robot.feedback(at(20)).executing.number == 101);
   CHECK(robot.counts().activated == 1);
 }
 
@@ -54,7 +63,7 @@ TEST_CASE("an own stop does not contradict a fact reported for the same time") {
   const Time begin = time_from_ns(1'000'000'000), reported = begin + std::chrono::milliseconds(10);
   Firmware firmware(0, {0, 0}, 0, begin, {});
   firmware.reboot();
-  REQUIRE(firmware.feedback(reported).executing().version_number() == 0);
+  REQUIRE(firmware.feedback(reported).executing.number == 0);
   firmware.tick(reported, Odometry{});
   CHECK(firmware.executing().number == 0);
   firmware.tick(reported + kPhysicsStep, Odometry{});
@@ -65,7 +74,7 @@ TEST_CASE("a version that arrives after its start time is refused") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(21));
   robot.on_command(command_with(version(102, 0, 22)), at(22));
-  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.feedback(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_late == 2);
   CHECK(robot.counts().activated == 0);
 }
@@ -73,7 +82,7 @@ TEST_CASE("a version that arrives after its start time is refused") {
 TEST_CASE("a version on another base is refused") {
   auto robot = firmware();
   robot.on_command(command_with(version(103, 102, 20)), at(5));
-  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.feedback(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_base == 1);
 }
 
@@ -81,15 +90,15 @@ TEST_CASE("the base of a version may arrive after it") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 101, 40)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
-  CHECK(robot.feedback(at(39)).executing().version_number() == 101);
-  CHECK(robot.feedback(at(40)).executing().version_number() == 102);
+  CHECK(robot.feedback(at(39)).executing.number == 101);
+  CHECK(robot.feedback(at(40)).executing.number == 102);
 }
 
 TEST_CASE("of two versions on one base only one is executed") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 0, 30)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
-  CHECK(robot.feedback(at(50)).executing().version_number() == 101);
+  CHECK(robot.feedback(at(50)).executing.number == 101);
   CHECK(robot.counts().activated == 1);
   CHECK(robot.counts().refused_base == 1);
 }
@@ -99,7 +108,7 @@ TEST_CASE("a version older than the executed one is never executed") {
   robot.on_command(command_with(version(105, 0, 20)), at(5));
   REQUIRE(robot.switch_next(at(20)));
   robot.on_command(command_with(version(104, 105, 40)), at(25));
-  CHECK(robot.feedback(at(50)).executing().version_number() == 105);
+  CHECK(robot.feedback(at(50)).executing.number == 105);
   CHECK(robot.counts().refused_base == 1);
 }
 
@@ -116,7 +125,7 @@ TEST_CASE("a chain of versions that are due at the same time is executed in orde
   robot.on_command(command_with(version(103, 102, 30)), at(1));
   robot.on_command(command_with(version(101, 0, 10)), at(2));
   robot.on_command(command_with(version(102, 101, 20)), at(3));
-  CHECK(robot.feedback(at(100)).executing().version_number() == 103);
+  CHECK(robot.feedback(at(100)).executing.number == 103);
   CHECK(robot.counts().activated == 3);
 }
 
@@ -125,16 +134,16 @@ TEST_CASE("an older incarnation is fenced") {
   robot.on_command(bare_command(kRobot, kSecond), at(1));
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(2));
   const auto facts = robot.feedback(at(30));
-  CHECK(facts.obeyed_incarnation() == kSecond);
-  CHECK(facts.executing().version_number() == 0);
-  CHECK(facts.refused_fenced() == 1);
+  CHECK(facts.obeyed_incarnation == kSecond);
+  CHECK(facts.executing.number == 0);
+  CHECK(facts.counts.refused_fenced == 1);
 }
 
 TEST_CASE("a fence without a version drops pending versions of the older incarnation") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(2));
-  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.feedback(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_fenced == 1);
 }
 
@@ -143,18 +152,18 @@ TEST_CASE("a fence does not affect the executed version") {
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(20));
   const auto facts = robot.feedback(at(30));
-  CHECK(facts.executing().version_number() == 101);
-  CHECK(facts.executing().incarnation() == kFirst);
-  CHECK(facts.obeyed_incarnation() == kSecond);
+  CHECK(facts.executing.number == 101);
+  CHECK(facts.executing.incarnation == kFirst);
+  CHECK(facts.obeyed_incarnation == kSecond);
 }
 
 TEST_CASE("a new incarnation cannot forward an older one's version") {
   auto robot = firmware();
   auto command = command_with(version(101, 0, 20, kFirst));
-  command.header().incarnation(kSecond);
+  command.incarnation = kSecond;
   robot.on_command(command, at(1));
   CHECK(robot.obeyed_incarnation() == kSecond);
-  CHECK(robot.feedback(at(30)).executing().version_number() == 0);
+  CHECK(robot.feedback(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_fenced == 1);
 }
 
@@ -163,30 +172,30 @@ TEST_CASE(
     "obeys") {
   auto robot = firmware();
   auto later = bare_command(kRobot, kFirst);
-  later.epoch(9);
+  later.epoch = 9;
   robot.on_command(later, at(1));
-  CHECK(robot.feedback(at(2)).obeyed_epoch() == 9);
+  CHECK(robot.feedback(at(2)).obeyed_epoch == 9);
   auto old = command_with(version(101, 0, 20, kFirst));
-  old.epoch(8);
+  old.epoch = 8;
   robot.on_command(old, at(3));
   auto successor = command_with(version(201, 0, 20, kSecond));
-  successor.epoch(8);
+  successor.epoch = 8;
   robot.on_command(successor, at(4));
   const auto facts = robot.feedback(at(30));
-  CHECK(facts.executing().version_number() == 0);
-  CHECK(facts.obeyed_epoch() == 9);
+  CHECK(facts.executing.number == 0);
+  CHECK(facts.obeyed_epoch == 9);
   // The successor's incarnation is obeyed, but not its version.
-  CHECK(facts.obeyed_incarnation() == kSecond);
-  CHECK(facts.refused_fenced() == 2);
+  CHECK(facts.obeyed_incarnation == kSecond);
+  CHECK(facts.counts.refused_fenced == 2);
 }
 
 TEST_CASE("a fenced agent cannot raise the epoch") {
   auto robot = firmware();
   robot.on_command(bare_command(kRobot, kSecond), at(1));
   auto zombie = bare_command(kRobot, kFirst);
-  zombie.epoch(9);
+  zombie.epoch = 9;
   robot.on_command(zombie, at(2));
-  CHECK(robot.feedback(at(3)).obeyed_epoch() == 0);
+  CHECK(robot.feedback(at(3)).obeyed_epoch == 0);
 }
 
 TEST_CASE("a new incarnation continues from the executed version") {
@@ -194,7 +203,7 @@ TEST_CASE("a new incarnation continues from the executed version") {
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(25));
   robot.on_command(command_with(version(201, 101, 40, kSecond)), at(30));
-  CHECK(robot.feedback(at(40)).executing().version_number() == 201);
+  CHECK(robot.feedback(at(40)).executing.number == 201);
 }
 
 TEST_CASE("a due switch is made before a fact is reported") {
@@ -202,13 +211,19 @@ TEST_CASE("a due switch is made before a fact is reported") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     const auto facts = robot.feedback(at(20));
-    CHECK(facts.executing().version_number() == 101);
-    CHECK(facts.activated() == 1);
+    CHECK(facts.executing.number == 101);
+    CHECK(facts.counts.activated == 1);
   }
   SECTION("by a command") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     robot.on_command(bare_command(kRobot, kSecond), at(20));
+    CHECK(robot.executing().number == 101);
+  }
+  SECTION("by a malformed command") {
+    auto robot = firmware();
+    robot.on_command(command_with(version(101, 0, 20)), at(5));
+    robot.on_malformed_command(at(20));
     CHECK(robot.executing().number == 101);
   }
   SECTION("by the control loop") {
@@ -259,16 +274,16 @@ TEST_CASE("hostile commands change nothing and are counted") {
     CAPTURE(i);
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
-    auto command = command_with(version(102, 0, 10, kSecond));
-    corruptions[i](command);
-    robot.on_command(command, at(5));
+    msg::Command hostile = encode(command_with(version(102, 0, 10, kSecond)));
+    corruptions[i](hostile);
+    receive(robot, hostile, at(5));
     CHECK(robot.counts().refused_malformed == 1);
     CHECK(robot.obeyed_incarnation() == kFirst);
-    CHECK(robot.feedback(at(15)).executing().version_number() == 0);
+    CHECK(robot.feedback(at(15)).executing.number == 0);
     const auto facts = robot.feedback(at(20));
-    CHECK(facts.executing().version_number() == 101);
-    CHECK(facts.x_m() == kStart.x());
-    CHECK(facts.tracking_error_m() == 0);
+    CHECK(facts.executing.number == 101);
+    CHECK(facts.estimate.position_m == kStart);
+    CHECK(facts.tracking_error_m == 0);
   }
 }
 
@@ -276,7 +291,7 @@ TEST_CASE("versions that start far ahead do not displace an earlier one") {
   auto robot = firmware();
   for (VersionNumber n = 0; n < 50; ++n) robot.on_command(command_with(version(200 + n, 0, 100'000)), at(1));
   robot.on_command(command_with(version(101, 0, 20)), at(2));
-  CHECK(robot.feedback(at(20)).executing().version_number() == 101);
+  CHECK(robot.feedback(at(20)).executing.number == 101);
 }
 
 TEST_CASE("a robot turns to the commanded heading and holds it") {
@@ -293,7 +308,7 @@ TEST_CASE("a robot turns to the commanded heading and holds it") {
   run(0, 1000);
   CHECK(std::abs(body.heading_rad() - 0.5) < 1e-6);
   auto command = bare_command(kRobot, kFirst);
-  command.desired_heading_rad(-2.5);
+  command.desired_heading_rad = -2.5;
   robot.on_command(command, at(1000));
   run(1000, 3000);
   CHECK(std::abs(wrapped_rad(body.heading_rad() + 2.5)) < 0.01);
@@ -328,7 +343,7 @@ TEST_CASE("the monitor finds no broken rule under any commands") {
       switch_due(now);
       const auto facts = robot.feedback(now);
       monitor.reported(facts);
-      taken = facts.activated();
+      taken = facts.counts.activated;
     }
   }
   CHECK(monitor.violations() == 0);

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "common/config/scenario.hpp"
-#include "common/messaging/codec.hpp"
 #include "common/motion/robot_model.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/world.hpp"
@@ -34,25 +33,17 @@ class IdealAgent {
     if (now < due_) return;
     due_ += scenario_.cycle;
     capture(now);
-    msg::Command command;
-    command.robot(world_.id(robot_));
-    command.header().sender(world_.id(robot_));
-    command.header().incarnation(1);
-    command.header().stamp_ns(to_ns(now));
-    const auto seen = std::find_if(seen_.rbegin(), seen_.rend(), [&](const msg::PoseFix& fix) {
-      return time_from_ns(fix.captured_at_ns()) + scenario_.vision.delay <= now;
+    Command command;
+    command.robot = world_.id(robot_);
+    command.incarnation = 1;
+    command.sent_at = now;
+    const auto seen = std::find_if(seen_.rbegin(), seen_.rend(), [&](const PoseFix& fix) {
+      return fix.captured_at + scenario_.vision.delay <= now;
     });
     const bool is_missed =
         scenario_.vision.miss_probability > 0 && rng_.chance(scenario_.vision.miss_probability);
-    if (seen != seen_.rend() && !is_missed) {
-      command.has_fix(true);
-      command.fix(*seen);
-    }
-    const msg::Feedback facts = world_.feedback(robot_, now);
-    if (const auto version = next_version(facts)) {
-      command.has_version(true);
-      command.version(encode(*version));
-    }
+    if (seen != seen_.rend() && !is_missed) command.fix = *seen;
+    command.version = next_version(world_.feedback(robot_, now));
     world_.on_command(robot_, command, now);
   }
 
@@ -61,25 +52,25 @@ class IdealAgent {
     const Body& body = world_.bodies()[robot_];
     if (!body.is_on_floor()) return seen_.clear();
     const double sigma = scenario_.vision.position_noise_m;
-    msg::PoseFix fix;
-    fix.captured_at_ns(to_ns(now));
-    fix.x_m(body.position_m().x() + sigma * rng_.normal());
-    fix.y_m(body.position_m().y() + sigma * rng_.normal());
-    fix.heading_rad(body.heading_rad() + scenario_.vision.heading_noise_rad * rng_.normal());
+    PoseFix fix;
+    fix.captured_at = now;
+    fix.position_m.x() = body.position_m().x() + sigma * rng_.normal();
+    fix.position_m.y() = body.position_m().y() + sigma * rng_.normal();
+    fix.heading_rad = body.heading_rad() + scenario_.vision.heading_noise_rad * rng_.normal();
     seen_.push_back(fix);
     if (seen_.size() > 100) seen_.pop_front();
   }
 
-  std::optional<Version> next_version(const msg::Feedback& facts) {
-    const auto executing = decode(facts.executing());
-    const Time start = time_from_ns(facts.valid_at_ns()) + scenario_.cycle - 2 * kPhysicsStep;
-    newest_ = std::max(newest_, executing->number) + 1;
-    if (facts.is_lifted()) {
-      if (executing->number > 0) return std::nullopt;
+  std::optional<Version> next_version(const Feedback& facts) {
+    const Version& executing = facts.executing;
+    const Time start = facts.valid_at + scenario_.cycle - 2 * kPhysicsStep;
+    newest_ = std::max(newest_, executing.number) + 1;
+    if (facts.is_lifted) {
+      if (executing.number > 0) return std::nullopt;
       return Version{world_.id(robot_), 1, newest_, 0, Trajectory::resting(start, place_m)};
     }
     if (!drives) return std::nullopt;
-    const State state = executing->trajectory.state_at(start);
+    const State state = executing.trajectory.state_at(start);
     if (rng_.chance(0.1))
       desired_acceleration_ = rotated(Vec2(rng_.uniform(0, 4), 0), rng_.uniform(-3.14159, 3.14159));
     if ((state.position_m - home_m_).norm() > 3)
@@ -88,8 +79,8 @@ class IdealAgent {
     trajectory.append(scenario_.cycle, limit_acceleration(desired_acceleration_, state.velocity_mps,
                                                           scenario_.limits, scenario_.cycle));
     append_stop(trajectory, scenario_.limits.deceleration_mps2);
-    const double inflation_m = state.velocity_mps.isZero() ? 0 : executing->inflation_m;
-    return Version{world_.id(robot_), 1, newest_, executing->number, trajectory, inflation_m};
+    const double inflation_m = state.velocity_mps.isZero() ? 0 : executing.inflation_m;
+    return Version{world_.id(robot_), 1, newest_, executing.number, trajectory, inflation_m};
   }
 
   const Scenario& scenario_;
@@ -100,14 +91,14 @@ class IdealAgent {
   Vec2 home_m_;
   Vec2 desired_acceleration_{0, 0};
   VersionNumber newest_ = 1;
-  std::deque<msg::PoseFix> seen_;
+  std::deque<PoseFix> seen_;
 };
 
-inline msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) {
-  msg::Disturbance message;
-  message.robot(robot);
-  message.disturbance_kind(kind);
-  return message;
+inline RobotDisturbance disturbance(RobotId robot, msg::DisturbanceKind kind) {
+  RobotDisturbance disturbance;
+  disturbance.robot = robot;
+  disturbance.kind = kind;
+  return disturbance;
 }
 
 }  // namespace sidestep::test

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -34,7 +35,7 @@ struct Floor {
       for (IdealAgent& agent : agents) agent.act(now);
     }
   }
-  std::uint64_t own_stops(std::size_t robot) const { return world.firmware(robot).counts().own_stops; }
+  std::uint64_t own_stops(std::size_t robot) const { return world.firmware(robot).own_stops(); }
   std::uint64_t own_stops() const {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < world.robot_count(); ++i) sum += own_stops(i);
@@ -90,8 +91,7 @@ TEST_CASE("a pushed robot makes an own stop when the second frame after the push
   REQUIRE(floor.own_stops() == 0);
   auto push = disturbance(0, msg::DISTURBANCE_PUSH);
   const Vec2 change = rotated(Vec2(0.3, 0), static_cast<double>(seed));
-  push.vx_mps(change.x());
-  push.vy_mps(change.y());
+  push.push_mps = change;
   REQUIRE(floor.world.disturb(0, push, floor.now));
   const Duration delay = floor.until_own_stop(0);
   // It slides for 50 ms. Frames are captured every 17 ms and arrive 10 ms later.
@@ -136,8 +136,8 @@ TEST_CASE("a robot that slips makes an own stop, and once at rest is within the 
   floor.run_for(milliseconds(1000));
   for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
     auto slip = disturbance(static_cast<RobotId>(i), msg::DISTURBANCE_SLIP);
-    slip.grip(0.1);
-    slip.duration_ns(Duration(milliseconds(300)).count());
+    slip.grip = 0.1;
+    slip.duration = milliseconds(300);
     REQUIRE(floor.world.disturb(i, slip, floor.now));
   }
   floor.run_for(milliseconds(400));
@@ -161,12 +161,8 @@ TEST_CASE("a robot far from its reference returns to it without oscillating") {
   const auto send_fix = [&](const Vec2& position_m) {
     now += milliseconds(17);
     world.advance(now);
-    msg::Command command;
-    command.header().incarnation(1);
-    command.has_fix(true);
-    command.fix().captured_at_ns(to_ns(now));
-    command.fix().x_m(position_m.x());
-    command.fix().y_m(position_m.y());
+    Command command = test::bare_command(0, 1);
+    command.fix = {now, position_m};
     world.on_command(0, command, now);
   };
   // Wrong fixes make it believe that it was displaced: it stops at the estimated position, with a large
@@ -196,17 +192,12 @@ TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
   Trajectory dash(floor.now + milliseconds(10), {floor.scenario.robots[0].start_m, {0, 0}});
   dash.append(milliseconds(500), Vec2(3, 0));
   append_stop(dash, 5);
-  Version version{0, 1, 5, 0, dash};
-  msg::Command command;
-  command.header().incarnation(1);
-  command.has_version(true);
-  command.version(encode(version));
-  floor.world.on_command(0, command, floor.now);
+  floor.world.on_command(0, test::command_with({0, 1, 5, 0, dash}), floor.now);
   floor.run_for(milliseconds(400));
   REQUIRE(floor.world.bodies()[0].velocity_mps().x() > 1);
   auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
-  block.heading_rad(0);
-  block.duration_ns(Duration(milliseconds(500)).count());
+  block.heading_rad = 0;
+  block.duration = milliseconds(500);
   REQUIRE(floor.world.disturb(0, block, floor.now));
   CHECK(floor.until_own_stop(0) <= milliseconds(10));
   floor.run_for(milliseconds(450));
@@ -220,7 +211,7 @@ TEST_CASE("a version that continues the robot's own stop brings it back on refer
   Floor floor(separated_robots(1), seed);
   floor.run_for(milliseconds(1000));
   auto push = disturbance(0, msg::DISTURBANCE_PUSH);
-  push.vy_mps(1);
+  push.push_mps.y() = 1;
   REQUIRE(floor.world.disturb(0, push, floor.now));
   REQUIRE(floor.until_own_stop(0) < milliseconds(100));
   floor.run_for(milliseconds(1000));
@@ -234,11 +225,8 @@ TEST_CASE("the number of a robot's own stop is above all received numbers, pendi
   floor.agents[0].drives = false;
   const Vec2 mark = floor.scenario.robots[0].start_m;
   const auto send = [&](VersionNumber number, VersionNumber base, Incarnation incarnation, Duration ahead) {
-    msg::Command command;
-    command.header().incarnation(incarnation);
-    command.has_version(true);
-    command.version(encode({0, incarnation, number, base, Trajectory::resting(floor.now + ahead, mark)}));
-    floor.world.on_command(0, command, floor.now);
+    const Trajectory rest = Trajectory::resting(floor.now + ahead, mark);
+    floor.world.on_command(0, test::command_with({0, incarnation, number, base, rest}), floor.now);
   };
   send(7, 0, 1, milliseconds(2));
   floor.run_for(milliseconds(100));

@@ -111,8 +111,8 @@ TEST_CASE("a robot that drives into an opponent counts as moving, and its speed 
 
 TEST_CASE("an opponent does not crash into a lifted robot") {
   World world(crash_scene(0), kBegin, 1);
-  msg::Disturbance lift;
-  lift.disturbance_kind(msg::DISTURBANCE_LIFT);
+  RobotDisturbance lift;
+  lift.kind = msg::DISTURBANCE_LIFT;
   REQUIRE(world.disturb(0, lift, kBegin));
   world.advance(kBegin + milliseconds(1900));
   CHECK(world.opponents().totals().crashes == 0);

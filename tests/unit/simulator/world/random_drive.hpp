@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
-#include "common/messaging/codec.hpp"
 #include "common/motion/robot_model.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/world.hpp"
@@ -44,11 +43,11 @@ class RandomDrive {
     if (!rng_.chance(scenario_.vision.miss_probability)) {
       const Body& body = world_.bodies()[robot_];
       const double sigma = scenario_.vision.position_noise_m;
-      msg::PoseFix fix;
-      fix.captured_at_ns(to_ns(world_.time()));
-      fix.x_m(body.position_m().x() + sigma * rng_.normal());
-      fix.y_m(body.position_m().y() + sigma * rng_.normal());
-      fix.heading_rad(body.heading_rad() + scenario_.vision.heading_noise_rad * rng_.normal());
+      PoseFix fix;
+      fix.captured_at = world_.time();
+      fix.position_m.x() = body.position_m().x() + sigma * rng_.normal();
+      fix.position_m.y() = body.position_m().y() + sigma * rng_.normal();
+      fix.heading_rad = body.heading_rad() + scenario_.vision.heading_noise_rad * rng_.normal();
       seen_.push_back(fix);
     }
     frame_due_ += from_seconds(1 / scenario_.vision.rate_hz);
@@ -62,19 +61,16 @@ class RandomDrive {
 
   void send(Time now) {
     if (rng_.chance(scenario_.command_loss)) return;
-    msg::Command command;
-    command.robot(world_.id(robot_));
-    command.header().sender(world_.id(robot_));
-    command.header().incarnation(1);
-    while (!seen_.empty() && time_from_ns(seen_.front().captured_at_ns()) + scenario_.vision.delay <= now) {
-      command.has_fix(true);
-      command.fix(seen_.front());
+    Command command;
+    command.robot = world_.id(robot_);
+    command.incarnation = 1;
+    while (!seen_.empty() && seen_.front().captured_at + scenario_.vision.delay <= now) {
+      command.fix = seen_.front();
       seen_.pop_front();
     }
-    command.has_version(true);
-    command.desired_heading_rad(heading_rad_);
+    command.desired_heading_rad = heading_rad_;
     held_ = next_version();
-    command.version(encode(held_));
+    command.version = held_;
     world_.on_command(robot_, command, now);
   }
 
@@ -109,7 +105,7 @@ class RandomDrive {
   Vec2 home_m_;
   Vec2 desired_acceleration_{0, 0};
   double heading_rad_ = 0;
-  std::deque<msg::PoseFix> seen_;
+  std::deque<PoseFix> seen_;
 };
 
 /// Robots far enough apart to drive without ever meeting.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/messaging/robot_codec.hpp"
 #include "simulator/world/simulator_node.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
@@ -30,7 +31,10 @@ class ManualBus : public Bus {
       callback();
     }
   }
-  void deliver_command(const msg::Command& command) { on_command_(&command); }
+  void deliver_command(const Command& command) {
+    const msg::Command message = encode(command);
+    on_command_(&message);
+  }
   std::vector<msg::Feedback> facts;
 
  protected:

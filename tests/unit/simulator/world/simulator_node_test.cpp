@@ -6,8 +6,10 @@
 #include <map>
 #include <vector>
 
+#include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -39,7 +41,8 @@ struct Scene {
                                         [this](const msg::GroundTruth& t) { truths.push_back(t); });
   }
 
-  void send(std::size_t robot, msg::Command command) { commands[robot].publish(command, network.now()); }
+  void send(std::size_t robot, msg::Command message) { commands[robot].publish(message, network.now()); }
+  void send(std::size_t robot, const Command& command) { send(robot, encode(command)); }
   void run(Duration time) { network.run_until(network.now() + time); }
 
   Scenario scenario;
@@ -241,7 +244,7 @@ TEST_CASE("hostile commands over the bus do not stop the simulator") {
   Rng rng(1);
   for (int i = 0; i < 2000; ++i) {
     msg::Command command =
-        test::bare_command(static_cast<RobotId>(rng.below(3)), rng.bits() >> rng.below(64));
+        encode(test::bare_command(static_cast<RobotId>(rng.below(3)), rng.bits() >> rng.below(64)));
     command.has_version(rng.chance(0.8));
     command.version().phase_count(static_cast<std::uint8_t>(rng.bits()));
     command.version().start_ns(static_cast<std::int64_t>(rng.bits()));

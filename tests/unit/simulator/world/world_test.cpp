@@ -76,7 +76,7 @@ TEST_CASE("a collision of robots is reported in ground truth") {
   CHECK(truth.contacts() >= 1);
   CHECK(truth.penetration_m_s() > 0);
   CHECK(truth.min_clearance_m() < 0);
-  CHECK(world.firmware(0).counts().own_stops > 0);
+  CHECK(world.firmware(0).own_stops() > 0);
   CHECK(truth.firmware_violations() == 0);
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("invalid files of calibration points are refused with file and line") 
   check_refused("id: 3", "id: 1024", 2, "expected 0 to 1023");
   check_refused("[780, 580]", "[780]", 3, "expected a list of 2 numbers");
   check_refused("    image_px: [780, 580]\n", "", 2, "\"image_px\" is missing");
-  check_refused("[35.5, 41.25]", "[35.5, left]", 5, "points[0].pixel");
+  check_refused("[35.5, 41.25]", "[35.5, left]", 5, "cameras[0].points[0].pixel");
   check_refused("[35.5, 41.25]", "[35.5, .nan]", 5, "expected a number");
   check_refused("pixel: [35.5, 41.25], ", "", 5, "\"pixel\" is missing");
   check_refused("[-2.8, 2]", "[-2.8]", 5, "field_m");

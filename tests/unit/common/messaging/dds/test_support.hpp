@@ -50,7 +50,7 @@ inline std::vector<char> random_body(Rng& rng, std::size_t size) {
 template <typename Message>
 Message random_message(Rng& rng, bool has_sequence, std::uint32_t elements) {
   const std::size_t fixed = Message::getCdrSerializedSize(Message());
-  std::vector<char> body = random_body(rng, fixed + elements * 512);
+  std::vector<char> body = random_body(rng, fixed + std::size_t{512} * elements);
   if (has_sequence) std::memcpy(body.data() + fixed - sizeof elements, &elements, sizeof elements);
   eprosima::fastcdr::FastBuffer buffer(body.data(), body.size());
   eprosima::fastcdr::Cdr cdr(buffer);

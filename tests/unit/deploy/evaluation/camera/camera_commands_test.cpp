@@ -19,7 +19,7 @@ const std::string kCrossing = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.ya
 
 int run(const std::string& arguments) {
   CommandLine command_line("test", "test");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   std::function<int()> action;
   add_frame_command(app, action);
   add_pattern_command(app, action);

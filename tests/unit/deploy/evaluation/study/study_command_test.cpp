@@ -16,7 +16,7 @@ int study(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   CommandLine command_line("test", "sidestep");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   std::function<int()> action;
   add_study_command(app, action);
   const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "common/motion/clearance.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 

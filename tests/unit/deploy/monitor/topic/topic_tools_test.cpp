@@ -74,7 +74,7 @@ Outcome topic(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   CommandLine command_line("test", "sidestep");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   std::function<int()> action;
   add_topic_command(app, action);
   Outcome outcome{};

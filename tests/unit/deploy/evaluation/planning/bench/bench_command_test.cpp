@@ -14,7 +14,7 @@ int bench(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   CommandLine command_line("test", "test");
-  const Command app = command_line.root();
+  const CliCommand app = command_line.root();
   std::function<int()> action;
   add_bench_command(app, action);
   const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
-namespace sidestep::codec_test {
+namespace sidestep::version_codec_test {
 
 TEST_CASE("encoding and decoding a version preserves it bit for bit") {
   Rng rng(1);
@@ -37,6 +37,7 @@ TEST_CASE("a version with a non-finite or implausible number is refused") {
     for (const auto set :
          {+[](msg::Version&m, double v) { m.x_m(v); }, +[](msg::Version&m, double v) { m.y_m(v); },
           +[](msg::Version&m, double v) { m.vx_mps(v); }, +[](msg::Version&m, double v) { m.vy_mps(v); },
+          +[](msg::Version&m, double v) { m.inflation_m(v); },
           +[](msg::Version&m, double v) { m.phases()[0].ax_mps2(v); },
           +[](msg::Version&m, double v) { m.phases()[0].ay_mps2(v); }}) {
       auto corrupted = good;
@@ -49,6 +50,9 @@ TEST_CASE("a version with a non-finite or implausible number is refused") {
   CHECK_FALSE(decode(corrupted));
   corrupted = good;
   corrupted.phase_count(Trajectory::kMaxPhases + 1);
+  CHECK_FALSE(decode(corrupted));
+  corrupted = good;
+  corrupted.inflation_m(-0.001);
   CHECK_FALSE(decode(corrupted));
   corrupted = good;
   corrupted.phases()[0].duration_ns(-1);
@@ -109,4 +113,4 @@ TEST_CASE("a version with an implausible intent is refused") {
   CHECK_FALSE(decode(corrupted));
 }
 
-}  // namespace sidestep::codec_test
+}  // namespace sidestep::version_codec_test

@@ -8,6 +8,9 @@
 
 namespace sidestep {
 
+/// Codecs refuse positions with larger coordinates: they are beyond any floor.
+inline constexpr double kMaxCoordinate_m = 1e4;
+
 /// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
 /// times and durations within bounds, and phase count and robot id in range.
 [[nodiscard]] std::optional<Version> decode(const msg::Version& message);

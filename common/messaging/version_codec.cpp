@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/messaging/codec.hpp"
+#include "common/messaging/version_codec.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -7,7 +7,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxPosition_m = 1e4;
 constexpr double kMaxSpeed_mps = 100;
 constexpr double kMaxInflation_m = 10;
 constexpr double kMaxAcceleration_mps2 = 1000;
@@ -23,7 +22,7 @@ std::optional<Intent> decode(const msg::Intent& message) {
                       {message.via_x_m(), message.via_y_m()},
                       {message.goal_x_m(), message.goal_y_m()}};
   const auto is_position = [](const Vec2& p) {
-    return within(p.x(), kMaxPosition_m) && within(p.y(), kMaxPosition_m);
+    return within(p.x(), kMaxCoordinate_m) && within(p.y(), kMaxCoordinate_m);
   };
   const bool is_valid = within(intent.velocity_mps.x(), kMaxSpeed_mps) &&
                         within(intent.velocity_mps.y(), kMaxSpeed_mps) && intent.velocity_duration_s >= 0 &&
@@ -53,7 +52,7 @@ std::optional<Version> decode(const msg::Version& message) {
   const int phases = message.phase_count();
   const RobotId robot = message.robot();
   const bool is_valid = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
-                        start <= kMaxStart_ns && within(x, kMaxPosition_m) && within(y, kMaxPosition_m) &&
+                        start <= kMaxStart_ns && within(x, kMaxCoordinate_m) && within(y, kMaxCoordinate_m) &&
                         within(vx, kMaxSpeed_mps) && within(vy, kMaxSpeed_mps) && inflation >= 0 &&
                         inflation <= kMaxInflation_m;
   if (!is_valid) return std::nullopt;

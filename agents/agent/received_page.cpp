@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/received_page.hpp"
+
+#include <utility>
+
+namespace sidestep {
+
+ReceivedPage::ReceivedPage(const msg::LedgerPage& message, MessageAttachment* attachment)
+    : index_(message.page_index()),
+      epoch_(message.epoch()),
+      number_(message.header().message_number()),
+      bounds_m_{{message.min_x_m(), message.min_y_m()}, {message.max_x_m(), message.max_y_m()}},
+      message_(&message),
+      attachment_(attachment) {}
+
+std::optional<ReceivedPage> ReceivedPage::decode(const msg::LedgerPage& message,
+                                                 MessageAttachment* attachment) {
+  if (message.page_index() >= kMaxRobots || message.epoch() > kMaxEpoch) return std::nullopt;
+  return ReceivedPage(message, attachment);
+}
+
+void ReceivedPage::update(std::shared_ptr<LedgerView>& view) const {
+  if (attachment_) {
+    if (auto shared = attachment_->get<LedgerView>()) {
+      view = std::move(shared);
+      return;
+    }
+  }
+  if (!view || view.use_count() > 1) view = std::make_shared<LedgerView>();
+  view->assign(*message_);
+  if (attachment_) attachment_->set(view);
+}
+
+}  // namespace sidestep

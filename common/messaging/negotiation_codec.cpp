@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/negotiation_codec.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/version_codec.hpp"
+
+namespace sidestep {
+namespace {
+
+/// Whether the sender is an agent of the robot that the message speaks for.
+template <typename Message>
+bool speaks_for_itself(const Message& message) {
+  return message.robot() < kMaxRobots && message.header().sender() == message.robot();
+}
+
+std::optional<VersionSet> decode_versions(const msg::Registration& message) {
+  if (message.is_absent() != (message.version_count() == 0)) return std::nullopt;
+  if (message.version_count() > VersionSet::kCapacity) return std::nullopt;
+  VersionSet versions;
+  for (std::size_t i = 0; i < message.version_count(); ++i) {
+    const auto version = decode(message.versions()[i]);
+    if (!version || version->robot != message.robot() || versions.find(version->number)) return std::nullopt;
+    versions.add(*version);
+  }
+  return versions;
+}
+
+}  // namespace
+
+std::optional<Proposal> decode(const msg::Proposal& message) {
+  if (!speaks_for_itself(message)) return std::nullopt;
+  const msg::Version& first = message.candidates().front();
+  Proposal proposal{message.robot(), message.header().incarnation(), message.epoch(),
+                    time_from_ns(message.header().stamp_ns()), first.version_number()};
+  if (message.candidate_count() > msg::MAX_CANDIDATES) return proposal;
+  proposal.candidate_count = message.candidate_count();
+  for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
+    const msg::Version& candidate = message.candidates()[i];
+    if (candidate.robot() == proposal.robot && candidate.base() == first.base() &&
+        candidate.start_ns() == first.start_ns())
+      proposal.candidates[i] = decode(candidate);
+  }
+  return proposal;
+}
+
+std::optional<Registration> decode(const msg::Registration& message) {
+  if (!speaks_for_itself(message)) return std::nullopt;
+  return Registration{message.robot(), message.header().incarnation(), message.epoch(),
+                      time_from_ns(message.header().stamp_ns()), decode_versions(message)};
+}
+
+std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
+  const auto is_known = [](msg::Reason reason) { return reason <= msg::REASON_ABSENT; };
+  if (message.robot() != robot || !std::ranges::all_of(message.reasons(), is_known)) return std::nullopt;
+  Verdict verdict;
+  verdict.robot = robot;
+  verdict.epoch = message.epoch();
+  verdict.sent_at = time_from_ns(message.header().stamp_ns());
+  verdict.proposal_number = message.proposal_number();
+  verdict.request_sent_at = time_from_ns(message.request_stamp_ns());
+  verdict.granted_version = message.granted_version();
+  verdict.reasons = message.reasons();
+  verdict.blockers = message.blockers();
+  return verdict;
+}
+
+std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now) {
+  if (!is_plausible(message.epoch(), now) || message.coordinator_mode() > msg::COORDINATOR_GRANTING)
+    return std::nullopt;
+  return CoordinatorHeartbeat{message.header().sender(), message.header().incarnation(), message.epoch(),
+                              message.coordinator_mode(), message.missing()};
+}
+
+msg::Proposal encode(const Proposal& proposal) {
+  msg::Proposal message;
+  message.robot(proposal.robot);
+  message.header().sender(proposal.robot);
+  message.header().incarnation(proposal.incarnation);
+  message.epoch(proposal.epoch);
+  message.candidate_count(static_cast<std::uint8_t>(proposal.candidate_count));
+  for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
+    if (proposal.candidates[i]) message.candidates()[i] = encode(*proposal.candidates[i]);
+  }
+  return message;
+}
+
+msg::Registration encode(const Registration& registration) {
+  msg::Registration message;
+  message.robot(registration.robot);
+  message.header().sender(registration.robot);
+  message.header().incarnation(registration.incarnation);
+  message.epoch(registration.epoch);
+  const VersionSet versions = registration.versions.value_or(VersionSet{});
+  message.is_absent(versions.versions().empty());
+  message.version_count(static_cast<std::uint8_t>(versions.versions().size()));
+  std::ranges::transform(versions.versions(), message.versions().begin(),
+                         [](const Version& version) { return encode(version); });
+  return message;
+}
+
+msg::Verdict encode(const Verdict& verdict) {
+  msg::Verdict message;
+  message.robot(verdict.robot);
+  message.epoch(verdict.epoch);
+  message.proposal_number(verdict.proposal_number);
+  message.request_stamp_ns(to_ns(verdict.request_sent_at));
+  message.granted_version(verdict.granted_version);
+  message.reasons() = verdict.reasons;
+  message.blockers() = verdict.blockers;
+  return message;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/protocol/negotiation_messages.hpp"
+
+namespace sidestep {
+
+/// Decodes an untrusted proposal. Returns nullopt if its sender is not an agent of the proposal's robot. An
+/// invalid candidate becomes nullopt, and so does one of another robot, base or start than the first one; the
+/// other candidates remain.
+[[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message);
+/// Decodes an untrusted registration. Returns nullopt if its sender is not an agent of the registration's
+/// robot. Registration::versions is nullopt if they are too many, any is invalid, of another robot or listed
+/// twice, or if they contradict is_absent.
+[[nodiscard]] std::optional<Registration> decode(const msg::Registration& message);
+/// Decodes an untrusted verdict. Returns nullopt unless it is for `robot` and all reasons are known.
+[[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
+/// Decodes an untrusted coordinator state. Returns nullopt if its epoch or mode is implausible at `now`.
+/// Precondition: the message outlives the result.
+[[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
+
+/// Without the header's message_number and stamp_ns, which Writer::publish() sets.
+msg::Proposal encode(const Proposal& proposal);
+/// As above.
+msg::Registration encode(const Registration& registration);
+/// Without the header.
+msg::Verdict encode(const Verdict& verdict);
+
+}  // namespace sidestep

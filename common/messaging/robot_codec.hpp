@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/protocol/robot_messages.hpp"
+#include "idl/robot.h"
+
+namespace sidestep {
+
+/// Decodes an untrusted command. Returns nullopt unless it is for `robot`, its sender is an agent of `robot`,
+/// and every field is finite and plausible. Only the time of its fix may be arbitrary.
+[[nodiscard]] std::optional<Command> decode(const msg::Command& message, RobotId robot);
+/// Decodes untrusted facts. Returns nullopt unless `robot` sent them about itself, all numbers are finite,
+/// the version is valid, and epoch and times are plausible.
+[[nodiscard]] std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot);
+
+/// Without the header's message_number and stamp_ns, which Writer::publish() sets.
+msg::Command encode(const Command& command);
+/// As above.
+msg::Feedback encode(const Feedback& feedback);
+
+}  // namespace sidestep

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "common/motion/version_set.hpp"
+#include "idl/negotiation.h"
+
+namespace sidestep {
+
+/// Agent to coordinator; see Proposal in idl/negotiation.idl. All candidates have one robot, base and start.
+struct Proposal {
+  RobotId robot = 0;
+  Incarnation incarnation = 0;  ///< of the agent
+  Epoch epoch = 0;
+  Time sent_at{};            ///< by the agent's clock
+  VersionNumber number = 0;  ///< of the first candidate, also if that is malformed; identifies the proposal
+  std::size_t candidate_count = 0;  ///< 0: malformed
+  /// In order of preference; nullopt: malformed. Only the first candidate_count are used.
+  std::array<std::optional<Version>, msg::MAX_CANDIDATES> candidates{};
+};
+
+/// Coordinator to one agent; see Verdict in idl/negotiation.idl.
+struct Verdict {
+  RobotId robot = 0;
+  Epoch epoch = 0;
+  Time sent_at{};                     ///< by the coordinator's clock
+  VersionNumber proposal_number = 0;  ///< 0: answers a registration
+  Time request_sent_at{};             ///< of the answered message, by the agent's clock
+  VersionNumber granted_version = 0;  ///< 0: none
+  std::array<msg::Reason, msg::MAX_CANDIDATES> reasons{};
+  std::array<RobotId, msg::MAX_CANDIDATES> blockers{};  ///< valid for REASON_CONFLICT
+};
+
+/// Agent to coordinator after a change of epoch; see Registration in idl/negotiation.idl.
+struct Registration {
+  RobotId robot = 0;
+  Incarnation incarnation = 0;  ///< of the agent
+  Epoch epoch = 0;
+  Time sent_at{};  ///< by the agent's clock
+  /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed.
+  std::optional<VersionSet> versions{};
+};
+
+/// The part of a CoordinatorState that agents and other coordinators use.
+struct CoordinatorHeartbeat {
+  std::uint32_t sender = 0;
+  Incarnation incarnation = 0;
+  Epoch epoch = 0;  ///< 0: standing by
+  msg::CoordinatorMode mode = msg::COORDINATOR_STANDBY;
+  std::span<const RobotId> missing;  ///< unregistered robots; valid as long as the decoded message
+};
+
+}  // namespace sidestep

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/motion/version.hpp"
+
+namespace sidestep {
+
+/// Pose of a robot as vision measured it.
+struct PoseFix {
+  Time captured_at{};
+  Vec2 position_m{0, 0};
+  double heading_rad = 0;
+};
+
+/// Agent to robot; see Command in idl/robot.idl.
+struct Command {
+  RobotId robot = 0;
+  Incarnation incarnation = 0;  ///< of the agent
+  Epoch epoch = 0;              ///< highest that the agent knows, 0: none
+  Time sent_at{};               ///< by the agent's clock
+  std::optional<Version> version{};
+  std::optional<PoseFix> fix{};
+  double desired_heading_rad = 0;
+};
+
+/// A robot's own estimate of how accurately it is localised.
+struct LocalisationUncertainty {
+  double position_error_rms_m = 0;   ///< root mean square error of its position estimate
+  double odometry_scale_stddev = 0;  ///< standard deviation of its odometry's relative error
+};
+
+/// Versions and commands that a robot's firmware has received, by outcome.
+struct FirmwareCounts {
+  std::uint64_t activated = 0;
+  std::uint64_t refused_late = 0;
+  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
+  std::uint64_t refused_fenced = 0;
+  std::uint64_t refused_malformed = 0;
+};
+
+/// Facts from a robot: at `valid_at` it executed `executing`. See Feedback in idl/robot.idl. All times are by
+/// the robot's clock, except CommandEcho::sent_at.
+struct Feedback {
+  /// The last command of the obeyed agent.
+  struct CommandEcho {
+    Time sent_at{};  ///< by the agent's clock
+    Time received_at{};
+  };
+
+  RobotId robot = 0;
+  Incarnation robot_incarnation = 0;  ///< of the process that speaks for the robot
+  Incarnation obeyed_incarnation = 0;
+  Epoch obeyed_epoch = 0;
+  Time valid_at{};
+  Version executing;
+  bool is_off_reference = false;
+  bool is_lifted = false;
+  std::optional<CommandEcho> command{};
+  State estimate;  ///< the robot's own
+  double heading_rad = 0;
+  double tracking_error_m = 0;
+  LocalisationUncertainty uncertainty{};
+  FirmwareCounts counts{};
+
+  /// The robot is off the floor and executes nothing.
+  bool is_absent() const { return is_lifted && executing.number == 0; }
+};
+
+}  // namespace sidestep

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the node does with hostile messages: none reaches the agent, and status.invalid counts each once.
+#include "agents/agent/agent_node.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "common/messaging/version_codec.hpp"
+#include "idl/disturbance.h"
+
+namespace sidestep::agent_node_test {
+
+constexpr RobotId kRobot = 3;
+constexpr Incarnation kSelf = 1000;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const Time kBegin = time_from_ns(1'000'000'000'000);
+
+Scenario one_robot() {
+  return parse_scenario(
+      "field: {length_m: 6, width_m: 4}\nrobots:\n"
+      "  - {id: 3, team: blue, start_m: [0, 0], goals_m: [[1, 0]]}\n",
+      "one-robot.yaml");
+}
+
+/// A robot at rest that obeys the agent.
+msg::Feedback valid_feedback() {
+  Feedback feedback;
+  feedback.robot = kRobot;
+  feedback.robot_incarnation = 5;
+  feedback.obeyed_incarnation = kSelf;
+  feedback.valid_at = kBegin;
+  feedback.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin, {0, 0})};
+  return encode(feedback);
+}
+
+msg::CoordinatorState valid_coordinator_state() {
+  msg::CoordinatorState state;
+  state.epoch(7);
+  state.coordinator_mode(msg::COORDINATOR_GRANTING);
+  return state;
+}
+
+msg::WorldState valid_world() {
+  msg::WorldState world;
+  world.robots().emplace_back().robot(kRobot);
+  world.robots()[0].observed_at_ns(to_ns(kBegin));
+  world.obstacle_count(1);
+  world.obstacles()[0].observed_at_ns(to_ns(kBegin));
+  return world;
+}
+
+/// A page with one version near the robot.
+msg::LedgerPage valid_page() {
+  msg::LedgerPage page;
+  page.epoch(1);
+  page.versions().push_back(encode(Version{4, 1, 1, 0, Trajectory::resting(kBegin, {0, 0})}));
+  return page;
+}
+
+msg::Disturbance placement(RobotId robot, double x) {
+  msg::Disturbance disturbance;
+  disturbance.robot(robot);
+  disturbance.disturbance_kind(msg::DISTURBANCE_PLACE);
+  disturbance.x_m(x);
+  return disturbance;
+}
+
+/// An agent's node on a bus, and another process that sends it messages and reads its status.
+struct NodeFixture {
+  Scenario scenario = one_robot();
+  SimNetwork network{1, kBegin, scenario.network};
+  SimBus agent_bus{network}, other_bus{network};
+  msg::AgentStatus status;
+  std::uint64_t commands = 0;
+  Epoch commanded_epoch = 0;  ///< of the last command
+  AgentNode node{agent_bus, scenario, kRobot, kSelf, std::make_shared<PlanningScratch>(scenario)};
+
+  NodeFixture() {
+    other_bus.subscribe(topics::kStatus, [this](const msg::AgentStatus& latest) { status = latest; });
+    other_bus.subscribe(topics::kCommand, kRobot, [this](const msg::Command& command) {
+      ++commands;
+      commanded_epoch = command.epoch();
+    });
+  }
+  /// Runs until the next status has arrived.
+  void run() { network.run_until(network.now() + Duration{250'000'000}); }
+  /// Sends one message. Returns how many invalid ones the status counts in addition.
+  template <typename Message>
+  std::uint64_t send(const Topic<Message>& topic, Message message) {
+    run();
+    const std::uint64_t before = status.invalid();
+    auto writer = other_bus.advertise(topic, kRobot);
+    writer.publish(message, other_bus.now());
+    run();
+    return status.invalid() - before;
+  }
+  template <typename Message, typename Spoil>
+  std::uint64_t send_spoilt(const Topic<Message>& topic, Message message, Spoil spoil) {
+    spoil(message);
+    return send(topic, message);
+  }
+};
+
+TEST_CASE("valid messages are not counted as invalid") {
+  NodeFixture f;
+  CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
+  CHECK(f.send(topics::kCoordinator, valid_coordinator_state()) == 0);
+  CHECK(f.send(topics::kCoordinator, msg::CoordinatorState()) == 0);  // a standby
+  msg::Verdict verdict;
+  verdict.robot(kRobot);
+  CHECK(f.send(topics::kVerdict, verdict) == 0);
+  CHECK(f.send(topics::kWorld, valid_world()) == 0);
+  CHECK(f.send(topics::kWorld, msg::WorldState()) == 0);
+  CHECK(f.send(topics::kLedger, valid_page()) == 0);
+  CHECK(f.send(topics::kDisturbance, placement(kRobot, 1)) == 0);
+  CHECK(f.commands > 0);
+  CHECK(f.status.header().sender() == kRobot);
+  CHECK(f.status.header().incarnation() == kSelf);
+}
+
+TEST_CASE("invalid feedback is counted and changes nothing") {
+  NodeFixture f;
+  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kFeedback, valid_feedback(), spoil); };
+  CHECK(send([](msg::Feedback& m) { m.executing().x_m(kNan); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kMaxEpoch + 1); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.vx_mps(kNan); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.robot(kRobot + 1); }) == 1);
+  CHECK(f.status.agent_state() == msg::AGENT_FENCING);
+  CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
+  CHECK(f.status.agent_state() == msg::AGENT_WAITING);
+  CHECK(f.status.distance_to_go_m() == 1);
+  CHECK(send([](msg::Feedback& m) { m.position_error_rms_m(kNan), m.x_m(1); }) == 1);
+  CHECK(f.status.distance_to_go_m() == 1);
+}
+
+TEST_CASE("invalid coordinator states are counted and change nothing") {
+  NodeFixture f;
+  const auto send = [&](auto spoil) {
+    return f.send_spoilt(topics::kCoordinator, valid_coordinator_state(), spoil);
+  };
+  REQUIRE(f.send(topics::kFeedback, valid_feedback()) == 0);
+  CHECK(send([](msg::CoordinatorState& m) { m.epoch(kMaxEpoch); }) == 1);
+  CHECK(send([](msg::CoordinatorState& m) { m.epoch(std::numeric_limits<Epoch>::max()); }) == 1);
+  CHECK(send([](msg::CoordinatorState& m) { m.coordinator_mode(static_cast<msg::CoordinatorMode>(9)); }) ==
+        1);
+  CHECK(f.commanded_epoch == 0);
+  CHECK(f.send(topics::kCoordinator, valid_coordinator_state()) == 0);
+  CHECK(f.commanded_epoch == 7);
+}
+
+TEST_CASE("invalid verdicts are counted") {
+  NodeFixture f;
+  msg::Verdict verdict;
+  verdict.robot(kRobot + 1);
+  CHECK(f.send(topics::kVerdict, verdict) == 1);
+  verdict.robot(kRobot);
+  verdict.reasons()[4] = static_cast<msg::Reason>(99);
+  CHECK(f.send(topics::kVerdict, verdict) == 1);
+}
+
+TEST_CASE("each invalid observation of a world is counted") {
+  NodeFixture f;
+  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kWorld, valid_world(), spoil); };
+  CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_x_m(kNan); }) == 1);
+  CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
+  CHECK(send([](msg::WorldState& m) { m.obstacles()[0].radius_m(-1); }) == 1);
+  CHECK(send([](msg::WorldState& m) { m.obstacles()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
+  CHECK(send([](msg::WorldState& m) { m.obstacle_count(msg::MAX_OBSTACLES + 1); }) == 1);
+  CHECK(send([](msg::WorldState& m) {
+          m.robots()[0].observed_heading_rad(kNan);
+          m.obstacles()[0].x_m(kNan);
+        }) == 2);
+}
+
+TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counted") {
+  NodeFixture f;
+  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kLedger, valid_page(), spoil); };
+  CHECK(send([](msg::LedgerPage& m) { m.page_index(kMaxRobots); }) == 1);
+  CHECK(send([](msg::LedgerPage& m) { m.epoch(kMaxEpoch + 1); }) == 1);
+  CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);
+}
+
+TEST_CASE("only an invalid placement of the agent's own robot is counted") {
+  NodeFixture f;
+  CHECK(f.send(topics::kDisturbance, placement(kRobot, kNan)) == 1);
+  CHECK(f.send(topics::kDisturbance, placement(kRobot + 1, kNan)) == 0);
+  msg::Disturbance push = placement(kRobot, kNan);
+  push.disturbance_kind(msg::DISTURBANCE_PUSH);
+  CHECK(f.send(topics::kDisturbance, push) == 0);
+}
+
+}  // namespace sidestep::agent_node_test

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/received_page.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "common/messaging/version_codec.hpp"
+
+namespace sidestep::received_page_test {
+
+msg::LedgerPage page_with(VersionNumber number) {
+  msg::LedgerPage page;
+  page.page_index(5);
+  page.epoch(7);
+  page.header().message_number(9);
+  page.min_x_m(-1);
+  page.min_y_m(-2);
+  page.max_x_m(3);
+  page.max_y_m(4);
+  page.versions().push_back(encode(Version{1, 1, number, 0, Trajectory::resting(Time{}, {0, 0})}));
+  return page;
+}
+
+TEST_CASE("a page's header is decoded unchanged") {
+  const msg::LedgerPage message = page_with(10);
+  const auto page = ReceivedPage::decode(message);
+  REQUIRE(page);
+  CHECK(page->index() == 5);
+  CHECK(page->epoch() == 7);
+  CHECK(page->number() == 9);
+  CHECK(page->bounds_m().min_m == Vec2(-1, -2));
+  CHECK(page->bounds_m().max_m == Vec2(3, 4));
+}
+
+TEST_CASE("a page with an index or an epoch out of range is refused") {
+  msg::LedgerPage message = page_with(10);
+  for (const std::uint32_t index : {kMaxRobots, std::numeric_limits<std::uint32_t>::max()}) {
+    message.page_index(index);
+    CHECK_FALSE(ReceivedPage::decode(message));
+  }
+  message.page_index(kMaxRobots - 1);
+  CHECK(ReceivedPage::decode(message));
+  for (const Epoch epoch : {kMaxEpoch + 1, std::numeric_limits<Epoch>::max()}) {
+    message.epoch(epoch);
+    CHECK_FALSE(ReceivedPage::decode(message));
+  }
+  message.epoch(kMaxEpoch);
+  CHECK(ReceivedPage::decode(message));
+}
+
+TEST_CASE("readers of one message share the view that the first of them decodes") {
+  const msg::LedgerPage message = page_with(10);
+  MessageAttachment attachment;
+  std::shared_ptr<LedgerView> first, second;
+  ReceivedPage::decode(message, &attachment)->update(first);
+  ReceivedPage::decode(message, &attachment)->update(second);
+  CHECK(first == second);
+  REQUIRE(first->versions.size() == 1);
+  CHECK(first->versions[0].number == 10);
+}
+
+TEST_CASE("a view that others still read is not overwritten, and an unshared one is reused") {
+  const msg::LedgerPage older = page_with(10), newer = page_with(11);
+  std::shared_ptr<LedgerView> view;
+  ReceivedPage::decode(older)->update(view);
+  const LedgerView* memory = view.get();
+  ReceivedPage::decode(newer)->update(view);
+  CHECK(view.get() == memory);
+  CHECK(view->versions[0].number == 11);
+  const std::shared_ptr<LedgerView> other_reader = view;
+  ReceivedPage::decode(older)->update(view);
+  CHECK(view->versions[0].number == 10);
+  CHECK(other_reader->versions[0].number == 11);
+}
+
+}  // namespace sidestep::received_page_test

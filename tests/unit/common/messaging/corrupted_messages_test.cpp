@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages with random bytes: whatever the codecs accept is within its bounds.
+#include <array>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/messaging/topics.hpp"
+#include "tests/unit/common/messaging/random_messages.hpp"
+
+namespace sidestep::corrupted_messages_test {
+
+using namespace random_messages;
+
+/// Eight bytes as a hostile sender would choose them.
+std::uint64_t hostile_word(Rng& rng) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr std::array kNumbers{std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, 1e300, -1.0};
+  constexpr std::uint64_t kLowest = std::uint64_t{1} << 63;  // as a signed number
+  switch (rng.below(4)) {
+    case 0:
+      return std::bit_cast<std::uint64_t>(kNumbers[rng.below(kNumbers.size())]);
+    case 1:
+      return rng.chance(0.5) ? kLowest : kLowest - 1;
+    case 2:
+      return rng.below(20);
+    default:
+      return rng.bits();
+  }
+}
+
+/// The message with some of its bytes replaced; nullopt if a bus would not deliver those bytes.
+template <typename Message>
+std::optional<Message> corrupted(const Topic<Message>& topic, const Message& original, Rng& rng) {
+  std::vector<std::uint8_t> bytes;
+  append_cdr(topic, &original, bytes);
+  for (std::uint64_t changes = 1 + rng.below(3); changes > 0; --changes) {
+    if (rng.chance(0.5)) {
+      bytes[rng.below(bytes.size())] = static_cast<std::uint8_t>(rng.bits());
+      continue;
+    }
+    // Numbers of eight bytes are aligned.
+    const std::uint64_t word = hostile_word(rng), begin = 8 * rng.below(bytes.size() / 8);
+    for (std::size_t i = 0; i < 8; ++i) bytes[begin + i] = static_cast<std::uint8_t>(word >> (8 * i));
+  }
+  std::optional<Message> message;
+  const auto keep = [&](const void* read) { message = *static_cast<const Message*>(read); };
+  return read_cdr(topic, bytes, keep) ? message : std::nullopt;
+}
+
+/// Decodes corrupted messages, and requires that all accepted values are within bounds.
+template <typename Message, typename Generate, typename Decode, typename Check>
+void check_corrupted(const Topic<Message>& topic, Generate generate, Decode decode_message, Check is_valid) {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  int accepted = 0, refused = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto message = corrupted(topic, generate(rng), rng);
+    if (!message) continue;
+    const auto value = decode_message(*message);
+    if (value && !is_valid(*value)) FAIL("message " << i << " is out of bounds");
+    ++(value ? accepted : refused);
+  }
+  CHECK(accepted > 1000);
+  CHECK(refused > 100);
+}
+
+bool is_within(const Vec2& v, double bound) { return v.cwiseAbs().maxCoeff() <= bound; }
+bool is_within(double value, double low, double high) { return value >= low && value <= high; }
+bool is_within(Time time) { return std::abs(to_ns(time)) <= to_ns(kMaxTime); }
+
+bool is_valid_phase(const MotionPhase& phase) {
+  return phase.duration >= Duration{0} && phase.duration <= std::chrono::minutes(1) &&
+         is_within(phase.acceleration_mps2, 1e3);
+}
+
+bool is_valid_version(const Version& version, RobotId robot = kRobot) {
+  const Trajectory& trajectory = version.trajectory;
+  const auto& intent = version.intent;
+  const bool is_valid_intent =
+      !intent || (is_within(intent->velocity_mps, 100) && is_within(intent->velocity_duration_s, 0, 60) &&
+                  is_within(intent->waypoint_m, 1e4) && is_within(intent->goal_m, 1e4));
+  return version.robot == robot && to_ns(trajectory.start()) >= 0 &&
+         to_ns(trajectory.start()) <= std::int64_t{1} << 62 &&
+         is_within(trajectory.at_start().position_m, 1e4) &&
+         is_within(trajectory.at_start().velocity_mps, 100) && is_within(version.inflation_m, 0, 10) &&
+         std::ranges::all_of(trajectory.phases(), is_valid_phase) && is_valid_intent;
+}
+
+TEST_CASE("a command with random bytes is refused or within bounds") {
+  check_corrupted(
+      topics::kCommand, [](Rng& rng) { return message_of(random_command(rng)); },
+      [](const msg::Command& message) { return decode(message, kRobot); },
+      [](const Command& command) {
+        const auto& version = command.version;
+        const bool is_valid_number = !version || (version->number > 0 && version->number <= Epoch{1} << 63 &&
+                                                  version->incarnation <= command.incarnation);
+        const bool is_valid_fix = !command.fix || (is_within(command.fix->position_m, 1e4) &&
+                                                   std::isfinite(command.fix->heading_rad));
+        return command.robot == kRobot && command.incarnation > 0 &&
+               command.incarnation <= Incarnation{1} << 62 && command.epoch <= kMaxEpoch &&
+               is_within(command.sent_at) && std::isfinite(command.desired_heading_rad) &&
+               (!version || is_valid_version(*version)) && is_valid_number && is_valid_fix;
+      });
+}
+
+TEST_CASE("feedback with random bytes is refused or within bounds") {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  check_corrupted(
+      topics::kFeedback, [](Rng& rng) { return message_of(random_feedback(rng)); },
+      [](const msg::Feedback& message) { return decode(message, kRobot); },
+      [](const Feedback& f) {
+        const bool is_valid_echo =
+            !f.command || (is_within(f.command->sent_at) && is_within(f.command->received_at));
+        return f.robot == kRobot && f.obeyed_epoch <= kMaxEpoch && is_within(f.valid_at) &&
+               is_valid_version(f.executing) && is_valid_echo && f.estimate.position_m.allFinite() &&
+               f.estimate.velocity_mps.allFinite() && std::isfinite(f.heading_rad) &&
+               is_within(f.tracking_error_m, 0, kMax) &&
+               is_within(f.uncertainty.position_error_rms_m, 0, kMax) &&
+               is_within(f.uncertainty.odometry_scale_stddev, 0, kMax);
+      });
+}
+
+TEST_CASE("a proposal with random bytes is refused, or its candidates are malformed or within bounds") {
+  int malformed = 0;
+  check_corrupted(
+      topics::kProposal, [](Rng& rng) { return message_of(random_proposal(rng)); },
+      [](const msg::Proposal& message) { return decode(message); },
+      [&](const Proposal& proposal) {
+        if (proposal.robot >= kMaxRobots || proposal.candidate_count > msg::MAX_CANDIDATES) return false;
+        const Version* first = nullptr;
+        for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
+          const auto& candidate = proposal.candidates[i];
+          malformed += !candidate;
+          if (!candidate) continue;
+          if (!first) first = &*candidate;
+          if (!is_valid_version(*candidate, proposal.robot) || candidate->base != first->base ||
+              candidate->trajectory.start() != first->trajectory.start())
+            return false;
+        }
+        return true;
+      });
+  CHECK(malformed > 1000);
+}
+
+TEST_CASE("a registration with random bytes is refused, or its versions are malformed or within bounds") {
+  int malformed = 0;
+  check_corrupted(
+      topics::kRegistration, [](Rng& rng) { return message_of(random_registration(rng)); },
+      [](const msg::Registration& message) { return decode(message); },
+      [&](const Registration& registration) {
+        malformed += !registration.versions;
+        const auto is_valid = [&](const Version& version) {
+          return is_valid_version(version, registration.robot);
+        };
+        return registration.robot < kMaxRobots &&
+               (!registration.versions || std::ranges::all_of(registration.versions->versions(), is_valid));
+      });
+  CHECK(malformed > 1000);
+}
+
+TEST_CASE("a verdict with random bytes is refused or has known reasons") {
+  check_corrupted(
+      topics::kVerdict, [](Rng& rng) { return message_of(random_verdict(rng)); },
+      [](const msg::Verdict& message) { return decode(message, kRobot); },
+      [](const Verdict& verdict) {
+        return verdict.robot == kRobot && std::ranges::all_of(verdict.reasons, [](msg::Reason reason) {
+                 return reason <= msg::REASON_ABSENT;
+               });
+      });
+}
+
+TEST_CASE("a coordinator state with random bytes is refused or has a plausible epoch and a known mode") {
+  const Time now = time_from_ns(1'000'000'000'000'000);
+  check_corrupted(
+      topics::kCoordinator,
+      [](Rng& rng) {
+        msg::CoordinatorState message;
+        message.epoch(rng.below(1'000'000'000'000'000));
+        message.missing({static_cast<RobotId>(rng.bits()), 3});
+        return message;
+      },
+      [=](const msg::CoordinatorState& message) { return decode(message, now); },
+      [=](const CoordinatorHeartbeat& heartbeat) {
+        return is_plausible(heartbeat.epoch, now) && heartbeat.mode <= msg::COORDINATOR_GRANTING &&
+               heartbeat.missing.size() <= kMaxRobots;
+      });
+}
+
+}  // namespace sidestep::corrupted_messages_test

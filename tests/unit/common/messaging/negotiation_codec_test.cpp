@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/negotiation_codec.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "common/messaging/version_codec.hpp"
+#include "tests/unit/common/messaging/random_messages.hpp"
+#include "tests/unit/common/messaging/same_version.hpp"
+
+namespace sidestep::negotiation_codec_test {
+
+using namespace random_messages;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const Time kNow = time_from_ns(1'000'000'000'000'000);
+
+Version resting(VersionNumber number, RobotId robot = kRobot) {
+  return {robot, 1, number, 5, Trajectory::resting(Time{}, {1, 2})};
+}
+
+/// With all candidates.
+msg::Proposal full_proposal() {
+  Proposal proposal{kRobot, 1000, 7, time_from_ns(5), 10, msg::MAX_CANDIDATES};
+  for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) proposal.candidates[i] = resting(10 + i);
+  return message_of(proposal);
+}
+
+/// With as many versions as fit.
+msg::Registration full_registration() {
+  Registration registration{kRobot, 1000, 7, time_from_ns(5), VersionSet()};
+  for (VersionNumber number = 1; !registration.versions->is_full(); ++number)
+    registration.versions->add(resting(number));
+  return message_of(registration);
+}
+
+TEST_CASE("encoding and decoding a proposal preserves it bit for bit") {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int i = 0; i < 2000; ++i) {
+    const Proposal in = random_proposal(rng);
+    const auto out = decode(message_of(in));
+    REQUIRE(out);
+    REQUIRE(out->robot == in.robot);
+    REQUIRE(out->incarnation == in.incarnation);
+    REQUIRE(out->epoch == in.epoch);
+    REQUIRE(out->sent_at == in.sent_at);
+    REQUIRE(out->number == in.number);
+    REQUIRE(out->candidate_count == in.candidate_count);
+    for (std::size_t k = 0; k < in.candidate_count; ++k) {
+      REQUIRE(out->candidates[k]);
+      REQUIRE(is_same(*out->candidates[k], *in.candidates[k]));
+    }
+  }
+}
+
+TEST_CASE("encoding and decoding a registration preserves it bit for bit") {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int i = 0; i < 2000; ++i) {
+    const Registration in = random_registration(rng);
+    const msg::Registration message = message_of(in);
+    REQUIRE(message.is_absent() == in.versions->versions().empty());
+    const auto out = decode(message);
+    REQUIRE(out);
+    REQUIRE(out->robot == in.robot);
+    REQUIRE(out->incarnation == in.incarnation);
+    REQUIRE(out->epoch == in.epoch);
+    REQUIRE(out->sent_at == in.sent_at);
+    REQUIRE(out->versions);
+    REQUIRE(std::ranges::equal(out->versions->versions(), in.versions->versions(),
+                               [](const Version& a, const Version& b) { return is_same(a, b); }));
+  }
+}
+
+TEST_CASE("encoding and decoding a verdict preserves it") {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int i = 0; i < 2000; ++i) {
+    const Verdict in = random_verdict(rng);
+    const auto out = decode(message_of(in), kRobot);
+    REQUIRE(out);
+    REQUIRE(out->robot == in.robot);
+    REQUIRE(out->epoch == in.epoch);
+    REQUIRE(out->sent_at == in.sent_at);
+    REQUIRE(out->proposal_number == in.proposal_number);
+    REQUIRE(out->request_sent_at == in.request_sent_at);
+    REQUIRE(out->granted_version == in.granted_version);
+    REQUIRE(out->reasons == in.reasons);
+    REQUIRE(out->blockers == in.blockers);
+  }
+}
+
+TEST_CASE("a message that does not speak for its sender's robot is refused") {
+  const auto check_refused = [](auto message) {
+    REQUIRE(decode(message));
+    message.header().sender(kRobot + 1);
+    CHECK_FALSE(decode(message));
+    message.robot(kRobot + 1);
+    CHECK(decode(message));
+    for (const RobotId robot : {kMaxRobots, std::numeric_limits<RobotId>::max()}) {
+      message.robot(robot);
+      message.header().sender(robot);
+      CHECK_FALSE(decode(message));
+    }
+  };
+  check_refused(full_proposal());
+  check_refused(full_registration());
+}
+
+TEST_CASE("a hostile candidate is malformed, and the other candidates remain") {
+  const std::size_t hostile = GENERATE(range(0, int{msg::MAX_CANDIDATES}));
+  CAPTURE(hostile);
+  const auto check_malformed = [=](auto spoil) {
+    msg::Proposal message = full_proposal();
+    spoil(message.candidates()[hostile]);
+    const auto proposal = decode(message);
+    REQUIRE(proposal);
+    CHECK(proposal->number == 10);
+    REQUIRE(proposal->candidate_count == msg::MAX_CANDIDATES);
+    for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i)
+      CHECK(proposal->candidates[i].has_value() == (i != hostile));
+  };
+  check_malformed([](msg::Version& v) { v.x_m(kNan); });
+  check_malformed([](msg::Version& v) { v.phase_count(99); });
+  check_malformed([](msg::Version& v) { v.robot(kRobot + 1); });
+  check_malformed([](msg::Version& v) { v.robot(kMaxRobots); });
+}
+
+TEST_CASE("candidates with another base or start than the first one are malformed") {
+  msg::Proposal message = full_proposal();
+  message.candidates()[1].base(6);
+  message.candidates()[3].start_ns(1);
+  const auto proposal = decode(message);
+  REQUIRE(proposal);
+  for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i)
+    CHECK(proposal->candidates[i].has_value() == (i != 1 && i != 3));
+  // No later candidate agrees with a first one that differs from them.
+  message = full_proposal();
+  message.candidates()[0].base(6);
+  CHECK(decode(message)->candidates[0]);
+  CHECK_FALSE(decode(message)->candidates[1]);
+}
+
+TEST_CASE("a proposal without candidates, or with too many, has none") {
+  for (const int count : {0, msg::MAX_CANDIDATES + 1, 255}) {
+    CAPTURE(count);
+    msg::Proposal message = full_proposal();
+    message.candidate_count(static_cast<std::uint8_t>(count));
+    const auto proposal = decode(message);
+    REQUIRE(proposal);
+    CHECK(proposal->candidate_count == 0);
+    CHECK(proposal->number == 10);
+    CHECK_FALSE(proposal->candidates[0]);
+  }
+}
+
+TEST_CASE("a registration with hostile versions has none") {
+  using Message = msg::Registration;
+  const auto is_malformed = [](auto spoil) {
+    Message message = full_registration();
+    REQUIRE(decode(message)->versions);
+    spoil(message);
+    const auto registration = decode(message);
+    REQUIRE(registration);
+    return !registration->versions;
+  };
+  CHECK(is_malformed([](Message& m) { m.version_count(VersionSet::kCapacity + 1); }));
+  CHECK(is_malformed([](Message& m) { m.version_count(255); }));
+  CHECK(is_malformed([](Message& m) { m.version_count(0); }));  // contradicts is_absent
+  CHECK(is_malformed([](Message& m) { m.is_absent(true); }));
+  for (std::size_t i = 0; i < VersionSet::kCapacity; ++i) {
+    CAPTURE(i);
+    CHECK(is_malformed([=](Message& m) { m.versions()[i].vy_mps(kNan); }));
+    CHECK(is_malformed([=](Message& m) { m.versions()[i].phase_count(99); }));
+    CHECK(is_malformed([=](Message& m) { m.versions()[i].robot(kRobot + 1); }));
+    const std::size_t other = (i + 1) % VersionSet::kCapacity;
+    CHECK(is_malformed([=](Message& m) { m.versions()[i] = m.versions()[other]; }));
+  }
+  // The slots beyond the count are not read.
+  CHECK_FALSE(is_malformed([](Message& m) { m.version_count(7), m.versions()[7].x_m(kNan); }));
+  CHECK_FALSE(is_malformed([](Message& m) { m.version_count(0), m.is_absent(true); }));
+}
+
+TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
+  msg::Verdict message;
+  message.robot(kRobot);
+  REQUIRE(decode(message, kRobot));
+  CHECK_FALSE(decode(message, kRobot + 1));
+  for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) {
+    for (const std::uint32_t reason : {msg::REASON_ABSENT + 1u, std::numeric_limits<std::uint32_t>::max()}) {
+      CAPTURE(i, reason);
+      msg::Verdict hostile = message;
+      hostile.reasons()[i] = static_cast<msg::Reason>(reason);
+      CHECK_FALSE(decode(hostile, kRobot));
+    }
+  }
+}
+
+TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
+  msg::CoordinatorState message;
+  message.header().sender(10001);
+  message.header().incarnation(8);
+  message.epoch(7);
+  message.coordinator_mode(msg::COORDINATOR_REGISTERING);
+  message.missing({4, 9});
+  const auto heartbeat = decode(message, kNow);
+  REQUIRE(heartbeat);
+  CHECK(heartbeat->sender == 10001);
+  CHECK(heartbeat->incarnation == 8);
+  CHECK(heartbeat->epoch == 7);
+  CHECK(heartbeat->mode == msg::COORDINATOR_REGISTERING);
+  CHECK(std::ranges::equal(heartbeat->missing, std::vector<RobotId>{4, 9}));
+  message.epoch(0);
+  CHECK(decode(message, kNow)->epoch == 0);
+}
+
+TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mode is refused") {
+  const auto now = static_cast<Epoch>(to_ns(kNow));
+  constexpr Epoch kHour = 3'600'000'000'000;
+  msg::CoordinatorState message;
+  for (const Epoch epoch : {now, now + kHour - 1}) {
+    message.epoch(epoch);
+    CHECK(decode(message, kNow));
+  }
+  for (const Epoch epoch : {now + kHour, kMaxEpoch, kMaxEpoch + 1, std::numeric_limits<Epoch>::max()}) {
+    message.epoch(epoch);
+    CHECK_FALSE(decode(message, kNow));
+  }
+  message.epoch(now);
+  for (const std::uint32_t mode :
+       {msg::COORDINATOR_GRANTING + 1u, std::numeric_limits<std::uint32_t>::max()}) {
+    message.coordinator_mode(static_cast<msg::CoordinatorMode>(mode));
+    CHECK_FALSE(decode(message, kNow));
+  }
+}
+
+}  // namespace sidestep::negotiation_codec_test

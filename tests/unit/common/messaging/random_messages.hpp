@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random decoded messages of robot 3, and their encoded forms as Writer::publish() sends them.
+#pragma once
+
+#include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "tests/unit/common/motion/random_trajectory.hpp"
+
+namespace sidestep::random_messages {
+
+inline constexpr RobotId kRobot = 3;
+
+/// Any time that messages may contain.
+inline Time random_time(Rng& rng) { return time_from_ns(static_cast<std::int64_t>(rng.bits()) >> 2); }
+inline Epoch random_epoch(Rng& rng) { return rng.bits() >> 2; }
+
+inline Version random_version(Rng& rng) {
+  Version version{kRobot, rng.bits(), rng.bits(), rng.bits(), random_trajectory(rng), rng.uniform(0, 0.1)};
+  // Intents are single precision in messages.
+  const auto single = [&](double max) {
+    return static_cast<double>(static_cast<float>(rng.uniform(0, max)));
+  };
+  if (rng.chance(0.5))
+    version.intent = {{single(3), single(3)}, single(1), {single(9), single(9)}, {single(9), single(9)}};
+  return version;
+}
+
+inline Command random_command(Rng& rng) {
+  Command command{kRobot, 1 + rng.below(1'000'000), random_epoch(rng), random_time(rng)};
+  if (rng.chance(0.7)) {
+    command.version = random_version(rng);
+    command.version->incarnation = rng.below(command.incarnation + 1);
+    command.version->number = 1 + (rng.bits() >> 1);
+  }
+  if (rng.chance(0.7)) command.fix = PoseFix{random_time(rng), random_vector(rng, 20), rng.uniform(-4, 4)};
+  command.desired_heading_rad = rng.uniform(-4, 4);
+  return command;
+}
+
+inline Feedback random_feedback(Rng& rng) {
+  Feedback feedback;
+  feedback.robot = kRobot;
+  feedback.robot_incarnation = rng.bits();
+  feedback.obeyed_incarnation = rng.bits();
+  feedback.obeyed_epoch = random_epoch(rng);
+  feedback.valid_at = random_time(rng);
+  feedback.executing = random_version(rng);
+  feedback.is_off_reference = rng.chance(0.5);
+  feedback.is_lifted = rng.chance(0.5);
+  if (rng.chance(0.7)) feedback.command = {random_time(rng), random_time(rng)};
+  feedback.estimate = {random_vector(rng, 20), random_vector(rng, 4)};
+  feedback.heading_rad = rng.uniform(-4, 4);
+  feedback.tracking_error_m = rng.uniform(0, 1);
+  feedback.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
+  feedback.counts = {rng.bits(), rng.bits(), rng.bits(), rng.bits(), rng.bits()};
+  return feedback;
+}
+
+inline Proposal random_proposal(Rng& rng) {
+  Proposal proposal{kRobot, rng.bits(), random_epoch(rng), random_time(rng), rng.bits()};
+  proposal.candidate_count = 1 + rng.below(msg::MAX_CANDIDATES);
+  const Version first = random_version(rng);
+  for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
+    Version& candidate = proposal.candidates[i].emplace(first);
+    candidate.number = proposal.number + i;
+    candidate.trajectory =
+        Trajectory(first.trajectory.start(), {random_vector(rng, 1), random_vector(rng, 2)});
+    append_stop(candidate.trajectory, 5);
+  }
+  return proposal;
+}
+
+inline Registration random_registration(Rng& rng) {
+  Registration registration{kRobot, rng.bits(), random_epoch(rng), random_time(rng), VersionSet()};
+  for (std::uint64_t count = rng.below(VersionSet::kCapacity + 1); count > 0; --count)
+    registration.versions->add(random_version(rng));
+  return registration;
+}
+
+inline Verdict random_verdict(Rng& rng) {
+  Verdict verdict{kRobot, random_epoch(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
+  for (msg::Reason& reason : verdict.reasons)
+    reason = static_cast<msg::Reason>(rng.below(msg::REASON_ABSENT + 1));
+  for (RobotId& blocker : verdict.blockers) blocker = static_cast<RobotId>(rng.bits());
+  return verdict;
+}
+
+/// The message of a value that has a time of sending.
+template <typename Value>
+auto message_of(const Value& value) {
+  auto message = encode(value);
+  message.header().stamp_ns(to_ns(value.sent_at));
+  return message;
+}
+inline msg::Feedback message_of(const Feedback& feedback) { return encode(feedback); }
+
+}  // namespace sidestep::random_messages

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/command_line.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "common/process/exit_code.hpp"
+
+namespace sidestep::command_line_test {
+
+using Catch::Matchers::Contains;
+
+/// A command line with one option of each kind.
+struct Fixture {
+  CommandLine line{"A program under test.", "sidestep-test"};
+  double speed_mps = 1;
+  int count = 3;
+  bool is_verbose = false;
+  std::string mode = "fast";
+  std::vector<std::uint32_t> robots;
+  std::vector<double> position_m;
+  std::optional<std::string> report;
+  Option speed, mode_option;
+
+  Fixture()
+      : speed(line.root().add_option("--speed", speed_mps).check(in_range(0, 5))),
+        mode_option(line.root().add_option("--mode", mode).check(one_of({"fast", "slow"}))) {
+    line.root().add_option("--count", count).check(positive());
+    line.root().add_flag("--verbose", is_verbose).needs(mode_option);
+    line.root().add_option("--robots", robots).comma_separated();
+    line.root().add_option("--position", position_m).comma_separated(2).excludes(speed);
+    line.root().add_optional_value("--report", report, "report.json", "Writes a report");
+  }
+  std::string error_of(std::vector<std::string> arguments) {
+    try {
+      line.parse(std::move(arguments));
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_CASE("options set their variables, and the others keep their defaults") {
+  Fixture f;
+  REQUIRE(f.error_of({"--speed", "2.5", "--robots", "1,2,7", "--mode=slow", "--verbose"}).empty());
+  CHECK(f.speed_mps == 2.5);
+  CHECK(f.speed.is_given());
+  CHECK(f.robots == std::vector<std::uint32_t>{1, 2, 7});
+  CHECK(f.mode == "slow");
+  CHECK(f.is_verbose);
+  CHECK(f.count == 3);
+  CHECK_FALSE(f.report);
+}
+
+TEST_CASE("an option with an optional value takes its default if the value is omitted") {
+  const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>(
+      {{{"--report"}, "report.json"}, {{"--report=other.json"}, "other.json"}}));
+  Fixture f;
+  REQUIRE(f.error_of(arguments).empty());
+  CHECK(f.report == expected);
+}
+
+TEST_CASE("a refused value is reported with its option") {
+  const auto [arguments, option] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"--speed", "5.1"}, "--speed"},
+      {{"--speed", "fast"}, "--speed"},
+      {{"--speed", "nan"}, "--speed"},
+      {{"--count", "0"}, "--count"},
+      {{"--count", "1.5"}, "--count"},
+      {{"--count", "99999999999"}, "--count"},
+      {{"--mode", "medium"}, "--mode"},
+      {{"--robots", "1,-2"}, "--robots"},
+      {{"--position", "1"}, "--position"},
+      {{"--position", "1,2,3"}, "--position"},
+      {{"--position", "1,inf"}, "--position"},
+      {{"--speed"}, "--speed"},
+      {{"--nonsense"}, "--nonsense"},
+      {{"stray"}, "stray"},
+  }));
+  CAPTURE(arguments);
+  Fixture f;
+  CHECK_THAT(f.error_of(arguments), Contains(option));
+}
+
+TEST_CASE("options that need or exclude each other are checked") {
+  CHECK_THAT(Fixture().error_of({"--verbose"}), Contains("--mode"));
+  CHECK_THAT(Fixture().error_of({"--speed", "1", "--position", "0,0"}), Contains("--speed"));
+}
+
+TEST_CASE("a callback's usage error is reported, and only the given subcommand's callback is called") {
+  CommandLine line("A program under test.", "sidestep-test");
+  line.root().require_subcommand();
+  bool is_called = false;
+  line.root().add_subcommand("good", "Works").on_parsed([&] { is_called = true; });
+  line.root().add_subcommand("bad", "Fails").on_parsed([] { throw UsageError("the file is missing"); });
+  CHECK_THROWS_AS(line.parse({}), UsageError);
+  CHECK_THROWS_WITH(line.parse({"bad"}), Contains("the file is missing"));
+  CHECK_FALSE(is_called);
+  line.parse({"good"});
+  CHECK(is_called);
+}
+
+TEST_CASE("wrong usage ends a program with exit code 2 and --help with 0") {
+  const auto exit_code = [](const char* argument) {
+    Fixture f;
+    const char* const arguments[] = {"sidestep-test", argument};
+    return f.line.parse(2, arguments);
+  };
+  CHECK(exit_code("--nonsense") == kExitUsage);
+  CHECK(exit_code("--help") == 0);
+  CHECK_FALSE(exit_code("--report"));
+}
+
+}  // namespace sidestep::command_line_test

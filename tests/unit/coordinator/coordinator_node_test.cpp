@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/coordinator_node.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <vector>
+
+#include "common/messaging/senders.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "tests/unit/coordinator/floor.hpp"
+
+namespace sidestep::coordinator_node_test {
+
+constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Scenario two_robots() {
+  Scenario scenario;
+  scenario.field = {20, 20};
+  for (const RobotId id : {1, 2}) {
+    RobotSpec robot;
+    robot.id = id;
+    scenario.robots.push_back(robot);
+  }
+  return scenario;
+}
+
+// A coordinator and a second process that receives what it publishes.
+struct Floor {
+  explicit Floor(bool is_standby = false) : node(bus, scenario, {0, 5}, is_standby) {
+    outside.subscribe(topics::kCoordinator,
+                      [this](const msg::CoordinatorState& message) { state = message; });
+    for (const RobotSpec& robot : scenario.robots) {
+      outside.subscribe(topics::kVerdict, robot.id,
+                        [this](const msg::Verdict& message) { verdicts.push_back(message); });
+    }
+    run();
+  }
+
+  /// Runs for longer than the period of heartbeats.
+  void run() { network.run_until(network.now() + std::chrono::milliseconds(30)); }
+  template <typename Message>
+  void send(const Topic<Message>& topic, Message message, RobotId channel = 1) {
+    auto writer = outside.advertise(topic, channel);
+    writer.publish(message, network.now());
+    run();
+  }
+  void register_both() {
+    send(topics::kRegistration, registration_of(a, node.coordinator().epoch()));
+    send(topics::kRegistration, registration_of(b, node.coordinator().epoch()));
+    REQUIRE(node.coordinator().is_granting());
+    verdicts.clear();
+  }
+  msg::Proposal proposal() const {
+    return proposal_of({continued(a, 10, 1001, {0, 3})}, node.coordinator().epoch());
+  }
+
+  const Scenario scenario = two_robots();
+  const Version a = rest_version(1, {0, 0}), b = rest_version(2, {1, 0});
+  SimNetwork network{1, kBegin, {}};
+  SimBus bus{network}, outside{network};
+  CoordinatorNode node;
+  msg::CoordinatorState state;
+  std::vector<msg::Verdict> verdicts;
+};
+
+TEST_CASE("a coordinator answers registrations and proposals on the robot's channel") {
+  Floor floor;
+  floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
+  REQUIRE(floor.verdicts.size() == 1);
+  CHECK(floor.verdicts[0].robot() == 1);
+  CHECK(floor.verdicts[0].header().sender() == static_cast<std::uint32_t>(Sender::kCoordinator));
+  CHECK(floor.verdicts[0].header().incarnation() == 5);
+  floor.register_both();
+  floor.send(topics::kProposal, floor.proposal());
+  REQUIRE(floor.verdicts.size() == 1);
+  CHECK(floor.verdicts[0].granted_version() == 10);
+  CHECK(floor.state.invalid() == 0);
+}
+
+TEST_CASE("messages that cannot be decoded are counted, get no answer and change nothing") {
+  Floor floor;
+  floor.register_both();
+  const Epoch epoch = floor.node.coordinator().epoch();
+  SECTION("a proposal of another sender") {
+    auto proposal = floor.proposal();
+    proposal.header().sender(2);
+    floor.send(topics::kProposal, proposal);
+  }
+  SECTION("a registration of another sender") {
+    auto registration = registration_of(floor.a, epoch, 2);
+    registration.header().sender(2);
+    floor.send(topics::kRegistration, registration);
+  }
+  auto feedback = fact(continued(floor.a, 10, 1001, {0, 3}), 1001);  // would contradict the ledger
+  SECTION("a fact of another sender") {
+    feedback.header().sender(2);
+    floor.send(topics::kFeedback, feedback);
+  }
+  SECTION("a fact on another robot's channel") { floor.send(topics::kFeedback, feedback, 2); }
+  SECTION("a fact without a position") {
+    feedback.x_m(kNan);
+    floor.send(topics::kFeedback, feedback);
+  }
+  SECTION("a fact without a version") {
+    feedback.executing().x_m(kNan);
+    floor.send(topics::kFeedback, feedback);
+  }
+  msg::CoordinatorState other;
+  other.coordinator(3);
+  other.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + 3);
+  other.coordinator_mode(msg::COORDINATOR_GRANTING);
+  SECTION("a heartbeat with an implausible epoch") {
+    other.epoch(Epoch{1} << 61);
+    floor.send(topics::kCoordinator, other);
+  }
+  SECTION("a heartbeat with an unknown mode") {
+    other.epoch(epoch + 1);
+    other.coordinator_mode(static_cast<msg::CoordinatorMode>(99));
+    floor.send(topics::kCoordinator, other);
+  }
+  floor.run();
+  CHECK(floor.state.invalid() == 1);
+  CHECK(floor.verdicts.empty());
+  CHECK(floor.node.coordinator().epoch() == epoch);
+  CHECK(floor.node.coordinator().is_granting());
+  for (const RobotId robot : {1, 2}) {
+    REQUIRE(floor.node.coordinator().ledger().versions(robot).size() == 1);
+    CHECK(floor.node.coordinator().ledger().versions(robot)[0].number == 0);
+  }
+}
+
+TEST_CASE("malformed candidates and registrations are answered and counted") {
+  Floor floor;
+  floor.register_both();
+  SECTION("a proposal without candidates") {
+    auto proposal = floor.proposal();
+    proposal.candidate_count(0);
+    floor.send(topics::kProposal, proposal);
+  }
+  SECTION("a registration without versions") {
+    auto registration = registration_of(floor.a, floor.node.coordinator().epoch(), 2);
+    registration.version_count(0);
+    floor.send(topics::kRegistration, registration);
+  }
+  floor.run();
+  REQUIRE(floor.verdicts.size() == 1);
+  CHECK(floor.verdicts[0].reasons()[0] == msg::REASON_MALFORMED);
+  CHECK(floor.state.invalid() == 1);
+}
+
+TEST_CASE("an agent that obeys an implausible epoch is counted and does not change the coordinator's") {
+  Floor floor;
+  floor.register_both();
+  const Epoch epoch = floor.node.coordinator().epoch();
+  auto feedback = fact(floor.a, 1000);
+  feedback.obeyed_epoch(Epoch{1} << 61);
+  floor.send(topics::kFeedback, feedback);
+  CHECK(floor.state.invalid() == 1);
+  CHECK(floor.node.coordinator().epoch() == epoch);
+}
+
+TEST_CASE("a coordinator that stands by answers nothing") {
+  Floor floor(true);
+  floor.send(topics::kRegistration, registration_of(floor.a, 0));
+  floor.send(topics::kProposal, floor.proposal());
+  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  CHECK(floor.verdicts.empty());
+  CHECK_FALSE(floor.node.coordinator().is_active());
+}
+
+}  // namespace sidestep::coordinator_node_test
