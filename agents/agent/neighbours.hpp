@@ -45,9 +45,9 @@ class Neighbours {
   };
   void store(const ReceivedPage& received, Page& page);
   struct Stationary {
-    RobotId robot;
-    Vec2 position_m;
-    double distance2;
+    RobotId robot = 0;
+    Vec2 position_m{0, 0};
+    double distance2 = 0;
   };
   /// Whether any of the robot's versions ends after `since`.
   bool is_moving(RobotId robot, Time since) const;

@@ -16,7 +16,7 @@ namespace sidestep {
 /// field, and about sixty frames of vision have not confirmed it.
 class ObservedObstacles {
  public:
-  static constexpr std::size_t kCapacity = 2 * msg::MAX_OBSTACLES;
+  static constexpr std::size_t kCapacity = std::size_t{2} * msg::MAX_OBSTACLES;
   static constexpr Duration kMaxObservationAge{1'000'000'000};
 
   /// `max_speed_mps`: upper bound of every obstacle's speed. `max_clock_difference`: upper bound of the

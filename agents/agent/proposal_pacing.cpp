@@ -18,7 +18,7 @@ constexpr int kTakenBeforeRelease = 10;
 void ProposalPacing::on_round_trip(Duration duration) {
   round_trips_[count_++ % kHistorySize] = duration;
   const std::size_t count = std::min(count_, kHistorySize);
-  std::array<Duration, kHistorySize / 8 + 1> slowest;
+  std::array<Duration, kHistorySize / 8 + 1> slowest{};
   slowest.fill(Duration::min());
   for (std::size_t i = 0; i < count; ++i) {
     // Insertion into the sorted list of the slowest round trips.

@@ -23,7 +23,7 @@ ComparisonSettings comparison_settings(double begin_s, double step_s, double acc
 }
 
 Track track_of(const TrackBlock& tracks, std::size_t lane) {
-  Track track;
+  Track track{};
   for (std::size_t k = 0; k < kSamples; ++k) {
     track.x_m[k] = tracks.x_m[k].lane[lane];
     track.y_m[k] = tracks.y_m[k].lane[lane];
@@ -33,7 +33,7 @@ Track track_of(const TrackBlock& tracks, std::size_t lane) {
 
 Track track_of(const TrajectoryBounds& bounds, Time begin, double step_s) {
   const double from_s = to_seconds(begin - bounds.start);
-  Track track;
+  Track track{};
   for (std::size_t k = 0; k < kSamples; ++k) {
     const double elapsed = from_s + static_cast<double>(k) * step_s;
     const double t = std::min(std::max(elapsed, -step_s), bounds.first_s);

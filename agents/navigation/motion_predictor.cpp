@@ -39,7 +39,7 @@ void MotionPredictor::predict() {
 
 batch::Prediction MotionPredictor::prediction_of(std::size_t lane) const {
   const batch::PredictionBlock& block = predictions_[lane / kPredictionLanes];
-  batch::Prediction prediction;
+  batch::Prediction prediction{};
   for (std::size_t i = 0; i < kPredictionSamples; ++i) {
     prediction.x_m[i] = block.x_m[i].lane[lane % kPredictionLanes];
     prediction.y_m[i] = block.y_m[i].lane[lane % kPredictionLanes];

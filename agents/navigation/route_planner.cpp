@@ -14,6 +14,7 @@ constexpr std::size_t kMaxSamples = 5000;
 
 std::vector<Shape> inflated(const std::vector<Circle>& obstacles, double inflation_m) {
   std::vector<Shape> shapes;
+  shapes.reserve(obstacles.size());
   for (const Circle& circle : obstacles)
     shapes.push_back(Circle{circle.centre_m, circle.radius_m + inflation_m});
   return shapes;

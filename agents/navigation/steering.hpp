@@ -74,7 +74,7 @@ class Steering {
   SteeringSettings settings_;
   double speed_mps_;
   float half_length_m_, half_width_m_;
-  float weights_[batch::kPredictionSamples];
+  float weights_[batch::kPredictionSamples] = {};
   MotionPredictor moving_;
   std::vector<double> min_separations_m_;  // by lane of moving_
   std::vector<Other> others_;

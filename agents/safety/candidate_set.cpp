@@ -86,7 +86,7 @@ void CandidateSet::compare(const batch::Track& other, double start_s, double min
                            double other_acceleration) {
   // The factor covers rounding errors.
   const double own_acceleration = 1.001 * std::max(limits_.acceleration_mps2, limits_.deceleration_mps2);
-  batch::SeparationBlock separation;
+  batch::SeparationBlock separation{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     separation.start_s.lane[lane] = start_s;
     separation.min_separation_m.lane[lane] = min_separation_m;

@@ -34,7 +34,8 @@ bool is_positive(const Quartic& q, int halvings) {
 /// `reach1`.
 Quartic squared_gap(const Vec2& from, const Vec2& velocity, const Vec2& acceleration, double seconds,
                     double reach0, double reach1) {
-  const Vec2 b0 = from, b1 = from + 0.5 * seconds * velocity,
+  const Vec2& b0 = from;
+  const Vec2 b1 = from + 0.5 * seconds * velocity,
              b2 = from + seconds * (velocity + 0.5 * seconds * acceleration);
   const double r00 = reach0 * reach0, r01 = reach0 * reach1, r11 = reach1 * reach1;
   return {b0.dot(b0) - r00, b0.dot(b1) - (r00 + r01) / 2,

@@ -67,6 +67,7 @@ std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m, dou
             [](const FreePosition& a, const FreePosition& b) { return a.distance_m < b.distance_m; });
   if (!found.empty()) direction_search.refine(found.front());
   std::vector<Vec2> positions;
+  positions.reserve(found.size());
   for (const FreePosition& one : found) positions.push_back(one.position_m);
   return positions;
 }

@@ -48,7 +48,7 @@ void QuadTree::add_cell(int x, int y, int size) {
   graph_.cells.push_back({{low, {high.x(), low.y()}, high, {low.x(), high.y()}}});
   squares_.push_back({x, y, size});
   for (int i = x; i < x + size; ++i)
-    for (int j = y; j < y + size; ++j) cell_at_[static_cast<std::size_t>(j * side_ + i)] = cell;
+    for (int j = y; j < y + size; ++j) cell_at_[index(i, j)] = cell;
 }
 
 void QuadTree::join_neighbours() {
@@ -62,12 +62,10 @@ void QuadTree::join_neighbours() {
 void QuadTree::join(int x, int y, int size, bool upwards) {
   const int beyond = (upwards ? y : x) + size;
   if (beyond == side_) return;
-  const std::uint32_t cell = cell_at_[static_cast<std::size_t>(y * side_ + x)];
+  const std::uint32_t cell = cell_at_[index(x, y)];
   const int first = upwards ? x : y;
-  for (int from = first, to; from < first + size; from = to) {
-    const auto at = [&](int i) {
-      return cell_at_[static_cast<std::size_t>(upwards ? beyond * side_ + i : i * side_ + beyond)];
-    };
+  for (int from = first, to = first; from < first + size; from = to) {
+    const auto at = [&](int i) { return cell_at_[upwards ? index(i, beyond) : index(beyond, i)]; };
     for (to = from + 1; to < first + size && at(to) == at(from);) ++to;
     if (at(from) == kNone) continue;
     const double middle = (from + to) / 2.0;

@@ -25,6 +25,10 @@ class QuadTree {
   void add_cell(int x, int y, int size);
   void join_neighbours();
   void join(int x, int y, int size, bool upwards);
+  /// Of a unit, in cell_at_.
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
+  }
 
   struct Square {
     int x, y, size;

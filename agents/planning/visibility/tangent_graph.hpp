@@ -31,9 +31,9 @@ class TangentGraph {
  private:
   /// The point at which a tangent leaves or reaches a ring, one side of an arc.
   struct Node {
-    std::uint32_t ring;  // arc and side
+    std::uint32_t ring = 0;  // arc and side
     Vec2 along;
-    double angle_rad;      // of the direction; increases along the ring
+    double angle_rad = 0;  // of the direction; increases along the ring
     std::uint32_t to = 0;  // node at the other end, for a tangent that leaves the ring
     double length_m = 0;   // of the tangent
     bool leaves = false;

@@ -21,7 +21,7 @@ inline SidePair cross(const Vec2& a, const DirectionPair& b) { return a.x() * b.
 struct TangentPair {
   DirectionPair along;  ///< unit vectors
   SidePair length_m;
-  bool exist[2];
+  bool exist[2] = {false, false};
 };
 
 inline TangentPair tangent_pair(const TangentArc& from, Side from_side, const TangentArc& to,

@@ -140,8 +140,8 @@ DdsParticipant::~DdsParticipant() {
   DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
-dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) {
-  const std::string type_name = type.get_type_name();
+dds::Topic* DdsParticipant::topic(const std::string& channel, const TypeSupport& type) {
+  const std::string& type_name = type.get_type_name();
   if (TopicDescription* known = participant_->lookup_topicdescription(channel)) {
     if (known->get_type_name() != type_name) {
       throw std::runtime_error(fmt::format("topic '{}' is used with type {} and with type {}", channel,
@@ -155,7 +155,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, TypeSupport type) 
   return created;
 }
 
-DataWriter* DdsParticipant::create_writer(const std::string& channel, TypeSupport type,
+DataWriter* DdsParticipant::create_writer(const std::string& channel, const TypeSupport& type,
                                           const DataWriterQos& qos, DataWriterListener* listener) {
   const StatusMask mask = StatusMask::publication_matched() << StatusMask::offered_incompatible_qos();
   DataWriter* writer = publisher_->create_datawriter(topic(channel, type), qos, listener, mask);
@@ -163,7 +163,7 @@ DataWriter* DdsParticipant::create_writer(const std::string& channel, TypeSuppor
   return writer;
 }
 
-DataReader* DdsParticipant::create_reader(const std::string& channel, TypeSupport type,
+DataReader* DdsParticipant::create_reader(const std::string& channel, const TypeSupport& type,
                                           const DataReaderQos& qos, DataReaderListener* listener) {
   const StatusMask mask = StatusMask::data_available() << StatusMask::requested_incompatible_qos();
   DataReader* reader = subscriber_->create_datareader(topic(channel, type), qos, listener, mask);

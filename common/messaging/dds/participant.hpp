@@ -33,11 +33,11 @@ class DdsParticipant {
   /// Registers `type` unless a type of its name is already registered. Throws std::runtime_error that names
   /// the topic.
   eprosima::fastdds::dds::DataWriter* create_writer(const std::string& channel,
-                                                    eprosima::fastdds::dds::TypeSupport type,
+                                                    const eprosima::fastdds::dds::TypeSupport& type,
                                                     const eprosima::fastdds::dds::DataWriterQos& qos,
                                                     eprosima::fastdds::dds::DataWriterListener* listener);
   eprosima::fastdds::dds::DataReader* create_reader(const std::string& channel,
-                                                    eprosima::fastdds::dds::TypeSupport type,
+                                                    const eprosima::fastdds::dds::TypeSupport& type,
                                                     const eprosima::fastdds::dds::DataReaderQos& qos,
                                                     eprosima::fastdds::dds::DataReaderListener* listener);
   void delete_writer(eprosima::fastdds::dds::DataWriter* writer);
@@ -46,7 +46,8 @@ class DdsParticipant {
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
 
  private:
-  eprosima::fastdds::dds::Topic* topic(const std::string& channel, eprosima::fastdds::dds::TypeSupport type);
+  eprosima::fastdds::dds::Topic* topic(const std::string& channel,
+                                       const eprosima::fastdds::dds::TypeSupport& type);
 
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
