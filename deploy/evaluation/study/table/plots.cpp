@@ -11,8 +11,8 @@
 namespace sidestep {
 namespace {
 
-constexpr std::array kColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c",
-                              "#222222", "#d62728", "#ff7fbf", "#8f8f8f"};
+constexpr std::array kLineColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c",
+                                  "#222222", "#d62728", "#ff7fbf", "#8f8f8f"};
 
 /// Quotes text for gnuplot: within single quotes, only a single quote has to be doubled.
 std::string quoted(const std::string& text) {
@@ -64,8 +64,8 @@ void draw(const std::vector<Plot>& plots, const std::string& png_file) {
       "set terminal pngcairo size {},440 font 'sans,10' noenhanced\nset output {}\nset grid\n"
       "set key below horizontal samplen 2\nset autoscale xfix\nset multiplot layout 1,{}\n",
       width, quoted(png_file), plots.size());
-  for (std::size_t i = 0; i < kColours.size(); ++i)
-    text += fmt::format("set linetype {} linecolor rgb '{}'\n", i + 1, kColours[i]);
+  for (std::size_t i = 0; i < kLineColours.size(); ++i)
+    text += fmt::format("set linetype {} linecolor rgb '{}'\n", i + 1, kLineColours[i]);
   for (const Plot& plot : plots) text += script(plot);
   const bool is_written = std::fwrite(text.data(), 1, text.size(), gnuplot) == text.size();
   if (pclose(gnuplot) != 0 || !is_written) throw std::runtime_error("gnuplot failed to draw " + png_file);
