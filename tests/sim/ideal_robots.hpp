@@ -39,7 +39,7 @@ class IdealRobots {
 
  private:
   struct Robot {
-    RobotId id;
+    RobotId id = 0;
     Incarnation obeyed = 0;
     Epoch obeyed_epoch = 0;
     Duration clock_offset{0};

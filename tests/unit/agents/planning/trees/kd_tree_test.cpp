@@ -11,7 +11,7 @@ namespace sidestep::kd_tree_test {
 /// Samples points as planners store them: uniform, in clusters, on lines, or repeated.
 template <std::size_t N>
 std::array<double, N> sample_point(std::uint64_t kind, Rng& rng) {
-  std::array<double, N> point;
+  std::array<double, N> point{};
   const double cluster = kind == 1 ? static_cast<double>(rng.below(3)) : 0;
   for (double& x : point) x = kind == 1 ? cluster + 0.01 * rng.normal() : rng.uniform(-5, 5);
   if (kind == 2) point[0] = 1;
