@@ -27,7 +27,7 @@ std::uint8_t span_of(std::uint8_t low, std::uint8_t high) { return static_cast<s
 Thresholds thresholds_of(const ColourBox& box) {
   const std::uint8_t y = span_of(box.low.y, box.high.y), u = span_of(box.low.u, box.high.u),
                      v = span_of(box.low.v, box.high.v);
-  Thresholds t;
+  Thresholds t{};
   t.colour = box.colour;
   fill(t.y_low, box.low.y, box.low.y);
   fill(t.y_span, y, y);

@@ -109,7 +109,7 @@ void ObstacleTracker::drop_stale_tracks(Time now) {
 }
 
 void ObstacleTracker::world_at(Time t, msg::WorldState& world) const {
-  std::array<const Track*, kMaxTracks> current;
+  std::array<const Track*, kMaxTracks> current{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Track& track = tracks_[i];

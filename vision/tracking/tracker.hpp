@@ -50,9 +50,9 @@ class Tracker {
   static constexpr std::uint16_t kNotInRoster = kMaxRobots;
 
   TrackerSettings settings_;
-  std::vector<RobotId> roster_;                     ///< ascending
-  std::array<std::uint16_t, kMaxRobots> index_of_;  ///< index in the roster, or kNotInRoster
-  std::vector<Track> robots_;                       ///< in the order of the roster
+  std::vector<RobotId> roster_;                       ///< ascending
+  std::array<std::uint16_t, kMaxRobots> index_of_{};  ///< index in the roster, or kNotInRoster
+  std::vector<Track> robots_;                         ///< in the order of the roster
   Track ball_;
   ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;

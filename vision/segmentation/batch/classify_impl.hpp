@@ -32,7 +32,7 @@ struct RgbPixels {
 
 struct Yuv422Pixels {
   static constexpr std::size_t kBytes = 2;
-  Bytes y, uv;
+  Bytes y{}, uv{};
   explicit Yuv422Pixels(const std::uint8_t* pixels) { split_yuv422(pixels, y, uv); }
   Bytes groups(const CoarseTables& tables) const {
     return bit_and(look_up(uv, tables.u), odd_bytes(look_up(uv, tables.v)));

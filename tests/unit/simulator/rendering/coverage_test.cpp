@@ -10,7 +10,7 @@ namespace sidestep::coverage_test {
 using namespace sidestep::coverage;
 
 Points random_points(Rng& rng) {
-  Points points;
+  Points points{};
   const double x = rng.uniform(-0.12, 0.12), y = rng.uniform(-0.12, 0.12), size = rng.uniform(0.001, 0.02);
   for (std::size_t i = 0; i < kSamples; ++i) {
     points.x[i] = static_cast<float>(x + size * kSamplePattern.x[i]);
