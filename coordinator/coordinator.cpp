@@ -42,20 +42,20 @@ std::optional<Verdict> Coordinator::on_registration(const Registration& registra
   answer.epoch = epoch_;
   answer.request_sent_at = registration.sent_at;
   answer.reasons.fill(register_agent(registration));
-  if (answer.reasons.front() == msg::REASON_MALFORMED) ++invalid_;
+  if (answer.reasons.front() == msg::Reason::REASON_MALFORMED) ++invalid_;
   return answer;
 }
 
 msg::Reason Coordinator::register_agent(const Registration& registration) {
-  if (is_malformed(registration)) return msg::REASON_MALFORMED;
-  if (registration.epoch != epoch_) return msg::REASON_WRONG_EPOCH;
+  if (is_malformed(registration)) return msg::Reason::REASON_MALFORMED;
+  if (registration.epoch != epoch_) return msg::Reason::REASON_WRONG_EPOCH;
 
   const RobotId robot = registration.robot;
   const std::span<const Version> versions = registration.versions->versions();
   Record& record = record_of(robot);
   const Incarnation agent = registration.incarnation;
-  if (record.registered && agent == record.incarnation) return msg::REASON_GRANTED;
-  if (record.registered && agent < record.incarnation) return msg::REASON_OLD_INCARNATION;
+  if (record.registered && agent == record.incarnation) return msg::Reason::REASON_GRANTED;
+  if (record.registered && agent < record.incarnation) return msg::Reason::REASON_OLD_INCARNATION;
   if (!record.registered) {
     ledger_.register_robot(robot, versions);
     record.registered = true;
@@ -67,11 +67,11 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });
     };
-    if (!std::ranges::all_of(versions, known)) return msg::REASON_MALFORMED;
+    if (!std::ranges::all_of(versions, known)) return msg::Reason::REASON_MALFORMED;
   }
   record.incarnation = agent;
   record.verdict_count = 0;
-  return msg::REASON_GRANTED;
+  return msg::Reason::REASON_GRANTED;
 }
 
 void Coordinator::on_feedback(const Feedback& feedback) {
@@ -101,8 +101,8 @@ std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
   verdict.epoch = epoch_;
   verdict.proposal_number = proposal.number;
   verdict.request_sent_at = proposal.sent_at;
-  if (const auto refusal = refusal_reason(proposal, record); refusal != msg::REASON_GRANTED) {
-    if (refusal == msg::REASON_MALFORMED) ++invalid_;
+  if (const auto refusal = refusal_reason(proposal, record); refusal != msg::Reason::REASON_GRANTED) {
+    if (refusal == msg::Reason::REASON_MALFORMED) ++invalid_;
     verdict.reasons.fill(refusal);
     return verdict;
   }
@@ -112,7 +112,7 @@ std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
     return again;
   }
   ++proposals_;
-  verdict.reasons.fill(msg::REASON_NOT_EVALUATED);
+  verdict.reasons.fill(msg::Reason::REASON_NOT_EVALUATED);
   decide(proposal, record, verdict);
   ++(verdict.granted_version ? grants_ : denials_);
   record.verdicts[record.verdict_count++ % kVerdictHistory] = verdict;
@@ -120,11 +120,12 @@ std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
 }
 
 msg::Reason Coordinator::refusal_reason(const Proposal& proposal, const Record& record) const {
-  if (proposal.epoch != epoch_) return msg::REASON_WRONG_EPOCH;
-  if (!is_granting() || proposal.incarnation > record.incarnation) return msg::REASON_NOT_ALL_REGISTERED;
-  if (proposal.incarnation < record.incarnation) return msg::REASON_OLD_INCARNATION;
-  if (proposal.candidate_count == 0) return msg::REASON_MALFORMED;
-  return msg::REASON_GRANTED;
+  if (proposal.epoch != epoch_) return msg::Reason::REASON_WRONG_EPOCH;
+  if (!is_granting() || proposal.incarnation > record.incarnation)
+    return msg::Reason::REASON_NOT_ALL_REGISTERED;
+  if (proposal.incarnation < record.incarnation) return msg::Reason::REASON_OLD_INCARNATION;
+  if (proposal.candidate_count == 0) return msg::Reason::REASON_MALFORMED;
+  return msg::Reason::REASON_GRANTED;
 }
 
 const Verdict* Coordinator::find_verdict(const Record& record, VersionNumber proposal_number) const {
@@ -138,10 +139,10 @@ const Verdict* Coordinator::find_verdict(const Record& record, VersionNumber pro
 void Coordinator::decide(const Proposal& proposal, Record& record, Verdict& verdict) {
   for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
     const std::optional<Version>& candidate = proposal.candidates[i];
-    Ruling ruling{msg::REASON_MALFORMED};
+    Ruling ruling{msg::Reason::REASON_MALFORMED};
     if (candidate && candidate->incarnation == record.incarnation) {
       ruling = candidate->number > record.newest_number ? ledger_.grant(*candidate)
-                                                        : Ruling{msg::REASON_OLD_VERSION};
+                                                        : Ruling{msg::Reason::REASON_OLD_VERSION};
       record.newest_number = std::max(record.newest_number, candidate->number);
     }
     verdict.reasons[i] = ruling.reason;
@@ -156,9 +157,9 @@ void Coordinator::decide(const Proposal& proposal, Record& record, Verdict& verd
 msg::CoordinatorState Coordinator::state() const {
   msg::CoordinatorState state;
   state.epoch(epoch_);
-  state.coordinator_mode(!is_active()    ? msg::COORDINATOR_STANDBY
-                         : is_granting() ? msg::COORDINATOR_GRANTING
-                                         : msg::COORDINATOR_REGISTERING);
+  state.coordinator_mode(!is_active()    ? msg::CoordinatorMode::COORDINATOR_STANDBY
+                         : is_granting() ? msg::CoordinatorMode::COORDINATOR_GRANTING
+                                         : msg::CoordinatorMode::COORDINATOR_REGISTERING);
   state.proposals(proposals_);
   state.grants(grants_);
   state.denials(denials_);

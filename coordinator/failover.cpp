@@ -56,7 +56,7 @@ void Failover::record_heartbeat(Time now) {
 void Failover::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
   const auto own_sender = static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number;
   const bool is_own = heartbeat.sender == own_sender && heartbeat.incarnation == self_.incarnation;
-  if (is_own || heartbeat.epoch == 0 || heartbeat.mode == msg::COORDINATOR_STANDBY) return;
+  if (is_own || heartbeat.epoch == 0 || heartbeat.mode == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
   if (heartbeat.epoch < highest_) return;
   if (is_active() && heartbeat.epoch == epoch_) {
     // Two instances with the same number share an epoch, so the grants of neither can be trusted.

@@ -39,17 +39,17 @@ bool is_same(const Version& a, const Version& b) {
 msg::Reason reason_of(Validity validity) {
   switch (validity) {
     case Validity::kValid:
-      return msg::REASON_GRANTED;
+      return msg::Reason::REASON_GRANTED;
     case Validity::kBeyondLimits:
-      return msg::REASON_BEYOND_LIMITS;
+      return msg::Reason::REASON_BEYOND_LIMITS;
     case Validity::kNotAtRest:
-      return msg::REASON_NOT_AT_REST;
+      return msg::Reason::REASON_NOT_AT_REST;
     case Validity::kOutsideField:
-      return msg::REASON_OUTSIDE_FIELD;
+      return msg::Reason::REASON_OUTSIDE_FIELD;
     case Validity::kObstacle:
-      return msg::REASON_OBSTACLE;
+      return msg::Reason::REASON_OBSTACLE;
   }
-  return msg::REASON_MALFORMED;
+  return msg::Reason::REASON_MALFORMED;
 }
 
 }  // namespace
@@ -83,11 +83,12 @@ Ruling Ledger::grant(const Version& candidate) {
   Entry& entry = entry_of(candidate.robot);
   const Version* base = entry.set.find(candidate.base);
   const bool is_absent = entry.set.versions().empty();
-  if (is_absent && !is_rest_version(candidate)) return {msg::REASON_ABSENT};
-  if (!is_absent && !base) return {msg::REASON_BASE_UNKNOWN};
-  if (entry.set.is_full()) return {msg::REASON_LEDGER_FULL};
-  if (const auto refusal = refusal_reason(candidate, base); refusal != msg::REASON_GRANTED) return {refusal};
-  if (const auto blocker = find_blocker(candidate, base)) return {msg::REASON_CONFLICT, *blocker};
+  if (is_absent && !is_rest_version(candidate)) return {msg::Reason::REASON_ABSENT};
+  if (!is_absent && !base) return {msg::Reason::REASON_BASE_UNKNOWN};
+  if (entry.set.is_full()) return {msg::Reason::REASON_LEDGER_FULL};
+  if (const auto refusal = refusal_reason(candidate, base); refusal != msg::Reason::REASON_GRANTED)
+    return {refusal};
+  if (const auto blocker = find_blocker(candidate, base)) return {msg::Reason::REASON_CONFLICT, *blocker};
   entry.set.add(candidate);
   update_bounds(index_of(candidate.robot));
   return {};
@@ -97,11 +98,11 @@ msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base
   const Trajectory& trajectory = candidate.trajectory;
   if (!base) {
     return candidate.inflation_m == 0 ? reason_of(check_workspace(trajectory, rules_))
-                                      : msg::REASON_NOT_CONTINUOUS;
+                                      : msg::Reason::REASON_NOT_CONTINUOUS;
   }
-  if (candidate.number <= base->number) return msg::REASON_OLD_VERSION;
+  if (candidate.number <= base->number) return msg::Reason::REASON_OLD_VERSION;
   if (!continues(trajectory, base->trajectory) || !is_inflation_allowed(candidate, *base))
-    return msg::REASON_NOT_CONTINUOUS;
+    return msg::Reason::REASON_NOT_CONTINUOUS;
   if (const auto validity = check_limits(trajectory, rules_.limits); validity != Validity::kValid)
     return reason_of(validity);
   return reason_of(check_workspace_with_escape(candidate, base->trajectory, rules_));

@@ -10,16 +10,16 @@
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
 #include "coordinator/disc_grid.hpp"
-#include "idl/negotiation.h"
+#include "idl/negotiation.hpp"
 
 namespace sidestep {
 
 /// Why a version is refused, and for REASON_CONFLICT the conflicting robot.
 struct Ruling {
-  msg::Reason reason = msg::REASON_GRANTED;
+  msg::Reason reason = msg::Reason::REASON_GRANTED;
   RobotId blocker = 0;
 
-  bool is_granted() const { return reason == msg::REASON_GRANTED; }
+  bool is_granted() const { return reason == msg::Reason::REASON_GRANTED; }
 };
 
 /// Effect of a fact reported by a robot.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coordinator/ledger.hpp"
-#include "idl/negotiation.h"
+#include "idl/negotiation.hpp"
 
 namespace sidestep {
 

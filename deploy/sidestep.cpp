@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   CommandLine command_line("Distributed multi-robot navigation without collisions.", "sidestep");
   const CliCommand app = command_line.root();
   app.require_subcommand();
+  app.add_version("Fast DDS " + fast_dds_version());
   std::function<int()> action;
   add_run_command(app, action);
   add_simulate_command(app, action);

@@ -109,12 +109,12 @@ msg::AgentStatus Agent::status(Time now) const {
   msg::AgentStatus status;
   status.robot(robot_.id);
   const Negotiation& n = negotiation_;
-  status.agent_state(!n.is_fenced()           ? msg::AGENT_FENCING
-                     : n.needs_registration() ? msg::AGENT_REGISTERING
-                     : n.is_absent()          ? msg::AGENT_ABSENT
-                     : arrived_               ? msg::AGENT_ARRIVED
-                     : n.may_propose(now)     ? msg::AGENT_DRIVING
-                                              : msg::AGENT_WAITING);
+  status.agent_state(!n.is_fenced()           ? msg::AgentState::AGENT_FENCING
+                     : n.needs_registration() ? msg::AgentState::AGENT_REGISTERING
+                     : n.is_absent()          ? msg::AgentState::AGENT_ABSENT
+                     : arrived_               ? msg::AgentState::AGENT_ARRIVED
+                     : n.may_propose(now)     ? msg::AgentState::AGENT_DRIVING
+                                              : msg::AgentState::AGENT_WAITING);
   status.goal_index(static_cast<std::uint32_t>(goal_index_));
   status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());
   status.speed_mps(estimate_.velocity_mps.norm());

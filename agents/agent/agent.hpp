@@ -14,7 +14,7 @@
 #include "agents/navigation/route_planner.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 
 namespace sidestep {
 

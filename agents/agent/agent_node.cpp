@@ -8,7 +8,7 @@
 #include "common/messaging/histogram_codec.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
-#include "idl/disturbance.h"
+#include "idl/disturbance.hpp"
 
 namespace sidestep {
 namespace {
@@ -107,7 +107,8 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
 }
 
 void AgentNode::on_disturbance(const msg::Disturbance& message) {
-  if (message.robot() != robot_ || message.disturbance_kind() != msg::DISTURBANCE_PLACE) return;
+  if (message.robot() != robot_ || message.disturbance_kind() != msg::DisturbanceKind::DISTURBANCE_PLACE)
+    return;
   const Vec2 position(message.x_m(), message.y_m());
   if (position.allFinite())
     agent_.on_placement(position);

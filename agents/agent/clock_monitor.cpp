@@ -62,9 +62,9 @@ void ClockMonitor::fill(msg::AgentStatus& status, Time now) const {
   status.clock_offset_s(offset ? to_seconds(offset->middle()) : 0);
   status.clock_uncertainty_s(offset ? to_seconds(offset->uncertainty()) : -1);
   status.invalid(status.invalid() + invalid_);
-  const bool is_active =
-      status.agent_state() == msg::AGENT_DRIVING || status.agent_state() == msg::AGENT_WAITING;
-  if (is_active && is_beyond_bound(now)) status.agent_state(msg::AGENT_CLOCK_OUT_OF_BOUND);
+  const bool is_active = status.agent_state() == msg::AgentState::AGENT_DRIVING ||
+                         status.agent_state() == msg::AgentState::AGENT_WAITING;
+  if (is_active && is_beyond_bound(now)) status.agent_state(msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
 }
 
 }  // namespace sidestep

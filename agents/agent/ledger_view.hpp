@@ -5,7 +5,7 @@
 
 #include "common/motion/trajectory_bounds.hpp"
 #include "common/motion/version.hpp"
-#include "idl/negotiation.h"
+#include "idl/negotiation.hpp"
 
 namespace sidestep {
 

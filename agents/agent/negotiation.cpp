@@ -119,7 +119,7 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   if (heartbeat.epoch > epoch_) adopt_epoch(heartbeat.epoch);
   last_heartbeat_at_ = now;
   missing_ = std::ranges::find(heartbeat.missing, robot_) != heartbeat.missing.end();
-  granting_ = heartbeat.mode == msg::COORDINATOR_GRANTING;
+  granting_ = heartbeat.mode == msg::CoordinatorMode::COORDINATOR_GRANTING;
 }
 
 bool Negotiation::may_propose(Time now) const {
@@ -199,7 +199,7 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
   if (verdict.granted_version == 0) {
     ++counts_.denials;
     // The coordinator knows an earlier agent of the robot but not this one: the registration was lost.
-    if (verdict.reasons.front() == msg::REASON_NOT_ALL_REGISTERED) registration_pending_ = true;
+    if (verdict.reasons.front() == msg::Reason::REASON_NOT_ALL_REGISTERED) registration_pending_ = true;
     return {std::nullopt, round_trip};
   }
   const auto end = sent->candidates.begin() + static_cast<std::ptrdiff_t>(sent->count);

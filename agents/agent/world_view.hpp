@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/protocol/robot_messages.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 

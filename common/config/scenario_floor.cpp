@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 namespace {

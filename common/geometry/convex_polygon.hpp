@@ -16,7 +16,7 @@ struct ConvexPolygon {
 
 /// The distance from a point to the boundary of the convex polygon with these corners, negative inside.
 inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
-  double nearest2 = std::numeric_limits<double>::infinity();
+  double nearest2 = std::numeric_limits<double>::max();
   bool inside = true;
   for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
     const Segment edge{corners[last], corners[i]};
@@ -29,7 +29,7 @@ inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
 /// The squared distance from a segment to the convex polygon with these corners, 0 inside. The polygon may be
 /// degenerate (without area).
 inline double squared_distance(const Segment& s, std::span<const Vec2> corners) {
-  double nearest2 = std::numeric_limits<double>::infinity();
+  double nearest2 = std::numeric_limits<double>::max();
   bool inside = true;
   for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
     const Segment edge{corners[last], corners[i]};

@@ -10,6 +10,8 @@
 namespace sidestep {
 namespace {
 
+using Part = LayoutError::Part;
+
 constexpr const char* kExpected = "a marker layout";
 constexpr Range kCoordinate_m{-1, 1};
 constexpr Range kRadius_m{0.001, 0.5};
@@ -69,7 +71,6 @@ MarkerLayout parse_layout(const std::string& text, const std::string& file_name)
   const Locations patterns = read_patterns(map, layout);
   map.finish();
   if (const auto error = validation_error(layout)) {
-    using Part = LayoutError::Part;
     const Locations& locations = error->part == Part::kDots ? dots : patterns;
     const char* const list = error->part == Part::kCentre ? "centre"
                              : error->part == Part::kDots ? "dots"

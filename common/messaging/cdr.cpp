@@ -2,108 +2,91 @@
 #include "common/messaging/cdr.hpp"
 
 #include <exception>
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
 
 #include "common/messaging/topics.hpp"
 
 namespace sidestep {
 namespace {
 
-using eprosima::fastcdr::Cdr;
-using eprosima::fastcdr::FastBuffer;
+using fast_dds::CdrCoder;
+using Bytes = std::span<const std::uint8_t>;
 
-Cdr cdr_over(FastBuffer& buffer) { return Cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::CORBA_CDR); }
+constexpr std::size_t kCountSize = 4;
+constexpr std::size_t kMaxPadding = 3;
+
+std::uint32_t read_uint32(Bytes bytes, ByteOrder order) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) {
+    const int shift = order == ByteOrder::kBigEndian ? 24 - 8 * i : 8 * i;
+    value |= std::uint32_t{bytes[static_cast<std::size_t>(i)]} << shift;
+  }
+  return value;
+}
 
 /// Whether the generated code can read the bytes safely. A type's sequence is its last member, so an
 /// empty message ends with the sequence's count. A count beyond the bound would make the generated code
 /// allocate that much memory.
 template <typename Message>
-[[nodiscard]] bool is_acceptable(std::span<const std::uint8_t> bytes, std::size_t max_elements) {
-  static const std::size_t min_size = [] {
-    std::vector<std::uint8_t> empty;
-    const Message message;
-    append_cdr<Message>(&message, empty);
-    return empty.size();
-  }();
+[[nodiscard]] bool is_acceptable(Bytes bytes, ByteOrder order, std::size_t max_elements) {
+  static const std::size_t min_size = fast_dds::cdr_size(Message());
   if (bytes.size() < min_size) return false;
-  if (max_elements == 0) return bytes.size() == min_size;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < 4; ++i) count |= std::uint32_t{bytes[min_size - 4 + i]} << (8 * i);
-  return count <= max_elements;
+  return max_elements == 0 ||
+         read_uint32(bytes.subspan(min_size - kCountSize, kCountSize), order) <= max_elements;
 }
 
 }  // namespace
 
 template <typename Message>
-void append_cdr(const void* message, std::vector<std::uint8_t>& bytes) {
-  const Message& typed = *static_cast<const Message*>(message);
-  const std::size_t begin = bytes.size(), max_size = Message::getCdrSerializedSize(typed);
-  bytes.resize(begin + max_size);
-  FastBuffer buffer(reinterpret_cast<char*>(bytes.data() + begin), max_size);
-  Cdr cdr = cdr_over(buffer);
-  typed.serialize(cdr);
-  bytes.resize(begin + cdr.getSerializedDataLength());
+std::size_t cdr_size(const void* message) {
+  return fast_dds::cdr_size(*static_cast<const Message*>(message));
 }
 
 template <typename Message>
-bool read_cdr(std::span<const std::uint8_t> bytes, std::size_t max_elements,
-              const std::function<void(const void*)>& use) {
-  if (!is_acceptable<Message>(bytes, max_elements)) return false;
-  Message message;
+void write_cdr(const void* message, std::span<std::uint8_t> bytes) {
+  CdrCoder(bytes, ByteOrder::kLittleEndian).write(*static_cast<const Message*>(message));
+}
+
+template <typename Message>
+CdrKey cdr_key(const void* message) {
+  CdrKey result{};
+  CdrCoder(result, ByteOrder::kBigEndian).write_key(*static_cast<const Message*>(message));
+  return result;
+}
+
+template <typename Message>
+bool read_cdr(Bytes bytes, ByteOrder order, std::size_t max_elements, void* message) {
+  if (!is_acceptable<Message>(bytes, order, max_elements)) return false;
   try {
-    // FastBuffer takes a mutable pointer, but deserialisation only reads.
-    FastBuffer buffer(reinterpret_cast<char*>(const_cast<std::uint8_t*>(bytes.data())), bytes.size());
-    Cdr cdr = cdr_over(buffer);
-    message.deserialize(cdr);
+    CdrCoder coder(bytes, order);
+    coder.read(*static_cast<Message*>(message));
+    // Fast CDR 2 takes the end of the bytes between two members for the end of the message.
+    const bool is_whole = coder.position() == cdr_size<Message>(message);
+    return is_whole && bytes.size() - coder.position() <= kMaxPadding;
   } catch (const std::exception&) {
     return false;
   }
-  use(&message);
-  return true;
 }
 
-template void append_cdr<msg::CameraImage>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::CameraImage>(std::span<const std::uint8_t>, std::size_t,
-                                         const std::function<void(const void*)>&);
-template void append_cdr<msg::DetectionFrame>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::DetectionFrame>(std::span<const std::uint8_t>, std::size_t,
-                                            const std::function<void(const void*)>&);
-template void append_cdr<msg::WorldState>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::WorldState>(std::span<const std::uint8_t>, std::size_t,
-                                        const std::function<void(const void*)>&);
-template void append_cdr<msg::Command>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Command>(std::span<const std::uint8_t>, std::size_t,
-                                     const std::function<void(const void*)>&);
-template void append_cdr<msg::Feedback>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Feedback>(std::span<const std::uint8_t>, std::size_t,
-                                      const std::function<void(const void*)>&);
-template void append_cdr<msg::Registration>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Registration>(std::span<const std::uint8_t>, std::size_t,
-                                          const std::function<void(const void*)>&);
-template void append_cdr<msg::Proposal>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Proposal>(std::span<const std::uint8_t>, std::size_t,
-                                      const std::function<void(const void*)>&);
-template void append_cdr<msg::Verdict>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Verdict>(std::span<const std::uint8_t>, std::size_t,
-                                     const std::function<void(const void*)>&);
-template void append_cdr<msg::LedgerPage>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::LedgerPage>(std::span<const std::uint8_t>, std::size_t,
-                                        const std::function<void(const void*)>&);
-template void append_cdr<msg::CoordinatorState>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::CoordinatorState>(std::span<const std::uint8_t>, std::size_t,
-                                              const std::function<void(const void*)>&);
-template void append_cdr<msg::AgentStatus>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::AgentStatus>(std::span<const std::uint8_t>, std::size_t,
-                                         const std::function<void(const void*)>&);
-template void append_cdr<msg::Disturbance>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::Disturbance>(std::span<const std::uint8_t>, std::size_t,
-                                         const std::function<void(const void*)>&);
-template void append_cdr<msg::NetworkFault>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::NetworkFault>(std::span<const std::uint8_t>, std::size_t,
-                                          const std::function<void(const void*)>&);
-template void append_cdr<msg::GroundTruth>(const void*, std::vector<std::uint8_t>&);
-template bool read_cdr<msg::GroundTruth>(std::span<const std::uint8_t>, std::size_t,
-                                         const std::function<void(const void*)>&);
+// One instantiation for each message of the topic table.
+#define SIDESTEP_INSTANTIATE_CDR(Message)                                      \
+  template std::size_t cdr_size<msg::Message>(const void*);                    \
+  template void write_cdr<msg::Message>(const void*, std::span<std::uint8_t>); \
+  template CdrKey cdr_key<msg::Message>(const void*);                          \
+  template bool read_cdr<msg::Message>(Bytes, ByteOrder, std::size_t, void*);
+SIDESTEP_INSTANTIATE_CDR(CameraImage)
+SIDESTEP_INSTANTIATE_CDR(DetectionFrame)
+SIDESTEP_INSTANTIATE_CDR(WorldState)
+SIDESTEP_INSTANTIATE_CDR(Command)
+SIDESTEP_INSTANTIATE_CDR(Feedback)
+SIDESTEP_INSTANTIATE_CDR(Registration)
+SIDESTEP_INSTANTIATE_CDR(Proposal)
+SIDESTEP_INSTANTIATE_CDR(Verdict)
+SIDESTEP_INSTANTIATE_CDR(LedgerPage)
+SIDESTEP_INSTANTIATE_CDR(CoordinatorState)
+SIDESTEP_INSTANTIATE_CDR(AgentStatus)
+SIDESTEP_INSTANTIATE_CDR(Disturbance)
+SIDESTEP_INSTANTIATE_CDR(NetworkFault)
+SIDESTEP_INSTANTIATE_CDR(GroundTruth)
+#undef SIDESTEP_INSTANTIATE_CDR
 
 }  // namespace sidestep

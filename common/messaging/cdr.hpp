@@ -1,23 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <vector>
+
+#include "fast_dds/cdr.hpp"
 
 namespace sidestep {
 
-/// Appends the message's CDR bytes, little-endian, without an encapsulation header. `message` points to a
-/// Message. Instantiated in cdr.cpp for the messages of all topics.
-template <typename Message>
-void append_cdr(const void* message, std::vector<std::uint8_t>& bytes);
+using ByteOrder = fast_dds::ByteOrder;
 
-/// Decodes untrusted bytes and passes the message, a Message, to `use`. Returns false if the bytes are not a
-/// valid Message, or if its sequence has more than `max_elements` elements (0: the type has no sequence).
+/// A key's CDR bytes, big-endian, followed by zeros.
+using CdrKey = std::array<std::uint8_t, 16>;
+
+/// The templates below are instantiated in cdr.cpp for the messages of all topics. Each `message` points to a
+/// Message. Bytes have no encapsulation header.
+
 template <typename Message>
-[[nodiscard]] bool read_cdr(std::span<const std::uint8_t> bytes, std::size_t max_elements,
-                            const std::function<void(const void* message)>& use);
+std::size_t cdr_size(const void* message);
+
+/// Writes the message's CDR bytes, little-endian. Precondition: there are cdr_size() bytes.
+template <typename Message>
+void write_cdr(const void* message, std::span<std::uint8_t> bytes);
+
+template <typename Message>
+CdrKey cdr_key(const void* message);
+
+/// Decodes untrusted bytes, which may end with up to three bytes of padding. False if the bytes are not a
+/// valid Message, or if its sequence has more than `max_elements` elements (0: the type has no sequence); the
+/// message is then unspecified.
+template <typename Message>
+[[nodiscard]] bool read_cdr(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
+                            void* message);
 
 }  // namespace sidestep

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/time/histogram.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 
 namespace sidestep {
 

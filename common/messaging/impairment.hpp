@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/messaging/impaired_link.hpp"
-#include "idl/disturbance.h"
+#include "idl/disturbance.hpp"
 
 namespace sidestep {
 

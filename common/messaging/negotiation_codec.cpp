@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/messaging/enumerator.hpp"
 #include "common/messaging/version_codec.hpp"
 
 namespace sidestep {
@@ -51,7 +52,7 @@ std::optional<Registration> decode(const msg::Registration& message) {
 }
 
 std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
-  const auto is_known = [](msg::Reason reason) { return reason <= msg::REASON_ABSENT; };
+  const auto is_known = [](msg::Reason reason) { return is_enumerator(reason, msg::Reason::REASON_ABSENT); };
   if (message.robot() != robot || !std::ranges::all_of(message.reasons(), is_known)) return std::nullopt;
   Verdict verdict;
   verdict.robot = robot;
@@ -66,7 +67,8 @@ std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
 }
 
 std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now) {
-  if (!is_plausible(message.epoch(), now) || message.coordinator_mode() > msg::COORDINATOR_GRANTING)
+  if (!is_plausible(message.epoch(), now) ||
+      !is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING))
     return std::nullopt;
   return CoordinatorHeartbeat{message.header().sender(), message.header().incarnation(), message.epoch(),
                               message.coordinator_mode(), message.missing()};

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/protocol/robot_messages.hpp"
-#include "idl/robot.h"
+#include "idl/robot.hpp"
 
 namespace sidestep {
 

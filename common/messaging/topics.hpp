@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "common/messaging/cdr.hpp"
-#include "idl/disturbance.h"
-#include "idl/monitor.h"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
-#include "idl/vision.h"
+#include "idl/disturbance.hpp"
+#include "idl/monitor.hpp"
+#include "idl/negotiation.hpp"
+#include "idl/robot.hpp"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 
@@ -23,14 +23,19 @@ namespace sidestep {
 /// may go by shared memory.
 enum class Qos : std::uint8_t { kState, kEvent, kImage };
 
-/// A message type without its C++ type, for buses and recordings.
+/// A message type without its C++ type, for buses and recordings. Pointers to messages are to messages of
+/// this type.
 struct MessageType {
   const char* name;          ///< as in the IDL, e.g. sidestep::msg::Proposal
   std::size_t max_elements;  ///< bound of the sequence that is the type's last member, 0: none
+  std::shared_ptr<void> (*make)();
   std::shared_ptr<const void> (*copy)(const void* message);
-  void (*append_cdr)(const void* message, std::vector<std::uint8_t>& bytes);
-  bool (*read_cdr)(std::span<const std::uint8_t> bytes, std::size_t max_elements,
-                   const std::function<void(const void* message)>& use);
+  /// As the templates of these names in cdr.hpp.
+  std::size_t (*cdr_size)(const void* message);
+  void (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
+  CdrKey (*cdr_key)(const void* message);
+  bool (*read_cdr)(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
+                   void* message);
 };
 
 /// A row of the topic table.
@@ -50,7 +55,15 @@ constexpr MessageType message_type(const char* name, std::size_t max_elements = 
   const auto copy = [](const void* m) -> std::shared_ptr<const void> {
     return std::make_shared<const Message>(*static_cast<const Message*>(m));
   };
-  return {name, max_elements, copy, append_cdr<Message>, read_cdr<Message>};
+  const auto make = [] { return std::shared_ptr<void>(std::make_shared<Message>()); };
+  return {name,
+          max_elements,
+          make,
+          copy,
+          cdr_size<Message>,
+          write_cdr<Message>,
+          cdr_key<Message>,
+          read_cdr<Message>};
 }
 
 /// The DDS topic name: the topic's name, followed by the robot's number for topics with one channel per
@@ -59,14 +72,12 @@ inline std::string channel_name(const TopicInfo& topic, std::uint32_t robot) {
   return topic.per_robot ? std::string(topic.name) + "/" + std::to_string(robot) : topic.name;
 }
 
-/// These call the templates of the same names in cdr.hpp for the topic's message type.
-inline void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {
-  topic.type.append_cdr(message, bytes);
-}
-[[nodiscard]] inline bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
-                                   const std::function<void(const void* message)>& use) {
-  return topic.type.read_cdr(bytes, topic.type.max_elements, use);
-}
+/// Appends the message's CDR bytes, little-endian, without an encapsulation header.
+void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes);
+/// Decodes untrusted bytes as written by append_cdr(), and passes the message to `use`. False if the bytes
+/// are not a valid message of the topic.
+[[nodiscard]] bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
+                            const std::function<void(const void* message)>& use);
 
 /// The topic table.
 namespace topics {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/motion/version.hpp"
-#include "idl/trajectory.h"
+#include "idl/trajectory.hpp"
 
 namespace sidestep {
 

@@ -112,6 +112,8 @@ void CliCommand::require_subcommand() const { app_->require_subcommand(1); }
 
 void CliCommand::add_footer(const std::string& text) const { app_->footer(text); }
 
+void CliCommand::add_version(const std::string& text) const { app_->set_version_flag("--version", text); }
+
 template <typename Value>
 Option CliCommand::add_option(const std::string& name, Value& value, const std::string& description) const {
   CLI::Option& option = *app_->add_option(name, value, description);

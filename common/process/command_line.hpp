@@ -61,6 +61,8 @@ class CliCommand {
   void require_subcommand() const;
   /// Text at the end of --help.
   void add_footer(const std::string& text) const;
+  /// Adds --version, which prints this text.
+  void add_version(const std::string& text) const;
   /// An option if the name begins with dashes, else a positional argument. `Value` is one of the types for
   /// which command_line.cpp instantiates this template. NaN and infinity are refused.
   template <typename Value>

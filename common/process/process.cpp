@@ -37,6 +37,7 @@ int run_guarded(const std::string& name, const std::function<int()>& work) {
 int run_process(int argc, char** argv, const Program& program) {
   CommandLine command_line(program.description, program.name);
   const CliCommand app = command_line.root();
+  app.add_version("Fast DDS " + fast_dds_version());
   std::string scenario_file;
   DdsSettings dds;
   app.add_option("--scenario", scenario_file, "scenario file").required();
@@ -52,7 +53,8 @@ int run_process(int argc, char** argv, const Program& program) {
     const StopSignals stop_signals([&bus] { bus.stop(); });
     const std::shared_ptr<void> nodes = program.start(bus, scenario);
     if (dds.faults) apply_network_faults(bus, program.fault_target(), dds.participant);
-    fmt::print(stderr, "{}: domain {}, listening on {}\n", dds.participant, dds.domain, bus.locators());
+    fmt::print(stderr, "{}: Fast DDS {}, domain {}, listening on {}\n", dds.participant, fast_dds_version(),
+               dds.domain, bus.locators());
     fmt::print(stderr, "{}: {}\n", dds.participant, budget_line(budget_of(scenario), scenario.margin_m));
     bus.run();
     return 0;

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "common/motion/version_set.hpp"
-#include "idl/negotiation.h"
+#include "idl/negotiation.hpp"
 
 namespace sidestep {
 
@@ -49,7 +49,7 @@ struct CoordinatorHeartbeat {
   std::uint32_t sender = 0;
   Incarnation incarnation = 0;
   Epoch epoch = 0;  ///< 0: standing by
-  msg::CoordinatorMode mode = msg::COORDINATOR_STANDBY;
+  msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
   std::span<const RobotId> missing;  ///< unregistered robots; valid as long as the decoded message
 };
 

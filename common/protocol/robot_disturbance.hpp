@@ -3,7 +3,7 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/motion/version.hpp"
-#include "idl/disturbance.h"
+#include "idl/disturbance.hpp"
 
 namespace sidestep {
 
@@ -11,7 +11,7 @@ namespace sidestep {
 /// fields.
 struct RobotDisturbance {
   RobotId robot = 0;
-  msg::DisturbanceKind kind = msg::DISTURBANCE_PUSH;
+  msg::DisturbanceKind kind = msg::DisturbanceKind::DISTURBANCE_PUSH;
   Vec2 push_mps{0, 0};       ///< change of velocity
   double grip = 1;           ///< while slipping
   Vec2 place_m{0, 0};        ///< where it is put down

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/messaging/dds/event_loop.hpp"
-#include "common/messaging/dds/lease.hpp"
+#include "common/messaging/dds/presence.hpp"
 #include "common/messaging/senders.hpp"
 
 namespace sidestep {
@@ -18,8 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kDiscoveryTimeout = 5s;       ///< longer than the period of participant announcements
 constexpr Duration kDiscoverySettling = 1500ms;  ///< without new subscribers, all are known after this time
-constexpr Duration kLeaseSlack =
-    2s;  ///< a dead participant is removed at most this long after its lease expires
+constexpr Duration kSilenceSlack = 2s;  ///< a dead participant is forgotten this long after the limit
 constexpr auto kPollPeriod = 10ms;
 
 template <typename Condition>
@@ -58,7 +57,7 @@ void wait_for_writer(OperatorChannel& channel, const std::string& topic, const s
 }
 
 void wait_until_acknowledged(OperatorChannel& channel) {
-  if (!channel.wait_until_acknowledged(participant_lease() + kLeaseSlack)) {
+  if (!channel.wait_until_acknowledged(kSilenceLimit + kSilenceSlack)) {
     throw std::runtime_error(fmt::format("the fault was sent, but not acknowledged by all of {}",
                                          fmt::join(channel.subscribers(), ", ")));
   }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/messaging/dds/operator_channel.hpp"
-#include "idl/header.h"
+#include "idl/header.hpp"
 
 namespace sidestep {
 

@@ -58,6 +58,7 @@ Report Launcher::run() {
     bus_.stop();
   });
   const Time begin = bus_.now();
+  print(fmt::format("Fast DDS {}, domain {}", fast_dds_version(), options_.dds.domain));
   if (network_) {
     print(fmt::format(
         "hosts are network namespaces; to observe them, run: ip netns exec {} sidestep topic list "

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 
 namespace sidestep {
 

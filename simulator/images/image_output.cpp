@@ -25,7 +25,8 @@ ImageOutput::ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simu
     renderers_.emplace_back(camera, scenario.field, butterfly(), spec, Rng(rng.bits()));
   image_.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
   image_.header().incarnation(incarnation);
-  image_.image_format(images.format == PixelFormat::kRgb ? msg::IMAGE_RGB : msg::IMAGE_YUV422);
+  image_.image_format(images.format == PixelFormat::kRgb ? msg::ImageFormat::IMAGE_RGB
+                                                         : msg::ImageFormat::IMAGE_YUV422);
   image_.width_px(static_cast<std::uint32_t>(images.width_px));
   image_.height_px(static_cast<std::uint32_t>(images.height_px));
   image_.pixels().resize(ImageView{images.format, images.width_px, images.height_px}.bytes());

@@ -7,7 +7,7 @@
 #include "common/camera/camera_model.hpp"
 #include "common/config/scenario.hpp"
 #include "common/league/vision_packet.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "simulator/world/cameras.hpp"
 
 namespace sidestep {

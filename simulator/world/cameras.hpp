@@ -7,7 +7,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/random/rng.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "simulator/world/body.hpp"
 
 namespace sidestep {

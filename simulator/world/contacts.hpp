@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/circle.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 #include "simulator/world/body.hpp"
 
 namespace sidestep {

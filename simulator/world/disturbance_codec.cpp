@@ -20,20 +20,20 @@ bool has_valid_duration(const RobotDisturbance& disturbance) {
 
 bool is_valid(const RobotDisturbance& disturbance, const Field& field, double robot_radius_m) {
   switch (disturbance.kind) {
-    case msg::DISTURBANCE_PUSH:
+    case msg::DisturbanceKind::DISTURBANCE_PUSH:
       return is_within(disturbance.push_mps.x(), kMaxPush_mps) &&
              is_within(disturbance.push_mps.y(), kMaxPush_mps);
-    case msg::DISTURBANCE_SLIP:
+    case msg::DisturbanceKind::DISTURBANCE_SLIP:
       return disturbance.grip >= 0 && disturbance.grip <= 1 && has_valid_duration(disturbance);
-    case msg::DISTURBANCE_BLOCK:
+    case msg::DisturbanceKind::DISTURBANCE_BLOCK:
       return is_within(disturbance.heading_rad, kMaxAngle_rad) && has_valid_duration(disturbance);
-    case msg::DISTURBANCE_PLACE:
+    case msg::DisturbanceKind::DISTURBANCE_PLACE:
       return is_within(disturbance.heading_rad, kMaxAngle_rad) && disturbance.place_m.allFinite() &&
              field.contains(disturbance.place_m, robot_radius_m);
-    case msg::DISTURBANCE_CLOCK:
+    case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       return disturbance.clock_offset >= -kMaxDuration && disturbance.clock_offset <= kMaxDuration;
-    case msg::DISTURBANCE_LIFT:
-    case msg::DISTURBANCE_REBOOT:
+    case msg::DisturbanceKind::DISTURBANCE_LIFT:
+    case msg::DisturbanceKind::DISTURBANCE_REBOOT:
       return true;
   }
   return false;

@@ -9,7 +9,7 @@
 #include "common/config/scenario.hpp"
 #include "common/protocol/robot_disturbance.hpp"
 #include "common/random/rng.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 #include "simulator/world/ball.hpp"
 #include "simulator/world/body.hpp"
 #include "simulator/world/contacts.hpp"

@@ -16,29 +16,29 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
   Body& body = bodies_[index];
   const auto kind = disturbance.kind;
   switch (kind) {
-    case msg::DISTURBANCE_PUSH:
+    case msg::DisturbanceKind::DISTURBANCE_PUSH:
       if (!body.is_on_floor()) return false;
       body.push(disturbance.push_mps);
       record_disturbance(index, now);
       return true;
-    case msg::DISTURBANCE_SLIP:
+    case msg::DisturbanceKind::DISTURBANCE_SLIP:
       body.set_grip(disturbance.grip);
       start_disturbance({index, kind, now + disturbance.duration, Vec2(0, 0), 0});
       record_disturbance(index, now);
       return true;
-    case msg::DISTURBANCE_BLOCK:
+    case msg::DisturbanceKind::DISTURBANCE_BLOCK:
       body.set_blocked(disturbance.heading_rad);
       start_disturbance({index, kind, now + disturbance.duration, Vec2(0, 0), 0});
       record_disturbance(index, now);
       return true;
-    case msg::DISTURBANCE_LIFT:
+    case msg::DisturbanceKind::DISTURBANCE_LIFT:
       lift(index, now);
       return true;
-    case msg::DISTURBANCE_PLACE:
+    case msg::DisturbanceKind::DISTURBANCE_PLACE:
       if (body.is_on_floor()) return false;
       start_disturbance({index, kind, Time::max(), disturbance.place_m, disturbance.heading_rad});
       return true;
-    case msg::DISTURBANCE_REBOOT:
+    case msg::DisturbanceKind::DISTURBANCE_REBOOT:
       if (!body.is_on_floor()) {
         lift(index, now);
       } else {
@@ -47,7 +47,7 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       }
       record_disturbance(index, now);
       return true;
-    case msg::DISTURBANCE_CLOCK:
+    case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       robot_time(index, now);
       robot.clock_offset = disturbance.clock_offset;
       return true;
@@ -56,7 +56,7 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
 }
 
 void World::lift(std::size_t index, Time now) {
-  cancel_disturbances(index, msg::DISTURBANCE_PLACE);
+  cancel_disturbances(index, msg::DisturbanceKind::DISTURBANCE_PLACE);
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
   bodies_[index].lift();
@@ -77,7 +77,7 @@ void World::record_disturbance(std::size_t index, Time at) {
 std::optional<Time> World::disturbance_end(std::size_t index) const {
   std::optional<Time> last = robots_[index].last_disturbance;
   for (const ActiveDisturbance& active : active_disturbances_) {
-    if (active.robot == index && active.kind != msg::DISTURBANCE_PLACE)
+    if (active.robot == index && active.kind != msg::DisturbanceKind::DISTURBANCE_PLACE)
       last = std::max(last.value_or(active.end), active.end);
   }
   return last;
@@ -96,10 +96,10 @@ void World::cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind) {
 
 void World::end_disturbances() {
   std::erase_if(active_disturbances_, [this](const ActiveDisturbance& active) {
-    if (active.kind == msg::DISTURBANCE_PLACE) return try_put_down(active);
+    if (active.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return try_put_down(active);
     if (active.end > time_) return false;
     record_disturbance(active.robot, active.end);
-    if (active.kind == msg::DISTURBANCE_SLIP)
+    if (active.kind == msg::DisturbanceKind::DISTURBANCE_SLIP)
       bodies_[active.robot].set_grip(1);
     else
       bodies_[active.robot].set_blocked(std::nullopt);

@@ -2,6 +2,7 @@
 // Peers, compiled for the instruction sets of the machine that builds them.
 #include "tests/bench/collision_peers.hpp"
 
+#include <boost/geometry.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/index/rtree.hpp>

@@ -34,7 +34,7 @@ class NanoflannTree {
     double distance2 = 0;
     nanoflann::KNNResultSet<double> found(1);
     found.init(&index, &distance2);
-    index_->findNeighbors(found, point.data(), nanoflann::SearchParams());
+    index_->findNeighbors(found, point.data(), {});
     return static_cast<std::uint32_t>(index);
   }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/needs_root.hpp"
 
@@ -26,7 +26,7 @@ std::string figures(const nlohmann::json& report) {
 
 TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without contact") {
   SIDESTEP_NEEDS_ROOT();
-  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("two-teams-22"));
+  const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));
   for (const char* host : {"floor", "east", "west"}) {
     const std::string name = "sidestep-" + std::to_string(run->pid()) + "-" + host;
     REQUIRE(run->command({"fault", "link", name, "--loss", "0.05"}) == "exit code 0");
@@ -52,7 +52,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host") {
   const auto file =
       std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << hosts;
-  const auto run = LaunchedRun::on_three_hosts(crossing_images(), {"--seconds", "120"}, file.string());
+  const auto run = LaunchedRun::on_namespaces(crossing_images(), {"--seconds", "120"}, file.string());
   CHECK(run->wait_for_end() == "exit code 0");
   INFO(run->output());
   const auto report = run->report();
@@ -63,7 +63,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host") {
 
 TEST_CASE("the robots of a host that is cut off for five seconds rest, the others drive on, all arrive") {
   SIDESTEP_NEEDS_ROOT();
-  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("two-teams-22"));
+  const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));
   REQUIRE(run->wait_until([&] { return run->max_speed_mps() > 0.5; }));
   const auto cut_off = run->robots_on("west");
   std::vector<RobotId> others = run->robots_on("floor");
@@ -95,7 +95,7 @@ TEST_CASE("the robots of a host that is cut off for five seconds rest, the other
 
 TEST_CASE("the next run removes the namespaces of a killed launcher") {
   SIDESTEP_NEEDS_ROOT();
-  const auto killed = LaunchedRun::on_three_hosts(shipped_scenario("crossing"));
+  const auto killed = LaunchedRun::on_namespaces(shipped_scenario("crossing"));
   REQUIRE(killed->wait_until([&] { return killed->children().size() == 11; }));
   REQUIRE(has_namespaces(killed->pid()));
   REQUIRE(kill(killed->pid(), SIGKILL) == 0);
@@ -109,7 +109,7 @@ TEST_CASE("the next run removes the namespaces of a killed launcher") {
 
 TEST_CASE("packet faults for unknown hosts and without a loss are refused") {
   SIDESTEP_NEEDS_ROOT();
-  const auto run = LaunchedRun::on_three_hosts(shipped_scenario("crossing"));
+  const auto run = LaunchedRun::on_namespaces(shipped_scenario("crossing"));
   CHECK(run->command({"fault", "partition", "sidestep-" + std::to_string(run->pid()) + "-south"}) ==
         "exit code 1");
   CHECK(run->printed("no host sidestep-"));

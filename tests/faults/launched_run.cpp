@@ -2,7 +2,6 @@
 #include "tests/faults/launched_run.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "common/geometry/vec2.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/hosts_file.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep {
 namespace {
@@ -35,9 +35,9 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
   subscribe();
 }
 
-std::unique_ptr<LaunchedRun> LaunchedRun::on_three_hosts(const std::string& scenario,
-                                                         const std::vector<std::string>& extra_arguments,
-                                                         const std::string& hosts_file) {
+std::unique_ptr<LaunchedRun> LaunchedRun::on_namespaces(const std::string& scenario,
+                                                        const std::vector<std::string>& extra_arguments,
+                                                        const std::string& hosts_file) {
   std::vector<std::string> arguments{"--hosts", hosts_file};
   arguments.insert(arguments.end(), extra_arguments.begin(), extra_arguments.end());
   std::unique_ptr<LaunchedRun> run(new LaunchedRun(scenario, arguments, load_hosts(hosts_file).interface));

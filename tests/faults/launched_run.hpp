@@ -26,11 +26,11 @@ class LaunchedRun {
  public:
   /// `scenario` is the text of a scenario file.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments = {});
-  /// A run on the three namespace hosts of the hosts file. This thread stays in their network during the
-  /// lifetime of the object. Needs root.
-  static std::unique_ptr<LaunchedRun> on_three_hosts(const std::string& scenario,
-                                                     const std::vector<std::string>& extra_arguments = {},
-                                                     const std::string& hosts_file = three_hosts_file());
+  /// A run on the hosts of a hosts file that creates namespaces. This thread stays in their network during
+  /// the lifetime of the object. Needs root.
+  static std::unique_ptr<LaunchedRun> on_namespaces(const std::string& scenario,
+                                                    const std::vector<std::string>& extra_arguments = {},
+                                                    const std::string& hosts_file = three_hosts_file());
   ~LaunchedRun();
   LaunchedRun(const LaunchedRun&) = delete;
   LaunchedRun& operator=(const LaunchedRun&) = delete;

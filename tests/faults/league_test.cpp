@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // League packets between real processes, over multicast on the loopback interface.
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "deploy/launch/process_group.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
+#include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/test_endpoint.hpp"
 

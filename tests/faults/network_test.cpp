@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <map>
 
+#include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;
@@ -119,8 +119,8 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return was_off[0] && was_off[1] && was_off[2]; }));
 
   apply_leaving(3, {"clock", "--offset-ms", "400"});
-  CHECK(
-      run.wait_until([&] { return states[3] == msg::AGENT_CLOCK_OUT_OF_BOUND && run.speed_mps(3) < 0.03; }));
+  CHECK(run.wait_until(
+      [&] { return states[3] == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND && run.speed_mps(3) < 0.03; }));
   apply({"clock", "3", "--offset-ms", "0"});
 
   apply({"lift", "5"});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <set>
 
-#include "common/messaging/dds/lease.hpp"
+#include "common/messaging/dds/presence.hpp"
+#include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;
@@ -35,16 +35,26 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
 }
 
 TEST_CASE(
-    "processes that pause longer than their lease, also the launcher during startup, are discovered again") {
+    "processes that pause until they are forgotten, also the launcher during startup, are discovered again") {
   LaunchedRun run(shuttles(5, ""));
-  const Duration more_than_lease = participant_lease() + std::chrono::milliseconds(600);
+  const Duration until_forgotten = kSilenceLimit + std::chrono::seconds(2);
   REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));
-  pause(run, run.pid(), more_than_lease);
+  pause(run, run.pid(), until_forgotten);
   for (const char* process : {"agent 2", "vision", "coordinator", "simulator"}) {
     INFO(process << "\n" << run.output());
     REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
-    pause(run, run.pid_of(process), more_than_lease);
+    pause(run, run.pid_of(process), until_forgotten);
   }
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  require_no_violations(run.report());
+  CHECK(run.report()["arrived"] == 8);
+}
+
+TEST_CASE("a process with cameras that pauses until it is forgotten is found again, and its images too") {
+  LaunchedRun run(crossing_images(), {"--seconds", "120"});
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  pause(run, run.pid_of("simulator"), kSilenceLimit + std::chrono::seconds(2));
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
   require_no_violations(run.report());

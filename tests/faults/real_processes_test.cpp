@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <csignal>
 
+#include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;

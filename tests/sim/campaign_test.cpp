@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trials of a campaign that test the system rather than the campaign.
-#include <catch2/catch.hpp>
-
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::campaign_test {
 

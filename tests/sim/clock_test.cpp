@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
 namespace sidestep::clock_test {
@@ -82,7 +82,7 @@ TEST_CASE(
   CHECK(floor.robots.position_m(1, floor.network.now()) == before);
   CHECK(floor.arrived() >= 2);
   const msg::AgentStatus& status = statuses.latest.at(1);
-  CHECK(status.agent_state() == msg::AGENT_CLOCK_OUT_OF_BOUND);
+  CHECK(status.agent_state() == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
   CHECK(std::abs(status.clock_offset_s() - ahead_s) <= status.clock_uncertainty_s());
   floor.robots.set_clock_offset(1, Duration{0});
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);

@@ -2,9 +2,9 @@
 // The protocol under external events: robots that are pushed, lifted and placed, firmware restarts, false
 // facts.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
 namespace sidestep::disturbance_test {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots that receive fixes rarely and late.
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::drift_test {
 

@@ -2,14 +2,13 @@
 // Sequences of single messages with a one-way partition, or an agent that receives nothing, between the real
 // negotiation of agents, real coordinators and real firmware. If robots did not fence epochs, each sequence
 // would bring two robots too close together.
-#include <catch2/catch.hpp>
-
 #include "agents/agent/negotiation.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/motion/clearance.hpp"
 #include "coordinator/coordinator.hpp"
 #include "simulator/world/firmware.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::epoch_test {
 

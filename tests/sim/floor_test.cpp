@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::floor_test {
 
@@ -57,7 +57,7 @@ TEST_CASE("a pushed robot reports it within the latency of cameras, vision and r
     const Time pushed = system.now();
     msg::Disturbance push;
     push.robot(scenario.robots[0].id);
-    push.disturbance_kind(msg::DISTURBANCE_PUSH);
+    push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
     push.vy_mps(push_mps);
     disturbances.publish(push, pushed);
     system.run_for(std::chrono::milliseconds(300));
@@ -121,7 +121,8 @@ TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
     OffReference watch(run.system, run.scenario);
     run.system.run_for(std::chrono::milliseconds(1500));
     for (int i = 0; i < 6; ++i) {
-      const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_PUSH : msg::DISTURBANCE_REBOOT;
+      const auto kind =
+          rng.chance(0.5) ? msg::DisturbanceKind::DISTURBANCE_PUSH : msg::DisturbanceKind::DISTURBANCE_REBOOT;
       msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
       // The slide is shorter than the margin.
       const Vec2 change = rotated(Vec2(0.3, 0), rng.uniform(-3.14, 3.14));
@@ -145,7 +146,8 @@ TEST_CASE("robots that slipped, or had a blocked wheel, continue to their goals"
     Disturbed run(shipped("crossing"), seed);
     run.system.run_for(std::chrono::milliseconds(1500));
     for (int i = 0; i < 4; ++i) {
-      const auto kind = rng.chance(0.5) ? msg::DISTURBANCE_SLIP : msg::DISTURBANCE_BLOCK;
+      const auto kind =
+          rng.chance(0.5) ? msg::DisturbanceKind::DISTURBANCE_SLIP : msg::DisturbanceKind::DISTURBANCE_BLOCK;
       msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
       message.grip(rng.uniform(0.2, 0.8));
       message.heading_rad(rng.uniform(-3, 3));
@@ -169,10 +171,10 @@ TEST_CASE("a robot is taken off the floor and put down elsewhere while the other
   run.system.on_truth([&](const msg::GroundTruth& truth) { seen = truth.robots().size(); });
   run.system.run_for(std::chrono::milliseconds(1500));
   CHECK(seen == (begins_absent ? 7 : 8));
-  if (!begins_absent) run.send(run.disturbance(3, msg::DISTURBANCE_LIFT));
+  if (!begins_absent) run.send(run.disturbance(3, msg::DisturbanceKind::DISTURBANCE_LIFT));
   run.system.run_for(std::chrono::milliseconds(1500));
   CHECK(seen == 7);
-  msg::Disturbance place = run.disturbance(3, msg::DISTURBANCE_PLACE);
+  msg::Disturbance place = run.disturbance(3, msg::DisturbanceKind::DISTURBANCE_PLACE);
   place.x_m(-1.8);
   place.y_m(1.3);
   run.send(place);

@@ -2,7 +2,8 @@
 #include "tests/sim/ideal_floor.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
+
+#include "tests/catch.hpp"
 
 namespace sidestep {
 namespace {

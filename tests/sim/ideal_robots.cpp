@@ -64,7 +64,7 @@ void IdealRobots::lift(RobotId id) {
 void IdealRobots::place(RobotId id, const Vec2& position) {
   msg::Disturbance disturbance;
   disturbance.robot(id);
-  disturbance.disturbance_kind(msg::DISTURBANCE_PLACE);
+  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
   disturbance.x_m(position.x());
   disturbance.y_m(position.y());
   disturbance_writer_.publish(disturbance, bus_.now());

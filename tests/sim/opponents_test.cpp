@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::opponents_test {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
 namespace sidestep::protocol_test {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +7,7 @@
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/monitor/process_names.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::system_test {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
 namespace sidestep::takeover_test {
@@ -158,7 +158,7 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
   auto writer = attacker.advertise(topics::kCoordinator);
   msg::CoordinatorState state;
   state.coordinator(5);
-  state.coordinator_mode(msg::COORDINATOR_GRANTING);
+  state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   REQUIRE(floor.run_until_speed(0.5));
   const Epoch before = floor.coordinator(0).epoch();
   for (const Epoch hostile : {(Epoch{1} << 62) - 1, Epoch{1} << 61, ~Epoch{0}}) {

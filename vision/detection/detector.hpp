@@ -6,7 +6,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/image/image.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "vision/detection/obstacle_finder.hpp"
 #include "vision/patterns/identifier.hpp"
 #include "vision/patterns/pattern_finder.hpp"

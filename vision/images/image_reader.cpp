@@ -10,9 +10,9 @@ constexpr double kMaxWorldAge_s = 0.25;  // older poses are not extrapolated
 
 std::optional<PixelFormat> format_of(msg::ImageFormat format) {
   switch (format) {
-    case msg::IMAGE_YUV422:
+    case msg::ImageFormat::IMAGE_YUV422:
       return PixelFormat::kYuv422;
-    case msg::IMAGE_RGB:
+    case msg::ImageFormat::IMAGE_RGB:
       return PixelFormat::kRgb;
   }
   return std::nullopt;

@@ -6,7 +6,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/config/scenario.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "vision/colours/colour_file.hpp"
 #include "vision/detection/detector.hpp"
 

@@ -10,7 +10,7 @@
 #include "common/config/scenario.hpp"
 #include "common/league/multicast.hpp"
 #include "common/league/vision_packet.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "vision/league/sender_clock.hpp"
 
 namespace sidestep {

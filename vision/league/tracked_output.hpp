@@ -5,7 +5,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/league/tracked_packet.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 

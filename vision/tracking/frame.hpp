@@ -8,7 +8,7 @@
 #include "common/geometry/vec2.hpp"
 #include "common/motion/version.hpp"
 #include "common/time/time.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "vision/tracking/frame.hpp"
 #include "vision/tracking/kalman.hpp"
 

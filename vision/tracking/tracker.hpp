@@ -8,7 +8,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/motion/rolling_ball.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "vision/tracking/frame.hpp"
 #include "vision/tracking/obstacle_tracker.hpp"
 #include "vision/tracking/track.hpp"

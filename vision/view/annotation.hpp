@@ -7,7 +7,7 @@
 
 #include "common/camera/camera_model.hpp"
 #include "common/config/scenario.hpp"
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 

@@ -40,8 +40,9 @@ inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, co
   d.radius_m = static_cast<float>(radius_m);
   d.gap_error_m2 = bodies.gap_error_per_m * d.radius_m + bodies.min_gap_error_m2;
   const FourFloats sizes = larger(d.ends_m, -d.ends_m);
-  d.is_valid = (not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf) &
-               (bit_pattern(d.radius_m) <= bit_pattern(bodies.limit_m));
+  const bool ends_are_valid = not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf;
+  const bool radius_is_valid = bit_pattern(d.radius_m) <= bit_pattern(bodies.limit_m);
+  d.is_valid = ends_are_valid & radius_is_valid;
   return d;
 }
 

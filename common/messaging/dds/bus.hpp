@@ -17,6 +17,9 @@ struct DdsSettings {
   bool is_operator = false;              ///< messages from this participant are never impaired
 };
 
+/// The version of Fast DDS that this program was built with, e.g. "3.1.2".
+std::string fast_dds_version();
+
 struct LinkQuality;
 
 /// A bus over Fast DDS and UDPv4. A second participant per process carries images by shared memory. All

@@ -2,59 +2,28 @@
 #include "common/messaging/dds/directory.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <tuple>
 #include <utility>
 
 namespace sidestep {
-namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
-using namespace eprosima::fastdds::dds;
+namespace rtps = fast_dds::rtps;
 
-Duration to_duration(const eprosima::fastrtps::Duration_t& d) {
-  return d == eprosima::fastrtps::c_TimeInfinite ? Duration::max() : Duration{d.to_ns()};
-}
-
-/// Works for WriterProxyData and ReaderProxyData.
-template <typename Proxy>
-DiscoveredEndpoint to_endpoint(const Proxy& proxy, bool is_writer) {
-  DiscoveredEndpoint result;
-  std::ostringstream guid;
-  guid << proxy.guid();
-  result.guid = guid.str();
-  result.topic = proxy.topicName().to_string();
-  result.type = proxy.typeName().to_string();
-  result.is_writer = is_writer;
-  result.is_keyed = proxy.topicKind() == rtps::WITH_KEY;
-  result.is_reliable = proxy.m_qos.m_reliability.kind == RELIABLE_RELIABILITY_QOS;
-  result.is_exclusive = proxy.m_qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS;
-  result.durability = static_cast<DiscoveredEndpoint::Durability>(proxy.m_qos.m_durability.kind);
-  result.liveliness = static_cast<DiscoveredEndpoint::Liveliness>(proxy.m_qos.m_liveliness.kind);
-  result.lease = to_duration(proxy.m_qos.m_liveliness.lease_duration);
-  result.deadline = to_duration(proxy.m_qos.m_deadline.period);
-  result.partitions = proxy.m_qos.m_partition.names();
-  return result;
-}
-
-}  // namespace
-
-void DdsDirectory::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+void DdsDirectory::on_participant(const rtps::GuidPrefix_t& prefix, const std::string& name, bool has_gone) {
   const std::lock_guard lock(mutex_);
-  if (info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-      info.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
-    names_[info.info.m_guid.guidPrefix] = info.info.m_participantName.to_string();
-  }
+  if (has_gone)
+    names_.erase(prefix);
+  else
+    names_[prefix] = name;
 }
 
-void DdsDirectory::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
-  update(info.info.guid(), info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER,
-         to_endpoint(info.info, true));
-}
-
-void DdsDirectory::on_subscriber_discovery(DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) {
-  update(info.info.guid(), info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER,
-         to_endpoint(info.info, false));
+void DdsDirectory::on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
+                               EndpointChange change) {
+  const std::lock_guard lock(mutex_);
+  if (change == EndpointChange::kGone)
+    endpoints_.erase(guid);
+  else
+    endpoints_[guid] = std::move(endpoint);
 }
 
 std::vector<DiscoveredEndpoint> DdsDirectory::endpoints() const {
@@ -76,15 +45,6 @@ std::string DdsDirectory::participant_of(const rtps::GUID_t& guid) const {
   const std::lock_guard lock(mutex_);
   const auto name = names_.find(guid.guidPrefix);
   return name == names_.end() ? std::string() : name->second;
-}
-
-void DdsDirectory::update(const rtps::GUID_t& guid, bool is_removed, DiscoveredEndpoint&& endpoint) {
-  const std::lock_guard lock(mutex_);
-  if (is_removed) {
-    endpoints_.erase(guid);
-  } else {
-    endpoints_[guid] = std::move(endpoint);
-  }
 }
 
 }  // namespace sidestep

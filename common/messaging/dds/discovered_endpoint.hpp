@@ -29,6 +29,9 @@ struct DiscoveredEndpoint {
   std::vector<std::string> partitions;  ///< empty: the unnamed partition
 };
 
+/// What discovery reports of an endpoint.
+enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };
+
 /// The reasons why this writer and this reader of one topic do not match, in plain words; empty if they
 /// match.
 [[nodiscard]] std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer,

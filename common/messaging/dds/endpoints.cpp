@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/endpoints.hpp"
 
-#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/TopicDescription.hpp>
 #include <fmt/core.h>
 #include <utility>
 
 namespace sidestep {
 
-using namespace eprosima::fastdds::dds;
+using namespace fast_dds::dds;
+
+namespace {
+
+GuardedType& guarded(const TypeSupport& type) { return static_cast<GuardedType&>(*type); }
+
+}  // namespace
 
 DdsWriter::DdsWriter(std::shared_ptr<DdsParticipant> participant, const TopicInfo& topic,
                      const std::string& channel)
     : participant_(std::move(participant)),
-      writer_(participant_->create_writer(channel, TypeSupport(make_dds_type(topic.type).release()),
+      writer_(participant_->create_writer(channel, TypeSupport(new GuardedType(topic.type)),
                                           dds_writer_qos(topic.qos), this)) {}
 
 DdsWriter::~DdsWriter() { participant_->delete_writer(writer_); }
 
 void DdsWriter::write(const void* message) {
   GuardedType::Sample sample{const_cast<void*>(message), true};
-  if (!writer_->write(&sample)) report_failure();
+  if (!fast_dds::write(*writer_, &sample)) report_failure();
 }
 
 void DdsWriter::on_offered_incompatible_qos(DataWriter* writer, const OfferedIncompatibleQosStatus& status) {
@@ -42,13 +45,13 @@ DdsReader::DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participan
       qos_(topic.qos),
       channel_(channel),
       callback_(std::move(callback)),
-      type_(make_dds_type(topic.type).release()),
-      sample_(static_cast<GuardedType::Sample*>(type_.create_data())),
+      type_(new GuardedType(topic.type)),
+      sample_(static_cast<GuardedType::Sample*>(guarded(type_).make_sample())),
       reader_(participant_->create_reader(channel, type_, dds_reader_qos(topic.qos), this)) {}
 
 DdsReader::~DdsReader() {
   participant_->delete_reader(reader_);
-  type_.delete_data(sample_);
+  guarded(type_).delete_sample(sample_);
 }
 
 void DdsReader::move_to(std::shared_ptr<DdsParticipant> participant) {
@@ -62,7 +65,7 @@ bool DdsReader::drain() {
   constexpr int kMaxBatch = 64;
   SampleInfo info;
   for (int i = 0; i < kMaxBatch && !loop_.stopped(); ++i) {
-    if (reader_->take_next_sample(sample_, &info) != ReturnCode_t::RETCODE_OK) return false;
+    if (!fast_dds::is_ok(reader_->take_next_sample(sample_, &info))) return false;
     if (!info.valid_data) continue;
     if (sample_->is_valid) {
       callback_(sample_->message);

@@ -16,27 +16,26 @@
 namespace sidestep {
 
 /// A bus's writer of one channel.
-class DdsWriter : public RawWriter, public eprosima::fastdds::dds::DataWriterListener {
+class DdsWriter : public RawWriter, public fast_dds::dds::DataWriterListener {
  public:
   /// Throws std::runtime_error as DdsParticipant::create_writer().
   DdsWriter(std::shared_ptr<DdsParticipant> participant, const TopicInfo& topic, const std::string& channel);
   ~DdsWriter() override;
 
   void write(const void* message) override;
-  void on_offered_incompatible_qos(
-      eprosima::fastdds::dds::DataWriter* writer,
-      const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override;
+  void on_offered_incompatible_qos(fast_dds::dds::DataWriter* writer,
+                                   const fast_dds::dds::OfferedIncompatibleQosStatus& status) override;
 
  private:
   void report_failure();
 
   std::shared_ptr<DdsParticipant> participant_;
-  eprosima::fastdds::dds::DataWriter* writer_;
+  fast_dds::dds::DataWriter* writer_;
   bool has_failed_ = false;
 };
 
 /// A bus's reader of one channel.
-class DdsReader : public EventLoop::Source, public eprosima::fastdds::dds::DataReaderListener {
+class DdsReader : public EventLoop::Source, public fast_dds::dds::DataReaderListener {
  public:
   /// Throws std::runtime_error as DdsParticipant::create_reader().
   DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participant, const TopicInfo& topic,
@@ -52,10 +51,9 @@ class DdsReader : public EventLoop::Source, public eprosima::fastdds::dds::DataR
   std::uint64_t refused() const { return refused_; }
   std::string locators() const { return dds_locators(*reader_); }
 
-  void on_data_available(eprosima::fastdds::dds::DataReader*) override { loop_.notify(*this); }
-  void on_requested_incompatible_qos(
-      eprosima::fastdds::dds::DataReader*,
-      const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
+  void on_data_available(fast_dds::dds::DataReader*) override { loop_.notify(*this); }
+  void on_requested_incompatible_qos(fast_dds::dds::DataReader*,
+                                     const fast_dds::dds::RequestedIncompatibleQosStatus& status) override;
 
  private:
   void count_refused();
@@ -65,11 +63,11 @@ class DdsReader : public EventLoop::Source, public eprosima::fastdds::dds::DataR
   Qos qos_;
   std::string channel_;
   std::function<void(const void*)> callback_;
-  eprosima::fastdds::dds::TypeSupport type_;
+  fast_dds::dds::TypeSupport type_;  ///< a GuardedType
   GuardedType::Sample* sample_;
   std::uint64_t refused_ = 0;
   std::uint64_t next_report_ = 1;
-  eprosima::fastdds::dds::DataReader* reader_;
+  fast_dds::dds::DataReader* reader_;
 };
 
 }  // namespace sidestep

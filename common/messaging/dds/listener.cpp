@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/listener.hpp"
 
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <utility>
 
 #include "common/messaging/dds/directory.hpp"
@@ -13,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-using namespace eprosima::fastdds::dds;
+using namespace fast_dds::dds;
 
 /// Matches every writer of the topic.
 DataReaderQos permissive_qos(const DiscoveredEndpoint& writer) {
@@ -23,7 +21,7 @@ DataReaderQos permissive_qos(const DiscoveredEndpoint& writer) {
   qos.resource_limits().max_samples_per_instance = kDepth;
   qos.resource_limits().max_samples = qos.resource_limits().max_instances * kDepth;
   qos.ownership().kind = writer.is_exclusive ? EXCLUSIVE_OWNERSHIP_QOS : SHARED_OWNERSHIP_QOS;
-  qos.type_consistency().representation.m_value = {XCDR_DATA_REPRESENTATION, XCDR2_DATA_REPRESENTATION};
+  fast_dds::representation(qos).m_value = {XCDR_DATA_REPRESENTATION, XCDR2_DATA_REPRESENTATION};
   return qos;
 }
 
@@ -43,7 +41,7 @@ class RawReader : public EventLoop::Source, public DataReaderListener {
     constexpr int kMaxBatch = 256;
     SampleInfo info;
     for (int i = 0; i < kMaxBatch && !loop_.stopped(); ++i) {
-      if (reader_->take_next_sample(&bytes_, &info) != ReturnCode_t::RETCODE_OK) return false;
+      if (!fast_dds::is_ok(reader_->take_next_sample(&bytes_, &info))) return false;
       if (info.valid_data) callback_({time_from_ns(info.reception_timestamp.to_ns()), bytes_});
     }
     return true;

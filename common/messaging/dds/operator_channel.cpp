@@ -2,7 +2,6 @@
 #include "common/messaging/dds/operator_channel.hpp"
 
 #include <algorithm>
-#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <mutex>
 #include <set>
 
@@ -13,9 +12,8 @@
 namespace sidestep {
 namespace {
 
-using namespace eprosima::fastdds::dds;
-using eprosima::fastrtps::rtps::GUID_t;
-using eprosima::fastrtps::rtps::iHandle2GUID;
+using namespace fast_dds::dds;
+using fast_dds::rtps::GUID_t;
 
 DdsSettings operator_settings(DdsSettings settings) {
   settings.is_operator = true;
@@ -27,7 +25,7 @@ class MatchedReaders : public DataWriterListener {
  public:
   void on_publication_matched(DataWriter*, const PublicationMatchedStatus& status) override {
     const std::lock_guard lock(mutex_);
-    const GUID_t reader = iHandle2GUID(status.last_subscription_handle);
+    const GUID_t reader = fast_dds::rtps::iHandle2GUID(status.last_subscription_handle);
     if (status.current_count_change > 0)
       guids_.insert(reader);
     else
@@ -49,13 +47,14 @@ struct OperatorChannel::Impl : RawWriter {
   Impl(const DdsSettings& settings, const TopicInfo& topic)
       : participant(operator_settings(settings), &directory),
         data_writer(participant.create_writer(channel_name(topic, 0),
-                                              TypeSupport(make_dds_type(topic.type).release()),
+                                              TypeSupport(new GuardedType(topic.type)),
                                               dds_writer_qos(topic.qos), &subscribers)) {}
   ~Impl() override { participant.delete_writer(data_writer); }
 
   void write(const void* message) override {
     GuardedType::Sample sample{const_cast<void*>(message), true};
-    if (!data_writer->write(&sample)) throw std::runtime_error("DDS failed to send the operator's message");
+    if (!fast_dds::write(*data_writer, &sample))
+      throw std::runtime_error("DDS failed to send the operator's message");
   }
 
   DdsDirectory directory;
@@ -88,9 +87,9 @@ RawWriter& OperatorChannel::writer() { return *impl_; }
 
 bool OperatorChannel::wait_until_acknowledged(Duration timeout) {
   const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(timeout);
-  const eprosima::fastrtps::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
-                                            static_cast<std::uint32_t>((timeout - whole_s).count()));
-  return impl_->data_writer->wait_for_acknowledgments(wait) == ReturnCode_t::RETCODE_OK;
+  const fast_dds::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
+                                  static_cast<std::uint32_t>((timeout - whole_s).count()));
+  return fast_dds::is_ok(impl_->data_writer->wait_for_acknowledgments(wait));
 }
 
 }  // namespace sidestep

@@ -2,30 +2,24 @@
 #include "common/messaging/dds/participant.hpp"
 
 #include <arpa/inet.h>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/core.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
 #include <sstream>
 #include <stdexcept>
 
-#include "common/messaging/dds/fault_transport.hpp"
-#include "common/messaging/dds/lease.hpp"
+#include "common/messaging/dds/transport.hpp"
+#include "fast_dds_version.hpp"
 
 namespace sidestep {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-using namespace eprosima::fastdds::dds;
-using eprosima::fastrtps::Duration_t;
+namespace dds = fast_dds::dds;
+using namespace fast_dds::dds;
+using fast_dds::Duration_t;
 
 constexpr int kMaxDomain = 99;                 ///< port numbers of higher domains overlap with others
 constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
@@ -69,26 +63,23 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
                                      std::uint32_t shared_memory_bytes) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<fast_dds::transport::UDPv4TransportDescriptor>();
   udp->sendBufferSize = kSocketBufferBytes;
   udp->receiveBufferSize = kSocketBufferBytes;
   if (settings.interface != "all") udp->interfaceWhiteList.push_back(settings.interface);
   qos.transport().use_builtin_transports = false;
   if (shared_memory_bytes > 0) {
-    auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+    auto memory = std::make_shared<fast_dds::transport::SharedMemTransportDescriptor>();
     memory->segment_size(shared_memory_bytes);
     qos.transport().user_transports.push_back(memory);
   }
-  // Never both: two transports of one locator kind would send every message twice.
-  if (impairment)
-    qos.transport().user_transports.push_back(fault_transport(udp, impairment));
-  else
-    qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(udp_transport(udp, impairment));
   if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
-  builtin.discovery_config.leaseDuration = Duration_t(to_seconds(participant_lease()));
+  builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;  // see Presence
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
+  fast_dds::disable_type_propagation(qos);
   return qos;
 }
 
@@ -103,7 +94,7 @@ void set_common(EndpointQos& qos, Qos kind) {
   qos.resource_limits().max_samples_per_instance = depth;
   qos.resource_limits().max_samples = kMaxInstances * depth;
   qos.resource_limits().allocated_samples = depth;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = fast_dds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
 }
 
@@ -116,11 +107,8 @@ std::runtime_error failure(const std::string& entity, const std::string& channel
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
-  check_fast_dds_version();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
-  eprosima::fastrtps::LibrarySettingsAttributes library;
-  library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
+  fast_dds::disable_intraprocess_delivery();
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_, shared_memory_bytes),
       listener, StatusMask::none());
@@ -176,8 +164,8 @@ void DdsParticipant::delete_writer(DataWriter* writer) { publisher_->delete_data
 void DdsParticipant::delete_reader(DataReader* reader) { subscriber_->delete_datareader(reader); }
 
 std::string dds_locators(const DataReader& reader) {
-  eprosima::fastdds::rtps::LocatorList locators;
-  if (reader.get_listening_locators(locators) != ReturnCode_t::RETCODE_OK) return {};
+  fast_dds::transport::LocatorList locators;
+  if (!fast_dds::is_ok(reader.get_listening_locators(locators))) return {};
   std::ostringstream text;
   text << locators;
   return text.str();
@@ -187,15 +175,14 @@ DataWriterQos dds_writer_qos(Qos kind) {
   DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
   set_common(qos, kind);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(50);
-  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
+  fast_dds::set_times(qos, milliseconds(50), milliseconds(1));
   return qos;
 }
 
 DataReaderQos dds_reader_qos(Qos kind) {
   DataReaderQos qos = DATAREADER_QOS_DEFAULT;
   set_common(qos, kind);
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+  fast_dds::set_times(qos, milliseconds(1));
   return qos;
 }
 
@@ -227,6 +214,8 @@ std::string dds_policy_name(QosPolicyId_t policy) {
       return fmt::format("policy {}", static_cast<std::uint32_t>(policy));
   }
 }
+
+std::string fast_dds_version() { return kFastDdsVersion; }
 
 void log_dds(const std::string& message) { fmt::print(stderr, "dds: {}\n", message); }
 

@@ -2,19 +2,12 @@
 #include "common/messaging/dds/type_mismatch_listener.hpp"
 
 #include <algorithm>
-#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
-#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <fmt/core.h>
-#include <sstream>
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/participant.hpp"
 
 namespace sidestep {
-
-using eprosima::fastdds::dds::DomainParticipant;
-using eprosima::fastrtps::rtps::ReaderDiscoveryInfo;
-using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
 void TypeMismatchListener::expect(const std::string& channel, const std::string& type) {
   const std::lock_guard lock(mutex_);
@@ -32,31 +25,24 @@ std::optional<Time> TypeMismatchListener::latest_writer_since(const std::string&
   return latest;
 }
 
-void TypeMismatchListener::on_publisher_discovery(DomainParticipant*, WriterDiscoveryInfo&& info) {
-  const std::string channel = info.info.topicName().to_string(), type = info.info.typeName().to_string();
-  std::ostringstream guid;
-  guid << info.info.guid();
+void TypeMismatchListener::on_endpoint(const fast_dds::rtps::GUID_t&, DiscoveredEndpoint&& endpoint,
+                                       EndpointChange change) {
   const std::lock_guard lock(mutex_);
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
-    writers_[{channel, type}].erase(guid.str());
-  } else if (info.status == WriterDiscoveryInfo::DISCOVERED_WRITER) {
-    writers_[{channel, type}].emplace(guid.str(), EventLoop::now());
-    compare("writer", channel, type);
+  if (change == EndpointChange::kDiscovered) compare(endpoint);
+  if (!endpoint.is_writer) return;
+  auto& writers = writers_[{endpoint.topic, endpoint.type}];
+  if (change == EndpointChange::kGone) {
+    writers.erase(endpoint.guid);
+  } else if (change == EndpointChange::kDiscovered) {
+    writers.emplace(endpoint.guid, EventLoop::now());
   }
 }
 
-void TypeMismatchListener::on_subscriber_discovery(DomainParticipant*, ReaderDiscoveryInfo&& info) {
-  if (info.status != ReaderDiscoveryInfo::DISCOVERED_READER) return;
-  const std::lock_guard lock(mutex_);
-  compare("reader", info.info.topicName().to_string(), info.info.typeName().to_string());
-}
-
-void TypeMismatchListener::compare(const char* endpoint, const std::string& channel,
-                                   const std::string& type) {
-  const auto own = types_.find(channel);
-  if (own == types_.end() || own->second == type) return;
-  log_dds(fmt::format("topic '{}': a {} has type {} and is ignored, ours is {}", channel, endpoint, type,
-                      own->second));
+void TypeMismatchListener::compare(const DiscoveredEndpoint& endpoint) {
+  const auto own = types_.find(endpoint.topic);
+  if (own == types_.end() || own->second == endpoint.type) return;
+  log_dds(fmt::format("topic '{}': a {} has type {} and is ignored, ours is {}", endpoint.topic,
+                      endpoint.is_writer ? "writer" : "reader", endpoint.type, own->second));
 }
 
 }  // namespace sidestep

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "common/messaging/dds/discovered_endpoint.hpp"
 #include "common/time/time.hpp"
+#include "fast_dds/discovery_listener.hpp"
 
 namespace sidestep {
 
 /// Watches discovery. Logs endpoints that use one of our channels with another type, because DDS never
 /// matches them and reports nothing. Also records since when each channel has a writer. Thread-safe.
-class TypeMismatchListener : public eprosima::fastdds::dds::DomainParticipantListener {
+class TypeMismatchListener : public fast_dds::DiscoveryListener {
  public:
   /// Registers a channel of ours and its type.
   void expect(const std::string& channel, const std::string& type);
@@ -22,13 +23,11 @@ class TypeMismatchListener : public eprosima::fastdds::dds::DomainParticipantLis
   /// writer.
   std::optional<Time> latest_writer_since(const std::string& channel) const;
 
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_endpoint(const fast_dds::rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
+                   EndpointChange change) override;
 
  private:
-  void compare(const char* endpoint, const std::string& channel, const std::string& type);
+  void compare(const DiscoveredEndpoint& endpoint);
 
   mutable std::mutex mutex_;
   std::map<std::string, std::string> types_;  ///< by channel

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "idl/trajectory.h"
+#include "idl/trajectory.hpp"
 
 namespace sidestep {
 

@@ -11,8 +11,8 @@
 #include "common/motion/version.hpp"
 #include "deploy/monitor/audit/audit_path.hpp"
 #include "deploy/monitor/audit/message_trace.hpp"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
+#include "idl/negotiation.hpp"
+#include "idl/robot.hpp"
 
 namespace sidestep {
 

@@ -12,12 +12,12 @@ namespace {
 bool is_final(const msg::Verdict& verdict) {
   if (verdict.granted_version() != 0) return true;
   switch (verdict.reasons().front()) {
-    case msg::REASON_NOT_CONTINUOUS:
-    case msg::REASON_BEYOND_LIMITS:
-    case msg::REASON_NOT_AT_REST:
-    case msg::REASON_OUTSIDE_FIELD:
-    case msg::REASON_OBSTACLE:
-    case msg::REASON_CONFLICT:
+    case msg::Reason::REASON_NOT_CONTINUOUS:
+    case msg::Reason::REASON_BEYOND_LIMITS:
+    case msg::Reason::REASON_NOT_AT_REST:
+    case msg::Reason::REASON_OUTSIDE_FIELD:
+    case msg::Reason::REASON_OBSTACLE:
+    case msg::Reason::REASON_CONFLICT:
       return true;
     default:
       return false;  // a later copy of the proposal may be granted

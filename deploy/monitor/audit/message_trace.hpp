@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "common/time/time.hpp"
-#include "idl/header.h"
+#include "idl/header.hpp"
 
 namespace sidestep {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messaging/enumerator.hpp"
 #include "deploy/monitor/time_range.hpp"
 
 namespace sidestep {
@@ -123,8 +124,7 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
 
 void RunMetrics::on_status(const msg::AgentStatus& status) {
   RobotRecord* robot = find(status.robot());
-  const bool is_state = status.agent_state() >= msg::AgentState::AGENT_FENCING &&
-                        status.agent_state() <= msg::AgentState::AGENT_ABSENT;
+  const bool is_state = is_enumerator(status.agent_state(), msg::AgentState::AGENT_ABSENT);
   msg::AgentStatus* life = robot && is_state ? slot_for(robot->lives, status.header()) : nullptr;
   if (!life) {
     ++dropped_messages_;

@@ -11,8 +11,8 @@
 #include "common/messaging/bus.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/report.hpp"
-#include "idl/monitor.h"
-#include "idl/negotiation.h"
+#include "idl/monitor.hpp"
+#include "idl/negotiation.hpp"
 
 namespace sidestep {
 

@@ -3,11 +3,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "idl/disturbance.h"
-#include "idl/monitor.h"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
-#include "idl/vision.h"
+#include "idl/disturbance.hpp"
+#include "idl/monitor.hpp"
+#include "idl/negotiation.hpp"
+#include "idl/robot.hpp"
+#include "idl/vision.hpp"
 
 namespace sidestep {
 

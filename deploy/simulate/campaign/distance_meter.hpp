@@ -6,7 +6,7 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/motion/version.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 
 namespace sidestep {
 

@@ -38,13 +38,13 @@ class Describe {
   std::string operator()(const RobotDisturbance& disturbance) const {
     const double duration_s = to_seconds(disturbance.duration);
     switch (disturbance.kind) {
-      case msg::DISTURBANCE_PUSH:
+      case msg::DisturbanceKind::DISTURBANCE_PUSH:
         return fmt::format("robot {} pushed by ({:.3f}, {:.3f}) m/s", disturbance.robot,
                            disturbance.push_mps.x(), disturbance.push_mps.y());
-      case msg::DISTURBANCE_SLIP:
+      case msg::DisturbanceKind::DISTURBANCE_SLIP:
         return fmt::format("robot {} slips for {:.3f} s, grip {:.2f}", disturbance.robot, duration_s,
                            disturbance.grip);
-      case msg::DISTURBANCE_BLOCK:
+      case msg::DisturbanceKind::DISTURBANCE_BLOCK:
         return fmt::format("a wheel of robot {} blocked for {:.3f} s, along {:.2f} rad", disturbance.robot,
                            duration_s, disturbance.heading_rad);
       default:

@@ -165,8 +165,9 @@ class FaultSampler {
   }
 
   void sample_disturbance() {
-    static constexpr msg::DisturbanceKind kKinds[] = {msg::DISTURBANCE_PUSH, msg::DISTURBANCE_SLIP,
-                                                      msg::DISTURBANCE_BLOCK, msg::DISTURBANCE_REBOOT};
+    static constexpr msg::DisturbanceKind kKinds[] = {
+        msg::DisturbanceKind::DISTURBANCE_PUSH, msg::DisturbanceKind::DISTURBANCE_SLIP,
+        msg::DisturbanceKind::DISTURBANCE_BLOCK, msg::DisturbanceKind::DISTURBANCE_REBOOT};
     RobotDisturbance disturbance;
     disturbance.robot = pick(scenario_.robots).id;
     disturbance.kind = kKinds[rng_.below(std::size(kKinds))];

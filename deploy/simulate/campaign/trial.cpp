@@ -32,13 +32,15 @@ struct UnexpectedStates {
 UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan& plan) {
   UnexpectedStates unexpected;
   for (const RobotProgress& row : system.metrics().progress()) {
-    const bool is_driving = row.agent_state == msg::AGENT_DRIVING || row.agent_state == msg::AGENT_ARRIVED;
+    const bool is_driving = row.agent_state == msg::AgentState::AGENT_DRIVING ||
+                            row.agent_state == msg::AgentState::AGENT_ARRIVED;
     if (std::ranges::find(plan.robots_out_of_clock_bound, row.robot) ==
         plan.robots_out_of_clock_bound.end()) {
       if (!is_driving) unexpected.not_driving.push_back(row.robot);
       continue;
     }
-    if (row.agent_state != msg::AGENT_CLOCK_OUT_OF_BOUND) unexpected.undetected_clock.push_back(row.robot);
+    if (row.agent_state != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
+      unexpected.undetected_clock.push_back(row.robot);
     if (row.grants > 0) unexpected.driven.push_back(row.robot);
   }
   return unexpected;

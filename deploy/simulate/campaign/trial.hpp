@@ -9,7 +9,7 @@
 #include "deploy/simulate/campaign/fault_plan.hpp"
 #include "deploy/simulate/campaign/trial_result.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
-#include "idl/monitor.h"
+#include "idl/monitor.hpp"
 
 namespace sidestep {
 

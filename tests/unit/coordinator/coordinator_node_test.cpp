@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
 
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::coordinator_node_test {
@@ -109,7 +109,7 @@ TEST_CASE("messages that cannot be decoded are counted, get no answer and change
   msg::CoordinatorState other;
   other.coordinator(3);
   other.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + 3);
-  other.coordinator_mode(msg::COORDINATOR_GRANTING);
+  other.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   SECTION("a heartbeat with an implausible epoch") {
     other.epoch(Epoch{1} << 61);
     floor.send(topics::kCoordinator, other);
@@ -145,7 +145,7 @@ TEST_CASE("malformed candidates and registrations are answered and counted") {
   }
   floor.run();
   REQUIRE(floor.verdicts.size() == 1);
-  CHECK(floor.verdicts[0].reasons()[0] == msg::REASON_MALFORMED);
+  CHECK(floor.verdicts[0].reasons()[0] == msg::Reason::REASON_MALFORMED);
   CHECK(floor.state.invalid() == 1);
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::coordinator_test {
@@ -43,9 +43,9 @@ struct Floor {
 TEST_CASE("nothing is granted until every robot of the roster has registered") {
   Floor floor;
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
-  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
+  CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
   floor.receive(registration_of(floor.a, kEpoch));
-  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
+  CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
   CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
   floor.receive(registration_of(floor.b, kEpoch));
   CHECK(floor.ask(proposal).granted_version == 10);
@@ -59,10 +59,10 @@ TEST_CASE("the first clear candidate is granted, and the verdict gives the reaso
                              continued(floor.a, 12, 1, {0, -3})},
                             kEpoch));
   CHECK(verdict.granted_version == 11);
-  CHECK(verdict.reasons[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.reasons[0] == msg::Reason::REASON_CONFLICT);
   CHECK(verdict.blockers[0] == 2);
-  CHECK(verdict.reasons[1] == msg::REASON_GRANTED);
-  CHECK(verdict.reasons[2] == msg::REASON_NOT_EVALUATED);
+  CHECK(verdict.reasons[1] == msg::Reason::REASON_GRANTED);
+  CHECK(verdict.reasons[2] == msg::Reason::REASON_NOT_EVALUATED);
 }
 
 TEST_CASE("a repeated proposal gets the same verdict again") {
@@ -81,21 +81,21 @@ TEST_CASE("versions must be proposed in increasing order") {
   floor.register_both();
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
   CHECK(floor.ask(proposal_of({continued(floor.a, 9, 1, {0, -3})}, kEpoch)).reasons[0] ==
-        msg::REASON_OLD_VERSION);
+        msg::Reason::REASON_OLD_VERSION);
 }
 
 TEST_CASE("proposals for another epoch or from an older agent are refused") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
-  CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons[0] == msg::REASON_WRONG_EPOCH);
-  CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons[0] == msg::REASON_OLD_INCARNATION);
+  CHECK(floor.ask(proposal_of({p}, kEpoch - 1)).reasons[0] == msg::Reason::REASON_WRONG_EPOCH);
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 0)).reasons[0] == msg::Reason::REASON_OLD_INCARNATION);
   // A new agent must register before it may propose.
   Version q = p;
   q.incarnation = 2;
-  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons[0] == msg::REASON_NOT_ALL_REGISTERED);
+  CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
   floor.receive(registration_of(floor.a, kEpoch, 2));
-  CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons[0] == msg::REASON_OLD_INCARNATION);
+  CHECK(floor.ask(proposal_of({p}, kEpoch, 1)).reasons[0] == msg::Reason::REASON_OLD_INCARNATION);
   CHECK(floor.ask(proposal_of({q}, kEpoch, 2)).granted_version == 10);
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   floor.register_both();
   floor.coordinator.begin_epoch(0);
   CHECK_FALSE(floor.coordinator.is_granting());
-  CHECK(floor.coordinator.state().coordinator_mode() == msg::COORDINATOR_STANDBY);
+  CHECK(floor.coordinator.state().coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY);
   CHECK(floor.coordinator.state().epoch() == 0);
   CHECK(floor.coordinator.state().missing().empty());
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
@@ -124,7 +124,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   CHECK(floor.coordinator.ledger().versions(1).empty());
   floor.coordinator.begin_epoch(kEpoch + 5);
   CHECK(floor.coordinator.state().missing().size() == 2);
-  CHECK(floor.ask(proposal).reasons[0] == msg::REASON_WRONG_EPOCH);
+  CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_WRONG_EPOCH);
 }
 
 TEST_CASE("every registration is answered, and the answer echoes its time stamp") {
@@ -140,15 +140,15 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
     CHECK(verdict->request_sent_at == time_from_ns(4711));
     return verdict->reasons[0];
   };
-  CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::REASON_WRONG_EPOCH);
-  CHECK(answer(registration_of(floor.a, kEpoch - 50)) == msg::REASON_WRONG_EPOCH);
+  CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::Reason::REASON_WRONG_EPOCH);
+  CHECK(answer(registration_of(floor.a, kEpoch - 50)) == msg::Reason::REASON_WRONG_EPOCH);
   CHECK(floor.coordinator.state().missing().size() == 2);
-  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::REASON_GRANTED);
-  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::REASON_GRANTED);
-  CHECK(answer(registration_of(floor.a, kEpoch, 1)) == msg::REASON_OLD_INCARNATION);
+  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::Reason::REASON_GRANTED);
+  CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::Reason::REASON_GRANTED);
+  CHECK(answer(registration_of(floor.a, kEpoch, 1)) == msg::Reason::REASON_OLD_INCARNATION);
   auto malformed = registration_of(floor.b, kEpoch);
   malformed.version_count(0);
-  CHECK(answer(malformed) == msg::REASON_MALFORMED);
+  CHECK(answer(malformed) == msg::Reason::REASON_MALFORMED);
   CHECK_FALSE(floor.receive(registration_of(rest_version(3, {0, 0}), kEpoch)));
   malformed.header().sender(1);
   CHECK_FALSE(floor.receive(malformed));
@@ -198,7 +198,7 @@ TEST_CASE("hostile proposals get a refusal or no answer, and change nothing") {
     change(proposal);
     return floor.ask(proposal).reasons[0];
   };
-  auto malformed = msg::REASON_MALFORMED;
+  auto malformed = msg::Reason::REASON_MALFORMED;
   CHECK(spoil([&](auto& p) { p.candidates()[0].x_m(nan); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].vy_mps(inf); }) == malformed);
   CHECK(spoil([&](auto& p) { p.candidates()[0].phases()[0].ax_mps2(nan); }) == malformed);
@@ -335,17 +335,18 @@ TEST_CASE("an absent robot registers without versions and is granted a rest vers
   Floor floor;
   auto absent = registration_of(floor.a, kEpoch);
   absent.is_absent(true);
-  CHECK(floor.receive(absent)->reasons[0] == msg::REASON_MALFORMED);
+  CHECK(floor.receive(absent)->reasons[0] == msg::Reason::REASON_MALFORMED);
   absent.version_count(0);
-  CHECK(floor.receive(absent)->reasons[0] == msg::REASON_GRANTED);
+  CHECK(floor.receive(absent)->reasons[0] == msg::Reason::REASON_GRANTED);
   floor.receive(registration_of(floor.b, kEpoch));
   REQUIRE(floor.coordinator.is_granting());
   CHECK(floor.coordinator.state().absent() == 1);
-  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons[0] == msg::REASON_ABSENT);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons[0] ==
+        msg::Reason::REASON_ABSENT);
   Version blocked = rest_version(1, {0.85, 0}, 11), free = rest_version(1, {0.5, 0.5}, 12);
   blocked.incarnation = free.incarnation = 1;
   const auto verdict = floor.ask(proposal_of({blocked, free}, kEpoch));
-  CHECK(verdict.reasons[0] == msg::REASON_CONFLICT);
+  CHECK(verdict.reasons[0] == msg::Reason::REASON_CONFLICT);
   CHECK(verdict.granted_version == 12);
   CHECK(floor.coordinator.state().absent() == 0);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/disc_grid.hpp"
 
-#include <catch2/catch.hpp>
 #include <optional>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::disc_grid_test {

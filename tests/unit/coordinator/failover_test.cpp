@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/failover.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::failover_test {
 
@@ -22,7 +22,8 @@ msg::CoordinatorState heartbeat(Epoch epoch, CoordinatorNumber number = 0, Incar
   state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + number);
   state.header().incarnation(incarnation);
   state.epoch(epoch);
-  state.coordinator_mode(epoch == 0 ? msg::COORDINATOR_STANDBY : msg::COORDINATOR_GRANTING);
+  state.coordinator_mode(epoch == 0 ? msg::CoordinatorMode::COORDINATOR_STANDBY
+                                    : msg::CoordinatorMode::COORDINATOR_GRANTING);
   return state;
 }
 

@@ -4,8 +4,8 @@
 #include "common/messaging/version_codec.hpp"
 #include "common/motion/validity.hpp"
 #include "common/random/rng.hpp"
-#include "idl/negotiation.h"
-#include "idl/robot.h"
+#include "idl/negotiation.hpp"
+#include "idl/robot.hpp"
 
 namespace sidestep {
 

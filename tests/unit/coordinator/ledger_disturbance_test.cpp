@@ -2,17 +2,17 @@
 // External events in the ledger: robots that lost their reference, epochs that begin with conflicts, robots
 // that are lifted and placed.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/motion/escape.hpp"
 #include "common/motion/robot_model.hpp"
 #include "coordinator/ledger.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::ledger_disturbance_test {
 
-constexpr auto kNotContinuous = msg::REASON_NOT_CONTINUOUS;
+constexpr auto kNotContinuous = msg::Reason::REASON_NOT_CONTINUOUS;
 
 Version off_reference(RobotId robot, VersionNumber number, double at, Vec2 position, Vec2 velocity,
                       double inflation_m = 0) {
@@ -82,7 +82,7 @@ TEST_CASE("the stop of a robot that lost its reference replaces all its versions
   // The same fact again, then a late earlier one.
   CHECK(two.ledger.on_executing(stop, at_s(0.95), true) == FactOutcome::kApplied);
   CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == FactOutcome::kStale);
-  CHECK(two.ledger.grant(continued(p, 11, 1.1, {3, 0})).reason == msg::REASON_BASE_UNKNOWN);
+  CHECK(two.ledger.grant(continued(p, 11, 1.1, {3, 0})).reason == msg::Reason::REASON_BASE_UNKNOWN);
 }
 
 TEST_CASE("a stop off reference that is not newer than all versions is a contradiction") {
@@ -109,7 +109,7 @@ TEST_CASE("other robots keep clear of a robot's inflation, which ends only where
   CHECK(exact.ledger.grant(near).is_granted());
   Version larger = off_reference(1, 1000, 0.5, {rest_m - 0.22, 0.05}, {0, 0}, 0.05);
   REQUIRE(inflated.ledger.on_executing(larger, at_s(0.5), true) == FactOutcome::kApplied);
-  CHECK(inflated.ledger.grant(near).reason == msg::REASON_CONFLICT);
+  CHECK(inflated.ledger.grant(near).reason == msg::Reason::REASON_CONFLICT);
 
   Version moving = continued(stop, 1001, 0.52, {0, 1}), other = moving;
   moving.inflation_m = 0;
@@ -128,8 +128,8 @@ TEST_CASE("other robots keep clear of a robot's inflation, which ends only where
 TEST_CASE("robots in conflict may move apart but not closer together") {
   Two two({0, 0}, {0.15, 0});
   REQUIRE(two.ledger.conflicts().size() == 1);
-  CHECK(two.ledger.grant(continued(two.a, 10, 1, {3, 0})).reason == msg::REASON_CONFLICT);
-  CHECK(two.ledger.grant(continued(two.a, 11, 1, {0.1, 2.9})).reason == msg::REASON_CONFLICT);
+  CHECK(two.ledger.grant(continued(two.a, 10, 1, {3, 0})).reason == msg::Reason::REASON_CONFLICT);
+  CHECK(two.ledger.grant(continued(two.a, 11, 1, {0.1, 2.9})).reason == msg::Reason::REASON_CONFLICT);
   const Version away = continued(two.a, 12, 1, {-3, 0}, 0.2);
   REQUIRE(two.ledger.grant(away).is_granted());
   CHECK(two.ledger.conflicts().size() == 1);  // it may not have left yet
@@ -149,7 +149,7 @@ TEST_CASE("robots in conflict may move apart but not closer together") {
   while (distance(seconds) > 0.17) seconds += 0.002;
   REQUIRE(distance(seconds) > 0.16);
   const Version back = continued(on, 14, 3, {3, 0}, seconds);
-  CHECK(two.ledger.grant(back).reason == msg::REASON_CONFLICT);
+  CHECK(two.ledger.grant(back).reason == msg::Reason::REASON_CONFLICT);
 }
 
 TEST_CASE("a robot pushed too close to an obstacle or off the field may move out but not farther in") {
@@ -158,11 +158,11 @@ TEST_CASE("a robot pushed too close to an obstacle or off the field may move out
   Ledger ledger(rules, {1});
   Version in = rest_version(1, {1.45, 0}), out = rest_version(1, {9.95, 3});
   ledger.register_robot(1, {&in, 1});
-  CHECK(ledger.grant(continued(in, 10, 1, {3, 0})).reason == msg::REASON_OBSTACLE);
+  CHECK(ledger.grant(continued(in, 10, 1, {3, 0})).reason == msg::Reason::REASON_OBSTACLE);
   CHECK(ledger.grant(continued(in, 11, 1, {-3, 0})).is_granted());
   ledger.clear();
   ledger.register_robot(1, {&out, 1});
-  CHECK(ledger.grant(continued(out, 10, 1, {3, 0})).reason == msg::REASON_OUTSIDE_FIELD);
+  CHECK(ledger.grant(continued(out, 10, 1, {3, 0})).reason == msg::Reason::REASON_OUTSIDE_FIELD);
   CHECK(ledger.grant(continued(out, 11, 1, {-3, 0})).is_granted());
   CHECK(ledger.grant(continued(out, 12, 1, {0, 3})).is_granted());
 }
@@ -174,16 +174,16 @@ TEST_CASE("lifting a robot removes its versions except those still to start") {
   two.ledger.on_lifted(1, at_s(0.9));
   REQUIRE(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.versions(1)[0].number == 10);
-  CHECK(two.ledger.grant(rest_version(1, {3, 3}, 11)).reason == msg::REASON_BASE_UNKNOWN);
+  CHECK(two.ledger.grant(rest_version(1, {3, 3}, 11)).reason == msg::Reason::REASON_BASE_UNKNOWN);
   two.ledger.on_lifted(1, at_s(1));
   CHECK(two.ledger.versions(1).empty());
   CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == FactOutcome::kStale);
   CHECK(two.ledger.versions(1).empty());
   CHECK(two.ledger.on_executing(two.a, at_s(1.1), false) == FactOutcome::kContradiction);
 
-  CHECK(two.ledger.grant(continued(two.a, 12, 1, {0, 3})).reason == msg::REASON_ABSENT);
-  CHECK(two.ledger.grant(rest_version(1, {0.85, 0}, 12)).reason == msg::REASON_CONFLICT);
-  CHECK(two.ledger.grant(rest_version(1, {19, 0}, 12)).reason == msg::REASON_OUTSIDE_FIELD);
+  CHECK(two.ledger.grant(continued(two.a, 12, 1, {0, 3})).reason == msg::Reason::REASON_ABSENT);
+  CHECK(two.ledger.grant(rest_version(1, {0.85, 0}, 12)).reason == msg::Reason::REASON_CONFLICT);
+  CHECK(two.ledger.grant(rest_version(1, {19, 0}, 12)).reason == msg::Reason::REASON_OUTSIDE_FIELD);
   Version placed = rest_version(1, {3, 3}, 13);
   placed.trajectory = Trajectory::resting(at_s(2), {3, 3});
   REQUIRE(two.ledger.grant(placed).is_granted());

@@ -2,9 +2,9 @@
 #include "coordinator/ledger_pages.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::ledger_pages_test {
 

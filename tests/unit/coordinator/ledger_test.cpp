@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/ledger.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/robot_model.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::ledger_test {
@@ -35,7 +35,7 @@ TEST_CASE("a clear candidate is granted, added, and removes nothing") {
 TEST_CASE("a candidate in conflict is refused and changes nothing, and the ruling names the other robot") {
   Two two(0.2);
   const Ruling ruling = two.ledger.grant(continued(two.a, 10, 1, {3, 0}, 0.2));
-  CHECK(ruling.reason == msg::REASON_CONFLICT);
+  CHECK(ruling.reason == msg::Reason::REASON_CONFLICT);
   CHECK(ruling.blocker == 2);
   CHECK(two.ledger.versions(1).size() == 1);
 }
@@ -47,7 +47,7 @@ TEST_CASE("candidates are checked against all versions that a robot may execute,
   REQUIRE(two.ledger.grant(away).is_granted());
   const Version towards = continued(two.a, 20, 1, {3, 0}, 0.4);
   CHECK(is_clear(towards.trajectory, away.trajectory, 0.19));
-  CHECK(two.ledger.grant(towards).reason == msg::REASON_CONFLICT);
+  CHECK(two.ledger.grant(towards).reason == msg::Reason::REASON_CONFLICT);
   // Once it is known to execute the move, its old position is free.
   REQUIRE(two.fact(away, 1.01) == FactOutcome::kApplied);
   CHECK(two.ledger.grant(towards).is_granted());
@@ -57,7 +57,7 @@ TEST_CASE("a candidate whose base is not in the ledger is refused") {
   Two two(1);
   Version p = continued(two.a, 10, 1, {3, 0});
   p.base = 7;
-  CHECK(two.ledger.grant(p).reason == msg::REASON_BASE_UNKNOWN);
+  CHECK(two.ledger.grant(p).reason == msg::Reason::REASON_BASE_UNKNOWN);
 }
 
 TEST_CASE("a candidate must continue its base, obey the limits, come to rest and stay on the field") {
@@ -68,11 +68,11 @@ TEST_CASE("a candidate must continue its base, obey the limits, come to rest and
     if (brake > 0) append_stop(trajectory, brake);
     return two.ledger.grant({1, 1, 10, 0, trajectory}).reason;
   };
-  CHECK(reason({1e-3, 0}, {0, 0}, {0, 3}, 5) == msg::REASON_NOT_CONTINUOUS);
-  CHECK(reason({0, 0}, {0, 1e-3}, {0, 3}, 5) == msg::REASON_NOT_CONTINUOUS);
-  CHECK(reason({0, 0}, {0, 0}, {0, 3.1}, 5) == msg::REASON_BEYOND_LIMITS);
-  CHECK(reason({0, 0}, {0, 0}, {0, 3}, 5.5) == msg::REASON_BEYOND_LIMITS);
-  CHECK(reason({0, 0}, {0, 0}, {0, 3}, 0) == msg::REASON_NOT_AT_REST);
+  CHECK(reason({1e-3, 0}, {0, 0}, {0, 3}, 5) == msg::Reason::REASON_NOT_CONTINUOUS);
+  CHECK(reason({0, 0}, {0, 1e-3}, {0, 3}, 5) == msg::Reason::REASON_NOT_CONTINUOUS);
+  CHECK(reason({0, 0}, {0, 0}, {0, 3.1}, 5) == msg::Reason::REASON_BEYOND_LIMITS);
+  CHECK(reason({0, 0}, {0, 0}, {0, 3}, 5.5) == msg::Reason::REASON_BEYOND_LIMITS);
+  CHECK(reason({0, 0}, {0, 0}, {0, 3}, 0) == msg::Reason::REASON_NOT_AT_REST);
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
@@ -129,13 +129,13 @@ TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and ch
 TEST_CASE("without facts the ledger fills up and then grants nothing") {
   Two two(10);
   Version last = two.a;
-  msg::Reason reason = msg::REASON_GRANTED;
-  for (VersionNumber n = 1; n < 20 && reason == msg::REASON_GRANTED; ++n) {
+  msg::Reason reason = msg::Reason::REASON_GRANTED;
+  for (VersionNumber n = 1; n < 20 && reason == msg::Reason::REASON_GRANTED; ++n) {
     const Version next = continued(last, n, 1 + 0.02 * static_cast<double>(n), {0.5, 0});
     reason = two.ledger.grant(next).reason;
     last = next;
   }
-  CHECK(reason == msg::REASON_LEDGER_FULL);
+  CHECK(reason == msg::Reason::REASON_LEDGER_FULL);
   CHECK(two.ledger.versions(1).size() == VersionSet::kCapacity);
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("all versions of different robots stay clear through random grants, lo
                                             rules.limits, from_seconds(0.15));
     const Ruling ruling = ledger.grant(continued(base, number, start, desired, 0.15));
     grants += ruling.is_granted();
-    conflicts += ruling.reason == msg::REASON_CONFLICT;
+    conflicts += ruling.reason == msg::Reason::REASON_CONFLICT;
     if (rng.chance(0.5)) {
       // The robot switches to one of its due versions, or keeps its current one.
       Version& current = executing[robot];

@@ -40,7 +40,8 @@ VisionTestbed::VisionTestbed(const Scenario& scenario, const RenderSpec& spec,
   for (std::uint32_t camera = 0; camera < renderers_.size(); ++camera) {
     msg::CameraImage& image = images_.emplace_back();
     image.camera(camera);
-    image.image_format(spec.format == PixelFormat::kRgb ? msg::IMAGE_RGB : msg::IMAGE_YUV422);
+    image.image_format(spec.format == PixelFormat::kRgb ? msg::ImageFormat::IMAGE_RGB
+                                                        : msg::ImageFormat::IMAGE_YUV422);
     image.width_px(static_cast<std::uint32_t>(images.width_px));
     image.height_px(static_cast<std::uint32_t>(images.height_px));
     image.pixels().resize(ImageView{spec.format, images.width_px, images.height_px}.bytes());

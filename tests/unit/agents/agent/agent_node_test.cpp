@@ -2,14 +2,14 @@
 // What the node does with hostile messages: none reaches the agent, and status.invalid counts each once.
 #include "agents/agent/agent_node.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
-#include "idl/disturbance.h"
+#include "idl/disturbance.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::agent_node_test {
 
@@ -39,7 +39,7 @@ msg::Feedback valid_feedback() {
 msg::CoordinatorState valid_coordinator_state() {
   msg::CoordinatorState state;
   state.epoch(7);
-  state.coordinator_mode(msg::COORDINATOR_GRANTING);
+  state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   return state;
 }
 
@@ -63,7 +63,7 @@ msg::LedgerPage valid_page() {
 msg::Disturbance placement(RobotId robot, double x) {
   msg::Disturbance disturbance;
   disturbance.robot(robot);
-  disturbance.disturbance_kind(msg::DISTURBANCE_PLACE);
+  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
   disturbance.x_m(x);
   return disturbance;
 }
@@ -129,9 +129,9 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kMaxEpoch + 1); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.vx_mps(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.robot(kRobot + 1); }) == 1);
-  CHECK(f.status.agent_state() == msg::AGENT_FENCING);
+  CHECK(f.status.agent_state() == msg::AgentState::AGENT_FENCING);
   CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
-  CHECK(f.status.agent_state() == msg::AGENT_WAITING);
+  CHECK(f.status.agent_state() == msg::AgentState::AGENT_WAITING);
   CHECK(f.status.distance_to_go_m() == 1);
   CHECK(send([](msg::Feedback& m) { m.position_error_rms_m(kNan), m.x_m(1); }) == 1);
   CHECK(f.status.distance_to_go_m() == 1);
@@ -189,7 +189,7 @@ TEST_CASE("only an invalid placement of the agent's own robot is counted") {
   CHECK(f.send(topics::kDisturbance, placement(kRobot, kNan)) == 1);
   CHECK(f.send(topics::kDisturbance, placement(kRobot + 1, kNan)) == 0);
   msg::Disturbance push = placement(kRobot, kNan);
-  push.disturbance_kind(msg::DISTURBANCE_PUSH);
+  push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
   CHECK(f.send(topics::kDisturbance, push) == 0);
 }
 

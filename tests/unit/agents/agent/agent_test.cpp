@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/agent.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::agent_test {
 
@@ -35,7 +34,7 @@ Feedback resting_at(const Vec2& position, double at, Epoch epoch = 7) {
 void become_ready(Agent& agent) {
   CoordinatorHeartbeat heartbeat;
   heartbeat.epoch = 7;
-  heartbeat.mode = msg::COORDINATOR_GRANTING;
+  heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
   agent.on_coordinator_state(heartbeat, at_s(0.6));
   (void)agent.registration();
 }
@@ -142,7 +141,7 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   become_ready(agent);
   agent.on_world(observation(0, 0.6), at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
-  CHECK(agent.status(at_s(1)).agent_state() == msg::AGENT_ARRIVED);
+  CHECK(agent.status(at_s(1)).agent_state() == msg::AgentState::AGENT_ARRIVED);
 }
 
 TEST_CASE("nothing is proposed while a moving obstacle is too near, and proposals resume afterwards") {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/clock_monitor.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::clock_monitor_test {
 
@@ -115,9 +114,9 @@ TEST_CASE("an offset beyond the bound by more than the fastest round trips is de
   CHECK(f.clocks.is_beyond_bound(at_s(1)));
   CHECK_FALSE(f.clocks.allows_motion(at_s(1)));
   msg::AgentStatus status;
-  status.agent_state(msg::AGENT_WAITING);
+  status.agent_state(msg::AgentState::AGENT_WAITING);
   f.clocks.fill(status, at_s(1));
-  CHECK(status.agent_state() == msg::AGENT_CLOCK_OUT_OF_BOUND);
+  CHECK(status.agent_state() == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
   CHECK(std::abs(status.clock_offset_s() - offset_s) <= status.clock_uncertainty_s());
   // The clock is corrected.
   f.robot_s = 0;

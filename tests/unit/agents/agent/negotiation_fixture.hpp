@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <optional>
 #include <vector>
 
 #include "agents/agent/negotiation.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep {
 
@@ -29,7 +29,8 @@ inline Feedback fact(const Version& executing, double at, Incarnation obeyed = k
 inline CoordinatorHeartbeat heartbeat(Epoch epoch, const std::vector<RobotId>& missing = {}) {
   CoordinatorHeartbeat state;
   state.epoch = epoch;
-  state.mode = missing.empty() ? msg::COORDINATOR_GRANTING : msg::COORDINATOR_REGISTERING;
+  state.mode = missing.empty() ? msg::CoordinatorMode::COORDINATOR_GRANTING
+                               : msg::CoordinatorMode::COORDINATOR_REGISTERING;
   state.missing = missing;
   return state;
 }

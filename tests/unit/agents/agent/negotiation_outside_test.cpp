@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots that are pushed, lifted or put down elsewhere, or that another agent has driven.
-#include <catch2/catch.hpp>
-
 #include "agents/agent/negotiation.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/agents/agent/negotiation_fixture.hpp"
 
 namespace sidestep::negotiation_outside_test {

@@ -2,8 +2,8 @@
 #include "agents/agent/negotiation.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/agents/agent/negotiation_fixture.hpp"
 
 namespace sidestep::negotiation_test {
@@ -38,7 +38,7 @@ TEST_CASE(
   (void)f.n.registration();
   CHECK(f.n.may_propose(at_s(0.95)));
   Verdict refusal = verdict_on(f.propose(1.0, 0.9));
-  refusal.reasons.fill(msg::REASON_NOT_ALL_REGISTERED);
+  refusal.reasons.fill(msg::Reason::REASON_NOT_ALL_REGISTERED);
   (void)f.n.on_verdict(refusal, at_s(0.95));
   CHECK(f.n.needs_registration());
 }
@@ -81,7 +81,7 @@ TEST_CASE("a denied version is neither forwarded nor registered") {
   f.become_ready();
   const auto proposal = f.propose(1.0, 0.9);
   Verdict denial = verdict_on(proposal);
-  denial.reasons.fill(msg::REASON_CONFLICT);
+  denial.reasons.fill(msg::Reason::REASON_CONFLICT);
   CHECK_FALSE(f.n.on_verdict(denial, at_s(0.95)).granted);
   CHECK(f.n.counts().denials == 1);
   CHECK(f.n.base_at(at_s(1.05)).number == 0);

@@ -2,10 +2,10 @@
 #include "agents/agent/neighbours.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/messaging/version_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::neighbours_test {

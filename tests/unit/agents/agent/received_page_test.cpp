@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/received_page.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/messaging/version_codec.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::received_page_test {
 

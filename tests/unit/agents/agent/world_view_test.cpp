@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/world_view.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::world_view_test {
 

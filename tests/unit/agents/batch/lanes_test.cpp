@@ -2,10 +2,10 @@
 #include "agents/batch/lanes.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "agents/batch/dispatch.hpp"
 #include "common/motion/clearance.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::lanes_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/dead_reckoning.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::dead_reckoning_test {
 

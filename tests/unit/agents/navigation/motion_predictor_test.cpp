@@ -2,11 +2,11 @@
 #include "agents/navigation/motion_predictor.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "agents/navigation/trapezoidal_profile.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::motion_predictor_test {
 

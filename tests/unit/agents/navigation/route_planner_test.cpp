@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/route_planner.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <queue>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::route_planner_test {
 

@@ -2,10 +2,10 @@
 #include "agents/navigation/steering.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::steering_test {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/trapezoidal_profile.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/motion/robot_model.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::trapezoidal_profile_test {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/anytime.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::anytime_test {
 

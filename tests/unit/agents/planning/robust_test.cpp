@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/robust.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::robust_test {
 
@@ -63,7 +62,7 @@ void leave_obstacles(std::uint64_t seed, int min_solved) {
       const Vec2 start = blocked_position(world, rng);
       CAPTURE(name, seed, start.transpose(), query.goal_m.transpose());
       const DiscDomain domain(obstacles, world.field, world.radius_m, start, query.goal_m);
-      const Plan<Vec2>& plan = plan_robustly(planner, domain, start, {.samples = 5000}, rng);
+      const Plan<Vec2> plan = plan_robustly(planner, domain, start, {.samples = 5000}, rng);
       REQUIRE(plan.start_blocked);
       REQUIRE_FALSE(plan.goal_blocked);
       REQUIRE(plan.states.front() == start);
@@ -89,7 +88,7 @@ void approach_obstacles(std::uint64_t seed) {
       const Vec2 requested = blocked_position(world, rng);
       CAPTURE(name, seed, query.start_m.transpose(), requested.transpose());
       const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, requested);
-      const Plan<Vec2>& plan = plan_robustly(planner, domain, query.start_m, {.samples = 5000}, rng);
+      const Plan<Vec2> plan = plan_robustly(planner, domain, query.start_m, {.samples = 5000}, rng);
       REQUIRE(plan.goal_blocked);
       REQUIRE_FALSE(plan.start_blocked);
       REQUIRE(is_valid_path(world, plan.states, 1e-9));
@@ -129,7 +128,7 @@ TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free posit
   REQUIRE(domain.goal(start).x() > -1);
   LazyVisibility planner;
   Rng rng(1);
-  const Plan<Vec2>& plan = plan_robustly(planner, domain, start, {}, rng);
+  const Plan<Vec2> plan = plan_robustly(planner, domain, start, {}, rng);
   CHECK(plan.arrives());
   CHECK(plan.goal_blocked);
   CHECK(is_valid_path(world, plan.states, 1e-9));

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/world_view.hpp"
 #include "agents/batch/dispatch.hpp"
@@ -9,6 +7,7 @@
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 

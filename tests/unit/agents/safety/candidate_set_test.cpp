@@ -2,10 +2,10 @@
 #include "agents/safety/candidate_set.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "agents/safety/safety_search.hpp"
 #include "common/motion/clearance.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::candidate_set_test {

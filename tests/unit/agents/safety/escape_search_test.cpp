@@ -2,9 +2,9 @@
 #include "agents/safety/escape_search.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::escape_search_test {
 

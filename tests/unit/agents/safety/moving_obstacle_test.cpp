@@ -2,9 +2,9 @@
 #include "agents/safety/moving_obstacle.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::moving_obstacle_test {

@@ -2,10 +2,10 @@
 #include "agents/safety/safety_search.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/robot_model.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::safety_search_test {

@@ -2,8 +2,8 @@
 #include "agents/safety/trajectory_index.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::trajectory_index_test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/camera_grid.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::camera_grid_test {
 

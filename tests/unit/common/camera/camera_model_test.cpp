@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/camera_model.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 
 namespace sidestep::camera_model_test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/lens.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::lens_test {
 

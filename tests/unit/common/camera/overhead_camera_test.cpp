@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/overhead_camera.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 
 namespace sidestep::overhead_camera_test {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "common/collision/obstacle_world.hpp"
+#include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/obstacle_world.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/collision/batch/dispatch.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep::obstacle_world_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/shapes.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <numbers>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep::shapes_test {

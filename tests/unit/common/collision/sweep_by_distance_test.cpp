@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/sweep_by_distance.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/collision/obstacle_world.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep::sweep_by_distance_test {

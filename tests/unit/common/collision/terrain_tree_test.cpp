@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/collision/terrain_tree.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_terrain.hpp"
 
 namespace sidestep::terrain_tree_test {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
 #include "common/config/scenario.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::robot_numbers_test {
 
@@ -36,7 +36,7 @@ TEST_CASE("two robots of a team with one number are rejected by id, of two teams
                   std::invalid_argument);
   CHECK_THROWS_WITH(
       require_unique_numbers(scenario_of({{0, Team::kYellow}, {3, Team::kYellow}, {19, Team::kYellow}})),
-      Catch::Contains("robots 3 and 19 both have number 3") && Catch::Contains("yellow"));
+      ContainsSubstring("robots 3 and 19 both have number 3") && ContainsSubstring("yellow"));
 }
 
 }  // namespace sidestep::robot_numbers_test

@@ -230,8 +230,8 @@ TEST_CASE("files that cannot be read are rejected") {
     return "accepted";
   };
   CHECK_THAT(load_error("/nowhere/x.yaml"),
-             Catch::StartsWith("/nowhere/x.yaml:1: cannot read the file (No such file"));
-  CHECK_THAT(load_error("/tmp"), Catch::StartsWith("/tmp:1: cannot read the file (a directory"));
+             StartsWith("/nowhere/x.yaml:1: cannot read the file (No such file"));
+  CHECK_THAT(load_error("/tmp"), StartsWith("/tmp:1: cannot read the file (a directory"));
 }
 
 TEST_CASE("a mutated scenario is either loaded or rejected with a ConfigError") {
@@ -268,7 +268,7 @@ TEST_CASE("a mutated scenario is either loaded or rejected with a ConfigError") 
         REQUIRE_FALSE(scenario.robots.empty());
         ++accepted;
       } catch (const ConfigError& error) {
-        REQUIRE_THAT(error.what(), Catch::StartsWith(std::string(name) + ":"));
+        REQUIRE_THAT(error.what(), StartsWith(std::string(name) + ":"));
         ++rejected;
       }
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep {
 
@@ -21,8 +21,8 @@ inline std::string error_of(const std::string& text) {
 inline void check_rejected(const std::string& text, int line, const std::string& why) {
   CAPTURE(text);
   const std::string error = error_of(text);
-  CHECK_THAT(error, Catch::StartsWith("file.yaml:" + std::to_string(line) + ": "));
-  CHECK_THAT(error, Catch::Contains(why));
+  CHECK_THAT(error, StartsWith("file.yaml:" + std::to_string(line) + ": "));
+  CHECK_THAT(error, ContainsSubstring(why));
 }
 
 /// A valid scenario with one robot.

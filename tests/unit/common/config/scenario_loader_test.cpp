@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/scenario_loader.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
 
 namespace sidestep::scenario_loader_test {

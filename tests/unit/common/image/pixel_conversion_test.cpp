@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/image/pixel_conversion.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/image/colour_space.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::pixel_conversion_test {
 

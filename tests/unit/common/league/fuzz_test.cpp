@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 #include "tests/fuzz/league_inputs.hpp"
 
 namespace sidestep::fuzz_test {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/league/log_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <sstream>
 #include <unistd.h>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
 
 namespace sidestep::league::log_file_test {
 
-using Catch::Matchers::Contains;
 using std::chrono::milliseconds;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
@@ -132,23 +131,25 @@ TEST_CASE("a truncated log keeps all complete records") {
     const bool is_whole = ends[complete] == length;
     REQUIRE(reader.status() == (is_whole ? LogStatus::kComplete : LogStatus::kTruncated));
     if (!is_whole)
-      REQUIRE_THAT(reader.error(), Contains("x.log: byte " + std::to_string(ends[complete]) + ": "));
+      REQUIRE_THAT(reader.error(), ContainsSubstring("x.log: byte " + std::to_string(ends[complete]) + ": "));
   }
 }
 
 TEST_CASE("a file that is not a log is rejected with the position and the expected content") {
-  CHECK_THAT(error_of(""), Contains("x.log: byte 0: not a log"));
-  CHECK_THAT(error_of(std::string("SSL_LOG_FILX\0\0\0\1", 16)), Contains("x.log: byte 0: not a log"));
-  CHECK_THAT(error_of("\x1f\x8b and so on, long enough to be one"), Contains("gunzip"));
-  CHECK_THAT(error_of("SSL_LOG_FILE"), Contains("x.log: byte 12: the file ends"));
-  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\0\0\0\2", 16)), Contains("x.log: byte 12: format version 2"));
-  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\1\0\0\0", 16)), Contains("version 16777216"));
+  CHECK_THAT(error_of(""), ContainsSubstring("x.log: byte 0: not a log"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILX\0\0\0\1", 16)),
+             ContainsSubstring("x.log: byte 0: not a log"));
+  CHECK_THAT(error_of("\x1f\x8b and so on, long enough to be one"), ContainsSubstring("gunzip"));
+  CHECK_THAT(error_of("SSL_LOG_FILE"), ContainsSubstring("x.log: byte 12: the file ends"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\0\0\0\2", 16)),
+             ContainsSubstring("x.log: byte 12: format version 2"));
+  CHECK_THAT(error_of(std::string("SSL_LOG_FILE\1\0\0\0", 16)), ContainsSubstring("version 16777216"));
   CHECK(error_of(kFileHeader) == "accepted");
   CHECK_THROWS_WITH(LogReader("/nowhere/x.log"),
-                    Contains("/nowhere/x.log: cannot read the file: No such file"));
-  CHECK_THROWS_WITH(LogReader("/tmp"), Contains("/tmp: "));
+                    ContainsSubstring("/nowhere/x.log: cannot read the file: No such file"));
+  CHECK_THROWS_WITH(LogReader("/tmp"), ContainsSubstring("/tmp: "));
   CHECK_THROWS_WITH(LogWriter("/nowhere/x.log"),
-                    Contains("/nowhere/x.log: cannot write the file: No such file"));
+                    ContainsSubstring("/nowhere/x.log: cannot write the file: No such file"));
 }
 
 TEST_CASE("an invalid record ends the reading with its position") {
@@ -159,15 +160,17 @@ TEST_CASE("an invalid record ends the reading with its position") {
     CHECK(reader.status() == LogStatus::kCorrupt);
     LogRecord record;
     CHECK_FALSE(reader.next(record));
-    CHECK_THAT(reader.error(), Contains("x.log: byte 35: "));
+    CHECK_THAT(reader.error(), ContainsSubstring("x.log: byte 35: "));
     return reader.error();
   };
-  CHECK_THAT(error_after_first(header(6, 4, -1) + "xyz"), Contains("the size -1, expected 0 to 65507"));
-  CHECK_THAT(error_after_first(header(6, 4, 65508) + std::string(65508, 'x')), Contains("the size 65508"));
-  CHECK_THAT(error_after_first(header(6, 99, -5)), Contains("type 99 with the size -5"));
-  CHECK_THAT(error_after_first(header(-6, 4, 0)), Contains("receive time -6 ns"));
+  CHECK_THAT(error_after_first(header(6, 4, -1) + "xyz"),
+             ContainsSubstring("the size -1, expected 0 to 65507"));
+  CHECK_THAT(error_after_first(header(6, 4, 65508) + std::string(65508, 'x')),
+             ContainsSubstring("the size 65508"));
+  CHECK_THAT(error_after_first(header(6, 99, -5)), ContainsSubstring("type 99 with the size -5"));
+  CHECK_THAT(error_after_first(header(-6, 4, 0)), ContainsSubstring("receive time -6 ns"));
   CHECK_THAT(error_after_first(header(std::int64_t{1} << 62, 4, 0)),
-             Contains("receive time 4611686018427387904"));
+             ContainsSubstring("receive time 4611686018427387904"));
 }
 
 TEST_CASE("records of unknown types are skipped, whatever their length") {

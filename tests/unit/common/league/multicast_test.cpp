@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/league/multicast.hpp"
 
-#include <catch2/catch.hpp>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 #include "tests/test_endpoint.hpp"
 
 namespace sidestep::league::multicast_test {
 
-using Catch::Matchers::Contains;
 using Bytes = std::vector<std::byte>;
 
 std::string parsed(const std::string& text) {
@@ -53,14 +52,15 @@ TEST_CASE("a multicast address and port are parsed, and other text is rejected w
     CHECK(parsed(text) == std::string("accepted as ") + text);
   }
   for (const char* text : {"", "224.5.23.2", "10006"})
-    CHECK_THAT(parsed(text), Contains("expected ADDRESS:PORT"));
+    CHECK_THAT(parsed(text), ContainsSubstring("expected ADDRESS:PORT"));
   for (const char* text : {":10006", "192.168.0.1:10006", "223.255.255.255:1", "240.0.0.0:1", "224.5.23:1",
                            "224.5.23.256:1", "vision:10006", "ff02::1:10006"}) {
-    CHECK_THAT(parsed(text), Contains(std::string("\"") + text + "\": expected a multicast address"));
+    CHECK_THAT(parsed(text),
+               ContainsSubstring(std::string("\"") + text + "\": expected a multicast address"));
   }
   for (const char* text : {"224.5.23.2:", "224.5.23.2:0", "224.5.23.2:65536", "224.5.23.2:-1",
                            "224.5.23.2:1x", "224.5.23.2: 1"}) {
-    CHECK_THAT(parsed(text), Contains("expected a port, 1 to 65535"));
+    CHECK_THAT(parsed(text), ContainsSubstring("expected a port, 1 to 65535"));
   }
 }
 
@@ -68,8 +68,9 @@ TEST_CASE("an unknown interface is rejected with the list of interfaces") {
   const TestEndpoint group;
   for (const char* interface : {"192.0.2.77", "lo", "", "256.0.0.1"}) {
     CAPTURE(interface);
-    CHECK_THROWS_WITH(MulticastSender(group.endpoint(), interface),
-                      Contains(std::string("\"") + interface + "\"") && Contains("127.0.0.1 (lo)"));
+    CHECK_THROWS_WITH(
+        MulticastSender(group.endpoint(), interface),
+        ContainsSubstring(std::string("\"") + interface + "\"") && ContainsSubstring("127.0.0.1 (lo)"));
     CHECK_THROWS_AS(MulticastReceiver(group.endpoint(), interface), std::invalid_argument);
   }
 }

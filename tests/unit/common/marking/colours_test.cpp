@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/marking/colours.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::colours_test {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/marking/layout_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::layout_file_test {
 

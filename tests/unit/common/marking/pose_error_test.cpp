@@ -2,10 +2,10 @@
 #include "common/marking/pose_error.hpp"
 
 #include <Eigen/Dense>
-#include <catch2/catch.hpp>
 
 #include "common/marking/butterfly.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/marking/random_layout.hpp"
 
 namespace sidestep::pose_error_test {

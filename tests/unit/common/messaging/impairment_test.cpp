@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/impairment.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::impairment_test {
 

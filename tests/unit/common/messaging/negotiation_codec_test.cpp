@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/negotiation_codec.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/messaging/version_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/messaging/random_messages.hpp"
 #include "tests/unit/common/messaging/same_version.hpp"
 
@@ -191,7 +191,8 @@ TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
   REQUIRE(decode(message, kRobot));
   CHECK_FALSE(decode(message, kRobot + 1));
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) {
-    for (const std::uint32_t reason : {msg::REASON_ABSENT + 1u, std::numeric_limits<std::uint32_t>::max()}) {
+    for (const std::uint32_t reason : {static_cast<std::uint32_t>(msg::Reason::REASON_ABSENT) + 1,
+                                       std::numeric_limits<std::uint32_t>::max()}) {
       CAPTURE(i, reason);
       msg::Verdict hostile = message;
       hostile.reasons()[i] = static_cast<msg::Reason>(reason);
@@ -205,14 +206,14 @@ TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
   message.header().sender(10001);
   message.header().incarnation(8);
   message.epoch(7);
-  message.coordinator_mode(msg::COORDINATOR_REGISTERING);
+  message.coordinator_mode(msg::CoordinatorMode::COORDINATOR_REGISTERING);
   message.missing({4, 9});
   const auto heartbeat = decode(message, kNow);
   REQUIRE(heartbeat);
   CHECK(heartbeat->sender == 10001);
   CHECK(heartbeat->incarnation == 8);
   CHECK(heartbeat->epoch == 7);
-  CHECK(heartbeat->mode == msg::COORDINATOR_REGISTERING);
+  CHECK(heartbeat->mode == msg::CoordinatorMode::COORDINATOR_REGISTERING);
   CHECK(std::ranges::equal(heartbeat->missing, std::vector<RobotId>{4, 9}));
   message.epoch(0);
   CHECK(decode(message, kNow)->epoch == 0);
@@ -231,8 +232,8 @@ TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mod
     CHECK_FALSE(decode(message, kNow));
   }
   message.epoch(now);
-  for (const std::uint32_t mode :
-       {msg::COORDINATOR_GRANTING + 1u, std::numeric_limits<std::uint32_t>::max()}) {
+  for (const std::uint32_t mode : {static_cast<std::uint32_t>(msg::CoordinatorMode::COORDINATOR_GRANTING) + 1,
+                                   std::numeric_limits<std::uint32_t>::max()}) {
     message.coordinator_mode(static_cast<msg::CoordinatorMode>(mode));
     CHECK_FALSE(decode(message, kNow));
   }

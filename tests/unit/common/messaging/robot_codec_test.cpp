@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/robot_codec.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/messaging/random_messages.hpp"
 #include "tests/unit/common/messaging/same_version.hpp"
 

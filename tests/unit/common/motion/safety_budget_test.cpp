@@ -2,9 +2,9 @@
 #include "common/motion/safety_budget.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/motion/clearance.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::safety_budget_test {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/motion/validity.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::validity_test {

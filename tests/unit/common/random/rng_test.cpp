@@ -2,8 +2,9 @@
 #include "common/random/rng.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <map>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::rng_test {
 

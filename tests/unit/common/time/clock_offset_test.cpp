@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/time/clock_offset.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::clock_offset_test {
 

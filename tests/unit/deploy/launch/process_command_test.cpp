@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/command.hpp"
+#include "tests/catch.hpp"
 
 using namespace sidestep;
 namespace fs = std::filesystem;

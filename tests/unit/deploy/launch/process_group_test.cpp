@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_group.hpp"
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
@@ -10,6 +9,8 @@
 #include <sstream>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
@@ -81,7 +82,7 @@ TEST_CASE("a death is reported with exit code or signal, and the last lines are 
   CHECK_FALSE(event.will_restart);
   CHECK(group.last_lines("talker") == std::vector<std::string>{"first", "second", "unfinished"});
   CHECK_THAT(text_of(log_path()),
-             Catch::Contains("talker: first\n") && Catch::Contains("talker: unfinished\n"));
+             ContainsSubstring("talker: first\n") && ContainsSubstring("talker: unfinished\n"));
 
   group.start(shell("victim", "kill -9 $$"));
   CHECK(next_event(group).reason == "signal 9 (SIGKILL)");
@@ -93,7 +94,7 @@ TEST_CASE("a death is reported with exit code or signal, and the last lines are 
 TEST_CASE("a program that does not exist is refused at once") {
   ProcessGroup group(log_path());
   CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),
-                    Catch::Contains("cannot start ghost (/nowhere/ghost): No such file"));
+                    ContainsSubstring("cannot start ghost (/nowhere/ghost): No such file"));
 }
 
 TEST_CASE("a program that cannot be executed says why in its last lines") {
@@ -104,7 +105,7 @@ TEST_CASE("a program that cannot be executed says why in its last lines") {
   group.start({"text", {path}, false});
   CHECK(next_event(group).reason == "exit code 127");
   REQUIRE_FALSE(group.last_lines("text").empty());  // a sanitizer may add a line of its own
-  CHECK_THAT(group.last_lines("text")[0], Catch::StartsWith("cannot execute " + path));
+  CHECK_THAT(group.last_lines("text")[0], StartsWith("cannot execute " + path));
 }
 
 TEST_CASE("a child with `restart` is started again after each death, as a new process") {
@@ -160,7 +161,7 @@ TEST_CASE("a child reads its input again after a restart, and ends when its stdi
   while (twice.last_lines("reader").size() < 2 && SteadyClock::now() < until) twice.poll(1ms);
   CHECK(twice.last_lines("reader") == std::vector<std::string>{"abc", "abc"});
   CHECK_THROWS_WITH(twice.start({"full", {"/bin/cat"}, false, std::string(2 << 20, 'x')}),
-                    Catch::Contains("too many"));
+                    ContainsSubstring("too many"));
 }
 
 TEST_CASE("a child that prints a lot does not stall, and only its last lines are kept") {

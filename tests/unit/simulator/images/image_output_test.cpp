@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/images/image_output.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::image_output_test {
 
@@ -85,7 +85,7 @@ TEST_CASE("each camera's images arrive at its rate and after its delay, without 
     }
     CHECK(images[0].width_px() == 200);
     CHECK(images[0].height_px() == 150);
-    CHECK(images[0].image_format() == msg::IMAGE_YUV422);
+    CHECK(images[0].image_format() == msg::ImageFormat::IMAGE_YUV422);
     CHECK(images[0].pixels().size() == 200 * 150 * 2);
     CHECK(images[0].header().incarnation() == 7);
   }

@@ -2,12 +2,12 @@
 #include "simulator/league/league_frames.hpp"
 
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
 #include "common/random/rng.hpp"
 #include "simulator/league/league_geometry.hpp"
 #include "simulator/rendering/field_surface.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::league_frames_test {
 
@@ -156,7 +156,8 @@ TEST_CASE("scenarios that packets cannot represent are refused") {
   scenario.vision.columns = 9;
   scenario.vision.rows = 8;
   const Cameras many(scenario, kNow, 1);
-  CHECK_THROWS_WITH(LeagueFrames(scenario, many.views()), Catch::Contains("72 cameras, expected at most 64"));
+  CHECK_THROWS_WITH(LeagueFrames(scenario, many.views()),
+                    ContainsSubstring("72 cameras, expected at most 64"));
   scenario = two_teams();
   scenario.robots[1].team = Team::kBlue;
   const Cameras cameras(scenario, kNow, 1);

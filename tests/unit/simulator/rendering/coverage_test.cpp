@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/random/rng.hpp"
 #include "simulator/rendering/coverage/kernels.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::coverage_test {
 

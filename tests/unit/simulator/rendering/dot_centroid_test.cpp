@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "common/marking/butterfly.hpp"
 #include "simulator/rendering/round_ball.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
 namespace sidestep::dot_centroid_test {

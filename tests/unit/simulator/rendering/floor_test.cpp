@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/marking/butterfly.hpp"
 #include "simulator/rendering/field_surface.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
 namespace sidestep::floor_test {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/rendering/frame_renderer.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "common/marking/butterfly.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/rendering/plain_spec.hpp"
 
 namespace sidestep::frame_renderer_test {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/rendering/sensor_noise.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::sensor_noise_test {
 

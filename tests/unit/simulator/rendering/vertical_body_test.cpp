@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/rendering/vertical_body.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
 #include "common/camera/overhead_camera.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::vertical_body_test {
 

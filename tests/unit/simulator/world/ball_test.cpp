@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/ball.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::ball_test {
 

@@ -2,11 +2,11 @@
 #include "simulator/world/body.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::body_test {
 

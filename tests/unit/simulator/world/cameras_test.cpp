@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/cameras.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::cameras_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/contacts.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::contacts_test {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "common/messaging/version_codec.hpp"
 #include "simulator/world/cameras.hpp"
 #include "simulator/world/disturbance_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
@@ -22,7 +22,7 @@ using test::separated_robots;
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 RobotDisturbance place(RobotId robot, const Vec2& at_m, double heading_rad) {
-  auto placing = disturbance(robot, msg::DISTURBANCE_PLACE);
+  auto placing = disturbance(robot, msg::DisturbanceKind::DISTURBANCE_PLACE);
   placing.place_m = at_m;
   placing.heading_rad = heading_rad;
   return placing;
@@ -47,7 +47,7 @@ TEST_CASE("a lifted robot is no obstacle, invisible, and executes nothing") {
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(30);
   world.advance(now);
-  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
   CHECK(world.pending_feedback().size() == 1);
   CHECK_FALSE(truth_has(world, 0));
   CHECK(truth_has(world, 1));
@@ -80,7 +80,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   run(10);
   if (!begins_absent) {
     CHECK_FALSE(world.disturb(0, place(0, {1, 1}, 0), now));
-    REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+    REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
   }
   CHECK_FALSE(truth_has(world, 0));
   REQUIRE(world.disturb(0, place(0, {3, -2}, 1.5), now));
@@ -118,7 +118,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     world.on_command(0, rest_version(0, 11, now + milliseconds(10), {3, -2}), now);
     run(100);
     CHECK_FALSE(truth_has(world, 0));
-    REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+    REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
     REQUIRE(world.disturb(0, place(0, {3, -2}, 1.5), now));
     world.on_command(0, rest_version(0, 12, now + milliseconds(10), {3, -2}), now);
     run(100);
@@ -145,7 +145,7 @@ TEST_CASE("a version from before the robot was lifted is never executed afterwar
   Time now = kBegin + milliseconds(10);
   world.on_command(0, test::command_with({0, 1, 6, 5, Trajectory::resting(now + milliseconds(20), mark)}),
                    now);
-  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_LIFT), now));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
   world.on_command(0, rest_version(0, 4, now + milliseconds(20), mark), now);
   world.advance(now += milliseconds(50));
   CHECK(world.feedback(0, now).executing.number == 0);
@@ -166,7 +166,7 @@ TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same ag
   world.advance(now);
   const Vec2 before = world.bodies()[0].velocity_mps();
   const Feedback last = world.feedback(0, now);
-  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_REBOOT), now));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT), now));
   world.advance(now += milliseconds(2));
   const Feedback facts = world.feedback(0, now);
   CHECK(facts.is_off_reference);
@@ -207,7 +207,7 @@ TEST_CASE("a robot's facts are by its own clock, which stands still after being 
   world.advance(now += milliseconds(1));
   CHECK(world.firmware(0).executing().number == 5);
 
-  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
+  auto clock = disturbance(0, msg::DisturbanceKind::DISTURBANCE_CLOCK);
   clock.clock_offset = milliseconds(-30);
   REQUIRE(world.disturb(0, clock, now));
   const Time frozen_at = now + milliseconds(7);
@@ -233,15 +233,15 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   };
   world.advance(now += milliseconds(100));
   CHECK(disturbance_end_ns() < 0);
-  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);  // does not affect the body
+  auto clock = disturbance(0, msg::DisturbanceKind::DISTURBANCE_CLOCK);  // does not affect the body
   clock.clock_offset = milliseconds(5);
   REQUIRE(world.disturb(0, clock, now));
   CHECK(disturbance_end_ns() < 0);
-  auto slip = disturbance(0, msg::DISTURBANCE_SLIP);
+  auto slip = disturbance(0, msg::DisturbanceKind::DISTURBANCE_SLIP);
   slip.duration = milliseconds(500);
   REQUIRE(world.disturb(0, slip, now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
-  REQUIRE(world.disturb(0, disturbance(0, msg::DISTURBANCE_PUSH), now));
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH), now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
   slip.duration = milliseconds(200);  // replaces the first
   REQUIRE(world.disturb(0, slip, now));
@@ -249,12 +249,12 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   CHECK(disturbance_end_ns() == to_ns(end));
   world.advance(now += milliseconds(600));
   CHECK(disturbance_end_ns() == to_ns(end));
-  auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
+  auto block = disturbance(0, msg::DisturbanceKind::DISTURBANCE_BLOCK);
   block.duration = milliseconds(100);
   REQUIRE(world.disturb(0, block, now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(100)));
   world.advance(now += milliseconds(600));
-  for (const auto kind : {msg::DISTURBANCE_PUSH, msg::DISTURBANCE_REBOOT}) {
+  for (const auto kind : {msg::DisturbanceKind::DISTURBANCE_PUSH, msg::DisturbanceKind::DISTURBANCE_REBOOT}) {
     REQUIRE(world.disturb(0, disturbance(0, kind), now));
     CHECK(disturbance_end_ns() == to_ns(now));
     world.advance(now += milliseconds(600));
@@ -284,14 +284,14 @@ TEST_CASE("an invalid disturbance is refused") {
   const auto is_valid = [&](const RobotDisturbance& disturbance) {
     return decode(encode(disturbance), {9, 6}, 0.09).has_value();
   };
-  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  auto push = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   push.place_m.x() = nan;  // not used by a push
   CHECK(is_valid(push));
   push.push_mps.x() = nan;
   CHECK_FALSE(is_valid(push));
   push.push_mps.x() = -11;
   CHECK_FALSE(is_valid(push));
-  for (const auto kind : {msg::DISTURBANCE_SLIP, msg::DISTURBANCE_BLOCK}) {
+  for (const auto kind : {msg::DisturbanceKind::DISTURBANCE_SLIP, msg::DisturbanceKind::DISTURBANCE_BLOCK}) {
     auto lasting = disturbance(0, kind);
     CHECK(is_valid(lasting));
     lasting.duration = Duration{-1};
@@ -310,15 +310,15 @@ TEST_CASE("an invalid disturbance is refused") {
   CHECK_FALSE(is_valid(place(0, {4.42, 0}, 0)));
   CHECK_FALSE(is_valid(place(0, {nan, 0}, 0)));
   CHECK_FALSE(is_valid(place(0, {0, 0}, nan)));
-  auto clock = disturbance(0, msg::DISTURBANCE_CLOCK);
+  auto clock = disturbance(0, msg::DisturbanceKind::DISTURBANCE_CLOCK);
   clock.clock_offset = std::chrono::hours(-1);
   CHECK(is_valid(clock));
   clock.clock_offset = Duration::min();
   CHECK_FALSE(is_valid(clock));
   CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(7))));
   CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
-  CHECK(is_valid(disturbance(0, msg::DISTURBANCE_LIFT)));
-  CHECK(is_valid(disturbance(0, msg::DISTURBANCE_REBOOT)));
+  CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT)));
+  CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT)));
 }
 
 // Any disturbance at any time: the firmware keeps its rules, facts stay true, numbers are never reused, and

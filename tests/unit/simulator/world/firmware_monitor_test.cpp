@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/firmware_monitor.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 
 namespace sidestep::firmware_monitor_test {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/firmware.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "common/messaging/robot_codec.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/firmware_monitor.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 
 namespace sidestep::firmware_test {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/ideal_agent.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
@@ -89,7 +89,7 @@ TEST_CASE("a pushed robot makes an own stop when the second frame after the push
   floor.agents[0].drives = drives;
   floor.run_for(milliseconds(2000));
   REQUIRE(floor.own_stops() == 0);
-  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  auto push = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   const Vec2 change = rotated(Vec2(0.3, 0), static_cast<double>(seed));
   push.push_mps = change;
   REQUIRE(floor.world.disturb(0, push, floor.now));
@@ -135,7 +135,7 @@ TEST_CASE("a robot that slips makes an own stop, and once at rest is within the 
   Floor floor(seed % 2 == 0 ? noisy(separated_robots(6)) : separated_robots(6), seed);
   floor.run_for(milliseconds(1000));
   for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
-    auto slip = disturbance(static_cast<RobotId>(i), msg::DISTURBANCE_SLIP);
+    auto slip = disturbance(static_cast<RobotId>(i), msg::DisturbanceKind::DISTURBANCE_SLIP);
     slip.grip = 0.1;
     slip.duration = milliseconds(300);
     REQUIRE(floor.world.disturb(i, slip, floor.now));
@@ -195,7 +195,7 @@ TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
   floor.world.on_command(0, test::command_with({0, 1, 5, 0, dash}), floor.now);
   floor.run_for(milliseconds(400));
   REQUIRE(floor.world.bodies()[0].velocity_mps().x() > 1);
-  auto block = disturbance(0, msg::DISTURBANCE_BLOCK);
+  auto block = disturbance(0, msg::DisturbanceKind::DISTURBANCE_BLOCK);
   block.heading_rad = 0;
   block.duration = milliseconds(500);
   REQUIRE(floor.world.disturb(0, block, floor.now));
@@ -210,7 +210,7 @@ TEST_CASE("a version that continues the robot's own stop brings it back on refer
   CAPTURE(seed);
   Floor floor(separated_robots(1), seed);
   floor.run_for(milliseconds(1000));
-  auto push = disturbance(0, msg::DISTURBANCE_PUSH);
+  auto push = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   push.push_mps.y() = 1;
   REQUIRE(floor.world.disturb(0, push, floor.now));
   REQUIRE(floor.until_own_stop(0) < milliseconds(100));
@@ -234,7 +234,7 @@ TEST_CASE("the number of a robot's own stop is above all received numbers, pendi
   send(9'000'000'000, 77, 1, -milliseconds(10));
   REQUIRE(floor.world.firmware(0).executing().number == 7);
   REQUIRE(floor.world.next_start(0) < Time::max());
-  REQUIRE(floor.world.disturb(0, disturbance(0, msg::DISTURBANCE_REBOOT), floor.now));
+  REQUIRE(floor.world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT), floor.now));
   floor.run_for(milliseconds(5));
   const Version& stop = floor.world.firmware(0).executing();
   CHECK(stop.number > 9'000'000'000);

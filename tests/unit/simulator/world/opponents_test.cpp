@@ -2,12 +2,12 @@
 #include "simulator/world/opponents.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "common/random/rng.hpp"
 #include "simulator/world/world.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -112,7 +112,7 @@ TEST_CASE("a robot that drives into an opponent counts as moving, and its speed 
 TEST_CASE("an opponent does not crash into a lifted robot") {
   World world(crash_scene(0), kBegin, 1);
   RobotDisturbance lift;
-  lift.kind = msg::DISTURBANCE_LIFT;
+  lift.kind = msg::DisturbanceKind::DISTURBANCE_LIFT;
   REQUIRE(world.disturb(0, lift, kBegin));
   world.advance(kBegin + milliseconds(1900));
   CHECK(world.opponents().totals().crashes == 0);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/pose_estimator.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::pose_estimator_test {
 

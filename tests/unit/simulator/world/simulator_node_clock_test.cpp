@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <functional>
 #include <map>
 #include <memory>
@@ -8,6 +7,7 @@
 
 #include "common/messaging/robot_codec.hpp"
 #include "simulator/world/simulator_node.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/simulator_node.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -281,21 +281,21 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
     disturbances.publish(message, scene.network.now());
     scene.run(std::chrono::microseconds(250));
   };
-  send(7, msg::DISTURBANCE_LIFT);
-  send(0, msg::DISTURBANCE_SLIP);
-  send(0, msg::DISTURBANCE_PUSH);
+  send(7, msg::DisturbanceKind::DISTURBANCE_LIFT);
+  send(0, msg::DisturbanceKind::DISTURBANCE_SLIP);
+  send(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   send(0, static_cast<msg::DisturbanceKind>(99));
-  send(0, msg::DISTURBANCE_PLACE);  // it is on the floor
+  send(0, msg::DisturbanceKind::DISTURBANCE_PLACE);  // it is on the floor
   CHECK(scene.node.disturbances_refused() == 5);
   CHECK_FALSE(scene.facts[0].back().is_lifted());
-  send(0, msg::DISTURBANCE_LIFT);
+  send(0, msg::DisturbanceKind::DISTURBANCE_LIFT);
   CHECK(scene.facts[0].back().is_lifted());
   CHECK(scene.facts[0].back().valid_at_ns() == to_ns(scene.network.now() - std::chrono::microseconds(150)));
-  send(1, msg::DISTURBANCE_REBOOT);
+  send(1, msg::DisturbanceKind::DISTURBANCE_REBOOT);
   scene.run(milliseconds(6));
   CHECK(scene.facts[1].back().is_off_reference());
   CHECK(scene.facts[1].back().executing().version_number() >= Firmware::kOwnNumberGap);
-  send(1, msg::DISTURBANCE_CLOCK);
+  send(1, msg::DisturbanceKind::DISTURBANCE_CLOCK);
   scene.run(milliseconds(100));
   CHECK(scene.facts[1].back().valid_at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);
   scene.run(milliseconds(20));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
 namespace sidestep::tracking_test {

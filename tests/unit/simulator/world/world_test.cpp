@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/world.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/catch.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 

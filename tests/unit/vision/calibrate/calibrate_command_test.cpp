@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/calibrate/calibrate_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <unistd.h>
 
 #include "common/file/write_file.hpp"
 #include "common/image/picture.hpp"
 #include "common/process/process.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/vision/calibrate/rendered_start.hpp"
 #include "vision/cameras/camera_file.hpp"
 #include "vision/colours/colour_file.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/calibrate/calibrate_geometry.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/process.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
 
@@ -87,8 +87,8 @@ TEST_CASE("the description names the point with the largest residual") {
   const auto calibrated = calibrate_geometry(parse_points(text, "points.yaml"));
   REQUIRE(calibrated.size() == 1);
   // Line 1 is the list's key, lines 2 to 4 are the camera's keys, and 40 points precede the wrong one.
-  CHECK_THAT(describe(calibrated[0]), Catch::StartsWith("camera 4: 41 points, residual "));
-  CHECK_THAT(describe(calibrated[0]), Catch::Contains(" px at points.yaml:45, predicted error "));
+  CHECK_THAT(describe(calibrated[0]), StartsWith("camera 4: 41 points, residual "));
+  CHECK_THAT(describe(calibrated[0]), ContainsSubstring(" px at points.yaml:45, predicted error "));
 }
 
 TEST_CASE("given parameters are not estimated") {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/calibrate/learn_colours.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "tests/catch.hpp"
 #include "tests/unit/vision/calibrate/rendered_start.hpp"
 
 namespace sidestep::learn_colours_test {
@@ -59,7 +58,7 @@ TEST_CASE("learning warns of missing colours and of misplaced labels") {
   };
   SECTION("a colour that is missing") {
     std::erase_if(labels.discs, [](const LabelledDisc& disc) { return disc.colour == Colour::kYellow; });
-    CHECK_THAT(warnings(), Catch::Contains("the images show nothing yellow"));
+    CHECK_THAT(warnings(), ContainsSubstring("the images show nothing yellow"));
   }
   SECTION("swapped labels") {
     for (LabelledDisc& disc : labels.discs) {
@@ -67,12 +66,12 @@ TEST_CASE("learning warns of missing colours and of misplaced labels") {
       if ((is_pink || is_green) && disc.centre_px.x() < 390)
         disc.colour = is_pink ? Colour::kGreen : Colour::kPink;
     }
-    CHECK_THAT(warnings(), Catch::Contains("green and pink overlap"));
-    CHECK_THAT(warnings(), Catch::Contains("of the pixels labelled pink"));
+    CHECK_THAT(warnings(), ContainsSubstring("green and pink overlap"));
+    CHECK_THAT(warnings(), ContainsSubstring("of the pixels labelled pink"));
   }
   SECTION("all labels displaced by 20 pixels") {
     for (LabelledDisc& disc : labels.discs) disc.centre_px.x() += 20;
-    CHECK_THAT(warnings(), Catch::Contains("check that everything is at its start position"));
+    CHECK_THAT(warnings(), ContainsSubstring("check that everything is at its start position"));
   }
 }
 
@@ -84,7 +83,8 @@ TEST_CASE("the labels of a floor are the discs in its camera's view") {
   CHECK(labels.ignored.size() == 2 * 2);
   MarkerLayout few = butterfly();
   few.patterns.resize(12);
-  CHECK_THROWS_WITH(floor_labels_at_start(scenario, few, camera), Catch::Contains("robot 12 has number 12"));
+  CHECK_THROWS_WITH(floor_labels_at_start(scenario, few, camera),
+                    ContainsSubstring("robot 12 has number 12"));
 }
 
 }  // namespace sidestep::learn_colours_test

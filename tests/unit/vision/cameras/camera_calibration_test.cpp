@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/camera_calibration.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 
 namespace sidestep::camera_calibration_test {
@@ -128,7 +128,7 @@ TEST_CASE("points that do not determine the camera are refused with the reason")
   const auto error = [&](const std::vector<CalibrationPoint>& points) {
     return calibrate_camera(points, initial).error;
   };
-  CHECK_THAT(error({}), Catch::Equals("expected at least 5 points, got 0"));
+  CHECK_THAT(error({}), Equals("expected at least 5 points, got 0"));
   CHECK(error(noisy_points(camera, overhead_camera.view_m, 4, {0, 0.3}, 0, rng)).find("got 4") !=
         std::string::npos);
 
@@ -143,7 +143,7 @@ TEST_CASE("points that do not determine the camera are refused with the reason")
   CHECK(!error(same).empty());
   auto broken = noisy_points(camera, overhead_camera.view_m, 20, {0, 0.3}, 0, rng);
   broken[7].pixel.x() = NAN;
-  CHECK_THAT(error(broken), Catch::Equals("a point is not finite"));
+  CHECK_THAT(error(broken), Equals("a point is not finite"));
   CameraParameters wrong = initial;
   wrong.width_px = 0;
   CHECK(!calibrate_camera(line, wrong).error.empty());

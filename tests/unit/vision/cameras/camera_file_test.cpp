@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/camera_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <unistd.h>
 
 #include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 
 namespace sidestep::camera_file_test {

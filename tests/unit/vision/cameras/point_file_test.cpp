@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/point_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/config_error.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::point_file_test {
 
@@ -26,8 +25,8 @@ void check_refused(const std::string& old_text, const std::string& new_text, int
     (void)parse_points(text, "points.yaml");
     FAIL("accepted");
   } catch (const ConfigError& error) {
-    CHECK_THAT(error.what(), Catch::StartsWith("points.yaml:" + std::to_string(line) + ": "));
-    CHECK_THAT(error.what(), Catch::Contains(message));
+    CHECK_THAT(error.what(), StartsWith("points.yaml:" + std::to_string(line) + ": "));
+    CHECK_THAT(error.what(), ContainsSubstring(message));
   }
 }
 
@@ -77,7 +76,7 @@ TEST_CASE("invalid files of calibration points are refused with file and line") 
   check_refused("    points:", "    focal_length_px: 0\n    points:", 4, "focal_length_px");
   check_refused("    points:", "    zoom: 2\n    points:", 4, "unknown key \"zoom\"");
   const std::string twice = kOne + kOne.substr(kOne.find('\n') + 1);
-  CHECK_THROWS_WITH(parse_points(twice, "points.yaml"), Catch::Contains("another camera has the id 3"));
+  CHECK_THROWS_WITH(parse_points(twice, "points.yaml"), ContainsSubstring("another camera has the id 3"));
   CHECK_THROWS_AS(parse_points("cameras: []", "points.yaml"), ConfigError);
   CHECK_THROWS_AS(load_points("/nowhere/points.yaml"), ConfigError);
 }

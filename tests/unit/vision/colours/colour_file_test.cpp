@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/colours/colour_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
 #include "common/marking/colours.hpp"
+#include "tests/catch.hpp"
 #include "vision/colours/colour_learner.hpp"
 
 namespace sidestep::colour_file_test {
@@ -54,8 +53,8 @@ TEST_CASE("invalid files of thresholds are refused with file and line") {
     (void)parse_colours(text, "colours.yaml");
     FAIL("accepted");
   } catch (const ConfigError& error) {
-    CHECK_THAT(error.what(), Catch::StartsWith("colours.yaml:" + std::to_string(line) + ":"));
-    CHECK_THAT(error.what(), Catch::Contains(expected));
+    CHECK_THAT(error.what(), StartsWith("colours.yaml:" + std::to_string(line) + ":"));
+    CHECK_THAT(error.what(), ContainsSubstring(expected));
   }
 }
 

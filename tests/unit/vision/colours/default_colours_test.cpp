@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/colours/default_colours.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/image/pixel_conversion.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/vision/detection/rendered_field.hpp"
 #include "tests/unit/vision/detection/score.hpp"
 #include "vision/colours/colour_learner.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
+#include "tests/catch.hpp"
 #include "tests/unit/vision/detection/rendered_field.hpp"
 #include "tests/unit/vision/detection/score.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/vision/detection/rendered_field.hpp"
 #include "vision/colours/default_colours.hpp"
 

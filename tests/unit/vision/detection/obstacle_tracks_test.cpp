@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
+#include "tests/catch.hpp"
 #include "vision/colours/default_colours.hpp"
 #include "vision/detection/detector.hpp"
 #include "vision/tracking/tracker.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "idl/vision.h"
+#include "idl/vision.hpp"
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
 namespace sidestep::test {

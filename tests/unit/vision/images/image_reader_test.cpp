@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/images/image_reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <limits>
 
@@ -11,6 +10,7 @@
 #include "common/marking/butterfly.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
+#include "tests/catch.hpp"
 #include "vision/cameras/camera_file.hpp"
 #include "vision/images/image_options.hpp"
 #include "vision/tracking/tracker.hpp"
@@ -38,7 +38,8 @@ msg::CameraImage image_of(const Scenario& scenario, std::uint32_t camera) {
   msg::CameraImage message;
   message.camera(camera);
   message.captured_at_ns(5'000'000'000);
-  message.image_format(spec.format == PixelFormat::kRgb ? msg::IMAGE_RGB : msg::IMAGE_YUV422);
+  message.image_format(spec.format == PixelFormat::kRgb ? msg::ImageFormat::IMAGE_RGB
+                                                        : msg::ImageFormat::IMAGE_YUV422);
   message.width_px(static_cast<std::uint32_t>(image.view().width_px));
   message.height_px(static_cast<std::uint32_t>(image.view().height_px));
   message.pixels().assign(image.view().pixels, image.view().pixels + image.view().bytes());
@@ -119,7 +120,7 @@ TEST_CASE("an invalid image is rejected and changes nothing") {
   CHECK(is_rejected([](auto& image) { image.width_px(0); }));
   CHECK(is_rejected([](auto& image) { image.width_px(0x80000000); }));
   CHECK(is_rejected([](auto& image) { image.height_px(581); }));
-  CHECK(is_rejected([](auto& image) { image.image_format(msg::IMAGE_RGB); }));
+  CHECK(is_rejected([](auto& image) { image.image_format(msg::ImageFormat::IMAGE_RGB); }));
   CHECK(is_rejected([](auto& image) { image.image_format(static_cast<msg::ImageFormat>(7)); }));
   CHECK(is_rejected([](auto& image) { image.pixels().pop_back(); }));
   CHECK(is_rejected([](auto& image) { image.pixels().push_back(0); }));
@@ -215,11 +216,11 @@ TEST_CASE("cameras and colours that do not fit the scenario are refused with the
   write_cameras({{0, cameras[0].parameters()}}, file);
   CHECK(refusal({.cameras_file = file}) == file + ": expected 2 cameras for the scenario, got 1");
   write_cameras({{1, cameras[0].parameters()}, {0, cameras[1].parameters()}}, file);
-  CHECK_THAT(refusal({.cameras_file = file}), Catch::Contains("cameras[0].id: expected 0, got 1"));
+  CHECK_THAT(refusal({.cameras_file = file}), ContainsSubstring("cameras[0].id: expected 0, got 1"));
   std::ofstream(file) << colours_text({PixelFormat::kRgb, {{{0, 0, 0}, {9, 9, 9}, 0}}});
   CHECK(refusal({.colours_file = file}) ==
         file + ": format: expected yuv422 for the scenario's images, got rgb");
-  CHECK_THAT(refusal({.layout_file = file}), Catch::StartsWith(file + ":"));
+  CHECK_THAT(refusal({.layout_file = file}), StartsWith(file + ":"));
   std::remove(file.c_str());
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/league/league_source.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
 #include "vision/tracking/frame.hpp"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/league/replay.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::replay_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/league/tracked_output.hpp"
 
-#include <catch2/catch.hpp>
+#include "tests/catch.hpp"
 
 namespace sidestep::tracked_output_test {
 
@@ -66,7 +66,7 @@ TEST_CASE("a sender has a different UUID for each incarnation") {
   msg::WorldState world;
   TrackedOutput first(two_robots(), 77), second(two_robots(), 78);
   const std::string name = first.packet_of(world).uuid;
-  CHECK_THAT(name, Catch::Matches("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
+  CHECK_THAT(name, Matches("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
   CHECK(first.packet_of(world).uuid == name);
   CHECK(second.packet_of(world).uuid != name);
 }

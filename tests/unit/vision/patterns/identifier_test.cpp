@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <numbers>
 
+#include "tests/catch.hpp"
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
 namespace sidestep::identifier_test {

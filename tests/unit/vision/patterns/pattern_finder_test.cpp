@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "common/marking/pose_error.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
 namespace sidestep::pattern_finder_test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/segmentation/segmenter.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/vision/segmentation/flood_fill.hpp"
 #include "vision/segmentation/batch/dispatch.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/frame.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
 namespace sidestep::frame_test {

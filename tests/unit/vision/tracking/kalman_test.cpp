@@ -2,9 +2,9 @@
 #include "vision/tracking/kalman.hpp"
 
 #include <Eigen/Dense>
-#include <catch2/catch.hpp>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::kalman_test {
 

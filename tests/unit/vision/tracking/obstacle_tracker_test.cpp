@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/obstacle_tracker.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
 namespace sidestep::obstacle_tracker_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <numbers>
 
+#include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
 namespace sidestep::tracker_accuracy_test {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/vision_node.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
 namespace sidestep::vision_node_test {

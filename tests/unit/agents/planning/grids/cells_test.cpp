@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "agents/planning/grids/grid_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::cells_test {
 

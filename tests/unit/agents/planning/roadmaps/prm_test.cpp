@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/roadmaps/prm.hpp"
 
-#include <catch2/catch.hpp>
 #include <numbers>
 #include <set>
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::prm_test {
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/trees/bridges.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "tests/catch.hpp"
 #include "tests/unit/agents/planning/ball_domain.hpp"
 
 namespace sidestep::bridges_test {

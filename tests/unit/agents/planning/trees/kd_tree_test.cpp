@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/trees/kd_tree.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "agents/planning/trees/linear_nearest.hpp"
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::kd_tree_test {
 

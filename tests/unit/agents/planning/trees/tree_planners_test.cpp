@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
-
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/agents/planning/ball_domain.hpp"
 
 namespace sidestep::tree_planners_test {

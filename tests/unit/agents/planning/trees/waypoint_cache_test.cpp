@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/trees/waypoint_cache.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::waypoint_cache_test {
 

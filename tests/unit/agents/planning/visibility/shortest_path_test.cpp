@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <numbers>
 #include <queue>
 
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep::shortest_path_test {

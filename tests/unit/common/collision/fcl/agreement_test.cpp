@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the answers of ObstacleWorld with FCL.
-#include <catch2/catch.hpp>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/sphere.h>
 
 #include "common/collision/obstacle_world.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 

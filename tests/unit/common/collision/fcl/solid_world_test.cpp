@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/common/collision/fcl/solid_world.hpp"
 
-#include <catch2/catch.hpp>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::solid_world_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <fcl/geometry/shape/capsule.h>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/collision/fcl/solid_world.hpp"
 #include "tests/unit/common/collision/random_terrain.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/bus.hpp"
 
-#include <catch2/catch.hpp>
 #include <memory>
 #include <optional>
 #include <set>
 #include <thread>
 
 #include "common/messaging/topics.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::bus_test {
@@ -164,23 +164,22 @@ TEST_CASE("a writer may outlive its bus") {
 }
 
 TEST_CASE("wrong DDS settings are refused with a reason") {
-  using Catch::Matchers::Contains;
   DdsSettings settings = test_settings();
   settings.domain = 100;
-  CHECK_THROWS_WITH(DdsBus(settings), Contains("domain: expected 0..99, got 100"));
+  CHECK_THROWS_WITH(DdsBus(settings), ContainsSubstring("domain: expected 0..99, got 100"));
   settings.domain = -1;
-  CHECK_THROWS_WITH(DdsBus(settings), Contains("domain: expected 0..99, got -1"));
+  CHECK_THROWS_WITH(DdsBus(settings), ContainsSubstring("domain: expected 0..99, got -1"));
   settings = test_settings();
   for (const char* address : {"", "nonsense", "192.0.2.1", "127.0.0.1 "}) {
     settings.interface = address;
-    CHECK_THROWS_WITH(DdsBus(settings), Contains("an address of this machine"));
+    CHECK_THROWS_WITH(DdsBus(settings), ContainsSubstring("an address of this machine"));
   }
 }
 
 TEST_CASE("a bus reports the loopback address on which it listens") {
   DdsBus bus(test_settings());
   bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
-  CHECK_THAT(bus.locators(), Catch::Matchers::Contains("UDPv4:[127.0.0.1]:"));
+  CHECK_THAT(bus.locators(), ContainsSubstring("UDPv4:[127.0.0.1]:"));
 }
 
 }  // namespace sidestep::bus_test

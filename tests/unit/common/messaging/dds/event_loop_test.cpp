@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/event_loop.hpp"
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <ctime>
 #include <signal.h>
@@ -10,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 #include <vector>
+
+#include "tests/catch.hpp"
 
 namespace {
 /// Simulated step of this host's clock.

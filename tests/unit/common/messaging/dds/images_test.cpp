@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/images.hpp"
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
@@ -13,6 +12,7 @@
 #include <sys/mount.h>
 #include <sys/wait.h>
 
+#include "tests/catch.hpp"
 #include "tests/needs_root.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 

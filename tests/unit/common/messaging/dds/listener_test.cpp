@@ -2,8 +2,8 @@
 #include "common/messaging/dds/listener.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::listener_test {
@@ -68,7 +68,7 @@ TEST_CASE("a listener receives the bytes of a topic of unknown type") {
     return size > 0;
   };
   REQUIRE(run_until(has_arrived, listener));
-  CHECK(size == 4 + msg::WorldState::getCdrSerializedSize(world));
+  CHECK(size == 4 + fast_dds::cdr_size(world));
   CHECK(received >= begin);
   CHECK(received <= bus.now());
 }

@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
 #include <string>
 #include <unistd.h>
 #include <vector>
 
+#include "common/messaging/cdr.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
@@ -40,22 +39,20 @@ bool run_until(Condition condition, Buses&... buses) {
 
 /// A payload without encapsulation header from which any message type can be decoded: bytes of 0 and 1, so
 /// booleans are valid and numbers finite.
-inline std::vector<char> random_body(Rng& rng, std::size_t size) {
-  std::vector<char> result(size);
-  for (char& byte : result) byte = static_cast<char>(rng.bits() & 1);
+inline std::vector<std::uint8_t> random_body(Rng& rng, std::size_t size) {
+  std::vector<std::uint8_t> result(size);
+  for (std::uint8_t& byte : result) byte = static_cast<std::uint8_t>(rng.bits() & 1);
   return result;
 }
 
 /// A message with random members, and `elements` elements in its final sequence, if it has one.
 template <typename Message>
 Message random_message(Rng& rng, bool has_sequence, std::uint32_t elements) {
-  const std::size_t fixed = Message::getCdrSerializedSize(Message());
-  std::vector<char> body = random_body(rng, fixed + std::size_t{512} * elements);
+  const std::size_t fixed = fast_dds::cdr_size(Message());
+  std::vector<std::uint8_t> body = random_body(rng, fixed + std::size_t{512} * elements);
   if (has_sequence) std::memcpy(body.data() + fixed - sizeof elements, &elements, sizeof elements);
-  eprosima::fastcdr::FastBuffer buffer(body.data(), body.size());
-  eprosima::fastcdr::Cdr cdr(buffer);
   Message message;
-  message.deserialize(cdr);
+  fast_dds::CdrCoder(body, ByteOrder::kLittleEndian).read(message);
   return message;
 }
 

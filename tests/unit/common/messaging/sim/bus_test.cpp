@@ -2,8 +2,9 @@
 #include "common/messaging/sim/bus.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::bus_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/sim/event_queue.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::event_queue_test {
 

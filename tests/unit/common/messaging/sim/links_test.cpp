@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/sim/links.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::links_test {
 

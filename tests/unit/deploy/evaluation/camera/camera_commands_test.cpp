@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
@@ -12,6 +11,7 @@
 #include "common/process/command_line.hpp"
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::camera_commands_test {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/camera/pattern_count.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <numbers>
 #include <set>
@@ -9,6 +8,7 @@
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
 #include "common/marking/symmetry.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/marking/random_layout.hpp"
 
 namespace sidestep::pattern_count_test {

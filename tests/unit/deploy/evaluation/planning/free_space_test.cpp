@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/free_space.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <numeric>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::free_space_test {
 

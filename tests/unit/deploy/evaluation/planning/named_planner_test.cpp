@@ -2,9 +2,9 @@
 #include "deploy/evaluation/planning/named_planner.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "deploy/evaluation/planning/plan_picture.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::named_planner_test {
 
@@ -71,7 +71,7 @@ TEST_CASE("every planner's baseline is a planner") {
 }
 
 TEST_CASE("a planner with another name is refused") {
-  CHECK_THROWS_WITH(make_planner("dijkstra"), Catch::Contains("dijkstra") && Catch::Contains("bi-errt"));
+  CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 
 TEST_CASE("OMPL's namesakes sample uniformly, remember nothing and do not try the straight line") {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/world_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::world_file_test {
 
@@ -18,8 +18,8 @@ void check_refused(const std::string& text, int line, const std::string& reason)
   } catch (const ConfigError& error) {
     message = error.what();
   }
-  CHECK_THAT(message, Catch::StartsWith("file.yaml:" + std::to_string(line) + ": "));
-  CHECK_THAT(message, Catch::Contains(reason));
+  CHECK_THAT(message, StartsWith("file.yaml:" + std::to_string(line) + ": "));
+  CHECK_THAT(message, ContainsSubstring(reason));
 }
 
 TEST_CASE("a world is read back from its text") {

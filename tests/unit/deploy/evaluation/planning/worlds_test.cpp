@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/worlds.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/free_space.hpp"
 #include "deploy/evaluation/planning/world_file.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::worlds_test {
 
@@ -29,7 +28,7 @@ TEST_CASE("worlds come from their seed and all queries are solvable") {
 }
 
 TEST_CASE("a world with another name is refused") {
-  CHECK_THROWS_WITH(make_world("ocean", 1, 1), Catch::Contains("ocean") && Catch::Contains("maze"));
+  CHECK_THROWS_WITH(make_world("ocean", 1, 1), ContainsSubstring("ocean") && ContainsSubstring("maze"));
 }
 
 TEST_CASE("the path check finds a path that touches an obstacle or leaves the field") {

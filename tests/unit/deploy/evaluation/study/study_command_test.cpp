@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/study_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 namespace sidestep::study_command_test {
@@ -43,7 +43,7 @@ TEST_CASE("a study names the folder that it cannot write to before it begins") {
   const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";
-  CHECK_THROWS_WITH(study({name, "--out", folder.path()}), Catch::Contains(folder.path()));
+  CHECK_THROWS_WITH(study({name, "--out", folder.path()}), ContainsSubstring(folder.path()));
 }
 
 }  // namespace sidestep::study_command_test

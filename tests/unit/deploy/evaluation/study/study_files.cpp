@@ -2,10 +2,11 @@
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 namespace {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/hosts/hosts_file.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
 #include "deploy/launch/hosts/placement.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::hosts_file_test {
 
@@ -122,7 +121,7 @@ TEST_CASE("standby coordinators are placed like agents") {
       parse_scenario("coordinators: 3\ncircle: {count: 8, spacing_m: 0.5}", "eight.yaml");
   const Hosts without_standbys = parse_hosts(kTwoHosts, "hosts.yaml");
   CHECK_THROWS_WITH(Placement(without_standbys, scenario),
-                    Catch::StartsWith("hosts.yaml:1: no host runs coordinator 1"));
+                    StartsWith("hosts.yaml:1: no host runs coordinator 1"));
   const Hosts with_standbys =
       parse_hosts(with(kTwoHosts, "agents: rest", "agents: rest\n    standbys: [1-2]"), "hosts.yaml");
   const Placement placement(with_standbys, scenario);
@@ -133,14 +132,13 @@ TEST_CASE("standby coordinators are placed like agents") {
 TEST_CASE("each process has exactly one host, and hosts name only existing robots") {
   CHECK(placement_error(kTwoHosts).empty());
   CHECK_THAT(placement_error(with(kTwoHosts, "vision, ", "")),
-             Catch::StartsWith("hosts.yaml:1: no host runs vision"));
+             StartsWith("hosts.yaml:1: no host runs vision"));
   CHECK_THAT(placement_error(with(kTwoHosts, "rest", "[3-5]")),
-             Catch::StartsWith("hosts.yaml:1: no host runs agent 6"));
+             StartsWith("hosts.yaml:1: no host runs agent 6"));
   CHECK_THAT(placement_error(with(kTwoHosts, "rest", "[2-6]")),
-             Catch::StartsWith("hosts.yaml:12: host far runs agent 2, but host floor runs it already"));
-  CHECK_THAT(
-      placement_error(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
-      Catch::StartsWith("hosts.yaml:7: host floor runs agents 8-8, but the scenario has none of them"));
+             StartsWith("hosts.yaml:12: host far runs agent 2, but host floor runs it already"));
+  CHECK_THAT(placement_error(with(kTwoHosts, "[0-2, 7]", "[0-2, 8]")),
+             StartsWith("hosts.yaml:7: host floor runs agents 8-8, but the scenario has none of them"));
 }
 
 TEST_CASE("the shipped hosts files fit any scenario") {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/audit/audit_path.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/messaging/version_codec.hpp"
 #include "common/motion/clearance.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::audit_path_test {

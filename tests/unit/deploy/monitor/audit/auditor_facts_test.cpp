@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Feedback and ground truth with one modified detail at a time.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
 
 namespace sidestep::auditor_facts_test {

@@ -4,8 +4,8 @@
 #include "deploy/monitor/audit/auditor.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
 
 namespace sidestep::auditor_test {

@@ -2,10 +2,10 @@
 #include "deploy/monitor/audit/message_trace.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::message_trace_test {
 

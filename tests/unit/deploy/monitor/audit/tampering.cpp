@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep {
 

@@ -2,10 +2,10 @@
 #include "deploy/monitor/metrics/progress.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::progress_test {
 
@@ -13,7 +13,7 @@ const Scenario kFive = parse_scenario("circle: {count: 5, spacing_m: 0.5}\n", "f
 
 TEST_CASE("a progress line shows \"starting\", later the time since the first grant") {
   RunMetrics metrics(kFive);
-  CHECK_THAT(progress_line(metrics, time_from_ns(0)), Catch::StartsWith("starting  0 of 5 arrived"));
+  CHECK_THAT(progress_line(metrics, time_from_ns(0)), StartsWith("starting  0 of 5 arrived"));
   msg::CoordinatorState state;
   state.header().incarnation(1);
   state.header().message_number(1);
@@ -21,7 +21,7 @@ TEST_CASE("a progress line shows \"starting\", later the time since the first gr
   state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   metrics.on_coordinator(state);
   const std::string line = progress_line(metrics, time_from_ns(5'500'000'000));
-  CHECK_THAT(line, Catch::StartsWith("  3.5 s  0 of 5 arrived"));
+  CHECK_THAT(line, StartsWith("  3.5 s  0 of 5 arrived"));
   CHECK(line.find('\x1b') == std::string::npos);
   CHECK(line.find("clocks") == std::string::npos);
 }
@@ -45,7 +45,7 @@ TEST_CASE("a progress line shows the largest measured clock offset") {
   report(4, 1, std::numeric_limits<double>::quiet_NaN(), 0.1);
   CHECK(metrics.report().max_clock_offset_s == 0.0004);
   CHECK(metrics.report().clock_uncertainty_s == 0.0002);
-  CHECK_THAT(progress_line(metrics, time_from_ns(0)), Catch::Contains("clocks 0.40 +- 0.20 ms"));
+  CHECK_THAT(progress_line(metrics, time_from_ns(0)), ContainsSubstring("clocks 0.40 +- 0.20 ms"));
   report(2, 2, 0, 0.0001);
   CHECK(metrics.report().max_clock_offset_s == 0.0001);
 }
@@ -62,11 +62,11 @@ TEST_CASE("a progress table has one line per robot and counts those that do not 
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   const std::string whole = progress_table(metrics, Time{}, 100);
   CHECK(lines(whole) == 2 + 5);
-  CHECK_THAT(whole, Catch::Contains("2  blue    driving") && Catch::Contains("123"));
-  CHECK_THAT(whole, Catch::Contains("3  yellow  silent"));
+  CHECK_THAT(whole, ContainsSubstring("2  blue    driving") && ContainsSubstring("123"));
+  CHECK_THAT(whole, ContainsSubstring("3  yellow  silent"));
   const std::string cut = progress_table(metrics, Time{}, 2);
   CHECK(lines(cut) == 2 + 2 + 1);
-  CHECK_THAT(cut, Catch::EndsWith("... and 3 more\n"));
+  CHECK_THAT(cut, EndsWith("... and 3 more\n"));
   CHECK(lines(progress_table(metrics, Time{}, -3)) == 2 + 1 + 1);
 }
 

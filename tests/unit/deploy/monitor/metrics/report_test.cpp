@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/metrics/report.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::report_test {
 
@@ -81,7 +82,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK(json["negotiation_us"]["p50"] >= 5000.0);
   CHECK(json["negotiation_us"]["p50"] < 5700.0);
   CHECK(json["conflicts"].dump() == "[[3,7]]");
-  CHECK_THAT(summary(example()), Catch::Contains("brought robots 3 and 7 into conflict"));
+  CHECK_THAT(summary(example()), ContainsSubstring("brought robots 3 and 7 into conflict"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
 }
@@ -101,7 +102,7 @@ TEST_CASE("reports of one run on machines of different speed differ only under w
 
 TEST_CASE("the failure reason lists everything that went wrong in one line, and is empty otherwise") {
   Report report = example();
-  CHECK_THAT(summary(report), Catch::EndsWith("failed: 1 of 2 arrived\n"));
+  CHECK_THAT(summary(report), EndsWith("failed: 1 of 2 arrived\n"));
   report.abort_reason = "time limit of 60 s";
   report.contacts = 1;
   report.firmware_violations = 2;
@@ -109,7 +110,7 @@ TEST_CASE("the failure reason lists everything that went wrong in one line, and 
   Report good = example();
   good.arrived = 2;
   CHECK(good.failure_reason().empty());
-  CHECK_THAT(summary(good), Catch::EndsWith("passed\n"));
+  CHECK_THAT(summary(good), EndsWith("passed\n"));
 }
 
 TEST_CASE("writing a report creates its folder, or fails with the reason") {
@@ -119,13 +120,13 @@ TEST_CASE("writing a report creates its folder, or fails with the reason") {
   std::ifstream file(path);
   CHECK(nlohmann::json::parse(file)["scenario"] == "crossing");
   std::filesystem::remove_all(folder);
-  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), Catch::Contains("cannot write /dev/null"));
+  CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), ContainsSubstring("cannot write /dev/null"));
 }
 
 TEST_CASE("a report is named after scenario and seed, or scenario and time") {
   CHECK(default_report_path("crossing", 7) == "reports/crossing-7.json");
   CHECK_THAT(default_report_path("crossing", std::nullopt),
-             Catch::Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
+             Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
 }
 
 TEST_CASE("a crash of a moving robot fails a run, a crash of a robot at rest is only reported") {
@@ -136,8 +137,8 @@ TEST_CASE("a crash of a moving robot fails a run, a crash of a robot at rest is 
   report.max_crash_speed_mps = 1.5;
   CHECK(report.failure_reason().empty());
   CHECK_THAT(summary(report),
-             Catch::Contains("3 crashes with opponents, 0 of them while the robot moved; maximum closing "
-                             "speed 1.50 m/s"));
+             ContainsSubstring("3 crashes with opponents, 0 of them while the robot moved; maximum closing "
+                               "speed 1.50 m/s"));
   report.crashes_while_moving = 1;
   CHECK(report.failure_reason() == "1 crashes of moving robots");
 }
@@ -163,7 +164,7 @@ TEST_CASE("audit violations fail a run and are included in its report") {
   CHECK(audit["first"][0]["robot"] == 3);
   CHECK(audit["first"][0]["detail"] == "is executed, although");
   CHECK_THAT(summary(report),
-             Catch::Contains("late-switch (firmware, S-05): robot 3 version 17: is executed"));
+             ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is executed"));
 }
 
 TEST_CASE("excused contacts do not fail a run, other contacts do") {

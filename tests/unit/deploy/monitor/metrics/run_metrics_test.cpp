@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/metrics/run_metrics.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/histogram_codec.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::run_metrics_test {
 
@@ -92,7 +92,7 @@ TEST_CASE("arrival time runs from the first grant until the robot settles at its
   CHECK_FALSE(metrics.all_arrived());
   CHECK_FALSE(metrics.report().makespan_s);
   CHECK_FALSE(metrics.report().arrival_s.at(7));
-  CHECK_THAT(metrics.report().failure_reason(), Catch::Equals("1 of 2 arrived"));
+  CHECK_THAT(metrics.report().failure_reason(), Equals("1 of 2 arrived"));
   metrics.on_status(status(7, 1, kArrived));
   CHECK(metrics.all_arrived());
 
@@ -198,7 +198,7 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
   CHECK(report.min_clearance_m == Approx(-0.01));
   CHECK(metrics.granting_since() == after(0));
   CHECK_THAT(report.failure_reason(),
-             Catch::Contains("5 contacts") && Catch::Contains("1 firmware violations"));
+             ContainsSubstring("5 contacts") && ContainsSubstring("1 firmware violations"));
 }
 
 TEST_CASE("the status of a dead incarnation with a clock ahead does not override its successor") {
@@ -333,7 +333,7 @@ TEST_CASE("deaths are reported with process, reason and time since the first gra
   const Report report = metrics.report();
   REQUIRE(report.deaths.size() == 1);
   CHECK(report.deaths[0].at_s == Approx(2.31));
-  CHECK_THAT(summary(report), Catch::Contains("agent 3 died at 2.31 s: signal 9 (SIGKILL), restarted"));
+  CHECK_THAT(summary(report), ContainsSubstring("agent 3 died at 2.31 s: signal 9 (SIGKILL), restarted"));
 }
 
 TEST_CASE("progress has one row per robot with its state and motion") {

@@ -2,10 +2,11 @@
 #include "deploy/monitor/topic/describe.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::describe_test {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/campaign/fault_player.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::fault_player_test {
 
@@ -106,8 +105,8 @@ TEST_CASE("a system that never starts to drive is reported as stuck") {
   const TrialResult dead = run_trial(trial);
   REQUIRE(dead.failures.size() == 3);
   CHECK(dead.failures[0] == "no coordinator ever granted");
-  CHECK_THAT(dead.failures[1], Catch::Contains("robots 0, 1 do not drive"));
-  CHECK_THAT(dead.failures[2], Catch::Contains("no robot moves"));
+  CHECK_THAT(dead.failures[1], ContainsSubstring("robots 0, 1 do not drive"));
+  CHECK_THAT(dead.failures[2], ContainsSubstring("no robot moves"));
   trial.plan.faults.clear();
   CHECK(run_trial(trial).failures.empty());
 }

@@ -2,13 +2,13 @@
 #include "deploy/simulate/campaign/fault_sampler.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::fault_sampler_test {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/campaign/results_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::results_file_test {
 
@@ -49,16 +50,16 @@ TEST_CASE("a file of another campaign, or without results, is refused with the r
   const Folder folder;
   { ResultsFile(folder.file(), "campaign A").add(result_of(1)); }
   CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign B"),
-                    Catch::Contains("results of another campaign: campaign A"));
+                    ContainsSubstring("results of another campaign: campaign A"));
   append(folder.file(), "something else\n");
-  CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign A"), Catch::Contains("results:3: not a result"));
+  CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign A"), ContainsSubstring("results:3: not a result"));
   CHECK(std::filesystem::file_size(folder.file()) > 100);
   const std::string picture = (folder.path / "picture").string();
   append(picture, "no line ends here");
-  CHECK_THROWS_WITH(ResultsFile(picture, "campaign A"), Catch::Contains("not a results file"));
+  CHECK_THROWS_WITH(ResultsFile(picture, "campaign A"), ContainsSubstring("not a results file"));
   CHECK(std::filesystem::file_size(picture) == 17);
   CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "campaign A"),
-                    Catch::Contains("cannot be written"));
+                    ContainsSubstring("cannot be written"));
 }
 
 }  // namespace sidestep::results_file_test

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/campaign/worker_pool.hpp"
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 #include <unistd.h>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::worker_pool_test {
 
@@ -45,7 +46,7 @@ TEST_CASE("a job that kills its worker is reported, and all other jobs are done"
   });
   CHECK(outcome.lines.size() == 18);
   REQUIRE(outcome.deaths.size() == 2);
-  CHECK_THAT(outcome.deaths.at(5), Catch::Contains("signal 9"));
+  CHECK_THAT(outcome.deaths.at(5), ContainsSubstring("signal 9"));
   CHECK(outcome.deaths.at(11) == "exit code 3");
 }
 

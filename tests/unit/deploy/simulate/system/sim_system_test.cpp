@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/system/sim_system.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::sim_system_test {
 
@@ -102,8 +101,8 @@ TEST_CASE("with two coordinators all robots arrive although one of them dies") {
 
 TEST_CASE("an unknown process cannot be started") {
   SimSystem system(crossing(), 1);
-  CHECK_THROWS_WITH(system.restart("agent 99"), Catch::Contains("no process \"agent 99\""));
-  CHECK_THROWS_WITH(system.restart("coordinator 1"), Catch::Contains("no process \"coordinator 1\""));
+  CHECK_THROWS_WITH(system.restart("agent 99"), ContainsSubstring("no process \"agent 99\""));
+  CHECK_THROWS_WITH(system.restart("coordinator 1"), ContainsSubstring("no process \"coordinator 1\""));
 }
 
 }  // namespace sidestep::sim_system_test

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/bench/bench_command.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::bench_command_test {
 

@@ -2,11 +2,11 @@
 #include "deploy/evaluation/planning/bench/bench_planner.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "deploy/evaluation/planning/bench/ompl_planner.hpp"
 #include "deploy/evaluation/planning/bench/query_bench.hpp"
 #include "deploy/evaluation/planning/named_planner.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::bench_planner_test {
 
@@ -102,7 +102,7 @@ TEST_CASE("planted planners are what they are called, and others are refused") {
     solved += weak(query, 1000).is_solved;
   }
   CHECK(solved == 6);
-  CHECK_THROWS_WITH(planted_planner("rrt"), Catch::Contains("\"rrt\""));
+  CHECK_THROWS_WITH(planted_planner("rrt"), ContainsSubstring("\"rrt\""));
 }
 
 }  // namespace sidestep::bench_planner_test

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/bench/free_fraction.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/random/rng.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::free_fraction_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/bench/query_bench.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
 
 #include "agents/planning/visibility/tangent_graph.hpp"
+#include "tests/catch.hpp"
 
 namespace sidestep::query_bench_test {
 
@@ -55,7 +55,7 @@ TEST_CASE("the benchmark fails a planner whose path leads through an obstacle") 
                                  return TimedPlan{true, 1, 1, 1, straight, straight};
                                })});
   REQUIRE(found.size() == 1);
-  CHECK_THAT(found[0], Catch::StartsWith("reckless: ") && Catch::Contains("not valid"));
+  CHECK_THAT(found[0], StartsWith("reckless: ") && ContainsSubstring("not valid"));
 }
 
 TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or does not join start and goal") {
@@ -71,7 +71,7 @@ TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or doe
         return plan;
       })});
   REQUIRE(found.size() == 1);
-  CHECK_THAT(found[0], Catch::StartsWith("faulty: "));
+  CHECK_THAT(found[0], StartsWith("faulty: "));
 }
 
 TEST_CASE("what a planner returns for a query that it gave up is not checked") {
@@ -93,7 +93,7 @@ TEST_CASE("the benchmark fails a namesake that solves significantly fewer querie
   CHECK(failures({namesake(planner_of("alone", gives_up_every(4)), "peer")}).empty());
   const auto found = failures({peer, namesake(planner_of("weak", gives_up_every(4)), "peer")});
   REQUIRE(found.size() == 1);
-  CHECK_THAT(found[0], Catch::StartsWith("weak solved 30 of 40 queries, its peer peer 40 of 40"));
+  CHECK_THAT(found[0], StartsWith("weak solved 30 of 40 queries, its peer peer 40 of 40"));
   // The peer may be the weak one.
   CHECK(failures({planner_of("weak peer", gives_up_every(4)), namesake(peer, "weak peer")}).empty());
 }
@@ -143,7 +143,7 @@ TEST_CASE("a table gives a 99th percentile only for a thousand queries, and rati
     for (std::size_t k = 0; k < queries; ++k) rows[i].plan_us.add(i == 0 ? 1234.5 : 617.25);
   }
   const std::string lines = query_bench_lines("u", rows, planners);
-  CHECK_THAT(lines, Catch::Contains("0.50"));
+  CHECK_THAT(lines, ContainsSubstring("0.50"));
   std::size_t times = 0;
   for (std::size_t at = lines.find("1234.5"); at != std::string::npos; at = lines.find("1234.5", at + 1))
     ++times;

@@ -2,7 +2,8 @@
 #include "deploy/evaluation/planning/bench/significance.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::significance_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/planning/collision_structures.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
 
 #include "deploy/evaluation/study/planning/collision_problem.hpp"
 #include "deploy/evaluation/study/planning/fcl_tree.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 namespace sidestep::collision_structures_test {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/planning/errt_and_visibility.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 namespace sidestep::errt_and_visibility_test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "deploy/evaluation/study/safety/traversal.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 namespace sidestep::safety_study_test {

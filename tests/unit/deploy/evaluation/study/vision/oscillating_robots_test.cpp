@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/vision/oscillating_robots.hpp"
 
-#include <catch2/catch.hpp>
 #include <set>
+
+#include "tests/catch.hpp"
 
 namespace sidestep::oscillating_robots_test {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/vision/vision_study.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "deploy/evaluation/study/vision/frame_times.hpp"
 #include "deploy/evaluation/study/vision/marker_errors.hpp"
 #include "deploy/evaluation/study/vision/recognition.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
 namespace sidestep::vision_study_test {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/messaging/dds/operator_channel.hpp"
 #include "common/messaging/impairment.hpp"
+#include "tests/catch.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
-namespace sidestep::fault_transport_test {
+namespace sidestep::transport_test {
 
 constexpr std::uint32_t kRobot = 5;
 
@@ -110,4 +110,4 @@ TEST_CASE("after a fault is cleared all messages arrive without delay") {
   CHECK(connection.send_until([&] { return connection.numbers.size() > 100; }));
 }
 
-}  // namespace sidestep::fault_transport_test
+}  // namespace sidestep::transport_test

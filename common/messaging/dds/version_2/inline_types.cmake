@@ -21,6 +21,7 @@ foreach(name IN LISTS NAMES)
   replace("${export}void ([a-z0-9_]+)\\([ \n]*([^();]* |[^();]*& ?)_[a-z0-9_]+\\);" "void \\1(\\2value) { m_\\1 = value; }")
   replace("\n( +[A-Za-z][A-Za-z0-9_:<>, ]* m_[a-z0-9_]+);" "\n\\1{};")
   file(WRITE ${DIRECTORY}/${name}.h "${text}")
+  file(WRITE ${DIRECTORY}/${name}.hpp "#include \"${name}.h\"\n")
 
   file(READ ${DIRECTORY}/${name}.cxx text)
   set(type "sidestep::msg::[A-Za-z]+")

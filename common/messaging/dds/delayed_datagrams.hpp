@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "common/time/time.hpp"
+#include "fast_dds/chained_transport.hpp"
+
+namespace sidestep {
+
+/// Holds delayed datagrams. Its own thread passes each one on when the delay is over.
+class DelayedDatagrams {
+ public:
+  DelayedDatagrams();
+  ~DelayedDatagrams();
+  DelayedDatagrams(const DelayedDatagrams&) = delete;
+  DelayedDatagrams& operator=(const DelayedDatagrams&) = delete;
+
+  /// The datagram is lost if too many wait.
+  void add(Duration delay, fast_dds::transport::TransportReceiverInterface& receiver,
+           std::span<const std::uint8_t> datagram, const fast_dds::rtps::Locator_t& local,
+           const fast_dds::rtps::Locator_t& remote);
+  /// Drops the port's datagrams. Once this returns, none is being passed on, and none will be.
+  void close(std::uint32_t port);
+
+ private:
+  struct Delayed {
+    std::chrono::steady_clock::time_point when;
+    std::uint64_t order;
+    fast_dds::transport::TransportReceiverInterface* receiver;
+    std::vector<std::uint8_t> bytes;
+    fast_dds::rtps::Locator_t local, remote;
+
+    /// Puts the earliest on top of a heap.
+    bool operator<(const Delayed& other) const {
+      return when != other.when ? when > other.when : order > other.order;
+    }
+  };
+
+  void run();
+
+  std::mutex mutex_;  ///< guards all other members but the thread
+  std::condition_variable changed_;
+  std::vector<Delayed> queue_;  ///< heap
+  std::set<std::uint32_t> closed_;
+  std::uint64_t order_ = 0;
+  std::uint32_t delivering_port_ = 0;
+  bool is_stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// A participant's GUID prefix (RTPS 2.2, 8.2.4).
+using ParticipantId = std::array<std::uint8_t, 12>;
+
+/// A participant that has been silent for this long is forgotten, until it is heard again.
+inline constexpr Duration kSilenceLimit{6'000'000'000};
+
+/// What one participant announces to another.
+struct PresenceNotice {
+  enum class Kind : std::uint32_t {
+    kForgotten = 1,  ///< the sender has forgotten `whom`, for the sender's `number`-th time
+    kAgreed = 2,     ///< the sender has forgotten `whom` too, as asked by this kForgotten of `whom`
+  };
+  ParticipantId whom{};
+  Kind kind = Kind::kForgotten;
+  std::uint64_t number = 0;
+
+  bool operator==(const PresenceNotice&) const = default;
+};
+
+/// Decides which participants are forgotten, and makes both sides forget each other.
+///
+/// Fast DDS can forget a silent participant by itself (its lease), but not safely: versions 2.9 and 3.1 may
+/// abort if the participant leaves during the check, and if only one side forgets the other, as when a
+/// process was stopped for a while, they may never find each other again. Participants therefore announce an
+/// infinite lease to Fast DDS, and this class does the forgetting: whoever was forgotten is told so when it
+/// is heard again, forgets the other side in turn, and only then are its datagrams accepted again.
+///
+/// Only participants that announce presence are tracked, so those of other software are left to Fast DDS.
+class Presence {
+ public:
+  /// Forgotten participants beyond this number are no longer remembered, the oldest first.
+  static constexpr std::size_t kMaxPeers = 1024;
+  /// Bound of notices().
+  static constexpr std::size_t kMaxNotices = 64;
+
+  /// Whether a datagram of the sender may be passed on.
+  [[nodiscard]] bool accept(const ParticipantId& sender, Time now);
+  /// Processes an announcement. True: everything known of the sender must be removed before anything else of
+  /// it is passed on.
+  [[nodiscard]] bool on_announcement(const ParticipantId& self, const ParticipantId& sender,
+                                     std::span<const PresenceNotice> notices, Time now);
+  /// The participants that have become silent since the last call and must be removed now. Call it about once
+  /// a second: after a longer break this process assumes that it was stopped itself, and forgets nobody.
+  [[nodiscard]] std::vector<ParticipantId> newly_silent(Time now);
+  /// What to announce now.
+  std::vector<PresenceNotice> notices(Time now) const;
+
+ private:
+  struct Peer {
+    Time last_heard{};
+    bool is_forgotten = false;
+    std::uint64_t forgotten_number = 0;
+    Time ask_until{};                     ///< it was heard although it is forgotten
+    std::optional<std::uint64_t> agreed;  ///< its latest kForgotten that was processed
+    Time agree_until{};
+  };
+
+  Peer* find_or_add(const ParticipantId& id, Time now);
+
+  std::map<ParticipantId, Peer> peers_;
+  Time last_check_{};
+  std::uint64_t last_number_ = 0;
+};
+
+}  // namespace sidestep

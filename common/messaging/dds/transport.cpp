@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/transport.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include "common/messaging/dds/datagram.hpp"
+#include "common/messaging/dds/delayed_datagrams.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/presence.hpp"
+#include "fast_dds/chained_transport.hpp"
+
+namespace sidestep {
+namespace {
+
+namespace rtps = fast_dds::rtps;
+namespace transport = fast_dds::transport;
+using Bytes = std::span<const std::uint8_t>;
+using Receiver = transport::TransportReceiverInterface;
+
+constexpr std::array<std::uint8_t, 4> kOperatorMark{'s', 's', 'o', 'p'};
+constexpr Duration kCheckInterval{500'000'000};
+
+/// Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for discovery, 1 and 11 + 2 i for messages (RTPS
+/// 2.2, 9.6.1).
+bool is_discovery(const rtps::Locator_t& local) { return local.port % 2 == 0; }
+
+bool is_operator(const ParticipantId& id) {
+  return std::equal(kOperatorMark.begin(), kOperatorMark.end(), id.begin());
+}
+
+struct UdpDescriptor : transport::ChainingTransportDescriptor {
+  UdpDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> udp,
+                std::shared_ptr<Impairment> impairment_of_process)
+      : ChainingTransportDescriptor(std::move(udp)), impairment(std::move(impairment_of_process)) {}
+
+  transport::TransportInterface* create_transport() const override;
+
+  std::shared_ptr<Impairment> impairment;
+};
+
+class UdpTransport : public fast_dds::ChainedTransport {
+ public:
+  explicit UdpTransport(const UdpDescriptor& descriptor)
+      : ChainedTransport(descriptor), descriptor_(descriptor) {
+    if (descriptor_.impairment) delayed_.emplace();
+  }
+
+  transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+
+  std::vector<std::uint8_t> before_multicast(Bytes first_part) override {
+    const std::optional<ParticipantId> self = sender_of(first_part);
+    if (!self) return {};
+    const std::lock_guard lock(state_);
+    self_ = self;
+    return presence_datagram(*self, presence_.notices(EventLoop::now()));
+  }
+
+  void on_datagram(Receiver& next, Bytes datagram, const rtps::Locator_t& local,
+                   const rtps::Locator_t& remote) override {
+    const std::optional<ParticipantId> sender = sender_of(datagram);
+    if (!sender) return;  // Fast DDS would refuse it too
+    if (is_discovery(local))
+      on_discovery(next, *sender, datagram, local, remote);
+    else if (accept(*sender))
+      on_message(next, *sender, datagram, local, remote);
+  }
+
+  bool CloseInputChannel(const rtps::Locator_t& locator) override {
+    if (delayed_) delayed_->close(locator.port);
+    return ChainingTransport::CloseInputChannel(locator);
+  }
+
+ private:
+  bool accept(const ParticipantId& sender) {
+    const std::lock_guard lock(state_);
+    return presence_.accept(sender, EventLoop::now());
+  }
+
+  /// One at a time, so that nothing of a participant is processed while Fast DDS forgets it.
+  void on_discovery(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
+                    const rtps::Locator_t& remote) {
+    const std::lock_guard one_at_a_time(discovery_);
+    const auto notices = presence_notices(datagram);
+    for (const ParticipantId& id : to_forget(sender, notices)) {
+      const Datagram departure = departure_of(id);
+      pass_on(next, departure, local, remote);
+    }
+    if (!notices && accept(sender)) pass_on(next, datagram, local, remote);
+  }
+
+  std::vector<ParticipantId> to_forget(const ParticipantId& sender,
+                                       const std::optional<std::vector<PresenceNotice>>& notices) {
+    const std::lock_guard lock(state_);
+    const Time now = EventLoop::now();
+    std::vector<ParticipantId> result;
+    if (notices && self_ && sender != *self_ && presence_.on_announcement(*self_, sender, *notices, now))
+      result.push_back(sender);
+    // This participant's own announcements arrive too, so this happens at least once a second.
+    if (now - checked_at_ > kCheckInterval) {
+      checked_at_ = now;
+      const std::vector<ParticipantId> silent = presence_.newly_silent(now);
+      result.insert(result.end(), silent.begin(), silent.end());
+    }
+    return result;
+  }
+
+  void on_message(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
+                  const rtps::Locator_t& remote) {
+    if (!descriptor_.impairment || is_operator(sender)) return pass_on(next, datagram, local, remote);
+    const MessageCopies copies = descriptor_.impairment->receive(sender);
+    for (std::size_t i = 0; i < copies.count; ++i) {
+      if (copies.delays[i] <= Duration::zero())
+        pass_on(next, datagram, local, remote);
+      else
+        delayed_->add(copies.delays[i], next, datagram, local, remote);
+    }
+  }
+
+  static void pass_on(Receiver& next, Bytes datagram, const rtps::Locator_t& local,
+                      const rtps::Locator_t& remote) {
+    next.OnDataReceived(datagram.data(), static_cast<std::uint32_t>(datagram.size()), local, remote);
+  }
+
+  UdpDescriptor descriptor_;
+  std::mutex discovery_;
+  std::mutex state_;  ///< guards the members below; never held while Fast DDS is called
+  std::optional<ParticipantId> self_;
+  Presence presence_;
+  Time checked_at_{};
+  std::optional<DelayedDatagrams> delayed_;  ///< with impairment only
+};
+
+transport::TransportInterface* UdpDescriptor::create_transport() const { return new UdpTransport(*this); }
+
+}  // namespace
+
+std::shared_ptr<transport::TransportDescriptorInterface> udp_transport(
+    std::shared_ptr<transport::UDPv4TransportDescriptor> udp, std::shared_ptr<Impairment> impairment) {
+  return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment));
+}
+
+rtps::GuidPrefix_t operator_prefix() {
+  rtps::GuidPrefix_t prefix;
+  const std::uint64_t unique =
+      static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()) ^
+      (static_cast<std::uint64_t>(getpid()) << 40);
+  std::memcpy(prefix.value, kOperatorMark.data(), kOperatorMark.size());
+  std::memcpy(prefix.value + kOperatorMark.size(), &unique, sizeof unique);
+  return prefix;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <fastdds/rtps/common/LocatorList.hpp>
+#include <fastdds/rtps/common/LocatorsIterator.hpp>
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <span>
+#include <vector>
+
+#include "fast_dds/library.hpp"
+
+namespace sidestep::fast_dds {
+
+/// A transport that handles the datagrams of another one.
+class ChainedTransport : public transport::ChainingTransport {
+ public:
+  using ChainingTransport::ChainingTransport;
+
+  /// Called before a datagram, of which this is the first part, goes to a multicast address, as announcements
+  /// of the participant do. The result is a datagram to be sent there before it; empty: none.
+  virtual std::vector<std::uint8_t> before_multicast(std::span<const std::uint8_t> first_part) = 0;
+  /// A datagram has arrived. `next` is what handles it unless it is dropped here.
+  virtual void on_datagram(transport::TransportReceiverInterface& next,
+                           std::span<const std::uint8_t> datagram, const rtps::Locator_t& local,
+                           const rtps::Locator_t& remote) = 0;
+
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) final {
+    on_datagram(*next, {data, size}, local, remote);
+  }
+
+  bool send(rtps::SenderResource* sender, const rtps::octet* data, std::uint32_t size,
+            transport::LocatorsIterator* begin, transport::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) final {
+    if (!goes_to_multicast(*begin, *end)) return sender->send(data, size, begin, end, timeout);
+    transport::LocatorList destinations;
+    for (; *begin != *end; ++*begin) destinations.push_back(**begin);
+    const auto send_to_all = [&](const rtps::octet* bytes, std::uint32_t count) {
+      transport::Locators from(destinations.begin()), to(destinations.end());
+      return sender->send(bytes, count, &from, &to, timeout);
+    };
+    const std::vector<std::uint8_t> first = before_multicast({data, size});
+    if (!first.empty()) send_to_all(first.data(), static_cast<std::uint32_t>(first.size()));
+    return send_to_all(data, size);
+  }
+
+ private:
+  static bool goes_to_multicast(const transport::LocatorsIterator& begin,
+                                const transport::LocatorsIterator& end) {
+    constexpr std::uint8_t kFirst = 224, kLast = 239;  // of an IPv4 address, which is the last of 16 bytes
+    if (begin == end) return false;
+    const std::uint8_t first = (*begin).address[12];
+    return first >= kFirst && first <= kLast;
+  }
+};
+
+}  // namespace sidestep::fast_dds

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <sstream>
+#include <string>
+
+#include "common/messaging/dds/discovered_endpoint.hpp"
+#include "fast_dds/library.hpp"
+
+namespace sidestep::fast_dds {
+
+/// Listener that reports discovery in plain structs.
+class DiscoveryListener : public dds::DomainParticipantListener {
+ public:
+  /// A participant was discovered or has changed; or it has gone.
+  virtual void on_participant(const rtps::GuidPrefix_t&, const std::string& /*name*/, bool /*has_gone*/) {}
+  /// An endpoint was discovered; or it has changed; or it has gone.
+  virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
+                           EndpointChange change) = 0;
+
+  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) final {
+    const bool has_gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+                          info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
+    on_participant(info.info.m_guid.guidPrefix, info.info.m_participantName.to_string(), has_gone);
+  }
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) final {
+    using Info = rtps::WriterDiscoveryInfo;
+    on_endpoint(info.info.guid(), endpoint_of(info.info, true),
+                change_of(info.status == Info::DISCOVERED_WRITER, info.status == Info::REMOVED_WRITER));
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) final {
+    using Info = rtps::ReaderDiscoveryInfo;
+    on_endpoint(info.info.guid(), endpoint_of(info.info, false),
+                change_of(info.status == Info::DISCOVERED_READER, info.status == Info::REMOVED_READER));
+  }
+
+ private:
+  static EndpointChange change_of(bool is_new, bool has_gone) {
+    return is_new ? EndpointChange::kDiscovered : has_gone ? EndpointChange::kGone : EndpointChange::kChanged;
+  }
+
+  static Duration to_duration(const Duration_t& d) {
+    return d == kInfiniteDuration ? Duration::max() : Duration{d.to_ns()};
+  }
+
+  /// For WriterProxyData and ReaderProxyData.
+  template <typename Proxy>
+  static DiscoveredEndpoint endpoint_of(const Proxy& proxy, bool is_writer) {
+    DiscoveredEndpoint result;
+    std::ostringstream guid;
+    guid << proxy.guid();
+    result.guid = guid.str();
+    result.topic = proxy.topicName().to_string();
+    result.type = proxy.typeName().to_string();
+    result.is_writer = is_writer;
+    result.is_keyed = proxy.topicKind() == rtps::WITH_KEY;
+    result.is_reliable = proxy.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
+    result.is_exclusive = proxy.m_qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS;
+    result.durability = static_cast<DiscoveredEndpoint::Durability>(proxy.m_qos.m_durability.kind);
+    result.liveliness = static_cast<DiscoveredEndpoint::Liveliness>(proxy.m_qos.m_liveliness.kind);
+    result.lease = to_duration(proxy.m_qos.m_liveliness.lease_duration);
+    result.deadline = to_duration(proxy.m_qos.m_deadline.period);
+    result.partitions = proxy.m_qos.m_partition.names();
+    return result;
+  }
+};
+
+}  // namespace sidestep::fast_dds

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/rtps/builtin/data/ParticipantBuiltinTopicData.hpp>
+#include <fastdds/rtps/builtin/data/PublicationBuiltinTopicData.hpp>
+#include <fastdds/rtps/builtin/data/SubscriptionBuiltinTopicData.hpp>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.hpp>
+#include <fastdds/rtps/reader/ReaderDiscoveryStatus.hpp>
+#include <fastdds/rtps/writer/WriterDiscoveryStatus.hpp>
+#include <sstream>
+#include <string>
+
+#include "common/messaging/dds/discovered_endpoint.hpp"
+#include "fast_dds/library.hpp"
+
+namespace sidestep::fast_dds {
+
+/// Listener that reports discovery in plain structs.
+class DiscoveryListener : public dds::DomainParticipantListener {
+ public:
+  /// A participant was discovered or has changed; or it has gone.
+  virtual void on_participant(const rtps::GuidPrefix_t&, const std::string& /*name*/, bool /*has_gone*/) {}
+  /// An endpoint was discovered; or it has changed; or it has gone.
+  virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
+                           EndpointChange change) = 0;
+
+  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
+                                const rtps::ParticipantBuiltinTopicData& info, bool&) final {
+    const bool has_gone = status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
+                          status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT;
+    on_participant(info.guid.guidPrefix, info.participant_name.to_string(), has_gone);
+  }
+  void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus status,
+                                const rtps::PublicationBuiltinTopicData& info, bool&) final {
+    using Status = rtps::WriterDiscoveryStatus;
+    on_endpoint(info.guid, endpoint_of(info, true),
+                change_of(status == Status::DISCOVERED_WRITER, status == Status::REMOVED_WRITER));
+  }
+  void on_data_reader_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryStatus status,
+                                const rtps::SubscriptionBuiltinTopicData& info, bool&) final {
+    using Status = rtps::ReaderDiscoveryStatus;
+    on_endpoint(info.guid, endpoint_of(info, false),
+                change_of(status == Status::DISCOVERED_READER, status == Status::REMOVED_READER));
+  }
+
+ private:
+  static EndpointChange change_of(bool is_new, bool has_gone) {
+    return is_new ? EndpointChange::kDiscovered : has_gone ? EndpointChange::kGone : EndpointChange::kChanged;
+  }
+
+  static Duration to_duration(const Duration_t& d) {
+    return d == kInfiniteDuration ? Duration::max() : Duration{d.to_ns()};
+  }
+
+  /// For PublicationBuiltinTopicData and SubscriptionBuiltinTopicData.
+  template <typename TopicData>
+  static DiscoveredEndpoint endpoint_of(const TopicData& data, bool is_writer) {
+    DiscoveredEndpoint result;
+    std::ostringstream guid;
+    guid << data.guid;
+    result.guid = guid.str();
+    result.topic = data.topic_name.to_string();
+    result.type = data.type_name.to_string();
+    result.is_writer = is_writer;
+    result.is_keyed = data.topic_kind == rtps::WITH_KEY;
+    result.is_reliable = data.reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
+    result.is_exclusive = data.ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS;
+    result.durability = static_cast<DiscoveredEndpoint::Durability>(data.durability.kind);
+    result.liveliness = static_cast<DiscoveredEndpoint::Liveliness>(data.liveliness.kind);
+    result.lease = to_duration(data.liveliness.lease_duration);
+    result.deadline = to_duration(data.deadline.period);
+    result.partitions = data.partition.names();
+    return result;
+  }
+};
+
+}  // namespace sidestep::fast_dds

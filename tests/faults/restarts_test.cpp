@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// What processes that die leave behind in the others.
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <signal.h>
+#include <sstream>
+#include <unistd.h>
+
+#include "tests/catch.hpp"
+#include "tests/faults/launched_run.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Usage {
+  double memory_mb = 0;  ///< resident
+  double cpu_s = 0;      ///< since the process's start
+};
+
+Usage usage_of(pid_t pid) {
+  const std::string folder = "/proc/" + std::to_string(pid);
+  std::ifstream stat(folder + "/stat");
+  std::string line;
+  std::getline(stat, line);
+  std::istringstream fields(line.substr(line.rfind(')') + 2));
+  std::string ignored;
+  for (int i = 0; i < 11; ++i) fields >> ignored;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  std::ifstream statm(folder + "/statm");
+  double pages = 0;
+  statm >> pages >> pages;
+  return {pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6,
+          (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK))};
+}
+
+/// Memory of each process of the run, and its share of a core during some seconds.
+struct Load {
+  double memory_mb = 0;
+  double cpu_percent = 0;
+};
+
+std::map<std::string, Load> measure(LaunchedRun& run, const std::string& except, Duration duration) {
+  std::map<std::string, Usage> before;
+  const Time begin = run.bus().now();
+  for (const auto& [name, pid] : run.children()) {
+    if (name != except) before[name] = usage_of(pid);
+  }
+  before["launcher"] = usage_of(run.pid());
+  REQUIRE(run.wait_until([&] { return run.bus().now() >= begin + duration; }));
+  const double seconds = to_seconds(run.bus().now() - begin);
+  std::map<std::string, Load> result;
+  for (const auto& [name, usage] : before) {
+    const Usage now = usage_of(name == "launcher" ? run.pid() : run.pid_of(name));
+    result[name] = {now.memory_mb, 100 * (now.cpu_s - usage.cpu_s) / seconds};
+  }
+  return result;
+}
+
+/// Kills an agent with kill -9 this many times. Others must not accumulate memory or work, and each new agent
+/// must be heard soon.
+void kill_agent(int times, Duration window) {
+  const std::string victim = "agent 6";
+  constexpr double kMaxMemoryGrowth_mb = 10;
+  constexpr Duration kMaxMatching = 500ms;
+  std::string scenario = shuttles(1000, "restart: [agents]\n");
+  scenario.replace(scenario.find("time_limit_s: 100"), 17, "time_limit_s: 3000");
+  LaunchedRun run(scenario);
+  std::uint64_t heard_incarnation = 0;
+  run.bus().subscribe(topics::kStatus, std::function([&](const msg::AgentStatus& status) {
+                        if (status.robot() == 6) heard_incarnation = status.header().incarnation();
+                      }));
+  const bool drives = run.wait_until([&] { return run.max_speed_mps() > 0.8 && heard_incarnation != 0; });
+  INFO(run.output());
+  REQUIRE(drives);
+  const auto before = measure(run, victim, window);
+
+  std::vector<Duration> matching;
+  for (int i = 0; i < times; ++i) {
+    INFO("kill " << i << "\n" << run.output().substr(0, 4000));
+    const pid_t pid = run.pid_of(victim);
+    const std::uint64_t incarnation = heard_incarnation;
+    REQUIRE(pid > 0);
+    REQUIRE(kill(pid, SIGKILL) == 0);
+    REQUIRE(run.wait_until([&] { return run.pid_of(victim) != pid; }));
+    const Time started = run.bus().now();
+    REQUIRE(run.wait_until([&] { return heard_incarnation > incarnation; }));
+    matching.push_back(run.bus().now() - started);
+  }
+
+  const auto after = measure(run, victim, window);
+  std::ranges::sort(matching);
+  fmt::print("matching after a restart: median {:.0f} ms, maximum {:.0f} ms, {} restarts\n",
+             1e3 * to_seconds(matching[matching.size() / 2]), 1e3 * to_seconds(matching.back()), times);
+  for (const auto& [name, load] : after) {
+    const Load& old = before.at(name);
+    fmt::print("{:<12} {:6.1f} -> {:6.1f} MB, {:5.1f} -> {:5.1f} % of a core\n", name, old.memory_mb,
+               load.memory_mb, old.cpu_percent, load.cpu_percent);
+    CAPTURE(name);
+    CHECK(load.memory_mb - old.memory_mb <= kMaxMemoryGrowth_mb);
+  }
+  CHECK(matching.back() < kMaxMatching);
+}
+
+}  // namespace
+
+TEST_CASE("an agent that is killed again and again is soon heard again, and leaves little behind") {
+  kill_agent(5, 2s);
+}
+
+TEST_CASE("the same for two hundred deaths", "[.long]") { kill_agent(200, 20s); }

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/presence.hpp"
+
+#include <deque>
+#include <functional>
+#include <set>
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::presence_test {
+
+using namespace std::chrono_literals;
+using Kind = PresenceNotice::Kind;
+
+constexpr ParticipantId kSelf{1}, kOther{2};
+
+PresenceNotice forgotten(const ParticipantId& whom, std::uint64_t number) {
+  return {whom, Kind::kForgotten, number};
+}
+
+/// A presence that checks twice a second, as over DDS.
+struct Clocked {
+  void run_until(Time when) {
+    for (; now < when; now += 500ms) {
+      for (const ParticipantId& id : presence.newly_silent(now)) removed.insert(id);
+    }
+  }
+  bool hears(std::span<const PresenceNotice> notices) {
+    return presence.on_announcement(kSelf, kOther, notices, now);
+  }
+
+  Presence presence;
+  Time now = time_from_ns(0) + 1h;
+  std::multiset<ParticipantId> removed;
+};
+
+TEST_CASE("a participant that announces no presence is never refused and never forgotten") {
+  Clocked a;
+  CHECK(a.presence.accept(kOther, a.now));
+  a.run_until(a.now + 1h);
+  CHECK(a.removed.empty());
+  CHECK(a.presence.accept(kOther, a.now));
+  CHECK(a.presence.notices(a.now).empty());
+}
+
+TEST_CASE("a silent participant is removed once, and refused until it has forgotten us too") {
+  Clocked a;
+  CHECK_FALSE(a.hears({}));
+  a.run_until(a.now + kSilenceLimit - 1s);
+  CHECK(a.presence.accept(kOther, a.now));  // any datagram is a sign of life
+  a.run_until(a.now + kSilenceLimit - 1s);
+  CHECK(a.removed.empty());
+  a.run_until(a.now + 1min);
+  CHECK(a.removed.count(kOther) == 1);
+  CHECK(a.presence.notices(a.now).empty());  // it may be dead
+
+  CHECK_FALSE(a.presence.accept(kOther, a.now));
+  const auto notices = a.presence.notices(a.now);
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].whom == kOther);
+  CHECK(notices[0].kind == Kind::kForgotten);
+  const PresenceNotice outdated{kSelf, Kind::kAgreed, notices[0].number + 1};
+  CHECK_FALSE(a.hears(std::array{outdated}));
+  CHECK_FALSE(a.presence.accept(kOther, a.now));
+  CHECK_FALSE(a.hears(std::array{PresenceNotice{kOther, Kind::kAgreed, notices[0].number}}));  // not for us
+  CHECK_FALSE(a.presence.accept(kOther, a.now));
+  CHECK_FALSE(a.hears(std::array{PresenceNotice{kSelf, Kind::kAgreed, notices[0].number}}));
+  CHECK(a.presence.accept(kOther, a.now));
+}
+
+TEST_CASE("who is told that it was forgotten removes the other side once, and says so") {
+  Clocked a;
+  CHECK_FALSE(a.hears({}));
+  CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
+  CHECK_FALSE(a.hears(std::array{forgotten(kSelf, 7)}));  // repeated, because our answer was lost
+  CHECK(a.presence.accept(kOther, a.now));
+  const auto notices = a.presence.notices(a.now);
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0] == PresenceNotice{kOther, Kind::kAgreed, 7});
+  CHECK(a.hears(std::array{forgotten(kSelf, 8)}));
+}
+
+TEST_CASE("a process that was stopped itself forgets nobody") {
+  Clocked a;
+  CHECK_FALSE(a.hears({}));
+  a.run_until(a.now + 1s);
+  a.now += 1h;
+  a.run_until(a.now + 1s);
+  CHECK(a.removed.empty());
+  CHECK(a.presence.accept(kOther, a.now));
+}
+
+TEST_CASE("forgotten participants are remembered up to a bound, the oldest are dropped first") {
+  Clocked a;
+  const auto id = [](std::size_t i) {
+    return ParticipantId{9, static_cast<std::uint8_t>(i >> 8), static_cast<std::uint8_t>(i)};
+  };
+  for (std::size_t i = 0; i < Presence::kMaxPeers; ++i) {
+    CHECK_FALSE(a.presence.on_announcement(kSelf, id(i), {}, a.now));
+    if (i < 2) a.run_until(a.now + kSilenceLimit + 1s);
+  }
+  CHECK(a.removed.size() == 2);
+  CHECK_FALSE(a.presence.accept(id(0), a.now));
+  CHECK_FALSE(a.presence.on_announcement(kSelf, id(5000), {}, a.now));
+  CHECK(a.presence.accept(id(0), a.now));        // no longer tracked
+  CHECK_FALSE(a.presence.accept(id(1), a.now));  // still refused
+  for (std::size_t i = 0; i < Presence::kMaxPeers; ++i) {
+    if (i != 1) CHECK(a.presence.accept(id(i), a.now));
+  }
+}
+
+TEST_CASE("an announcement names a bounded number of participants") {
+  Clocked a;
+  const auto id = [](std::uint8_t i) { return ParticipantId{9, i}; };
+  for (int i = 0; i < 200; ++i)
+    CHECK_FALSE(a.presence.on_announcement(kSelf, id(static_cast<std::uint8_t>(i)), {}, a.now));
+  a.run_until(a.now + kSilenceLimit + 1s);
+  for (int i = 0; i < 200; ++i) CHECK_FALSE(a.presence.accept(id(static_cast<std::uint8_t>(i)), a.now));
+  const std::size_t count = a.presence.notices(a.now).size();
+  CHECK(count <= Presence::kMaxNotices);
+  CHECK(count >= Presence::kMaxNotices / 2);
+}
+
+/// Two participants and a model of what Fast DDS knows: each side counts how often it has learned of the
+/// other one anew. Both are matched if each learned of the other after the other one had last removed it. If
+/// one side removes the other while the other one does not, they stay unmatched: that is the defect.
+struct Pair {
+  struct Side {
+    Presence presence;
+    ParticipantId id{};
+    bool knows = false;       ///< the other side
+    int generation = 0;       ///< how often it has removed the other side
+    int seen_generation = 0;  ///< the other side's generation when it learned of it
+    bool is_stopped = false;
+    Time next_announcement{};
+    std::deque<std::function<void()>> arrived;  ///< while it is stopped
+  };
+
+  explicit Pair(std::uint64_t seed) : rng(seed) {
+    sides[0].id = kSelf;
+    sides[1].id = kOther;
+  }
+
+  void remove(Side& at) {
+    if (std::exchange(at.knows, false)) ++at.generation;
+  }
+
+  void announce(Side& from, Side& to) {
+    const auto notices = from.presence.notices(now);
+    const int generation = from.generation;
+    deliver(from, to, [this, &from, &to, notices] {
+      if (to.presence.on_announcement(to.id, from.id, notices, now)) remove(to);
+    });
+    deliver(from, to, [this, &from, &to, generation] {
+      if (!to.presence.accept(from.id, now) || to.knows) return;
+      to.knows = true;
+      to.seen_generation = generation;
+    });
+  }
+
+  void deliver(const Side& from, Side& to, std::function<void()> what) {
+    if (is_cut[&from - sides] || rng.chance(loss)) return;
+    if (to.is_stopped)
+      to.arrived.push_back(std::move(what));
+    else
+      what();
+  }
+
+  void step() {
+    now += 100ms;
+    for (int i = 0; i < 2; ++i) {
+      Side& side = sides[i];
+      if (side.is_stopped) continue;
+      for (; !side.arrived.empty(); side.arrived.pop_front()) side.arrived.front()();
+      if (now < side.next_announcement) continue;
+      side.next_announcement = now + 1s;
+      if (!side.presence.newly_silent(now).empty()) remove(side);
+      announce(side, sides[1 - i]);
+    }
+  }
+
+  void run(Duration duration) {
+    for (const Time end = now + duration; now < end;) step();
+  }
+
+  bool are_matched() const {
+    return sides[0].knows && sides[1].knows && sides[0].seen_generation == sides[1].generation &&
+           sides[1].seen_generation == sides[0].generation;
+  }
+
+  Rng rng;
+  Side sides[2];
+  bool is_cut[2] = {false, false};  ///< what this side sends is lost
+  double loss = 0;
+  Time now = time_from_ns(0) + 1h;
+};
+
+TEST_CASE("whatever is stopped or cut off for however long, both sides find each other again") {
+  const std::uint64_t seed = GENERATE(range(1, 200));
+  CAPTURE(seed);
+  Pair pair(seed);
+  pair.run(3s);
+  REQUIRE(pair.are_matched());
+  int times_forgotten = 0;
+  for (int fault = 0; fault < 20; ++fault) {
+    CAPTURE(fault);
+    pair.loss = pair.rng.chance(0.5) ? 0 : 0.3;
+    for (int side = 0; side < 2; ++side) {
+      pair.sides[side].is_stopped = pair.rng.chance(0.3);
+      pair.is_cut[side] = pair.rng.chance(0.3);
+    }
+    const int before = pair.sides[0].generation + pair.sides[1].generation;
+    pair.run(Duration{100'000'000} * static_cast<int>(pair.rng.below(200)));
+    for (int side = 0; side < 2; ++side) pair.sides[side].is_stopped = pair.is_cut[side] = false;
+    pair.run(pair.loss > 0 ? Duration{30s} : Duration{5s});
+    REQUIRE(pair.are_matched());
+    times_forgotten += pair.sides[0].generation + pair.sides[1].generation - before;
+  }
+  CHECK(times_forgotten > 0);
+}
+
+}  // namespace sidestep::presence_test
