@@ -80,6 +80,9 @@ Report Launcher::run() {
   report.seed = options_.seed;
   report.abort_reason = abort_reason_;
   report.duration_s = to_seconds(bus_.now() - begin);
+  report.fast_dds = fast_dds_version();
+  if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
+  report.processes = group_.resource_use();
   return report;
 }
 
@@ -149,7 +152,10 @@ bool Launcher::is_startup_over() {
   const bool all_started = agents_started_ == scenario_.robots.size();
   // The coordinator grants only after every agent has registered, so their status need not be awaited.
   is_ready_ = all_started && metrics_.has_truth() && metrics_.granting_since();
-  if (is_ready_) print("all processes are running and the coordinator grants");
+  if (is_ready_) {
+    ready_at_ = bus_.now();
+    print("all processes are running and the coordinator grants");
+  }
   if (is_ready_ || !all_started || bus_.now() < last_start_ + kStartupTimeout) return false;
   abort_reason_ = startup_failure();
   return true;

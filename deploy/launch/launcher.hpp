@@ -61,6 +61,7 @@ class Launcher {
   ProgressDisplay display_;
   std::atomic<bool> is_interrupted_{false};
   bool is_ready_ = false;
+  std::optional<Time> ready_at_;
   std::size_t agents_started_ = 0;
   Time last_start_{};
   Time last_death_{};

@@ -11,6 +11,7 @@
 #include <poll.h>
 #include <stdexcept>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,6 +88,15 @@ Pipe filled_pipe(const std::string& text) {
   close_fd(pipe.read_end);
   close_fd(pipe.write_end);
   throw std::runtime_error(fmt::format("{} bytes are too many for the stdin of a child", text.size()));
+}
+
+void add(const rusage& used, ProcessUse& to) {
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  constexpr double kMegabytePerKibibyte = 1024e-6;
+  to.cpu_s += seconds(used.ru_utime) + seconds(used.ru_stime);
+  to.max_memory_mb = std::max(to.max_memory_mb, static_cast<double>(used.ru_maxrss) * kMegabytePerKibibyte);
 }
 
 }  // namespace
@@ -211,7 +221,9 @@ void ProcessGroup::drain(Child& child) {
 
 bool ProcessGroup::reap(Child& child, ChildEvent& event) {
   int status = 0;
-  if (!child.is_running || waitpid(child.pid, &status, WNOHANG) != child.pid) return false;
+  rusage used{};
+  if (!child.is_running || wait4(child.pid, &status, WNOHANG, &used) != child.pid) return false;
+  add(used, resource_use_[child.spec.name]);
   child.is_running = false;
   close_fd(child.pidfd);
   close_fd(child.input);

@@ -4,10 +4,13 @@
 #include <chrono>
 #include <cstdio>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <sys/types.h>
 #include <vector>
+
+#include "deploy/monitor/metrics/process_use.hpp"
 
 namespace sidestep {
 
@@ -54,6 +57,8 @@ class ProcessGroup {
   std::vector<std::string> terminate(Milliseconds timeout);
 
   std::size_t running() const;
+  /// Of all children that have ended, by name. A child on another host counts as its connection.
+  const std::map<std::string, ProcessUse>& resource_use() const { return resource_use_; }
   /// The last lines that a child printed, even after its end.
   std::vector<std::string> last_lines(const std::string& name) const;
   /// Writes a line to the log.
@@ -69,6 +74,7 @@ class ProcessGroup {
 
   std::FILE* log_;
   std::vector<std::unique_ptr<Child>> children_;
+  std::map<std::string, ProcessUse> resource_use_;
   bool is_terminating_ = false;
 };
 

@@ -130,6 +130,15 @@ std::string to_json(const Report& r) {
   wall["search_us"] = quantiles(r.search, false);
   wall["duration_s"] = rounded(r.duration_s);
   wall["real_time_factor"] = r.duration_s > 0 ? rounded(r.robot_time_s / r.duration_s) : Json(nullptr);
+  if (!r.fast_dds.empty()) {
+    wall["fast_dds"] = r.fast_dds;
+    wall["startup_s"] = rounded(r.startup_s);
+    wall["processes"] = Json::object();
+    for (const auto& [name, use] : r.processes) {
+      wall["processes"][name] = {{"cpu_s", rounded(use.cpu_s)},
+                                 {"max_memory_mb", rounded(use.max_memory_mb)}};
+    }
+  }
   return json.dump(2) + "\n";
 }
 

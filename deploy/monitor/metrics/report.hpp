@@ -11,6 +11,7 @@
 #include "common/config/scenario.hpp"
 #include "common/time/histogram.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/metrics/process_use.hpp"
 
 namespace sidestep {
 
@@ -65,6 +66,9 @@ struct Report {
   std::vector<Death> deaths;
   std::optional<AuditTotals> audit;  ///< none: the run was not audited
   double duration_s = 0;             ///< wall clock
+  std::optional<double> startup_s;   ///< until all processes ran and the coordinator granted
+  std::string fast_dds;              ///< the launcher's version of Fast DDS; empty: not over DDS
+  std::map<std::string, ProcessUse> processes;
 
   /// Contacts, except for those excused because a robot was disturbed from outside.
   std::uint64_t unexcused_contacts() const;

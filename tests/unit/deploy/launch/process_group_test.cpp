@@ -91,6 +91,20 @@ TEST_CASE("a death is reported with exit code or signal, and the last lines are 
   CHECK(group.running() == 0);
 }
 
+TEST_CASE("the processor time and memory of children add up over their restarts") {
+  ProcessGroup group(log_path());
+  group.start(shell("busy", "i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done", true));
+  CHECK(group.resource_use().empty());
+  CHECK(next_event(group).kind == Kind::kDied);
+  const ProcessUse once = group.resource_use().at("busy");
+  CHECK(once.cpu_s > 0.001);
+  CHECK(once.max_memory_mb > 0.5);
+  CHECK(once.max_memory_mb < 100);
+  CHECK(next_event(group).kind == Kind::kStarted);
+  CHECK(next_event(group).kind == Kind::kDied);
+  CHECK(group.resource_use().at("busy").cpu_s > 1.2 * once.cpu_s);
+}
+
 TEST_CASE("a program that does not exist is refused at once") {
   ProcessGroup group(log_path());
   CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),

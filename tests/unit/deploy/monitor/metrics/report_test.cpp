@@ -85,6 +85,20 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK_THAT(summary(example()), ContainsSubstring("brought robots 3 and 7 into conflict"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
+  CHECK_FALSE(json["wall_clock"].contains("processes"));
+}
+
+TEST_CASE("the report of a run over DDS has its version, the time of startup and what processes used") {
+  Report report = example();
+  report.fast_dds = "3.1.2";
+  report.processes["agent 3"] = {0.25, 21.5};
+  CHECK(nlohmann::json::parse(to_json(report))["wall_clock"]["startup_s"].is_null());
+  report.startup_s = 1.5;
+  const auto wall = nlohmann::json::parse(to_json(report))["wall_clock"];
+  CHECK(wall["fast_dds"] == "3.1.2");
+  CHECK(wall["startup_s"] == 1.5);
+  CHECK(wall["processes"]["agent 3"]["cpu_s"] == 0.25);
+  CHECK(wall["processes"]["agent 3"]["max_memory_mb"] == 21.5);
 }
 
 TEST_CASE("reports of one run on machines of different speed differ only under wall_clock") {
