@@ -10,7 +10,8 @@
 namespace sidestep {
 
 /// xoshiro256++ (Blackman, Vigna 2018) with its own distributions: those of the standard library differ
-/// between implementations, and a seed has to give the same run everywhere.
+/// between implementations, and a seed has to give the same run everywhere. For the same reason, draw into
+/// variables: the order in which arguments of a call are evaluated is unspecified.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) {

@@ -24,11 +24,19 @@ CameraModel quarter(int width_px, int height_px) {
   return camera_grid(kField, spec, camera)[0];
 }
 
-void pixel_of_point(benchmark::State& state) {
-  const CameraModel camera = quarter(780, 580);
+std::vector<Vec3> random_points() {
   Rng rng(1);
   std::vector<Vec3> points;
-  for (int i = 0; i < 1024; ++i) points.emplace_back(rng.uniform(-6, 0), rng.uniform(-4.5, 0), 0.15);
+  for (int i = 0; i < 1024; ++i) {
+    const double y = rng.uniform(-4.5, 0), x = rng.uniform(-6, 0);
+    points.emplace_back(x, y, 0.15);
+  }
+  return points;
+}
+
+void pixel_of_point(benchmark::State& state) {
+  const CameraModel camera = quarter(780, 580);
+  const std::vector<Vec3> points = random_points();
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(camera.pixel_of(points[i++ % 1024]));
 }
@@ -37,16 +45,17 @@ void point_of_pixel(benchmark::State& state) {
   const CameraModel camera = quarter(780, 580);
   Rng rng(1);
   std::vector<Vec2> pixels;
-  for (int i = 0; i < 1024; ++i) pixels.emplace_back(rng.uniform(0, 780), rng.uniform(0, 580));
+  for (int i = 0; i < 1024; ++i) {
+    const double y = rng.uniform(0, 580), x = rng.uniform(0, 780);
+    pixels.emplace_back(x, y);
+  }
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(camera.point_at(pixels[i++ % 1024], 0.15));
 }
 
 void jacobian_of_point(benchmark::State& state) {
   const CameraModel camera = quarter(780, 580);
-  Rng rng(1);
-  std::vector<Vec3> points;
-  for (int i = 0; i < 1024; ++i) points.emplace_back(rng.uniform(-6, 0), rng.uniform(-4.5, 0), 0.15);
+  const std::vector<Vec3> points = random_points();
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(camera.projection_jacobian(points[i++ % 1024]));
 }

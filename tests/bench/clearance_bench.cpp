@@ -14,9 +14,9 @@ constexpr std::size_t kOthers = 32, kCandidates = 8, kRounds = 64;
 constexpr double kMinSeparation_m = 0.19;
 
 Trajectory typical_version(Rng& rng, double half_side_m) {
-  Trajectory trajectory(
-      kStart + Duration{static_cast<std::int64_t>(rng.below(16'000'000))},
-      {random_vector(rng, half_side_m), rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3.2, 3.2))});
+  const Vec2 position = random_vector(rng, half_side_m), velocity = random_velocity(rng, 2, 3.2);
+  Trajectory trajectory(kStart + Duration{static_cast<std::int64_t>(rng.below(16'000'000))},
+                        {position, velocity});
   trajectory.append(kCycle, random_vector(rng, 2));
   append_stop(trajectory, 5);
   return trajectory;

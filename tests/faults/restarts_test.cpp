@@ -72,8 +72,9 @@ void kill_agent(int times, Duration window) {
   scenario.replace(scenario.find("time_limit_s: 100"), 17, "time_limit_s: 3000");
   LaunchedRun run(scenario);
   std::uint64_t heard_incarnation = 0;
-  run.bus().subscribe(topics::kStatus, std::function([&](const msg::AgentStatus& status) {
-                        if (status.robot() == 6) heard_incarnation = status.header().incarnation();
+  // An agent sends commands in every cycle from its start on.
+  run.bus().subscribe(topics::kCommand, 6, std::function([&](const msg::Command& command) {
+                        heard_incarnation = command.header().incarnation();
                       }));
   const bool drives = run.wait_until([&] { return run.max_speed_mps() > 0.8 && heard_incarnation != 0; });
   INFO(run.output());

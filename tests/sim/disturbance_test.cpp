@@ -22,7 +22,8 @@ std::string robot(int id, const std::string& start, const std::string& goal, con
 }
 
 Vec2 random_vector(Rng& rng, double max) {
-  return rotated(Vec2(rng.uniform(0, max), 0), rng.uniform(0, 6.283));
+  const double angle_rad = rng.uniform(0, 6.283);
+  return rotated(Vec2(rng.uniform(0, max), 0), angle_rad);
 }
 
 Epoch highest_epoch(IdealFloor& floor) {

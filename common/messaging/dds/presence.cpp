@@ -9,6 +9,8 @@ namespace {
 constexpr Duration kMaxCheckInterval{3'000'000'000};
 /// A notice is repeated with each announcement, of which there is one a second, for this long.
 constexpr Duration kRepeatFor{2'500'000'000};
+/// Datagrams that wait in a socket are older than this when a process has caught up with them.
+constexpr Duration kCatchUp{300'000'000};
 
 }  // namespace
 
@@ -21,7 +23,7 @@ bool Presence::accept(const ParticipantId& sender, Time now) {
     return false;
   }
   peer.last_heard = now;
-  return true;
+  return now >= peer.agree_from;
 }
 
 bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& sender,
@@ -33,10 +35,12 @@ bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& s
     if (notice.whom != self) continue;
     if (notice.kind == PresenceNotice::Kind::kForgotten) {
       // What is known of the sender is older than its forgetting, unless this notice was processed before.
-      must_forget = !peer->is_forgotten && peer->agreed != notice.number;
+      const bool is_repeated = peer->agreed == notice.number;
+      must_forget = !peer->is_forgotten && !is_repeated;
       peer->is_forgotten = false;
       peer->agreed = notice.number;
-      peer->agree_until = now + kRepeatFor;
+      if (!is_repeated) peer->agree_from = now + kCatchUp;
+      peer->agree_until = std::max(peer->agree_from, now) + kRepeatFor;
     } else if (peer->is_forgotten && notice.number == peer->forgotten_number) {
       peer->is_forgotten = false;
     }
@@ -66,7 +70,7 @@ std::vector<PresenceNotice> Presence::notices(Time now) const {
     if (result.size() + 2 > kMaxNotices) break;
     if (peer.is_forgotten && now < peer.ask_until)
       result.push_back({id, PresenceNotice::Kind::kForgotten, peer.forgotten_number});
-    if (peer.agreed && now < peer.agree_until)
+    if (peer.agreed && now >= peer.agree_from && now < peer.agree_until)
       result.push_back({id, PresenceNotice::Kind::kAgreed, *peer.agreed});
   }
   return result;

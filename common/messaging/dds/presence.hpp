@@ -38,7 +38,10 @@ struct PresenceNotice {
 /// abort if the participant leaves during the check, and if only one side forgets the other, as when a
 /// process was stopped for a while, they may never find each other again. Participants therefore announce an
 /// infinite lease to Fast DDS, and this class does the forgetting: whoever was forgotten is told so when it
-/// is heard again, forgets the other side in turn, and only then are its datagrams accepted again.
+/// is heard again, and forgets the other side in turn. It refuses the other side's datagrams for a moment,
+/// because older ones may still wait in its sockets; if Fast DDS took an old acknowledgement for a new one,
+/// it would never send again what that acknowledges. Then it agrees, and its own datagrams are accepted
+/// again.
 ///
 /// Only participants that announce presence are tracked, so those of other software are left to Fast DDS.
 class Presence {
@@ -67,7 +70,7 @@ class Presence {
     std::uint64_t forgotten_number = 0;
     Time ask_until{};                     ///< it was heard although it is forgotten
     std::optional<std::uint64_t> agreed;  ///< its latest kForgotten that was processed
-    Time agree_until{};
+    Time agree_from{}, agree_until{};     ///< until agree_from its datagrams are refused
   };
 
   Peer* find_or_add(const ParticipantId& id, Time now);

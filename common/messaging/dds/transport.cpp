@@ -27,6 +27,8 @@ using Receiver = transport::TransportReceiverInterface;
 
 constexpr std::array<std::uint8_t, 4> kOperatorMark{'s', 's', 'o', 'p'};
 constexpr Duration kCheckInterval{500'000'000};
+/// Fast DDS announces a participant some milliseconds before it can process the answers.
+constexpr Duration kUntilReady{50'000'000};
 
 /// Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for discovery, 1 and 11 + 2 i for messages (RTPS
 /// 2.2, 9.6.1).
@@ -59,6 +61,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
     const std::optional<ParticipantId> self = sender_of(first_part);
     if (!self) return {};
     const std::lock_guard lock(state_);
+    if (!self_) announced_at_ = EventLoop::now();
     self_ = self;
     return presence_datagram(*self, presence_.notices(EventLoop::now()));
   }
@@ -89,11 +92,23 @@ class UdpTransport : public fast_dds::ChainedTransport {
                     const rtps::Locator_t& remote) {
     const std::lock_guard one_at_a_time(discovery_);
     const auto notices = presence_notices(datagram);
+    if (is_ready()) {
+      for (const Early& early : std::exchange(early_, {})) {
+        if (accept(early.sender)) pass_on(next, early.datagram, early.local, early.remote);
+      }
+    } else if (!notices && early_.size() < kMaxEarly) {
+      early_.push_back({sender, {datagram.begin(), datagram.end()}, local, remote});
+    }
     for (const ParticipantId& id : to_forget(sender, notices)) {
       const Datagram departure = departure_of(id);
       pass_on(next, departure, local, remote);
     }
     if (!notices && accept(sender)) pass_on(next, datagram, local, remote);
+  }
+
+  bool is_ready() {
+    const std::lock_guard lock(state_);
+    return announced_at_ && EventLoop::now() - *announced_at_ > kUntilReady;
   }
 
   std::vector<ParticipantId> to_forget(const ParticipantId& sender,
@@ -129,10 +144,20 @@ class UdpTransport : public fast_dds::ChainedTransport {
     next.OnDataReceived(datagram.data(), static_cast<std::uint32_t>(datagram.size()), local, remote);
   }
 
+  /// A datagram that may have been lost because Fast DDS was not ready.
+  struct Early {
+    ParticipantId sender;
+    Datagram datagram;
+    rtps::Locator_t local, remote;
+  };
+  static constexpr std::size_t kMaxEarly = 1024;
+
   UdpDescriptor descriptor_;
-  std::mutex discovery_;
-  std::mutex state_;  ///< guards the members below; never held while Fast DDS is called
+  std::mutex discovery_;      ///< guards early_, and orders what Fast DDS is given
+  std::vector<Early> early_;  ///< passed on again when it is ready
+  std::mutex state_;          ///< guards the members below; never held while Fast DDS is called
   std::optional<ParticipantId> self_;
+  std::optional<Time> announced_at_;
   Presence presence_;
   Time checked_at_{};
   std::optional<DelayedDatagrams> delayed_;  ///< with impairment only

@@ -28,8 +28,10 @@ Vec2 sample_free_position(const PlanWorld& world, Rng& rng) {
 
 Vec2 sample_free_position(const PlanWorld& world, const Box& within, Rng& rng) {
   for (;;) {
-    Vec2 position(rng.uniform(within.min_m.x(), within.max_m.x()),
-                  rng.uniform(within.min_m.y(), within.max_m.y()));
+    // y first: the order of arguments would be unspecified.
+    const double y = rng.uniform(within.min_m.y(), within.max_m.y());
+    const double x = rng.uniform(within.min_m.x(), within.max_m.x());
+    const Vec2 position(x, y);
     if (is_free(world, position)) return position;
   }
 }
@@ -63,11 +65,14 @@ ConvexPolygon random_polygon(const Vec2& centre, Rng& rng) {
 void add_mixed_shapes(PlanWorld& world, std::size_t count_each, Rng& rng) {
   add_circles(world, count_each, rng);
   for (std::size_t i = 0; i < count_each; ++i) {
-    const Vec2 centre = sample_position(world, rng), half(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6));
+    const Vec2 centre = sample_position(world, rng);
+    const double half_y = rng.uniform(0.1, 0.6), half_x = rng.uniform(0.1, 0.6);
+    const Vec2 half(half_x, half_y);
     world.obstacles.push_back(Box{centre - half, centre + half});
     world.obstacles.push_back(random_polygon(sample_position(world, rng), rng));
     const Vec2 end = sample_position(world, rng);
-    world.obstacles.push_back(Segment{end, end + rotated({rng.uniform(0.5, 2), 0}, rng.uniform(0, 2 * kPi))});
+    const double turn = rng.uniform(0, 2 * kPi), length_m = rng.uniform(0.5, 2);
+    world.obstacles.push_back(Segment{end, end + rotated({length_m, 0}, turn)});
   }
 }
 

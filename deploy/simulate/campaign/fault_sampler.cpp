@@ -45,8 +45,12 @@ class FaultSampler {
   }
   double log_uniform(double low, double high) { return low * std::pow(high / low, rng_.uniform()); }
   double random_time_s() { return rng_.uniform(0, to_seconds(plan_.healed_at)); }
+  double time_near_burst_s() {
+    const double burst_s = pick(burst_times_s_);
+    return burst_s + 0.4 * rng_.normal();
+  }
   Duration time() {
-    const double time_s = rng_.chance(0.35) ? random_time_s() : pick(burst_times_s_) + 0.4 * rng_.normal();
+    const double time_s = rng_.chance(0.35) ? random_time_s() : time_near_burst_s();
     return std::clamp(from_seconds(time_s), Duration{0},
                       std::max(Duration{0}, plan_.healed_at - kMinFaultDuration));
   }
@@ -118,12 +122,14 @@ class FaultSampler {
     for (std::uint64_t left = rng_.below(5); left > 0; --left) {
       const ProcessNames& host = pick(plan_.hosts);
       const double u = rng_.uniform();
+      const LinkQuality quality = sample_quality();
+      const Duration at = time();
       if (u < 0.4)
-        add(time(), LinkChange{processes_, processes_, sample_quality()});
+        add(at, LinkChange{processes_, processes_, quality});
       else if (u < 0.7)
-        add(time(), LinkChange{host, all_except(host), sample_quality()});
+        add(at, LinkChange{host, all_except(host), quality});
       else
-        add(time(), LinkChange{all_except(host), host, sample_quality()});
+        add(at, LinkChange{all_except(host), host, quality});
     }
   }
 
@@ -172,7 +178,8 @@ class FaultSampler {
     disturbance.robot = pick(scenario_.robots).id;
     disturbance.kind = kKinds[rng_.below(std::size(kKinds))];
     const Duration at = time();
-    disturbance.push_mps = rotated(Vec2(log_uniform(0.05, 2), 0), rng_.uniform(-3.14, 3.14));
+    const double push_angle_rad = rng_.uniform(-3.14, 3.14);
+    disturbance.push_mps = rotated(Vec2(log_uniform(0.05, 2), 0), push_angle_rad);
     disturbance.grip = rng_.uniform(0.05, 0.9);
     disturbance.heading_rad = rng_.uniform(-3.14, 3.14);
     disturbance.duration = until_healed(at, log_uniform(0.05, 3));

@@ -34,8 +34,10 @@ class PositionSampler {
   Vec2 sample(double share = 1) {
     for (int i = 0;; ++i) {
       const double part = i < kMaxAttempts ? share / 2 : 0.5;
-      const Vec2 p(rng_.uniform(-part, part) * scenario_.field.length_m,
-                   rng_.uniform(-part, part) * scenario_.field.width_m);
+      // y first: the order of arguments would be unspecified.
+      const double y = rng_.uniform(-part, part) * scenario_.field.width_m;
+      const double x = rng_.uniform(-part, part) * scenario_.field.length_m;
+      const Vec2 p(x, y);
       if (is_free(p)) return p;
     }
   }
@@ -49,7 +51,8 @@ class PositionSampler {
   Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others) {
     for (int i = 0; i < kMaxAttempts; ++i) {
       const double spread = 0.005 * i;
-      const Vec2 p = desired + Vec2(rng_.uniform(-spread, spread), rng_.uniform(-spread, spread));
+      const double y = rng_.uniform(-spread, spread), x = rng_.uniform(-spread, spread);
+      const Vec2 p = desired + Vec2(x, y);
       if (is_free(p) && is_apart(p, others)) return p;
     }
     return sample_apart(others);

@@ -21,6 +21,11 @@ Version off_reference(RobotId robot, VersionNumber number, double at, Vec2 posit
   return {robot, 1, number, 0, stop, inflation_m};
 }
 
+Vec2 random_in_disc(Rng& rng, double max_norm) {
+  const Vec2 direction = rotated({1, 0}, rng.uniform(0, 6.28));
+  return rng.uniform(0, max_norm) * direction;
+}
+
 struct Two {
   Ledger ledger{floor_for_tests(), {1, 2}};
   Version a, b;
@@ -218,9 +223,10 @@ TEST_CASE("no grant brings two robots closer than external events have left them
     const std::size_t conflicts = ledger.conflicts().size();
     if (is_pushed) {
       const State state = executing[robot].trajectory.state_at(at_s(now));
-      executing[robot] = off_reference(
-          robot, number, now, state.position_m + rng.uniform(0, 0.1) * rotated({1, 0}, rng.uniform(0, 6.28)),
-          rng.uniform(0, 1.5) * rotated({1, 0}, rng.uniform(0, 6.28)), rng.uniform(0, 0.02));
+      const double inflation_m = rng.uniform(0, 0.02);
+      const Vec2 velocity = random_in_disc(rng, 1.5), displacement = random_in_disc(rng, 0.1);
+      executing[robot] =
+          off_reference(robot, number, now, state.position_m + displacement, velocity, inflation_m);
       REQUIRE(ledger.on_executing(executing[robot], at_s(now), true) == FactOutcome::kApplied);
       ++pushes;
     } else {

@@ -17,7 +17,8 @@ Ledger ledger_of(std::size_t robots, double half_side_m, Rng& rng) {
   for (const RobotId robot : roster) {
     // A few robots are absent.
     if (rng.chance(0.05)) continue;
-    const Vec2 position(rng.uniform(-half_side_m, half_side_m), rng.uniform(-half_side_m, half_side_m));
+    const double y = rng.uniform(-half_side_m, half_side_m), x = rng.uniform(-half_side_m, half_side_m);
+    const Vec2 position(x, y);
     std::vector<Version> versions;
     for (std::uint64_t i = 0; i <= rng.below(3); ++i)
       versions.push_back({robot, 1, i + 1, 0, Trajectory::resting({}, position + i * Vec2(0.01, 0)), 0});

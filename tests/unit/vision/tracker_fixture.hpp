@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 #include "vision/tracking/tracker.hpp"
 
 namespace sidestep::test {
@@ -45,7 +46,8 @@ class TrueMotion {
     double turn_radps = 0, until = 0;
     for (double t = 0; t <= duration_s; t += 0.001) {
       if (t >= until) {
-        const Vec2 target = rotated({rng.uniform(0, 2), 0}, rng.uniform(0, 6.28));
+        const double angle_rad = rng.uniform(0, 6.28);
+        const Vec2 target = rotated({rng.uniform(0, 2), 0}, angle_rad);
         acceleration = (target - pose.velocity_mps).normalized() * rng.uniform(0, 5);
         turn_radps = std::clamp(turn_radps + rng.uniform(-1, 1), -3.0, 3.0);
         until = t + rng.uniform(0.05, 0.4);
@@ -104,9 +106,8 @@ inline void add_ball(msg::DetectionFrame& frame, const Vec2& position_m) {
 
 inline void add_noisy_robot(msg::DetectionFrame& frame, RobotId id, const Pose& pose,
                             const CameraNoise& noise, Rng& rng) {
-  add_robot(frame, id,
-            pose.position_m + Vec2(noise.position_m * rng.normal(), noise.position_m * rng.normal()),
-            pose.heading_rad + noise.heading_rad * rng.normal());
+  const double heading_rad = pose.heading_rad + noise.heading_rad * rng.normal();
+  add_robot(frame, id, pose.position_m + noise.position_m * normal_vector(rng), heading_rad);
 }
 
 /// A tracker for robots 0 .. count - 1 that receives messages.

@@ -8,6 +8,13 @@
 namespace sidestep {
 namespace {
 
+/// In the unit square.
+Vec2 sample_position(Rng& rng) {
+  // y first: the order of arguments would be unspecified.
+  const double y = rng.uniform(), x = rng.uniform();
+  return {x, y};
+}
+
 /// A shape about as large as a circle with this radius.
 Shape sample_shape(Rng& rng, const Vec2& at, double radius_m) {
   const double half_m = 0.88 * radius_m;
@@ -35,13 +42,14 @@ CollisionProblem::CollisionProblem(std::size_t obstacles, std::size_t motion_cou
   const double mean_radius_m = spacing_m * std::sqrt(kCovered / 3.14159265 / (13.0 / 12.0));
   radius_m = 0.08 * spacing_m;
   for (std::size_t i = 0; i < obstacles; ++i) {
-    const Vec2 at(rng.uniform(), rng.uniform());
+    const Vec2 at = sample_position(rng);
     const double size_m = mean_radius_m * rng.uniform(0.5, 1.5);
     shapes.push_back(circles_only ? Circle{at, size_m} : sample_shape(rng, at, size_m));
   }
   for (std::size_t i = 0; i < motion_count; ++i) {
-    const Vec2 from(rng.uniform(), rng.uniform());
-    motions.push_back({from, from + rotated({rng.uniform(0, 0.8) * spacing_m, 0}, rng.uniform(0, 6.283))});
+    const Vec2 from = sample_position(rng);
+    const double angle_rad = rng.uniform(0, 6.283), length_m = rng.uniform(0, 0.8) * spacing_m;
+    motions.push_back({from, from + rotated({length_m, 0}, angle_rad)});
   }
 }
 

@@ -63,9 +63,12 @@ TerrainProblem::TerrainProblem(std::size_t squares, std::size_t flight_count, st
   const TerrainTree terrain(points_m, triangles);
   constexpr double kSky_m = 1000;
   while (flights.size() < flight_count) {
-    Vec3 from(rng.uniform(-0.4, 0.4) * kSide_m, rng.uniform(-0.4, 0.4) * kSide_m, kSky_m);
+    // y first: the order of arguments would be unspecified.
+    const double y = rng.uniform(-0.4, 0.4) * kSide_m, x = rng.uniform(-0.4, 0.4) * kSide_m;
+    Vec3 from(x, y, kSky_m);
     from.z() -= terrain.min_height_m(from, from) - rng.uniform(0.1, kMaxStartHeight_m);
-    const Vec2 horizontal = rotated({rng.uniform(0, kMaxLength_m), 0}, rng.uniform(0, 2 * std::numbers::pi));
+    const double angle_rad = rng.uniform(0, 2 * std::numbers::pi);
+    const Vec2 horizontal = rotated({rng.uniform(0, kMaxLength_m), 0}, angle_rad);
     flights.push_back({from, from + Vec3(horizontal.x(), horizontal.y(), rng.uniform(-20, 20))});
   }
 }

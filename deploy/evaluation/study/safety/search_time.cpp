@@ -28,12 +28,13 @@ std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& r
   std::vector<Version> versions;
   for (int i = 0; i < robots; ++i) {
     const Vec2 corner = -0.5 * cell_m * (columns - 1) * Vec2(1, 1);
-    const Vec2 position = corner + cell_m * Vec2(i % columns, i / columns) +
-                          Vec2(rng.uniform(-jitter_m, jitter_m), rng.uniform(-jitter_m, jitter_m));
+    // y first: the order of arguments would be unspecified.
+    const double y = rng.uniform(-jitter_m, jitter_m), x = rng.uniform(-jitter_m, jitter_m);
+    const Vec2 position = corner + cell_m * Vec2(i % columns, i / columns) + Vec2(x, y);
     Trajectory trajectory = Trajectory::resting(kNow, position);
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-      const Vec2 velocity = rng.uniform(0, rules.limits.speed_mps) *
-                            rotated({1, 0}, rng.uniform(-std::numbers::pi, std::numbers::pi));
+      const Vec2 direction = rotated({1, 0}, rng.uniform(-std::numbers::pi, std::numbers::pi));
+      const Vec2 velocity = rng.uniform(0, rules.limits.speed_mps) * direction;
       const Trajectory moving = accelerate_then_stop(kNow, {position, velocity}, Vec2::Zero(), kCycle,
                                                      rules.limits.deceleration_mps2);
       bool is_free = rules.field.contains(moving.rest_position_m(), rules.radius_m);
@@ -60,7 +61,8 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
   for (const Version& version : versions) {
     const Time start = kNow + kCycle;
     const State there = version.trajectory.state_at(start);
-    const Vec2 to_go(rng.uniform(-2, 2), rng.uniform(-2, 2));
+    const double y = rng.uniform(-2, 2), x = rng.uniform(-2, 2);
+    const Vec2 to_go(x, y);
     const AccelerationCommand desired =
         desired_acceleration(to_go, there.velocity_mps, rules.limits, kCycle, kCycle);
     SearchQuery query;

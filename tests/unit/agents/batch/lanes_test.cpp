@@ -14,10 +14,10 @@ const Time kBegin = time_from_ns(1'000'000'000);
 
 /// A version as agents propose it, which starts at about the same time as the others.
 Trajectory typical_trajectory(Rng& rng) {
-  Trajectory trajectory(
-      kBegin + from_seconds(rng.uniform(-0.03, 0.03)),
-      {random_vector(rng, 0.6), rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3.2, 3.2))});
-  trajectory.append(from_seconds(rng.uniform(0.001, 0.1)), random_vector(rng, 3));
+  const Vec2 position = random_vector(rng, 0.6), velocity = random_velocity(rng, 2, 3.2);
+  Trajectory trajectory(kBegin + from_seconds(rng.uniform(-0.03, 0.03)), {position, velocity});
+  const Vec2 acceleration = random_vector(rng, 3);
+  trajectory.append(from_seconds(rng.uniform(0.001, 0.1)), acceleration);
   append_stop(trajectory, 5);
   return trajectory;
 }

@@ -144,7 +144,10 @@ TEST_CASE("danger is positive exactly where two robots come nearer than their mi
   int dangerous = 0;
   for (int round = 0; round < 300; ++round) {
     MotionPredictor predictor(kLimits);
-    for (int i = 0; i < 9; ++i) predictor.add(random_course(rng).state, random_course(rng).intent);
+    for (int i = 0; i < 9; ++i) {
+      const Intent intent = random_course(rng).intent;
+      predictor.add(random_course(rng).state, intent);
+    }
     predictor.predict();
     const float min_separation_m = static_cast<float>(rng.uniform(0.1, 1));
     const batch::Prediction reference = predictor.prediction_of(8);

@@ -64,8 +64,8 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
   Rng rng(seed);
   std::vector<Circle> obstacles;
   for (int i = 0; i < 12; ++i) {
-    const Vec2 centre(rng.uniform(-1.2, 1.2), rng.uniform(-1.2, 1.2));
-    obstacles.push_back({centre, rng.uniform(0.05, 0.25)});
+    const double y = rng.uniform(-1.2, 1.2), x = rng.uniform(-1.2, 1.2);
+    obstacles.push_back({{x, y}, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
   RoutePlanner planner(obstacles, kField, kRadius_m, kMargin_m, 0, goal);

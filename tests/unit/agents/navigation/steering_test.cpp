@@ -149,7 +149,8 @@ TEST_CASE("a stationary obstacle is passed without leaving the field") {
   Rng rng(seed);
   const Field field{4, 1};
   for (int round = 0; round < 50; ++round) {
-    Mover mover({-1.8, rng.uniform(-0.4, 0.4)}, {1.8, rng.uniform(-0.4, 0.4)}, field);
+    const double goal_y = rng.uniform(-0.4, 0.4), start_y = rng.uniform(-0.4, 0.4);
+    Mover mover({-1.8, start_y}, {1.8, goal_y}, field);
     const double y = rng.uniform(-0.4, 0.4);
     const Vec2 obstacle(0, y);
     double nearest = 1e9;

@@ -34,7 +34,7 @@ TEST_CASE("two-dimensional motion control arrives from any velocity") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 300; ++i) {
-    State state{random_vector(rng, 2), rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3.2, 3.2))};
+    State state{random_vector(rng, 2), random_velocity(rng, 2, 3.2)};
     const Duration cycle{16'666'667};
     const double dt = to_seconds(cycle);
     const Vec2 goal = random_vector(rng, 2);

@@ -30,7 +30,8 @@ bool leaves_and_stays_out(const PlanWorld& world, const std::vector<Vec2>& path)
 /// A position that penetrates an obstacle by up to 0.3 m.
 Vec2 blocked_position(const PlanWorld& world, Rng& rng) {
   for (;;) {
-    const Vec2 position(rng.uniform(-4.8, 4.8), rng.uniform(-4.8, 4.8));
+    const double y = rng.uniform(-4.8, 4.8), x = rng.uniform(-4.8, 4.8);
+    const Vec2 position(x, y);
     double min_distance = 1;
     for (const Shape& shape : world.obstacles)
       min_distance = std::min(min_distance, signed_distance(position, shape));

@@ -27,7 +27,7 @@ TEST_CASE(
     int excluded = 0, certainly_clear = 0;
     for (int round = 0; round < 500; ++round) {
       CAPTURE(round);
-      const State at_start{{0, 0}, rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3))};
+      const State at_start{{0, 0}, random_velocity(rng, 2, 3)};
       candidates.sample_accelerations(at_start.velocity_mps, {0, 0}, kHold, rng);
       const auto motion = [&](std::size_t i) {
         return accelerate_then_stop(kStart, at_start, candidates.acceleration(i), kHold,

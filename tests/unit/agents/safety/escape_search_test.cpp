@@ -80,12 +80,16 @@ TEST_CASE("no escape candidate comes nearer to another robot than the base or th
   int found = 0;
   for (int i = 0; i < 400; ++i) {
     const auto random_vector = [&](double max_norm) {
-      return rotated(Vec2(rng.uniform(0, max_norm), 0), rng.uniform(0, 6.28));
+      const double angle_rad = rng.uniform(0, 6.28);
+      return rotated(Vec2(rng.uniform(0, max_norm), 0), angle_rad);
     };
-    const Version base = braking(1, random_vector(0.5), random_vector(1.5), rng.chance(0.3) ? 0.02 : 0);
+    const auto random_braking = [&](RobotId robot, double max_m, double inflation_m) {
+      const Vec2 velocity = random_vector(1.5);
+      return braking(robot, random_vector(max_m), velocity, inflation_m);
+    };
+    const Version base = random_braking(1, 0.5, rng.chance(0.3) ? 0.02 : 0);
     std::vector<Version> others;
-    for (RobotId robot = 2; robot < 6; ++robot)
-      others.push_back(braking(robot, random_vector(0.7), random_vector(1.5)));
+    for (RobotId robot = 2; robot < 6; ++robot) others.push_back(random_braking(robot, 0.7, 0));
     const auto result = search_escape(query_on(base, random_vector(3)), base, index_of(others), rules);
     for (std::size_t k = 0; k < result.count; ++k) {
       ++found;

@@ -53,7 +53,7 @@ TEST_CASE("the passive safety check agrees with dense sampling, in both directio
     const MovingObstacle obstacle = random_obstacle(rng);
     const double true_separation = sampled_separation_m(trajectory, obstacle);
     // Close to the true separation.
-    const double error = (rng.chance(0.5) ? 1 : -1) * std::pow(10, rng.uniform(-8, -1));
+    const double sign = rng.chance(0.5) ? 1 : -1, error = sign * std::pow(10, rng.uniform(-8, -1));
     const double separation = true_separation + error;
     if (separation < 0) continue;
     const bool is_safe = is_passively_safe(trajectory, obstacle, separation);

@@ -59,15 +59,14 @@ struct Scene {
 Scene random_scene(Rng& rng) {
   Scene scene;
   const Duration hold_time = kCycle * static_cast<std::int64_t>(1 + (rng.chance(0.3) ? rng.below(9) : 0));
-  scene.query = {
-      kStart,
-      {{0, 0}, rng.chance(0.1) ? Vec2(0, 0) : Vec2(rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3)))},
-      5 * random_vector(rng, 1),
-      hold_time};
+  scene.query = {kStart,
+                 {{0, 0}, rng.chance(0.1) ? Vec2(0, 0) : random_velocity(rng, 2, 3)},
+                 5 * random_vector(rng, 1),
+                 hold_time};
   const auto count = rng.below(12);
   for (RobotId id = 1; id <= count; ++id) {
-    Version version =
-        moving_robot(id, random_vector(rng, 0.9), rng.chance(0.2) ? Vec2(0, 0) : random_vector(rng, 1.4));
+    const Vec2 velocity = rng.chance(0.2) ? Vec2(0, 0) : random_vector(rng, 1.4);
+    Version version = moving_robot(id, random_vector(rng, 0.9), velocity);
     if (rng.chance(0.3)) version.trajectory = random_trajectory(rng, kStart);
     if (rng.chance(0.1)) version.inflation_m = rng.uniform(0, 0.1);
     scene.others.push_back(version);
@@ -100,12 +99,13 @@ TEST_CASE(
   for (int scene = 0; scene < 3000; ++scene) {
     std::vector<Version> others;
     for (RobotId id = 1; id <= 6; ++id) {
-      others.push_back(moving_robot(id, {rng.uniform(-0.8, 0.8), rng.uniform(-0.8, 0.8)},
-                                    rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3))));
+      const Vec2 others_velocity = random_velocity(rng, 2, 3);
+      others.push_back(moving_robot(id, random_vector(rng, 0.8), others_velocity));
     }
     index.assign(others);
-    const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
-    const Vec2 desired = 5 * Vec2(rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const Vec2 velocity = random_velocity(rng, 2, 3);
+    const double y = rng.uniform(-1, 1), x = rng.uniform(-1, 1);
+    const Vec2 desired = 5 * Vec2(x, y);
     const auto result = search.search({kStart, {{0, 0}, velocity}, desired, kCycle}, index, rng);
     ++(result.count ? found : blocked);
     const Vec2 reachable = limit_acceleration(desired, velocity, rules.limits, kCycle);
@@ -191,7 +191,7 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
                         kStart - from_seconds(rng.uniform(0, 0.05)),
                         1.5});
     }
-    const Vec2 velocity = rng.uniform(0, 2) * rotated({1, 0}, rng.uniform(-3, 3));
+    const Vec2 velocity = random_velocity(rng, 2, 3);
     SearchQuery query{kStart, {{0, 0}, velocity}, 3 * rotated({1, 0}, rng.uniform(-3, 3)), kCycle};
     Rng again = rng;
     const std::size_t without = search.search(query, empty_index, again).count;

@@ -16,7 +16,8 @@ TEST_CASE("cameras in a grid see the whole field with the overlaps") {
   REQUIRE(cameras.size() == 4);
   Rng rng(66);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 p(rng.uniform(-6.2, 6.2), rng.uniform(-4.7, 4.7), rng.uniform(0, 0.15));
+    const double z = rng.uniform(0, 0.15), y = rng.uniform(-4.7, 4.7), x = rng.uniform(-6.2, 6.2);
+    const Vec3 p(x, y, z);
     int seen = 0;
     for (const CameraModel& camera : cameras) seen += camera.is_in_image(*camera.pixel_of(p));
     CHECK(seen >= 1);

@@ -54,7 +54,8 @@ TEST_CASE("a projected point is recovered from its pixel") {
     const auto recovered = camera.point_at(*pixel, height_m);
     REQUIRE(recovered);
     REQUIRE((*recovered - p).norm() < 1e-11);
-    const Vec2 random_pixel(rng.uniform(0, 780), rng.uniform(0, 580));
+    const double y = rng.uniform(0, 580), x = rng.uniform(0, 780);
+    const Vec2 random_pixel(x, y);
     const auto point = camera.point_at(random_pixel, height_m);
     if (!point) continue;
     const auto again = camera.pixel_of(Vec3(point->x(), point->y(), height_m));

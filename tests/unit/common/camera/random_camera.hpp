@@ -10,11 +10,13 @@ namespace sidestep {
 /// distortion.
 inline OverheadCamera random_overhead_camera(Rng& rng) {
   OverheadCamera camera;
-  const Vec2 centre(rng.uniform(-5, 5), rng.uniform(-4, 4));
-  const Vec2 half(rng.uniform(0.5, 3.5), rng.uniform(0.5, 3));
+  const double y = rng.uniform(-4, 4), x = rng.uniform(-5, 5);
+  const double half_y = rng.uniform(0.5, 3), half_x = rng.uniform(0.5, 3.5);
+  const Vec2 centre(x, y), half(half_x, half_y);
   camera.view_m = {centre - half, centre + half};
   camera.height_m = rng.uniform(2.5, 6);
-  camera.lateral_offset_m = Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  const double offset_y = rng.uniform(-2, 2), offset_x = rng.uniform(-2, 2);
+  camera.lateral_offset_m = Vec2(offset_x, offset_y);
   camera.distortion = rng.chance(0.2) ? 0 : rng.uniform(0, 0.4);
   if (rng.chance(0.3)) camera.width_px = 2448, camera.height_px = 2048;
   return camera;

@@ -89,7 +89,8 @@ TEST_CASE("shapes and paths with integer coordinates are answered correctly") {
   const std::uint64_t seed = GENERATE(range(1, 8));
   Rng rng(seed);
   const auto integer_position = [&] {
-    return Vec2(static_cast<double>(rng.below(9)) - 4, static_cast<double>(rng.below(9)) - 4);
+    const auto y = static_cast<double>(rng.below(9)), x = static_cast<double>(rng.below(9));
+    return Vec2(x - 4, y - 4);
   };
   // Some shapes are degenerate to points or lines, or collinear with a path.
   std::vector<Shape> shapes;

@@ -14,7 +14,8 @@ inline Vec2 random_position(Rng& rng, double half_m) {
 }
 
 inline Vec2 random_displacement(Rng& rng, double max_length_m) {
-  return rotated(Vec2(rng.uniform(0, max_length_m), 0), rng.uniform(0, 6.28));
+  const double angle_rad = rng.uniform(0, 6.28);
+  return rotated(Vec2(rng.uniform(0, max_length_m), 0), angle_rad);
 }
 
 /// A polygon with its corners on an ellipse, hence convex.
@@ -36,8 +37,10 @@ inline Shape random_shape(Rng& rng, double half_m, double size_m) {
   switch (rng.below(4)) {
     case 0:
       return Circle{position, rng.uniform(0, size_m)};
-    case 1:
-      return Box{position, position + Vec2(rng.uniform(0, 2 * size_m), rng.uniform(0, 2 * size_m))};
+    case 1: {
+      const double width_m = rng.uniform(0, 2 * size_m), length_m = rng.uniform(0, 2 * size_m);
+      return Box{position, position + Vec2(length_m, width_m)};
+    }
     case 2:
       return random_polygon(rng, position, rng.uniform(0.1, 1) * size_m);
     default:

@@ -70,6 +70,11 @@ TEST_CASE("the distance to terrain is the distance to its nearest point") {
   }
 }
 
+Vec3 random_vector(Rng& rng, double min, double max) {
+  const double z = rng.uniform(min, max), y = rng.uniform(min, max), x = rng.uniform(min, max);
+  return {x, y, z};
+}
+
 TEST_CASE("the tree agrees with a comparison of all triangles") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   CAPTURE(seed);
@@ -78,17 +83,15 @@ TEST_CASE("the tree agrees with a comparison of all triangles") {
   std::vector<TerrainTree::Corners> corners;
   std::vector<Triangle> triangles;
   for (std::uint32_t i = 0; i < 200; ++i) {
-    const Vec3 middle(rng.uniform(-5, 5), rng.uniform(-5, 5), rng.uniform(-5, 5));
-    for (int k = 0; k < 3; ++k) points.push_back(middle + Vec3(rng.uniform(), rng.uniform(), rng.uniform()));
+    const Vec3 middle = random_vector(rng, -5, 5);
+    for (int k = 0; k < 3; ++k) points.push_back(middle + random_vector(rng, 0, 1));
     corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     triangles.push_back({points.end()[-3], points.end()[-2], points.end()[-1]});
   }
   const TerrainTree tree(points, corners);
   for (int i = 0; i < 200; ++i) {
-    const Vec3 from(rng.uniform(-6, 6), rng.uniform(-6, 6), rng.uniform(-6, 6));
-    const Vec3 to = rng.chance(0.1)
-                        ? from
-                        : Vec3(from + Vec3(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(-3, 3)));
+    const Vec3 from = random_vector(rng, -6, 6);
+    const Vec3 to = rng.chance(0.1) ? from : Vec3(from + random_vector(rng, -3, 3));
     double nearest2 = kInfinite;
     for (const Triangle& triangle : triangles)
       nearest2 = std::min(nearest2, squared_distance(from, to, triangle));
@@ -127,7 +130,8 @@ TEST_CASE("a ball touches terrain if it comes within its radius or starts below"
   const TerrainTree tree(field);
   for (int i = 0; i < 60; ++i) {
     const Vec3 from = random_position_above(rng, field);
-    const Vec3 to = from + Vec3(rng.uniform(-4, 4), rng.uniform(-4, 4), rng.uniform(-1, 1));
+    const double dz = rng.uniform(-1, 1), dy = rng.uniform(-4, 4), dx = rng.uniform(-4, 4);
+    const Vec3 to = from + Vec3(dx, dy, dz);
     const double distance = tree.distance_m(from, to), radius = rng.uniform(0, 1);
     const bool is_below = tree.min_height_m(from, from) <= 0;
     CHECK(tree.touches(from, to, distance + 1e-9));

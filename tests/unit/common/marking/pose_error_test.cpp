@@ -7,6 +7,7 @@
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/marking/random_layout.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 
 namespace sidestep::pose_error_test {
 
@@ -42,11 +43,11 @@ SampledError sampled_error(const MarkerLayout& layout, double sd_m, Rng& rng) {
   SampledError sum;
   for (int i = 0; i < kTrials; ++i) {
     const double heading_rad = rng.uniform(-3, 3);
-    const Vec2 position_m(rng.uniform(-5, 5), rng.uniform(-5, 5));
+    const double y = rng.uniform(-5, 5), x = rng.uniform(-5, 5);
+    const Vec2 position_m(x, y);
     std::vector<Vec2> measured;
     for (const Vec2& p : model) {
-      const Vec2 error(rng.normal(), rng.normal());
-      measured.push_back(position_m + rotated(p, heading_rad) + sd_m * error);
+      measured.push_back(position_m + rotated(p, heading_rad) + sd_m * normal_vector(rng));
     }
     const Fit fit = fitted(model, measured);
     const Vec2 error_m = rotated(fit.position_m - position_m, -heading_rad);

@@ -25,7 +25,7 @@ TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect th
   const Duration cycle{16'666'667};
   double furthest_behind = 0, furthest_ahead = 0;
   for (int i = 0; i < 100'000; ++i) {
-    const Vec2 v = rng.uniform(0, kLimits.speed_mps) * rotated({1, 0}, rng.uniform(-3.2, 3.2));
+    const Vec2 v = random_velocity(rng, kLimits.speed_mps, 3.2);
     const Vec2 a = sample_acceleration(v, kLimits, rng);
     REQUIRE(is_admissible(a, v, kLimits));
     furthest_ahead = std::max(furthest_ahead, a.dot(v.normalized()));

@@ -45,8 +45,9 @@ TEST_CASE("the measured interval contains the true offset for any delays, losses
   const std::uint64_t seed = GENERATE(range(1u, 41u));
   CAPTURE(seed);
   Rng rng(seed);
+  const double fraction = rng.uniform(-1, 1);
   TwoClocks clocks{Rng(seed + 100),
-                   from_seconds(rng.uniform(-1, 1) * std::pow(10, rng.uniform(-5, 4))),
+                   from_seconds(fraction * std::pow(10, rng.uniform(-5, 4))),
                    rng.uniform(-0.99, 0.99) * ClockOffset::kDrift_ppm,
                    rng.uniform(0, 0.002),
                    std::pow(10, rng.uniform(-5, -1)),

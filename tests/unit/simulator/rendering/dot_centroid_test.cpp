@@ -115,7 +115,8 @@ TEST_CASE("a rendered ball lies where its viewing rays hit it") {
   Image empty = renderer.render(Scene{});
   ErrorStatistics errors;
   for (int i = 0; i < 200; ++i) {
-    const SceneBall ball{Vec3(rng.uniform(-2.8, 2.8), rng.uniform(-2, 2), rng.uniform(0.0215, 0.5))};
+    const double z_m = rng.uniform(0.0215, 0.5), y_m = rng.uniform(-2, 2), x_m = rng.uniform(-2.8, 2.8);
+    const SceneBall ball{Vec3(x_m, y_m, z_m)};
     // Lines below the ball would distort the weights, so balls near lines are excluded.
     const bool is_on_line = std::abs(ball.position_m.x()) < 0.4 || std::abs(ball.position_m.y()) < 0.4 ||
                             std::abs(ball.position_m.head<2>().norm() - 0.5) < 0.3;

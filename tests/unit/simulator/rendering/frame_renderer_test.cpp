@@ -31,7 +31,8 @@ RandomScene random_scene(Rng& rng) {
   for (int i = 0; i < 3; ++i)
     objects.cylinders.push_back(
         {{random_robot(view_m, rng).position_m, rng.uniform(0.05, 0.3)}, rng.uniform(0.05, 0.4)});
-  objects.ball.position_m = Vec3(rng.uniform(-2, 2), rng.uniform(-2, 2), 0.0215);
+  const double y = rng.uniform(-2, 2), x = rng.uniform(-2, 2);
+  objects.ball.position_m = Vec3(x, y, 0.0215);
   return objects;
 }
 

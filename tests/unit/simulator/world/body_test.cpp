@@ -32,7 +32,10 @@ TEST_CASE("a body follows the command with a first-order lag") {
   Vec2 acceleration(0, 0);
   Vec2 desired(0, 0);
   for (int step = 0; step < 300; ++step) {
-    if (step % 20 == 0) desired = rotated(Vec2(rng.uniform(0, 5), 0), rng.uniform(-3, 3));
+    if (step % 20 == 0) {
+      const double angle_rad = rng.uniform(-3, 3);
+      desired = rotated(Vec2(rng.uniform(0, 5), 0), angle_rad);
+    }
     body.step({desired, 0});
     reference = integrated(reference, acceleration, desired, settings.lag_s);
   }
@@ -46,7 +49,8 @@ TEST_CASE("a body accelerates no harder and goes no faster than its limits") {
   Body body({0, 0}, 0, settings);
   for (int step = 0; step < 5000; ++step) {
     const double wildness = step % 3 == 0 ? 1e6 : 20;
-    body.step({Vec2(rng.uniform(-0.2, 1) * wildness, rng.normal()), rng.uniform(-0.2, 1) * wildness});
+    const double y = rng.normal(), x = rng.uniform(-0.2, 1) * wildness;
+    body.step({Vec2(x, y), rng.uniform(-0.2, 1) * wildness});
     REQUIRE(body.acceleration_mps2().norm() <= settings.acceleration_mps2 * (1 + 1e-9));
     REQUIRE(body.velocity_mps().norm() <= settings.speed_mps * (1 + 1e-9));
     REQUIRE(std::abs(body.angular_radps()) <= settings.angular_speed_radps);

@@ -56,7 +56,8 @@ TEST_CASE("contacts, penetration and clearance match a check of every pair in ev
     return true;
   };
   while (bodies.size() < 25) {
-    const Vec2 p(rng.uniform(-side / 2, side / 2), rng.uniform(-side / 2, side / 2));
+    const double y = rng.uniform(-side / 2, side / 2), x = rng.uniform(-side / 2, side / 2);
+    const Vec2 p(x, y);
     if (is_free(p)) bodies.emplace_back(p, 0.0, BodySettings{});
   }
   BruteForce slow{{{{side, side}, 0.2}, {{-side / 2 - 0.5, 0}, 0.3}}, {}, {}};

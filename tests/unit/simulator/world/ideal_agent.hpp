@@ -71,8 +71,10 @@ class IdealAgent {
     }
     if (!drives) return std::nullopt;
     const State state = executing.trajectory.state_at(start);
-    if (rng_.chance(0.1))
-      desired_acceleration_ = rotated(Vec2(rng_.uniform(0, 4), 0), rng_.uniform(-3.14159, 3.14159));
+    if (rng_.chance(0.1)) {
+      const double angle_rad = rng_.uniform(-3.14159, 3.14159);
+      desired_acceleration_ = rotated(Vec2(rng_.uniform(0, 4), 0), angle_rad);
+    }
     if ((state.position_m - home_m_).norm() > 3)
       desired_acceleration_ = (home_m_ - state.position_m).normalized() * 3;
     Trajectory trajectory(start, state);

@@ -8,6 +8,7 @@
 #include "common/random/rng.hpp"
 #include "simulator/world/world.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -16,6 +17,11 @@ namespace sidestep::opponents_test {
 using std::chrono::milliseconds;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+Vec2 random_position(Rng& rng) {
+  const double y = rng.uniform(-2, 2), x = rng.uniform(-2, 2);
+  return {x, y};
+}
 
 // The position after a distance on a closed or reversed route, by folding the distance.
 Vec2 along(const std::vector<Vec2>& path_m, bool is_loop, double distance_m) {
@@ -38,8 +44,7 @@ TEST_CASE("an opponent follows its route at its speed, back and forth or round")
   CAPTURE(seed, is_loop);
   Rng rng(seed);
   OpponentSpec spec{0.1, rng.uniform(0.2, 3), {}};
-  for (std::uint64_t i = 0; i < 3 + seed % 3; ++i)
-    spec.path_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+  for (std::uint64_t i = 0; i < 3 + seed % 3; ++i) spec.path_m.push_back(random_position(rng));
   if (is_loop) spec.path_m.push_back(spec.path_m.front());
   Opponents opponents(std::vector{spec}, 0.09, 2.5);
   for (int step = 1; step <= 20'000; ++step) {
@@ -126,12 +131,11 @@ TEST_CASE("crashes match a check of every pair in every step") {
   std::vector<OpponentSpec> specs;
   for (int i = 0; i < 4; ++i) {
     OpponentSpec spec{rng.uniform(0.05, 0.4), rng.uniform(0.5, 3), {}};
-    for (int k = 0; k < 3; ++k) spec.path_m.emplace_back(rng.uniform(-2, 2), rng.uniform(-2, 2));
+    for (int k = 0; k < 3; ++k) spec.path_m.push_back(random_position(rng));
     specs.push_back(spec);
   }
   std::vector<Body> robots;
-  for (int i = 0; i < 20; ++i)
-    robots.emplace_back(Vec2(rng.uniform(-2, 2), rng.uniform(-2, 2)), 0, BodySettings{});
+  for (int i = 0; i < 20; ++i) robots.emplace_back(random_position(rng), 0, BodySettings{});
   Opponents opponents(specs, radius_m, BodySettings{}.speed_mps);
   std::vector<bool> touching(specs.size() * robots.size());
   std::vector<Vec2> last(specs.size());
@@ -139,7 +143,7 @@ TEST_CASE("crashes match a check of every pair in every step") {
   for (int step = 0; step < 5000; ++step) {
     for (Body& robot : robots) {
       const Vec2 home = -robot.position_m() - 0.5 * robot.velocity_mps();
-      robot.step({home + 3 * Vec2(rng.normal(), rng.normal()), 0});
+      robot.step({home + 3 * normal_vector(rng), 0});
     }
     for (std::size_t i = 0; i < specs.size(); ++i) last[i] = opponents.discs()[i].centre_m;
     opponents.step(robots);

@@ -7,6 +7,7 @@
 
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 
 namespace sidestep::pose_estimator_test {
 
@@ -26,10 +27,10 @@ struct Circling {
     now += kPhysicsStep;
     const Vec2 velocity = (position(now) - before) / kPhysicsStepSeconds;
     const Vec2 acceleration = -1.5 * 1.5 * position(now);
-    estimator.advance(now, {velocity * scale + 0.01 * Vec2(rng.normal(), rng.normal()), 0.1 * rng.normal()},
-                      acceleration, 0);
+    estimator.advance(now, {velocity * scale + 0.01 * normal_vector(rng), 0.1 * rng.normal()}, acceleration,
+                      0);
     if (++steps % 17 == 0) {
-      waiting.push_back({now, position(now) + 0.0015 * Vec2(rng.normal(), rng.normal())});
+      waiting.push_back({now, position(now) + 0.0015 * normal_vector(rng)});
     }
     if (!waiting.empty() && waiting.front().first + milliseconds(35) <= now) {
       REQUIRE(estimator.correct(waiting.front().first, waiting.front().second, 0.005 * rng.normal()));

@@ -79,8 +79,8 @@ class RandomDrive {
     // The desired acceleration changes rarely, so that the robot reaches its maximum speed, and points home
     // if it is far away.
     if (rng_.chance(0.3)) {
-      desired_acceleration_ =
-          rotated(Vec2(rng_.chance(0.8) ? 20 : rng_.uniform(0, 5), 0), rng_.uniform(-3.14159, 3.14159));
+      const double angle_rad = rng_.uniform(-3.14159, 3.14159);
+      desired_acceleration_ = rotated(Vec2(rng_.chance(0.8) ? 20 : rng_.uniform(0, 5), 0), angle_rad);
       heading_rad_ = rng_.uniform(-3.14159, 3.14159);
     }
     if ((state.position_m - home_m_).norm() > 3)

@@ -243,8 +243,8 @@ TEST_CASE("hostile commands over the bus do not stop the simulator") {
   Scene scene(separated_robots(1));
   Rng rng(1);
   for (int i = 0; i < 2000; ++i) {
-    msg::Command command =
-        encode(test::bare_command(static_cast<RobotId>(rng.below(3)), rng.bits() >> rng.below(64)));
+    const Incarnation incarnation = rng.bits() >> rng.below(64);
+    msg::Command command = encode(test::bare_command(static_cast<RobotId>(rng.below(3)), incarnation));
     command.has_version(rng.chance(0.8));
     command.version().phase_count(static_cast<std::uint8_t>(rng.bits()));
     command.version().start_ns(static_cast<std::int64_t>(rng.bits()));

@@ -10,6 +10,7 @@
 #include "common/process/process.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
 
 namespace sidestep::calibrate_geometry_test {
@@ -23,8 +24,8 @@ std::string points_text(std::uint32_t id, const CameraModel& camera, const Box& 
   for (int i = 0; i < count; ++i) {
     const Vec2 position_m = random_point_in(view_m, rng);
     const double height_m = 0.25 * (i % 3);
-    const Vec2 noise(rng.normal(), rng.normal());
-    const Vec2 pixel = *camera.pixel_of({position_m.x(), position_m.y(), height_m}) + noise_px * noise;
+    const Vec2 noise = noise_px * normal_vector(rng);
+    const Vec2 pixel = *camera.pixel_of({position_m.x(), position_m.y(), height_m}) + noise;
     text += fmt::format("      - {{pixel: [{}, {}], field_m: [{}, {}, {}]}}\n", pixel.x(), pixel.y(),
                         position_m.x(), position_m.y(), height_m);
   }
@@ -59,8 +60,8 @@ TEST_CASE("known cameras are recovered from a file of points") {
   Rng rng(seed);
   const OverheadCamera overhead = tilted_camera();
   const CameraModel camera = overhead_camera_model(overhead);
-  const std::string text = "cameras:\n" + points_text(0, camera, overhead.view_m, 40, 0, rng) +
-                           points_text(1, camera, overhead.view_m, 40, 0.2, rng);
+  const std::string noisy = points_text(1, camera, overhead.view_m, 40, 0.2, rng);
+  const std::string text = "cameras:\n" + points_text(0, camera, overhead.view_m, 40, 0, rng) + noisy;
   const auto calibrated = calibrate_geometry(parse_points(text, "points.yaml"));
   REQUIRE(calibrated.size() == 2);
   const CameraParameters& exact = calibrated[0].camera.parameters;
@@ -116,8 +117,8 @@ TEST_CASE("the command writes a file of cameras that reads back exactly") {
   Rng rng(34);
   const OverheadCamera overhead = tilted_camera();
   const CameraModel camera = overhead_camera_model(overhead);
-  const std::string text = "cameras:\n" + points_text(0, camera, overhead.view_m, 40, 0.2, rng) +
-                           points_text(7, camera, overhead.view_m, 40, 0.2, rng);
+  const std::string second = points_text(7, camera, overhead.view_m, 40, 0.2, rng);
+  const std::string text = "cameras:\n" + points_text(0, camera, overhead.view_m, 40, 0.2, rng) + second;
   write_file(folder / "points.yaml", text);
   REQUIRE(calibrate({"--geometry", folder / "points.yaml", "--out", folder / "cameras.yaml"}) == 0);
   const auto written = load_cameras(folder / "cameras.yaml");

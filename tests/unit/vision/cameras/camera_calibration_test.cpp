@@ -5,6 +5,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 
 namespace sidestep::camera_calibration_test {
 
@@ -15,8 +16,7 @@ std::vector<CalibrationPoint> noisy_points(const CameraModel& camera, const Box&
   for (int i = 0; i < count; ++i) {
     const Vec2 p = random_point_in(view_m, rng);
     const Vec3 point(p.x(), p.y(), heights_m[static_cast<std::size_t>(i) % heights_m.size()]);
-    const Vec2 noise(rng.normal(), rng.normal());
-    points.push_back({point, *camera.pixel_of(point) + noise_px * noise});
+    points.push_back({point, *camera.pixel_of(point) + noise_px * normal_vector(rng)});
   }
   return points;
 }

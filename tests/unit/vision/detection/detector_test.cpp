@@ -28,7 +28,8 @@ Score score_of_frames(RenderedField& floor, std::size_t robots_per_team, int fra
     if (i % 10 == 0) robots = floor.scattered_robots(robots_per_team);
     const auto expected = expected_of(robots);
     for (PlacedRobot& robot : robots) {
-      robot.pose.position_m += 0.02 * Vec2(floor.rng.uniform(-1, 1), floor.rng.uniform(-1, 1));
+      const double y = floor.rng.uniform(-1, 1), x = floor.rng.uniform(-1, 1);
+      robot.pose.position_m += 0.02 * Vec2(x, y);
       robot.pose.heading_rad += floor.rng.uniform(-0.1, 0.1);
     }
     const Image image = floor.frame(robots, floor.free_position(robots), hidden);

@@ -53,8 +53,9 @@ struct ObstacleFixture {
   Vec2 position_for(double radius_m, const std::vector<PlacedRobot>& robots) {
     const Vec2 limit(2.95 - radius_m, 2.15 - radius_m);
     while (true) {
-      const Vec2 position_m(floor.rng.uniform(-limit.x(), limit.x()),
-                            floor.rng.uniform(-limit.y(), limit.y()));
+      const double y = floor.rng.uniform(-limit.y(), limit.y());
+      const double x = floor.rng.uniform(-limit.x(), limit.x());
+      const Vec2 position_m(x, y);
       const auto is_near = [&](const PlacedRobot& robot) {
         return (robot.pose.position_m - position_m).norm() < radius_m + 0.3;
       };
@@ -248,7 +249,11 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
     const double distance_m = known.radius_m + 0.1 + (is_behind ? 0.15 : 0) + rng.uniform(0, 0.2);
     const Vec2 outward =
         known.centre_m == below_camera_m ? Vec2(1, 0) : Vec2((known.centre_m - below_camera_m).normalized());
-    const double bearing_rad = is_behind ? 0 : std::copysign(rng.uniform(0.8, 3.14), rng.uniform(-1, 1));
+    double bearing_rad = 0;
+    if (!is_behind) {
+      const double side = rng.uniform(-1, 1);
+      bearing_rad = std::copysign(rng.uniform(0.8, 3.14), side);
+    }
     const Vec2 direction = rotated(outward, bearing_rad);
     const Circle other{known.centre_m + distance_m * direction, 0.1};
     Detector detector(fixture.floor.camera, ObstacleFixture::settings_of(PixelFormat::kYuv422, {known}));

@@ -27,7 +27,8 @@ class RenderedField {
   /// A random position that no robot occludes.
   Vec2 free_position(const std::vector<PlacedRobot>& robots) {
     while (true) {
-      const Vec2 position_m(rng.uniform(-2.8, 2.8), rng.uniform(-2, 2));
+      const double y = rng.uniform(-2, 2), x = rng.uniform(-2.8, 2.8);
+      const Vec2 position_m(x, y);
       const auto is_near = [&](const PlacedRobot& robot) {
         return (robot.pose.position_m - position_m).norm() < 0.3;
       };

@@ -35,8 +35,8 @@ class Scene {
   std::optional<Duration> frame(Duration additional_delay = Duration{0}) {
     const Time captured = now_, sent = captured + kProcessing;
     now_ += kFrame;
-    const Duration delay =
-        kMinDelay + from_seconds(rng_.uniform(0, 0.003) * rng_.uniform()) + additional_delay;
+    const double max_jitter_s = rng_.uniform(0, 0.003);
+    const Duration delay = kMinDelay + from_seconds(max_jitter_s * rng_.uniform()) + additional_delay;
     const auto captured_at = clock_.add(model_.at(captured), model_.at(sent), sent + delay);
     return captured_at ? std::optional(*captured_at - captured) : std::nullopt;
   }

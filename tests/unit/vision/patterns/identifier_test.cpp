@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "tests/catch.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 #include "tests/unit/vision/patterns/placed_robots.hpp"
 
 namespace sidestep::identifier_test {
@@ -30,8 +31,8 @@ Tally tally(std::span<const IdentifiedRobot> found, const std::vector<PlacedRobo
 /// Displaces robots randomly by up to 3 cm.
 std::vector<PlacedRobot> moved(std::vector<PlacedRobot> robots, Rng& rng) {
   for (PlacedRobot& robot : robots) {
-    robot.pose.position_m +=
-        rotated(Vec2(rng.uniform(0, 0.03), 0), rng.uniform(-std::numbers::pi, std::numbers::pi));
+    const double angle_rad = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    robot.pose.position_m += rotated(Vec2(rng.uniform(0, 0.03), 0), angle_rad);
     robot.pose.heading_rad += rng.uniform(-0.2, 0.2);
   }
   return robots;
@@ -76,7 +77,7 @@ TEST_CASE("robots never observed with all dots are identified by the history of 
   Identifier identifier(roster_of(robots));
   std::vector<bool> is_known(32);
   for (int frame = 0; frame < 40; ++frame) {
-    for (PlacedRobot& robot : robots) robot.pose.position_m += 0.005 * Vec2(rng.normal(), rng.normal());
+    for (PlacedRobot& robot : robots) robot.pose.position_m += 0.005 * normal_vector(rng);
     const auto found = identifier.identify(
         kBegin + frame * kFrame, finder.find(regions_of(butterfly(), robots, {0.001, 0.1, 1}, rng)), {});
     CHECK(tally(found, robots).wrong == 0);

@@ -68,8 +68,8 @@ TEST_CASE("dots that belong to no robot are ignored") {
     Vec2 position_m;
     bool is_free = false;
     while (!is_free) {
-      position_m = robot.pose.position_m + rotated(Vec2(rng.uniform(0.03, 0.11), 0),
-                                                   rng.uniform(-std::numbers::pi, std::numbers::pi));
+      const double angle_rad = rng.uniform(-std::numbers::pi, std::numbers::pi);
+      position_m = robot.pose.position_m + rotated(Vec2(rng.uniform(0.03, 0.11), 0), angle_rad);
       is_free = std::ranges::all_of(
           regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(own),
           [&](const ProjectedRegion& p) { return (p.position_m - position_m).norm() > 0.03; });

@@ -6,6 +6,7 @@
 
 #include "common/marking/butterfly.hpp"
 #include "common/random/rng.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 #include "vision/patterns/identifier.hpp"
 
 namespace sidestep::test {
@@ -30,7 +31,7 @@ inline std::vector<ProjectedRegion> regions_of(const MarkerLayout& layout,
                                                Rng& rng) {
   std::vector<ProjectedRegion> regions;
   const auto add = [&](Colour colour, const Vec2& position_m, double radius_m) {
-    const Vec2 error = noise.sd_m * Vec2(rng.normal(), rng.normal());
+    const Vec2 error = noise.sd_m * normal_vector(rng);
     regions.push_back({colour, position_m + error, disc_m2(radius_m) * (1 + noise.area_sd * rng.normal())});
   };
   for (const PlacedRobot& robot : robots) {

@@ -5,6 +5,7 @@
 
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/common/random/normal_vector.hpp"
 
 namespace sidestep::kalman_test {
 
@@ -23,7 +24,7 @@ Eigen::Matrix2d white_noise(double dt_s) {
 /// (position, velocity) of one axis after a random step of the model.
 Eigen::Vector2d stepped(const Eigen::Vector2d& x, double dt_s, Rng& rng) {
   const Eigen::Matrix2d root = white_noise(dt_s).llt().matrixL();
-  return transition(dt_s) * x + root * Eigen::Vector2d(rng.normal(), rng.normal());
+  return transition(dt_s) * x + root * normal_vector(rng);
 }
 
 TEST_CASE("the filter's errors match its covariance") {

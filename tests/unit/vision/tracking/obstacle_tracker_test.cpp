@@ -69,7 +69,7 @@ TEST_CASE("walkers keep their numbers and are reported at their last observation
     for (const Walker& walker : walkers) {
       in_frame.push_back(!rng.chance(missed));
       if (!in_frame.back()) continue;
-      add_obstacle(frame, walker.at(t) + noise_m * Vec2(rng.normal(), rng.normal()));
+      add_obstacle(frame, walker.at(t) + noise_m * normal_vector(rng));
     }
     fixture.feed(frame);
     if (k < 40) continue;

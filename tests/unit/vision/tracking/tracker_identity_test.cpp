@@ -80,7 +80,8 @@ TEST_CASE("ghosts never move an observed robot, never create one, and are counte
     msg::DetectionFrame frame = frame_message(0, t);
     for (RobotId id = 0; id < 2; ++id) {
       if (!rng.chance(0.3)) continue;
-      const Vec2 offset = rotated({rng.uniform(0.2, 5), 0}, rng.uniform(0, 6.28));
+      const double angle_rad = rng.uniform(0, 6.28);
+      const Vec2 offset = rotated({rng.uniform(0.2, 5), 0}, angle_rad);
       add_robot(frame, id, motion.at(t).position_m + offset, rng.uniform(-3, 3));
       ++ghosts;
     }
@@ -248,7 +249,7 @@ TEST_CASE("a ball is found, tracked, kicked and lost, and a second one does not 
     if (t >= after_s(1) && t - kFrame < after_s(1)) velocity = {0, 6};
     msg::DetectionFrame frame = frame_message(0, t);
     if (t > after_s(0.3)) add_ball(frame, {-3, -2});
-    add_ball(frame, position + Vec2(0.0015 * rng.normal(), 0.0015 * rng.normal()));
+    add_ball(frame, position + 0.0015 * normal_vector(rng));
     fixture.feed(frame);
     const auto ball = fixture.world_at(t).ball();
     const bool is_settled = (t > after_s(0.2) && t < after_s(1)) || t > after_s(1.2);

@@ -123,7 +123,8 @@ TEST_CASE("arbitrary numbers in frames leave the world finite") {
     msg::DetectionFrame frame = frame_message(static_cast<std::uint32_t>(rng.below(3)), now);
     frame.captured_at_ns(to_ns(now) + static_cast<std::int64_t>(number(1e8)) % 1'000'000'000);
     for (std::uint64_t n = rng.below(20); n > 0; --n) {
-      add_robot(frame, static_cast<RobotId>(rng.below(6)), {number(0.1), number(0.1)});
+      const Vec2 position_m{number(0.1), number(0.1)};
+      add_robot(frame, static_cast<RobotId>(rng.below(6)), position_m);
       frame.robots().back().heading_rad(number(3));
       frame.robots().back().confidence(rng.chance(0.1) ? number(1) : 0.5);
     }

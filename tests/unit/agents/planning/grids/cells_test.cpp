@@ -83,7 +83,8 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
   smaller_robot.radius_m -= 1e-7;
   larger_robot.radius_m += 0.01;
   for (int i = 0; i < 3'000; ++i) {
-    const Vec2 position(rng.uniform(-4.89, 4.89), rng.uniform(-4.89, 4.89));
+    const double y = rng.uniform(-4.89, 4.89), x = rng.uniform(-4.89, 4.89);
+    const Vec2 position(x, y);
     CAPTURE(position.transpose());
     const auto contains = [&](const ConvexPolygon& cell) {
       return signed_distance(position, std::span<const Vec2>(cell.corners_m)) < -1e-9;

@@ -72,7 +72,8 @@ TEST_CASE("a roadmap's path is its shortest also after obstacles moved") {
   int compared = 0;
   for (const PlanQuery& query : world.queries) {
     for (std::uint32_t i = 0; i < now.obstacles.size(); ++i) {
-      const Vec2 by(rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2));
+      const double y = rng.uniform(-0.2, 0.2), x = rng.uniform(-0.2, 0.2);
+      const Vec2 by(x, y);
       now.obstacles[i] = moved(now.obstacles[i], by);
       obstacles.move(ObstacleId{i}, by);
     }

@@ -12,8 +12,10 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 Tree random_tree(const BallDomain& domain, const BallDomain::State& root, int nodes, Rng& rng) {
   Tree tree;
   tree.start(domain, root);
-  for (int i = 1; i < nodes; ++i)
-    tree.add(domain, domain.sample(rng), static_cast<Tree::Node>(rng.below(tree.size())));
+  for (int i = 1; i < nodes; ++i) {
+    const auto parent = static_cast<Tree::Node>(rng.below(tree.size()));
+    tree.add(domain, domain.sample(rng), parent);
+  }
   return tree;
 }
 

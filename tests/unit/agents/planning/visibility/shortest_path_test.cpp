@@ -123,7 +123,8 @@ std::vector<Shape> joined_walls(Rng& rng, std::size_t count) {
     if (kind == 5) walls.push_back({other.from_m, other.from_m + displacement});
     if (kind == 0 && (walls.back().to_m - walls.back().from_m).norm() > 3) walls.pop_back();
     if (rng.chance(0.9)) continue;
-    shapes.push_back(Box{on, on + Vec2(rng.uniform(0, 1), rng.uniform(0, 1))});
+    const double width_m = rng.uniform(0, 1), length_m = rng.uniform(0, 1);
+    shapes.push_back(Box{on, on + Vec2(length_m, width_m)});
     shapes.push_back(ConvexPolygon{{on, on + Vec2(-0.4, 0.3), on + Vec2(-0.4, -0.2)}});
   }
   shapes.insert(shapes.end(), walls.begin(), walls.end());

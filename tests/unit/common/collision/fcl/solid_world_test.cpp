@@ -50,13 +50,17 @@ TEST_CASE("a swept body touches if the body at any position along its path does"
   Rng rng(seed);
   SolidWorld world;
   const auto random_position = [&](double half) {
-    Isometry3d pose = at(rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-half, half));
-    pose.rotate(Eigen::AngleAxisd(rng.uniform(0, 3), Vector3d(rng.uniform(), rng.uniform(), 1).normalized()));
+    const double z = rng.uniform(-half, half), y = rng.uniform(-half, half), x = rng.uniform(-half, half);
+    Isometry3d pose = at(x, y, z);
+    const double axis_y = rng.uniform(), axis_x = rng.uniform(), angle_rad = rng.uniform(0, 3);
+    pose.rotate(Eigen::AngleAxisd(angle_rad, Vector3d(axis_x, axis_y, 1).normalized()));
     return pose;
   };
-  for (int i = 0; i < 15; ++i)
-    world.add(std::make_shared<fcl::Boxd>(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6), 0.3),
-              random_position(1.5));
+  for (int i = 0; i < 15; ++i) {
+    const Isometry3d pose = random_position(1.5);
+    const double width = rng.uniform(0.1, 0.6), length = rng.uniform(0.1, 0.6);
+    world.add(std::make_shared<fcl::Boxd>(length, width, 0.3), pose);
+  }
   const Solid body = std::make_shared<fcl::Boxd>(0.3, 0.2, 0.1);
   for (int i = 0; i < 20; ++i) {
     const Isometry3d from = random_position(1.5);

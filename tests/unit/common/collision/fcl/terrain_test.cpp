@@ -27,8 +27,9 @@ TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
   SolidWorld world;
   world.add(mesh(points, faces), Eigen::Isometry3d::Identity());
   for (int i = 0; i < 100; ++i) {
-    const Vec3 from(rng.uniform(-1, 9), rng.uniform(-1, 7), rng.uniform(2, 8));
-    const Vec3 displacement(rng.uniform(-3, 3), rng.uniform(-3, 3), rng.uniform(-2, 2));
+    const double z = rng.uniform(2, 8), y = rng.uniform(-1, 7), x = rng.uniform(-1, 9);
+    const double dz = rng.uniform(-2, 2), dy = rng.uniform(-3, 3), dx = rng.uniform(-3, 3);
+    const Vec3 from(x, y, z), displacement(dx, dy, dz);
     Eigen::Isometry3d pose(Eigen::Translation3d(from + 0.5 * displacement));
     pose.rotate(Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), displacement));
     const double radius = 0.05;

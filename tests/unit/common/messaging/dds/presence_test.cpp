@@ -3,7 +3,9 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
@@ -73,6 +75,9 @@ TEST_CASE("who is told that it was forgotten removes the other side once, and sa
   Clocked a;
   CHECK_FALSE(a.hears({}));
   CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
+  CHECK_FALSE(a.presence.accept(kOther, a.now));  // it may be older than the notice
+  CHECK(a.presence.notices(a.now).empty());
+  a.run_until(a.now + 500ms);
   CHECK_FALSE(a.hears(std::array{forgotten(kSelf, 7)}));  // repeated, because our answer was lost
   CHECK(a.presence.accept(kOther, a.now));
   const auto notices = a.presence.notices(a.now);
@@ -122,9 +127,10 @@ TEST_CASE("an announcement names a bounded number of participants") {
   CHECK(count >= Presence::kMaxNotices / 2);
 }
 
-/// Two participants and a model of what Fast DDS knows: each side counts how often it has learned of the
-/// other one anew. Both are matched if each learned of the other after the other one had last removed it. If
-/// one side removes the other while the other one does not, they stay unmatched: that is the defect.
+/// Two participants and a model of what Fast DDS knows: each side counts how often it has removed the other
+/// one. Both are matched if each learned of the other after the other one had last removed it; if only one
+/// side removes the other, they stay unmatched. Each side also acknowledges what it knows, and that arrives
+/// late. An acknowledgement from before a removal that is taken for a newer one misleads for ever.
 struct Pair {
   struct Side {
     Presence presence;
@@ -132,8 +138,10 @@ struct Pair {
     bool knows = false;       ///< the other side
     int generation = 0;       ///< how often it has removed the other side
     int seen_generation = 0;  ///< the other side's generation when it learned of it
-    bool is_stopped = false;
+    bool is_misled = false;   ///< by an acknowledgement that is too old
+    bool is_stopped = false, was_stopped = false;
     Time next_announcement{};
+    std::multimap<Time, std::function<void()>> late;
     std::deque<std::function<void()>> arrived;  ///< while it is stopped
   };
 
@@ -143,6 +151,7 @@ struct Pair {
   }
 
   void remove(Side& at) {
+    at.is_misled = false;
     if (std::exchange(at.knows, false)) ++at.generation;
   }
 
@@ -159,6 +168,16 @@ struct Pair {
     });
   }
 
+  Time soon() { return now + Duration{static_cast<std::int64_t>(rng.uniform(0, 250e6))}; }
+
+  void acknowledge(Side& from, Side& to) {
+    if (!from.knows || is_cut[&from - sides] || rng.chance(loss)) return;
+    to.late.emplace(soon(), [this, &from, &to, generation = from.generation] {
+      if (to.presence.accept(from.id, now) && to.knows && generation != to.seen_generation)
+        to.is_misled = true;
+    });
+  }
+
   void deliver(const Side& from, Side& to, std::function<void()> what) {
     if (is_cut[&from - sides] || rng.chance(loss)) return;
     if (to.is_stopped)
@@ -168,11 +187,21 @@ struct Pair {
   }
 
   void step() {
-    now += 100ms;
+    now += 50ms;
     for (int i = 0; i < 2; ++i) {
       Side& side = sides[i];
-      if (side.is_stopped) continue;
+      if (side.is_stopped) {
+        side.was_stopped = true;
+        continue;
+      }
       for (; !side.arrived.empty(); side.arrived.pop_front()) side.arrived.front()();
+      if (std::exchange(side.was_stopped, false)) {
+        // It reads what waits in its sockets soon, but not in the order of sending.
+        for (auto& [when, what] : std::exchange(side.late, {})) side.late.emplace(soon(), std::move(what));
+      }
+      for (; !side.late.empty() && side.late.begin()->first <= now; side.late.erase(side.late.begin()))
+        side.late.begin()->second();
+      acknowledge(side, sides[1 - i]);
       if (now < side.next_announcement) continue;
       side.next_announcement = now + 1s;
       if (!side.presence.newly_silent(now).empty()) remove(side);
@@ -185,8 +214,8 @@ struct Pair {
   }
 
   bool are_matched() const {
-    return sides[0].knows && sides[1].knows && sides[0].seen_generation == sides[1].generation &&
-           sides[1].seen_generation == sides[0].generation;
+    return !sides[0].is_misled && !sides[1].is_misled && sides[0].knows && sides[1].knows &&
+           sides[0].seen_generation == sides[1].generation && sides[1].seen_generation == sides[0].generation;
   }
 
   Rng rng;
@@ -214,6 +243,9 @@ TEST_CASE("whatever is stopped or cut off for however long, both sides find each
     pair.run(Duration{100'000'000} * static_cast<int>(pair.rng.below(200)));
     for (int side = 0; side < 2; ++side) pair.sides[side].is_stopped = pair.is_cut[side] = false;
     pair.run(pair.loss > 0 ? Duration{30s} : Duration{5s});
+    CAPTURE(pair.sides[0].is_misled, pair.sides[1].is_misled, pair.sides[0].knows, pair.sides[1].knows);
+    CAPTURE(pair.sides[0].generation, pair.sides[1].seen_generation, pair.sides[1].generation,
+            pair.sides[0].seen_generation, pair.loss);
     REQUIRE(pair.are_matched());
     times_forgotten += pair.sides[0].generation + pair.sides[1].generation - before;
   }

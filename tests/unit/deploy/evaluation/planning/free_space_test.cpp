@@ -77,7 +77,8 @@ PlanWorld crowded_world(std::uint64_t seed) {
   world.radius_m = 0.1;
   const auto count = 20 + rng.below(25);
   for (std::uint64_t i = 0; i < count; ++i) {
-    const Vec2 at(rng.uniform(-2.2, 2.2), rng.uniform(-1.7, 1.7));
+    const double y = rng.uniform(-1.7, 1.7), x = rng.uniform(-2.2, 2.2);
+    const Vec2 at(x, y);
     const double size_m = rng.uniform(0.05, 0.35), angle_rad = rng.uniform(0, 6.283);
     const Vec2 half(size_m, 0.5 * size_m), along = rotated({3 * size_m, 0}, angle_rad);
     const Shape shapes[] = {Circle{at, size_m}, Box{at - half, at + half}, Segment{at, at + along},

@@ -38,7 +38,8 @@ TEST_CASE("the closest points of two shapes are as close as dense samples of bot
   for (int i = 0; i < 15; ++i) {
     const RoundedShape a = rounded(world.obstacles[rng.below(world.obstacles.size())]);
     RoundedShape b = rounded(world.obstacles[rng.below(world.obstacles.size())]);
-    const Vec2 shift = a.corners_m[0] - b.corners_m[0] + Vec2(rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const double y = rng.uniform(-1, 1), x = rng.uniform(-1, 1);
+    const Vec2 shift = a.corners_m[0] - b.corners_m[0] + Vec2(x, y);
     for (Vec2& corner : b.corners_m) corner += shift;
     const ClosestPoints closest = closest_points(a.corners_m, b.corners_m);
     const double sampled_m = sampled_distance_m(points_of(a), points_of(b));
@@ -55,7 +56,8 @@ TEST_CASE("a rounded shape has the same distance from a point as the shape outsi
   const PlanWorld world = make_world("mixed", 1, 5);
   for (const Shape& shape : world.obstacles) {
     for (int i = 0; i < 20; ++i) {
-      const Vec2 p(rng.uniform(-5, 5), rng.uniform(-5, 5));
+      const double y = rng.uniform(-5, 5), x = rng.uniform(-5, 5);
+      const Vec2 p(x, y);
       const RoundedShape round = rounded(shape);
       const double distance_m = closest_points(round.corners_m, std::vector{p}).distance_m - round.radius_m;
       const double expected_m = signed_distance(p, shape);

@@ -89,7 +89,8 @@ History degraded(const History& history, std::uint64_t seed, double loss, Durati
   for (const ReceivedMessage& message : history.messages) {
     for (int copy = 0; copy < 2; ++copy) {
       if (copy == 1 && !rng.chance(0.1)) continue;
-      const Time at = message.at + from_seconds(0.02 * rng.uniform() * rng.uniform());
+      const double max_delay_s = 0.02 * rng.uniform();
+      const Time at = message.at + from_seconds(max_delay_s * rng.uniform());
       if (at >= from && !rng.chance(loss)) result.messages.push_back({at, message.message});
     }
   }

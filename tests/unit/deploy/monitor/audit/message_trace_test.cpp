@@ -46,7 +46,8 @@ TEST_CASE("the sending time is bounded although the sender's clock has an unknow
   std::vector<Message> messages;
   for (std::uint64_t i = 1; i <= 2000; ++i) {
     const Time sent = time_from_ns(static_cast<std::int64_t>(1'000'000'000 + i * 16'000'000));
-    messages.push_back({i, sent, sent + from_seconds(0.0002 + 0.1 * rng.uniform() * rng.uniform())});
+    const double max_delay_s = 0.1 * rng.uniform();
+    messages.push_back({i, sent, sent + from_seconds(0.0002 + max_delay_s * rng.uniform())});
   }
   std::ranges::sort(messages, {}, &Message::received);
   std::int64_t widest_ns = 0;

@@ -20,9 +20,13 @@ TEST_CASE("the free part of a motion is free and little more of it is not") {
   const PlanWorld world = make_world("mixed", 1, seed);
   const ObstacleWorld obstacles(world.obstacles);
   Rng rng(seed);
+  const auto random_position = [&] {
+    const double y = rng.uniform(-5, 5), x = rng.uniform(-5, 5);
+    return Vec2(x, y);
+  };
   int blocked = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vec2 from(rng.uniform(-5, 5), rng.uniform(-5, 5)), to(rng.uniform(-5, 5), rng.uniform(-5, 5));
+    const Vec2 from = random_position(), to = random_position();
     if (obstacles.touches(from, world.radius_m)) continue;
     const double fraction = free_fraction(obstacles, from, to, world.radius_m);
     const double beyond = std::min(1.0, fraction + 3e-6 / (to - from).norm());
