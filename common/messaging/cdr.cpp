@@ -23,15 +23,21 @@ std::uint32_t read_uint32(Bytes bytes, ByteOrder order) {
   return value;
 }
 
+/// Size of a message without elements; of every message, if the type has no sequence.
+template <typename Message>
+std::size_t min_size() {
+  static const std::size_t size = fast_dds::cdr_size(Message());
+  return size;
+}
+
 /// Whether the generated code can read the bytes safely. A type's sequence is its last member, so an
 /// empty message ends with the sequence's count. A count beyond the bound would make the generated code
 /// allocate that much memory.
 template <typename Message>
 [[nodiscard]] bool is_acceptable(Bytes bytes, ByteOrder order, std::size_t max_elements) {
-  static const std::size_t min_size = fast_dds::cdr_size(Message());
-  if (bytes.size() < min_size) return false;
+  if (bytes.size() < min_size<Message>()) return false;
   return max_elements == 0 ||
-         read_uint32(bytes.subspan(min_size - kCountSize, kCountSize), order) <= max_elements;
+         read_uint32(bytes.subspan(min_size<Message>() - kCountSize, kCountSize), order) <= max_elements;
 }
 
 }  // namespace
@@ -42,8 +48,14 @@ std::size_t cdr_size(const void* message) {
 }
 
 template <typename Message>
-void write_cdr(const void* message, std::span<std::uint8_t> bytes) {
-  CdrCoder(bytes, ByteOrder::kLittleEndian).write(*static_cast<const Message*>(message));
+std::size_t write_cdr(const void* message, std::span<std::uint8_t> bytes) {
+  try {
+    CdrCoder coder(bytes, ByteOrder::kLittleEndian);
+    coder.write(*static_cast<const Message*>(message));
+    return coder.position();
+  } catch (const std::exception&) {
+    return 0;
+  }
 }
 
 template <typename Message>
@@ -60,18 +72,18 @@ bool read_cdr(Bytes bytes, ByteOrder order, std::size_t max_elements, void* mess
     CdrCoder coder(bytes, order);
     coder.read(*static_cast<Message*>(message));
     // Fast CDR 2 takes the end of the bytes between two members for the end of the message.
-    const bool is_whole = coder.position() == cdr_size<Message>(message);
-    return is_whole && bytes.size() - coder.position() <= kMaxPadding;
+    const std::size_t whole = max_elements == 0 ? min_size<Message>() : cdr_size<Message>(message);
+    return coder.position() == whole && bytes.size() - coder.position() <= kMaxPadding;
   } catch (const std::exception&) {
     return false;
   }
 }
 
 // One instantiation for each message of the topic table.
-#define SIDESTEP_INSTANTIATE_CDR(Message)                                      \
-  template std::size_t cdr_size<msg::Message>(const void*);                    \
-  template void write_cdr<msg::Message>(const void*, std::span<std::uint8_t>); \
-  template CdrKey cdr_key<msg::Message>(const void*);                          \
+#define SIDESTEP_INSTANTIATE_CDR(Message)                                             \
+  template std::size_t cdr_size<msg::Message>(const void*);                           \
+  template std::size_t write_cdr<msg::Message>(const void*, std::span<std::uint8_t>); \
+  template CdrKey cdr_key<msg::Message>(const void*);                                 \
   template bool read_cdr<msg::Message>(Bytes, ByteOrder, std::size_t, void*);
 SIDESTEP_INSTANTIATE_CDR(CameraImage)
 SIDESTEP_INSTANTIATE_CDR(DetectionFrame)

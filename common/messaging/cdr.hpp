@@ -21,9 +21,9 @@ using CdrKey = std::array<std::uint8_t, 16>;
 template <typename Message>
 std::size_t cdr_size(const void* message);
 
-/// Writes the message's CDR bytes, little-endian. Precondition: there are cdr_size() bytes.
+/// Writes the message's CDR bytes, little-endian, and returns their number; 0 if there is not enough space.
 template <typename Message>
-void write_cdr(const void* message, std::span<std::uint8_t> bytes);
+[[nodiscard]] std::size_t write_cdr(const void* message, std::span<std::uint8_t> bytes);
 
 template <typename Message>
 CdrKey cdr_key(const void* message);

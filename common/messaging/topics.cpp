@@ -13,7 +13,7 @@ std::vector<TopicInfo> all_topics() {
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {
   const std::size_t begin = bytes.size();
   bytes.resize(begin + topic.type.cdr_size(message));
-  topic.type.write_cdr(message, std::span(bytes).subspan(begin));
+  bytes.resize(begin + topic.type.write_cdr(message, std::span(bytes).subspan(begin)));
 }
 
 bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,

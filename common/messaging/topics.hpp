@@ -32,7 +32,7 @@ struct MessageType {
   std::shared_ptr<const void> (*copy)(const void* message);
   /// As the templates of these names in cdr.hpp.
   std::size_t (*cdr_size)(const void* message);
-  void (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
+  std::size_t (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
   CdrKey (*cdr_key)(const void* message);
   bool (*read_cdr)(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
                    void* message);

@@ -36,7 +36,7 @@ bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& s
     if (notice.kind == PresenceNotice::Kind::kForgotten) {
       // What is known of the sender is older than its forgetting, unless this notice was processed before.
       const bool is_repeated = peer->agreed == notice.number;
-      must_forget = !peer->is_forgotten && !is_repeated;
+      must_forget = must_forget || (!peer->is_forgotten && !is_repeated);
       peer->is_forgotten = false;
       peer->agreed = notice.number;
       if (!is_repeated) peer->agree_from = now + kCatchUp;
@@ -45,7 +45,10 @@ bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& s
       peer->is_forgotten = false;
     }
   }
-  (peer->is_forgotten ? peer->ask_until : peer->last_heard) = peer->is_forgotten ? now + kRepeatFor : now;
+  if (peer->is_forgotten)
+    peer->ask_until = now + kRepeatFor;
+  else
+    peer->last_heard = now;
   return must_forget;
 }
 

@@ -22,8 +22,9 @@ inline constexpr Duration kSilenceLimit{6'000'000'000};
 /// What one participant announces to another.
 struct PresenceNotice {
   enum class Kind : std::uint32_t {
-    kForgotten = 1,  ///< the sender has forgotten `whom`, for the sender's `number`-th time
-    kAgreed = 2,     ///< the sender has forgotten `whom` too, as asked by this kForgotten of `whom`
+    kForgotten = 1,  ///< the sender has forgotten `whom`; `number` counts whom it has forgotten so far
+    kAgreed =
+        2,  ///< answer to the kForgotten of `whom` with this number: the sender has forgotten `whom` too
   };
   ParticipantId whom{};
   Kind kind = Kind::kForgotten;
@@ -37,11 +38,10 @@ struct PresenceNotice {
 /// Fast DDS can forget a silent participant by itself (its lease), but not safely: versions 2.9 and 3.1 may
 /// abort if the participant leaves during the check, and if only one side forgets the other, as when a
 /// process was stopped for a while, they may never find each other again. Participants therefore announce an
-/// infinite lease to Fast DDS, and this class does the forgetting: whoever was forgotten is told so when it
-/// is heard again, and forgets the other side in turn. It refuses the other side's datagrams for a moment,
-/// because older ones may still wait in its sockets; if Fast DDS took an old acknowledgement for a new one,
-/// it would never send again what that acknowledges. Then it agrees, and its own datagrams are accepted
-/// again.
+/// infinite lease to Fast DDS, and this class decides instead. A forgotten participant that is heard again is
+/// told so, and forgets the other side too. For a moment it refuses the other side's datagrams, because older
+/// ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one, it would never
+/// send again what that acknowledges. Then it agrees, and its own datagrams are accepted again.
 ///
 /// Only participants that announce presence are tracked, so those of other software are left to Fast DDS.
 class Presence {
@@ -58,7 +58,8 @@ class Presence {
   [[nodiscard]] bool on_announcement(const ParticipantId& self, const ParticipantId& sender,
                                      std::span<const PresenceNotice> notices, Time now);
   /// The participants that have become silent since the last call and must be removed now. Call it about once
-  /// a second: after a longer break this process assumes that it was stopped itself, and forgets nobody.
+  /// a second. After a break of seconds this process must have been stopped itself, so no participant is
+  /// forgotten.
   [[nodiscard]] std::vector<ParticipantId> newly_silent(Time now);
   /// What to announce now.
   std::vector<PresenceNotice> notices(Time now) const;

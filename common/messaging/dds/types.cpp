@@ -48,14 +48,14 @@ std::uint32_t GuardedType::payload_size(const void* sample) {
 }
 
 bool GuardedType::write(const void* sample, Payload& payload) {
-  const std::uint32_t size = payload_size(sample);
-  if (payload.max_size < size) return false;
+  if (payload.max_size < kEncapsulationSize) return false;
   constexpr std::array<std::uint8_t, kEncapsulationSize> kEncapsulation{0, kLittleEndianCdr, 0, 0};
   std::ranges::copy(kEncapsulation, payload.data);
-  type_.write_cdr(message_in(sample), std::span(payload.data, size).subspan(kEncapsulationSize));
+  const std::span<std::uint8_t> space(payload.data, payload.max_size);
+  const std::size_t written = type_.write_cdr(message_in(sample), space.subspan(kEncapsulationSize));
   payload.encapsulation = CDR_LE;
-  payload.length = size;
-  return true;
+  payload.length = static_cast<std::uint32_t>(kEncapsulationSize + written);
+  return written > 0;
 }
 
 bool GuardedType::read(const Payload& payload, void* sample) {

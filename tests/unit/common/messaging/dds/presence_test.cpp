@@ -84,6 +84,7 @@ TEST_CASE("who is told that it was forgotten removes the other side once, and sa
   REQUIRE(notices.size() == 1);
   CHECK(notices[0] == PresenceNotice{kOther, Kind::kAgreed, 7});
   CHECK(a.hears(std::array{forgotten(kSelf, 8)}));
+  CHECK(a.hears(std::array{forgotten(kSelf, 9), forgotten(kSelf, 9)}));
 }
 
 TEST_CASE("a process that was stopped itself forgets nobody") {

@@ -147,6 +147,22 @@ TEST_CASE("a boolean that is neither true nor false is refused") {
   CHECK(decoder.accepts(bytes));
 }
 
+TEST_CASE("a message that does not fit into its payload is not written") {
+  Rng rng(12);
+  msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);
+  GuardedType type(topics::kWorld.type);
+  GuardedType::Sample sample{&world, true};
+  const std::uint32_t size = type.payload_size(&sample);
+  for (const std::uint32_t space : {1u, 4u, size - 1}) {
+    CAPTURE(space);
+    Payload payload(space);
+    CHECK_FALSE(type.write(&sample, payload));
+  }
+  Payload payload(size + 100);
+  CHECK(type.write(&sample, payload));
+  CHECK(payload.length == size);
+}
+
 TEST_CASE("samples have equal handles if and only if their keys are equal") {
   Decoder decoder(topics::kVerdict);
   const auto handle_of = [&](std::uint32_t robot) {
