@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     app.add_option("--robot", robot, "id of the robot in the scenario").required();
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
-  program.fault_target = [&] { return robot; };
+  program.process = [&] { return robot; };
   program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     if (!find_robot(scenario, robot)) {
       throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
@@ -27,9 +27,10 @@ int main(int argc, char** argv) {
                                             std::make_shared<PlanningScratch>(scenario));
     // The process keeps running: if it exited, a supervisor would restart it, and the new instance would take
     // the robot from the later agent.
-    node->on_superseded([robot] {
-      fmt::print(stderr, "agent-{}: superseded: a later agent drives this robot; this one stays silent\n",
-                 robot);
+    node->on_superseded([robot](bool is_superseded) {
+      fmt::print(stderr, "agent-{}: {}\n", robot,
+                 is_superseded ? "superseded: a later agent drives this robot; this one stays silent"
+                               : "the robot obeys this agent after all");
     });
     return node;
   };

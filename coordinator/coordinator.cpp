@@ -82,9 +82,9 @@ void Coordinator::on_feedback(const Feedback& feedback) {
   }
   if (!record_of(feedback.robot).registered) return;
   if (feedback.is_absent()) {
-    ledger_.on_lifted(feedback.robot, feedback.valid_at);
-  } else if (ledger_.on_executing(feedback.executing, feedback.valid_at, feedback.is_off_reference) ==
-             FactOutcome::kContradiction) {
+    ledger_.on_lifted(feedback.robot, feedback.valid_at, feedback.robot_incarnation);
+  } else if (ledger_.on_executing(feedback.executing, feedback.valid_at, feedback.is_off_reference,
+                                  feedback.robot_incarnation) == FactOutcome::kContradiction) {
     contradicted_ = true;
   }
 }

@@ -25,13 +25,16 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   ledger_writer_ = bus_.advertise(topics::kLedger);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
-    bus_.subscribe(topics::kFeedback, robot.id,
-                   [this, id = robot.id](const msg::Feedback& message) { take(decode(message, id)); });
+    bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
+      take(decode(message, id, bus_.now()));
+    });
   }
   bus_.subscribe(topics::kCoordinator,
                  [this](const msg::CoordinatorState& message) { take(decode(message, bus_.now())); });
-  bus_.subscribe(topics::kRegistration, [this](const msg::Registration& message) { take(decode(message)); });
-  bus_.subscribe(topics::kProposal, [this](const msg::Proposal& message) { take(decode(message)); });
+  bus_.subscribe(topics::kRegistration,
+                 [this](const msg::Registration& message) { take(decode(message, bus_.now())); });
+  bus_.subscribe(topics::kProposal,
+                 [this](const msg::Proposal& message) { take(decode(message, bus_.now())); });
   update_failover();
   publish_state_periodically();
   publish_ledger();

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"

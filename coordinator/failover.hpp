@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/config/scenario.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 
 namespace sidestep {

@@ -108,11 +108,11 @@ msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base
   return reason_of(check_workspace_with_escape(candidate, base->trajectory, rules_));
 }
 
-FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference) {
+FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference, Incarnation life) {
   Entry& entry = entry_of(executing.robot);
   const auto versions = entry.set.versions();
   const auto is_older = [&](const Version& held) { return held.number < executing.number; };
-  if (at <= entry.lifted_at) return FactOutcome::kStale;
+  if (life == entry.lifted_life && at <= entry.lifted_at) return FactOutcome::kStale;
   if (const Version* held = entry.set.find(executing.number)) {
     if (!is_same(*held, executing)) return FactOutcome::kContradiction;
     entry.set.forget(executing.number, at);
@@ -129,9 +129,10 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
   return FactOutcome::kApplied;
 }
 
-void Ledger::on_lifted(RobotId robot, Time at) {
+void Ledger::on_lifted(RobotId robot, Time at, Incarnation life) {
   Entry& entry = entry_of(robot);
-  entry.lifted_at = std::max(entry.lifted_at, at);
+  entry.lifted_at = life == entry.lifted_life ? std::max(entry.lifted_at, at) : at;
+  entry.lifted_life = life;
   entry.set.forget_started(at);
   update_bounds(index_of(robot));
   end_conflicts(robot);

@@ -53,11 +53,12 @@ class Ledger {
   [[nodiscard]] Ruling grant(const Version& candidate);
 
   /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes a stop of
-  /// its own, which replaces all older versions without checks.
-  [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference);
+  /// its own, which replaces all older versions without checks. `life` is the incarnation of the robot.
+  [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
+                                         Incarnation life = 0);
   /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
   /// before t.
-  void on_lifted(RobotId robot, Time at);
+  void on_lifted(RobotId robot, Time at, Incarnation life = 0);
 
   /// In no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
@@ -69,7 +70,10 @@ class Ledger {
     VersionSet set;
     // Bounding disc of each version's motion, including its inflation.
     std::array<Circle, VersionSet::kCapacity> discs;
-    Time lifted_at{};  // latest time at which it was reported off the floor
+    // Latest time at which it was reported off the floor, and its incarnation then. After a restart its clock
+    // may be behind that time.
+    Time lifted_at{};
+    Incarnation lifted_life = 0;
   };
   std::size_t index_of(RobotId robot) const;
   Entry& entry_of(RobotId robot) { return entries_[index_of(robot)]; }

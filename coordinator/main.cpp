@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   program.participant = [&] {
     return own_number() == 0 ? program.name : "coordinator-" + std::to_string(own_number());
   };
-  program.fault_target = [&] { return static_cast<std::uint32_t>(Sender::kCoordinator) + own_number(); };
+  program.process = [&] { return static_cast<std::uint32_t>(Sender::kCoordinator) + own_number(); };
   program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const CoordinatorIdentity self{own_number(), static_cast<Incarnation>(to_ns(bus.now()))};
     return std::make_shared<CoordinatorNode>(bus, scenario, self, is_standby);

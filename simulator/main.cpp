@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   program.description =
       "Simulates the floor: robot bodies and their firmware, the ball, opponents, and the cameras above.";
   program.add_options = [&options](const sidestep::CliCommand& app) { sidestep::add_options(app, options); };
-  program.fault_target = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
+  program.process = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::Bus& bus,
                              const sidestep::Scenario& scenario) -> std::shared_ptr<void> {
     return std::make_shared<sidestep::Nodes>(bus, scenario, options,

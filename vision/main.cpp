@@ -25,7 +25,7 @@ int run_service(int argc, char** argv) {
         "Commands, each with --help: sidestep-vision view, calibrate SCENARIO FRAME..., calibrate --geometry "
         "POINTS, replay FILE, record FILE.");
   };
-  program.fault_target = [] { return static_cast<std::uint32_t>(Sender::kVision); };
+  program.process = [] { return static_cast<std::uint32_t>(Sender::kVision); };
   program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
     return std::make_shared<VisionService>(bus, scenario, incarnation, options);

@@ -72,6 +72,7 @@ void Agent::on_world(const WorldObservations& world, Time now) {
   }
   fix_ = world.self;
   last_fix_ = fix_->captured_at;
+  last_fix_m_ = fix_->position_m;
 }
 
 Agent::VerdictResult Agent::on_verdict(const Verdict& verdict, Time now) {

@@ -101,7 +101,7 @@ class Agent {
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
   /// Inflation of a version that continues `base`: the base's inflation, or 0 once vision has observed the
-  /// robot at rest.
+  /// robot at rest where the robot itself estimates that it is.
   double inflation_from(const Version& base, Time start) const;
   /// Versions that start farther apart than this cannot conflict.
   double search_horizon_m() const;
@@ -135,6 +135,7 @@ class Agent {
   double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed
   std::optional<PoseFix> fix_;       // observed, not yet forwarded
   Time last_fix_{};
+  Vec2 last_fix_m_{0, 0};
   std::optional<Version> forwarded_;
   std::optional<Vec2> placement_m_;     // where the robot is to be put down
   std::uint64_t invalid_ = 0;           // observations from the future

@@ -63,7 +63,7 @@ void AgentNode::subscribe() {
 }
 
 void AgentNode::on_feedback(const msg::Feedback& message) {
-  const auto feedback = decode(message, robot_);
+  const auto feedback = decode(message, robot_, robot_now());
   if (!accept(feedback)) return;
   measure_robot_clock(*feedback);
   const bool is_contradicted = agent_.on_feedback(*feedback);
@@ -88,7 +88,7 @@ void AgentNode::on_world(const msg::WorldState& message) {
 }
 
 void AgentNode::on_page(const msg::LedgerPage& message) {
-  const auto page = ReceivedPage::decode(message, bus_.attachment(&message));
+  const auto page = ReceivedPage::decode(message, robot_now(), bus_.attachment(&message));
   if (accept(page)) agent_.on_page(*page);
 }
 
@@ -123,10 +123,9 @@ void AgentNode::begin_cycle() {
   next_cycle_ = cycle_after(now);
   schedule_next_cycle();
   agent_.close_cycle(now);
-  if (agent_.is_superseded()) {
-    if (const auto callback = std::exchange(on_superseded_, nullptr)) callback();
-    return;
-  }
+  if (std::exchange(was_superseded_, agent_.is_superseded()) != agent_.is_superseded() && on_superseded_)
+    on_superseded_(agent_.is_superseded());
+  if (agent_.is_superseded()) return;
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;

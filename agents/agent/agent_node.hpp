@@ -20,8 +20,11 @@ class AgentNode {
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 
-  /// Sets a callback that is called once, when the robot obeys a later agent. Afterwards the node is silent.
-  void on_superseded(std::function<void()> callback) { on_superseded_ = std::move(callback); }
+  /// Sets a callback that is called when the robot obeys a later agent (true), and if it turns out that it
+  /// does not (false). In between the node is silent.
+  void on_superseded(std::function<void(bool is_superseded)> callback) {
+    on_superseded_ = std::move(callback);
+  }
 
  private:
   void subscribe();
@@ -62,11 +65,12 @@ class AgentNode {
   ClockMonitor clocks_;
   WorldView world_;
   std::uint64_t invalid_ = 0;  // messages that could not be decoded
-  std::function<void()> on_superseded_;
-  Time next_cycle_;            // by the robot's clock, like all times passed to the agent
-  bool commanded_ = false;     // a command has been published in this cycle
-  int registration_wait_ = 0;  // cycles until the next registration
-  int measurement_wait_ = 0;   // cycles until the next request for a clock measurement
+  std::function<void(bool)> on_superseded_;
+  bool was_superseded_ = false;  // at the start of the last cycle
+  Time next_cycle_;              // by the robot's clock, like all times passed to the agent
+  bool commanded_ = false;       // a command has been published in this cycle
+  int registration_wait_ = 0;    // cycles until the next registration
+  int measurement_wait_ = 0;     // cycles until the next request for a clock measurement
   DurationHistogram negotiation_durations_, plan_durations_, search_durations_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;

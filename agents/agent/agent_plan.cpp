@@ -166,7 +166,9 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
 double Agent::inflation_from(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
   const bool was_observed_at_rest = last_fix_ > base.trajectory.end();
-  return is_at_rest && was_observed_at_rest ? 0 : base.inflation_m;
+  // The robot may not have received the observation yet.
+  const bool agrees = (last_fix_m_ - estimate_.position_m).norm() <= tracking_bound_m_;
+  return is_at_rest && was_observed_at_rest && agrees ? 0 : base.inflation_m;
 }
 
 Vec2 Agent::recovery_direction(const Vec2& position, const Route& route) const {

@@ -22,11 +22,14 @@ void Negotiation::on_feedback(const Feedback& feedback) {
   if (feedback.obeyed_incarnation > incarnation_) {
     // An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that
     // this agent's clock is behind an earlier agent's.
-    if (fenced_) superseded_ = true;
+    if (fenced_) superseded_at_ = std::max(superseded_at_.value_or(feedback.valid_at), feedback.valid_at);
     if (!fenced_) incarnation_ = feedback.obeyed_incarnation + 1 + incarnation_ % kIncarnationSpread;
     return;
   }
   if (feedback.obeyed_incarnation < incarnation_) return;  // does not acknowledge this agent
+  // A robot never obeys an earlier agent again, so a later fact that acknowledges this agent shows that the
+  // one about another agent was false.
+  if (superseded_at_ && feedback.valid_at > *superseded_at_) superseded_at_.reset();
   robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
   if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {
@@ -123,7 +126,7 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
 }
 
 bool Negotiation::may_propose(Time now) const {
-  return fenced_ && !superseded_ && robot_epoch_ == epoch_ && !registration_pending_ && granting_ &&
+  return fenced_ && !is_superseded() && robot_epoch_ == epoch_ && !registration_pending_ && granting_ &&
          now - last_heartbeat_at_ < kCoordinatorTimeout && !held_.is_full();
 }
 
@@ -187,7 +190,7 @@ Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNum
 }
 
 Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time now) {
-  if (superseded_ || verdict.epoch != epoch_) return {};
+  if (is_superseded() || verdict.epoch != epoch_) return {};
   const auto sent = std::ranges::find_if(proposals_, [&](const SentProposal& a) {
     return !a.answered && a.number() == verdict.proposal_number;
   });

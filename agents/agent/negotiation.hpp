@@ -47,11 +47,11 @@ class Negotiation {
   /// The robot is off the floor and executes nothing, although it may still take a rest version.
   bool is_absent() const { return fenced_ && !held_.find(executing_); }
   /// The robot obeys a later agent: this one stays silent.
-  bool is_superseded() const { return superseded_; }
+  bool is_superseded() const { return superseded_at_.has_value(); }
   /// The agent registers only after the robot has acknowledged the epoch. So an agent that the robot does not
   /// obey cannot register for it, and no later agent of the robot can return to an older coordinator.
   bool needs_registration() const {
-    return fenced_ && !superseded_ && epoch_ != 0 && robot_epoch_ == epoch_ &&
+    return fenced_ && !is_superseded() && epoch_ != 0 && robot_epoch_ == epoch_ &&
            (registration_pending_ || missing_);
   }
   /// Whether the coordinator may grant a proposal at this time.
@@ -110,7 +110,8 @@ class Negotiation {
   RobotId robot_;
   Incarnation incarnation_;
   Duration cycle_;
-  bool fenced_ = false, superseded_ = false, contradicted_ = false;
+  bool fenced_ = false, contradicted_ = false;
+  std::optional<Time> superseded_at_;        // latest fact that acknowledges a later agent
   Epoch epoch_ = 0;                          // highest that was received
   Epoch robot_epoch_ = 0;                    // highest that the robot has acknowledged
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost

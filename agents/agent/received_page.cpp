@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "common/messaging/senders.hpp"
+
 namespace sidestep {
 
 ReceivedPage::ReceivedPage(const msg::LedgerPage& message, MessageAttachment* attachment)
@@ -13,9 +15,11 @@ ReceivedPage::ReceivedPage(const msg::LedgerPage& message, MessageAttachment* at
       message_(&message),
       attachment_(attachment) {}
 
-std::optional<ReceivedPage> ReceivedPage::decode(const msg::LedgerPage& message,
+std::optional<ReceivedPage> ReceivedPage::decode(const msg::LedgerPage& message, Time now,
                                                  MessageAttachment* attachment) {
-  if (message.page_index() >= kMaxRobots || message.epoch() > kMaxEpoch) return std::nullopt;
+  const bool is_valid = is_coordinator(message.header().sender()) && message.page_index() < kMaxRobots &&
+                        is_plausible(message.epoch(), now);
+  if (!is_valid) return std::nullopt;
   return ReceivedPage(message, attachment);
 }
 

@@ -14,9 +14,10 @@ namespace sidestep {
 /// demand, because most pages are out of an agent's range. Valid as long as the message.
 class ReceivedPage {
  public:
-  /// Returns nullopt if the untrusted page's index or epoch is out of range. `attachment`, if not null, is
-  /// the slot in which all readers of the message share their decoded view of it.
-  [[nodiscard]] static std::optional<ReceivedPage> decode(const msg::LedgerPage& message,
+  /// Returns nullopt if the untrusted page is not from a coordinator, its index is out of range, or its epoch
+  /// is implausible at `now`. `attachment`, if not null, is the slot in which all readers of the message
+  /// share their decoded view of it.
+  [[nodiscard]] static std::optional<ReceivedPage> decode(const msg::LedgerPage& message, Time now,
                                                           MessageAttachment* attachment = nullptr);
 
   /// Below kMaxRobots.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messaging/senders.hpp"
 #include "common/messaging/version_codec.hpp"
 
 namespace sidestep {
@@ -37,6 +38,10 @@ PoseFix fix_from(const msg::TrackedRobot& message) {
 
 WorldObservations WorldView::decode(const msg::WorldState& message) {
   WorldObservations world;
+  if (message.header().sender() != static_cast<std::uint32_t>(Sender::kVision)) {
+    ++invalid_;
+    return world;
+  }
   world.vision = message.header().incarnation();
   decode_obstacles(message, world);
   if (const msg::TrackedRobot* self = find_self(message)) {

@@ -90,9 +90,6 @@ struct RestartSpec {
   bool vision = false;
 };
 
-/// Coordinators are numbered 0 .. kMaxCoordinators - 1.
-inline constexpr std::uint32_t kMaxCoordinators = 8;
-
 /// One run of the system, as described by a scenario file (deploy/scenarios/README.md). The loader rejects
 /// invalid scenarios.
 struct Scenario {

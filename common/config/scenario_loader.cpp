@@ -10,6 +10,7 @@
 #include "common/config/scenario_robots.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "common/messaging/senders.hpp"
 #include "idl/vision.hpp"
 
 namespace sidestep {

@@ -24,11 +24,12 @@ template <typename Message>
 class Writer {
  public:
   Writer() = default;
-  explicit Writer(std::unique_ptr<RawWriter> raw) : raw_(std::move(raw)) {}
+  Writer(std::unique_ptr<RawWriter> raw, std::uint64_t rules) : raw_(std::move(raw)), rules_(rules) {}
 
-  /// Sets the header's message_number and stamp_ns, and sends the message. The caller sets sender and
+  /// Sets the header's rules, message_number and stamp_ns, and sends the message. The caller sets sender and
   /// incarnation.
   void publish(Message& message, Time now) {
+    message.header().rules(rules_);
     message.header().message_number(++count_);
     message.header().stamp_ns(to_ns(now));
     raw_->write(&message);
@@ -36,6 +37,7 @@ class Writer {
 
  private:
   std::unique_ptr<RawWriter> raw_;
+  std::uint64_t rules_ = 0;
   std::uint64_t count_ = 0;
 };
 
@@ -57,29 +59,56 @@ class Bus {
     return nullptr;
   }
 
+  /// From now on, every new writer announces these rules (Header.rules), and messages of processes with other
+  /// rules, or none, are refused on all topics with TopicInfo::is_checked: callbacks do not get them, but
+  /// `on_refused` gets their topics and headers. Call it before the first advertise().
+  void use_rules(std::uint64_t fingerprint,
+                 std::function<void(const TopicInfo&, const msg::Header&)> on_refused) {
+    rules_ = fingerprint;
+    on_refused_ = std::move(on_refused);
+  }
+
   /// `robot` selects the channel of a topic with one channel per robot (TopicInfo::per_robot); other topics
   /// ignore it.
   template <typename Message>
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {
-    return Writer<Message>(make_writer(topic, channel_name(topic, robot)));
+    return Writer<Message>(make_writer(topic, channel_name(topic, robot)), rules_);
   }
   /// `callback` takes a const Message&.
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
-    make_reader(topic, channel_name(topic, robot),
-                [callback = std::move(callback)](const void* message) mutable {
-                  callback(*static_cast<const Message*>(message));
-                });
+    observe(topic, robot,
+            [this, info = TopicInfo(topic), callback = std::move(callback)](const Message& message) mutable {
+              if (has_same_rules(info, message.header())) callback(message);
+            });
   }
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, Callback callback) {
     subscribe(topic, 0, std::move(callback));
+  }
+  /// As subscribe(), but refuses nothing. For recordings.
+  template <typename Message, typename Callback>
+  void observe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
+    make_reader(topic, channel_name(topic, robot),
+                [callback = std::move(callback)](const void* message) mutable {
+                  callback(*static_cast<const Message*>(message));
+                });
   }
 
  protected:
   virtual std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) = 0;
   virtual void make_reader(const TopicInfo& topic, const std::string& channel,
                            std::function<void(const void*)> callback) = 0;
+
+ private:
+  bool has_same_rules(const TopicInfo& topic, const msg::Header& header) const {
+    if (!on_refused_ || !topic.is_checked || header.rules() == rules_) return true;
+    on_refused_(topic, header);
+    return false;
+  }
+
+  std::uint64_t rules_ = 0;
+  std::function<void(const TopicInfo&, const msg::Header&)> on_refused_;
 };
 
 }  // namespace sidestep

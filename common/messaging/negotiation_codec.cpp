@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/enumerator.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/messaging/version_codec.hpp"
 
 namespace sidestep {
@@ -15,12 +16,18 @@ bool speaks_for_itself(const Message& message) {
   return message.robot() < kMaxRobots && message.header().sender() == message.robot();
 }
 
-std::optional<VersionSet> decode_versions(const msg::Registration& message) {
+template <typename Message>
+bool is_plausible(const Message& message, Time now) {
+  return sidestep::is_plausible(message.header().incarnation(), now) &&
+         sidestep::is_plausible(message.epoch(), now);
+}
+
+std::optional<VersionSet> decode_versions(const msg::Registration& message, Time now) {
   if (message.is_absent() != (message.version_count() == 0)) return std::nullopt;
   if (message.version_count() > VersionSet::kCapacity) return std::nullopt;
   VersionSet versions;
   for (std::size_t i = 0; i < message.version_count(); ++i) {
-    const auto version = decode(message.versions()[i]);
+    const auto version = decode(message.versions()[i], now);
     if (!version || version->robot != message.robot() || versions.find(version->number)) return std::nullopt;
     versions.add(*version);
   }
@@ -29,8 +36,8 @@ std::optional<VersionSet> decode_versions(const msg::Registration& message) {
 
 }  // namespace
 
-std::optional<Proposal> decode(const msg::Proposal& message) {
-  if (!speaks_for_itself(message)) return std::nullopt;
+std::optional<Proposal> decode(const msg::Proposal& message, Time now) {
+  if (!speaks_for_itself(message) || !is_plausible(message, now)) return std::nullopt;
   const msg::Version& first = message.candidates().front();
   Proposal proposal{message.robot(), message.header().incarnation(), message.epoch(),
                     time_from_ns(message.header().stamp_ns()), first.version_number()};
@@ -40,20 +47,22 @@ std::optional<Proposal> decode(const msg::Proposal& message) {
     const msg::Version& candidate = message.candidates()[i];
     if (candidate.robot() == proposal.robot && candidate.base() == first.base() &&
         candidate.start_ns() == first.start_ns())
-      proposal.candidates[i] = decode(candidate);
+      proposal.candidates[i] = decode(candidate, now);
   }
   return proposal;
 }
 
-std::optional<Registration> decode(const msg::Registration& message) {
-  if (!speaks_for_itself(message)) return std::nullopt;
+std::optional<Registration> decode(const msg::Registration& message, Time now) {
+  if (!speaks_for_itself(message) || !is_plausible(message, now)) return std::nullopt;
   return Registration{message.robot(), message.header().incarnation(), message.epoch(),
-                      time_from_ns(message.header().stamp_ns()), decode_versions(message)};
+                      time_from_ns(message.header().stamp_ns()), decode_versions(message, now)};
 }
 
 std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
   const auto is_known = [](msg::Reason reason) { return is_enumerator(reason, msg::Reason::REASON_ABSENT); };
-  if (message.robot() != robot || !std::ranges::all_of(message.reasons(), is_known)) return std::nullopt;
+  const bool is_valid = message.robot() == robot && is_coordinator(message.header().sender()) &&
+                        std::ranges::all_of(message.reasons(), is_known);
+  if (!is_valid) return std::nullopt;
   Verdict verdict;
   verdict.robot = robot;
   verdict.epoch = message.epoch();
@@ -67,9 +76,12 @@ std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
 }
 
 std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now) {
-  if (!is_plausible(message.epoch(), now) ||
-      !is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING))
-    return std::nullopt;
+  const bool is_valid =
+      message.coordinator() < kMaxCoordinators &&
+      message.header().sender() == static_cast<std::uint32_t>(Sender::kCoordinator) + message.coordinator() &&
+      is_plausible(message, now) &&
+      is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING);
+  if (!is_valid) return std::nullopt;
   return CoordinatorHeartbeat{message.header().sender(), message.header().incarnation(), message.epoch(),
                               message.coordinator_mode(), message.missing()};
 }

@@ -7,17 +7,20 @@
 
 namespace sidestep {
 
-/// Decodes an untrusted proposal. Returns nullopt if its sender is not an agent of the proposal's robot. An
+/// Decodes an untrusted proposal. Returns nullopt if its sender is not an agent of the proposal's robot, or
+/// if incarnation or epoch are implausible at `now`, by the local clock, as in all of these functions. An
 /// invalid candidate becomes nullopt, and so does one of another robot, base or start than the first one; the
 /// other candidates remain.
-[[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message);
+[[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message, Time now);
 /// Decodes an untrusted registration. Returns nullopt if its sender is not an agent of the registration's
-/// robot. Registration::versions is nullopt if they are too many, any is invalid, of another robot or listed
-/// twice, or if they contradict is_absent.
-[[nodiscard]] std::optional<Registration> decode(const msg::Registration& message);
-/// Decodes an untrusted verdict. Returns nullopt unless it is for `robot` and all reasons are known.
+/// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if they are too many,
+/// any is invalid, of another robot or listed twice, or if they contradict is_absent.
+[[nodiscard]] std::optional<Registration> decode(const msg::Registration& message, Time now);
+/// Decodes an untrusted verdict. Returns nullopt unless it is from a coordinator and for `robot`, and all
+/// reasons are known.
 [[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
-/// Decodes an untrusted coordinator state. Returns nullopt if its epoch or mode is implausible at `now`.
+/// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator of that
+/// number, or if its epoch or mode is implausible.
 /// Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
 

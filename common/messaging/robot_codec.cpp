@@ -8,12 +8,6 @@
 namespace sidestep {
 namespace {
 
-// Higher values would leave no numbers for later incarnations and versions.
-constexpr Incarnation kMaxIncarnation = Incarnation{1} << 62;
-constexpr VersionNumber kMaxVersionNumber = VersionNumber{1} << 63;
-
-bool is_plausible_time(std::int64_t ns) { return ns >= -to_ns(kMaxTime) && ns <= to_ns(kMaxTime); }
-
 bool is_magnitude(double value) { return std::isfinite(value) && value >= 0; }
 
 std::optional<PoseFix> decode(const msg::PoseFix& message) {
@@ -36,11 +30,12 @@ msg::PoseFix encode(const PoseFix& fix) {
 
 }  // namespace
 
-std::optional<Command> decode(const msg::Command& message, RobotId robot) {
+std::optional<Command> decode(const msg::Command& message, RobotId robot, Time now) {
   const msg::Header& header = message.header();
   const bool is_valid = message.robot() == robot && header.sender() == robot && header.incarnation() > 0 &&
-                        header.incarnation() <= kMaxIncarnation && message.epoch() <= kMaxEpoch &&
-                        is_plausible_time(header.stamp_ns()) && std::isfinite(message.desired_heading_rad());
+                        is_plausible(header.incarnation(), now) && is_plausible(message.epoch(), now) &&
+                        is_plausible(time_from_ns(header.stamp_ns()), now) &&
+                        std::isfinite(message.desired_heading_rad());
   if (!is_valid) return std::nullopt;
   Command command{robot, header.incarnation(), message.epoch(), time_from_ns(header.stamp_ns())};
   command.desired_heading_rad = message.desired_heading_rad();
@@ -49,27 +44,29 @@ std::optional<Command> decode(const msg::Command& message, RobotId robot) {
     if (!command.fix) return std::nullopt;
   }
   if (message.has_version()) {
-    command.version = decode(message.version());
-    const bool is_valid_version =
-        command.version && command.version->robot == robot && command.version->number > 0 &&
-        command.version->number <= kMaxVersionNumber && command.version->incarnation <= command.incarnation;
+    command.version = decode(message.version(), now);
+    const bool is_valid_version = command.version && command.version->robot == robot &&
+                                  command.version->number > 0 &&
+                                  command.version->incarnation <= command.incarnation;
     if (!is_valid_version) return std::nullopt;
   }
   return command;
 }
 
-std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot) {
+std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time now) {
   const State estimate{{message.x_m(), message.y_m()}, {message.vx_mps(), message.vy_mps()}};
   const LocalisationUncertainty uncertainty{message.position_error_rms_m(), message.odometry_scale_stddev()};
   const bool is_valid =
-      message.robot() == robot && message.header().sender() == robot && message.obeyed_epoch() <= kMaxEpoch &&
-      is_plausible_time(message.valid_at_ns()) && is_plausible_time(message.command_stamp_ns()) &&
-      is_plausible_time(message.command_received_at_ns()) && estimate.position_m.allFinite() &&
+      message.robot() == robot && message.header().sender() == robot &&
+      is_plausible(message.header().incarnation(), now) && is_plausible(message.obeyed_incarnation(), now) &&
+      is_plausible(message.obeyed_epoch(), now) && is_plausible(time_from_ns(message.valid_at_ns()), now) &&
+      is_plausible(time_from_ns(message.command_stamp_ns()), now) &&
+      is_plausible(time_from_ns(message.command_received_at_ns()), now) && estimate.position_m.allFinite() &&
       estimate.velocity_mps.allFinite() && std::isfinite(message.heading_rad()) &&
       is_magnitude(message.tracking_error_m()) && is_magnitude(uncertainty.position_error_rms_m) &&
       is_magnitude(uncertainty.odometry_scale_stddev);
   if (!is_valid) return std::nullopt;
-  auto executing = decode(message.executing());
+  auto executing = decode(message.executing(), now);
   if (!executing || executing->robot != robot) return std::nullopt;
   Feedback feedback;
   feedback.robot = robot;

@@ -14,6 +14,14 @@ enum class Sender : std::uint32_t {
   kOperator = 40000,
 };
 
+/// Coordinators are numbered 0 .. kMaxCoordinators - 1.
+inline constexpr std::uint32_t kMaxCoordinators = 8;
+
+constexpr bool is_coordinator(std::uint32_t sender) {
+  const auto first = static_cast<std::uint32_t>(Sender::kCoordinator);
+  return sender >= first && sender < first + kMaxCoordinators;
+}
+
 /// NetworkFault.target that addresses every process.
 inline constexpr std::uint32_t kEveryProcess = 4294967295;
 

@@ -13,6 +13,7 @@
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/robot.hpp"
+#include "idl/rules.hpp"
 #include "idl/vision.hpp"
 
 namespace sidestep {
@@ -43,7 +44,8 @@ struct TopicInfo {
   const char* name;
   const char* writer;  ///< program that writes the topic
   Qos qos;
-  bool per_robot;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
+  bool per_robot;   ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
+  bool is_checked;  ///< processes refuse its messages if they come from a process with other rules
   MessageType type;
 };
 
@@ -83,43 +85,49 @@ void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::ui
 namespace topics {
 
 inline constexpr Topic<msg::CameraImage> kImages{
-    {"images", "simulator", Qos::kImage, false,
+    {"images", "simulator", Qos::kImage, false, true,
      message_type<msg::CameraImage>("sidestep::msg::CameraImage", msg::MAX_IMAGE_BYTES)}};
 inline constexpr Topic<msg::DetectionFrame> kDetections{
-    {"detections", "simulator", Qos::kState, false,
+    {"detections", "simulator", Qos::kState, false, true,
      message_type<msg::DetectionFrame>("sidestep::msg::DetectionFrame", 1024)}};
 inline constexpr Topic<msg::WorldState> kWorld{
-    {"world", "vision", Qos::kState, false,
+    {"world", "vision", Qos::kState, false, true,
      message_type<msg::WorldState>("sidestep::msg::WorldState", 1024)}};
 inline constexpr Topic<msg::Command> kCommand{
-    {"command", "agent", Qos::kState, true, message_type<msg::Command>("sidestep::msg::Command")}};
-inline constexpr Topic<msg::Feedback> kFeedback{
-    {"feedback", "simulator", Qos::kState, true, message_type<msg::Feedback>("sidestep::msg::Feedback")}};
+    {"command", "agent", Qos::kState, true, true, message_type<msg::Command>("sidestep::msg::Command")}};
+inline constexpr Topic<msg::Feedback> kFeedback{{"feedback", "simulator", Qos::kState, true, true,
+                                                 message_type<msg::Feedback>("sidestep::msg::Feedback")}};
 inline constexpr Topic<msg::Registration> kRegistration{
-    {"registration", "agent", Qos::kState, false,
+    {"registration", "agent", Qos::kState, false, true,
      message_type<msg::Registration>("sidestep::msg::Registration")}};
 inline constexpr Topic<msg::Proposal> kProposal{
-    {"proposal", "agent", Qos::kState, false, message_type<msg::Proposal>("sidestep::msg::Proposal")}};
-inline constexpr Topic<msg::Verdict> kVerdict{
-    {"verdict", "coordinator", Qos::kState, true, message_type<msg::Verdict>("sidestep::msg::Verdict")}};
+    {"proposal", "agent", Qos::kState, false, true, message_type<msg::Proposal>("sidestep::msg::Proposal")}};
+inline constexpr Topic<msg::Verdict> kVerdict{{"verdict", "coordinator", Qos::kState, true, true,
+                                               message_type<msg::Verdict>("sidestep::msg::Verdict")}};
 inline constexpr Topic<msg::LedgerPage> kLedger{
-    {"ledger", "coordinator", Qos::kState, false,
+    {"ledger", "coordinator", Qos::kState, false, true,
      message_type<msg::LedgerPage>("sidestep::msg::LedgerPage", 256)}};
 inline constexpr Topic<msg::CoordinatorState> kCoordinator{
-    {"coordinator", "coordinator", Qos::kState, false,
+    {"coordinator", "coordinator", Qos::kState, false, true,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
-    {"status", "agent", Qos::kState, false, message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
+    {"status", "agent", Qos::kState, false, true,
+     message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
 inline constexpr Topic<msg::Disturbance> kDisturbance{
-    {"disturbance", "fault", Qos::kEvent, false,
+    {"disturbance", "fault", Qos::kEvent, false, false,
      message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
-    {"network_fault", "fault", Qos::kEvent, false,
+    {"network_fault", "fault", Qos::kEvent, false, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
 /// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
-    {"truth", "simulator", Qos::kState, false,
+    {"truth", "simulator", Qos::kState, false, true,
      message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024)}};
+
+/// From every process that has received messages of a process with other rules.
+inline constexpr Topic<msg::SharedRules> kRules{
+    {"rules", "any process", Qos::kEvent, false, false,
+     message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};
 
 }  // namespace topics
 

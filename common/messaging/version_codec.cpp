@@ -11,7 +11,6 @@ constexpr double kMaxSpeed_mps = 100;
 constexpr double kMaxInflation_m = 10;
 constexpr double kMaxAcceleration_mps2 = 1000;
 constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);
-constexpr std::int64_t kMaxStart_ns = std::int64_t{1} << 62;
 
 // False for a NaN.
 bool within(double value, double bound) { return std::abs(value) <= bound; }
@@ -45,6 +44,13 @@ msg::Intent encode(const Intent& intent) {
 
 }  // namespace
 
+std::optional<Version> decode(const msg::Version& message, Time now) {
+  const bool is_valid = is_plausible(message.incarnation(), now) &&
+                        is_plausible(message.version_number(), now) && is_plausible(message.base(), now) &&
+                        is_plausible(time_from_ns(message.start_ns()), now);
+  return is_valid ? decode(message) : std::nullopt;
+}
+
 std::optional<Version> decode(const msg::Version& message) {
   const double x = message.x_m(), y = message.y_m(), vx = message.vx_mps(), vy = message.vy_mps();
   const double inflation = message.inflation_m();
@@ -52,9 +58,9 @@ std::optional<Version> decode(const msg::Version& message) {
   const int phases = message.phase_count();
   const RobotId robot = message.robot();
   const bool is_valid = robot < kMaxRobots && phases <= Trajectory::kMaxPhases && start >= 0 &&
-                        start <= kMaxStart_ns && within(x, kMaxCoordinate_m) && within(y, kMaxCoordinate_m) &&
-                        within(vx, kMaxSpeed_mps) && within(vy, kMaxSpeed_mps) && inflation >= 0 &&
-                        inflation <= kMaxInflation_m;
+                        start <= to_ns(kMaxTime) && within(x, kMaxCoordinate_m) &&
+                        within(y, kMaxCoordinate_m) && within(vx, kMaxSpeed_mps) &&
+                        within(vy, kMaxSpeed_mps) && inflation >= 0 && inflation <= kMaxInflation_m;
   if (!is_valid) return std::nullopt;
   std::optional<Version> version(Version{robot, message.incarnation(), message.version_number(),
                                          message.base(), Trajectory(time_from_ns(start), {{x, y}, {vx, vy}}),

@@ -14,6 +14,9 @@ inline constexpr double kMaxCoordinate_m = 1e4;
 /// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
 /// times and durations within bounds, and phase count and robot id in range.
 [[nodiscard]] std::optional<Version> decode(const msg::Version& message);
+/// As above, but also nullopt if its numbers or start are implausible (is_plausible()) at `now`, by the local
+/// clock.
+[[nodiscard]] std::optional<Version> decode(const msg::Version& message, Time now);
 
 msg::Version encode(const Version& version);
 

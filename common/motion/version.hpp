@@ -15,14 +15,17 @@ using VersionNumber = std::uint64_t;
 /// higher number.
 using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
-/// Higher epochs are invalid.
-inline constexpr Epoch kMaxEpoch = Epoch{1} << 62;
-/// Whether a coordinator may have begun this epoch. Epochs are clock readings of coordinators, raised
-/// slightly where one has to exceed another, so an epoch an hour or more ahead of the local clock is
-/// rejected: a single wrong message cannot exhaust the epochs.
-constexpr bool is_plausible(Epoch epoch, Time now) {
-  constexpr Duration kMaxEpochAhead{3'600'000'000'000};
-  return epoch <= kMaxEpoch && static_cast<std::int64_t>(epoch) - to_ns(now) < kMaxEpochAhead.count();
+/// Whether a message may contain this time: not if it is an hour or more ahead of the local clock.
+constexpr bool is_plausible(Time t, Time now) {
+  constexpr Duration kMaxAhead = std::chrono::hours(1);
+  return t >= Time{} && t <= kMaxTime && t - now < kMaxAhead;
+}
+/// Whether a message may contain this incarnation, epoch or version number. All three are clock readings,
+/// raised slightly where one has to exceed another. So a single wrong message cannot exhaust them, and cannot
+/// exclude for ever those who use lower ones.
+constexpr bool is_plausible(std::uint64_t number, Time now) {
+  return number <= static_cast<std::uint64_t>(to_ns(kMaxTime)) &&
+         is_plausible(time_from_ns(static_cast<std::int64_t>(number)), now);
 }
 
 /// Robots are numbered 0 .. kMaxRobots - 1.

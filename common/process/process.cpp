@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/rules_exchange.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/network_faults.hpp"
 #include "common/process/stop_signals.hpp"
@@ -51,8 +52,11 @@ int run_process(int argc, char** argv, const Program& program) {
     dds.participant = program.participant ? program.participant() : program.name;
     DdsBus bus(dds);
     const StopSignals stop_signals([&bus] { bus.stop(); });
+    const RulesExchange rules(bus, program.process(), SharedRules(scenario), [&](const RulesMismatch& m) {
+      fmt::print(stderr, "{}: {}\n", dds.participant, describe(m));
+    });
     const std::shared_ptr<void> nodes = program.start(bus, scenario);
-    if (dds.faults) apply_network_faults(bus, program.fault_target(), dds.participant);
+    if (dds.faults) apply_network_faults(bus, program.process(), dds.participant);
     fmt::print(stderr, "{}: Fast DDS {}, domain {}, listening on {}\n", dds.participant, fast_dds_version(),
                dds.domain, bus.locators());
     fmt::print(stderr, "{}: {}\n", dds.participant, budget_line(budget_of(scenario), scenario.margin_m));

@@ -23,9 +23,8 @@ struct Program {
   std::function<void(const CliCommand&)> add_options;
   /// The name of the DDS participant, e.g. agent-3; called after the options are parsed. Empty: `name`.
   std::function<std::string()> participant;
-  /// The target id for `sidestep fault network` (common/messaging/senders.hpp); called after the options are
-  /// parsed.
-  std::function<std::uint32_t()> fault_target;
+  /// The process id (common/messaging/senders.hpp); called after the options are parsed.
+  std::function<std::uint32_t()> process;
   /// Creates the nodes on the bus; run_process() keeps the result until the bus has stopped. May throw;
   /// std::invalid_argument for an option that does not fit the scenario.
   std::function<std::shared_ptr<void>(DdsBus&, const Scenario&)> start;

@@ -22,9 +22,10 @@ using Time = Clock::time_point;
 constexpr Time time_from_ns(std::int64_t ns) { return Time{Duration{ns}}; }
 constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 
-/// The latest time that is accepted from messages and files, in the year 2043. Differences of two such times,
-/// and of two such differences, fit into 64 bits.
-inline constexpr Time kMaxTime = time_from_ns(std::int64_t{1} << 61);
+/// The latest time that is accepted from messages and files, in the year 2116; the earliest is 0. Differences
+/// of two such times, and of two such differences, fit into 64 bits, even if each is off by a quarter of an
+/// hour.
+inline constexpr Time kMaxTime = time_from_ns((std::int64_t{1} << 62) - (std::int64_t{1} << 41));
 
 /// Rounded to the nearest nanosecond. Precondition: the number of nanoseconds fits into 64 bits.
 constexpr Duration from_seconds(double s) {

@@ -6,9 +6,10 @@
 #include <iterator>
 #include <sstream>
 
+#include "common/messaging/process_names.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/launch/process_command.hpp"
-#include "deploy/monitor/process_names.hpp"
 
 namespace sidestep {
 namespace {
@@ -38,6 +39,11 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       network_(network),
       group_(log_path),
       bus_(options.dds),
+      rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
+             [this](const RulesMismatch& mismatch) {
+               metrics_.on_mismatch(mismatch);
+               print(describe(mismatch));
+             }),
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);

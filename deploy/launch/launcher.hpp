@@ -10,6 +10,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/rules_exchange.hpp"
 #include "deploy/launch/hosts/namespaces.hpp"
 #include "deploy/launch/hosts/placement.hpp"
 #include "deploy/launch/process_group.hpp"
@@ -54,6 +55,7 @@ class Launcher {
   const NamespaceNetwork* network_;
   ProcessGroup group_;
   DdsBus bus_;
+  RulesExchange rules_;
   RunMetrics metrics_;
   Auditor auditor_;
   std::uint64_t printed_violations_ = 0;

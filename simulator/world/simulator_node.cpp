@@ -85,7 +85,7 @@ void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
   if (radio_rng_.chance(command_loss_)) return;
   const Time now = clock();
   advance(now);
-  if (const auto command = decode(message, world_.id(robot)))
+  if (const auto command = decode(message, world_.id(robot), world_.robot_time(robot, now)))
     world_.on_command(robot, *command, now);
   else
     world_.on_malformed_command(robot, now);

@@ -41,6 +41,8 @@ class World {
   void on_command(std::size_t robot, const Command& command, Time now);
   /// A command that could not be decoded reaches a robot. Precondition: as above.
   void on_malformed_command(std::size_t robot, Time now);
+  /// The robot's clock, which never goes back.
+  Time robot_time(std::size_t robot, Time now);
   /// The robot's facts, without robot_incarnation.
   Feedback feedback(std::size_t robot, Time now);
 
@@ -98,7 +100,6 @@ class World {
   void start_disturbance(const ActiveDisturbance& disturbance);
   void cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind);
   void lift(std::size_t robot, Time now);
-  Time robot_time(std::size_t robot, Time now);
   void switch_versions(std::size_t robot, Time now);
   void request_feedback(std::size_t robot);
   Odometry measure(std::size_t robot);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
+#include <fstream>
 
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
@@ -116,4 +117,39 @@ TEST_CASE(
   CHECK(invalid.printed("scenario.yaml:"));
   CHECK(invalid.printed("speeed"));
   CHECK(invalid.children().empty());
+}
+
+TEST_CASE(
+    "a standby with yesterday's scenario is named, never takes over, and no robot drives by its rules") {
+  std::string scenario = shuttles(20, "");
+  LaunchedRun run(scenario);
+  scenario.resize(scenario.rfind("  - {id: 7"));
+  const auto yesterday = std::filesystem::path(run.scenario_file()).replace_filename("yesterday.yaml");
+  std::ofstream(yesterday) << scenario;
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  std::vector<std::string> arguments{"--standby", "--number", "1", "--scenario", yesterday.string()};
+  for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+  const Time begin = run.bus().now();
+  REQUIRE(run.start("coordinator 1", "sidestep-coordinator", arguments) > 0);
+  INFO(run.output());
+  REQUIRE(run.wait_until([&] {
+    return run.printed(
+        "refuses coordinator 1, which works by other rules: robots.blue is 0-6 instead of 0-7");
+  }));
+  WARN("named " << to_seconds(run.bus().now() - begin) << " s after the start of its process");
+  // Both sides name the robots that they know.
+  CHECK(run.wait_until([&] {
+    return run.printed(
+        "coordinator-1: refuses coordinator, which works by other rules: robots.blue is 0-7 instead of 0-6");
+  }));
+  CHECK(run.wait_until([&] {
+    return run.logged("agent-0: refuses coordinator 1, which works by other rules: robots.blue is 0-6");
+  }));
+  REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
+  CHECK(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  require_no_violations(run.report());
+  CHECK(run.report()["failure"].dump().find("coordinator died") != std::string::npos);
+  CHECK(run.report()["mismatches"].contains("coordinator 1"));
 }

@@ -5,6 +5,7 @@
 #include "agents/agent/negotiation.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/motion/clearance.hpp"
 #include "coordinator/coordinator.hpp"
 #include "simulator/world/firmware.hpp"
@@ -48,7 +49,8 @@ struct Driver {
     negotiation.on_feedback(robot.fact(now));
   }
   void receive_heartbeat(const Coordinator& coordinator, Time now) {
-    const msg::CoordinatorState state = coordinator.state();
+    msg::CoordinatorState state = coordinator.state();
+    state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
     const auto heartbeat = decode(state, now);
     REQUIRE(heartbeat);
     negotiation.on_coordinator_state(*heartbeat, now);

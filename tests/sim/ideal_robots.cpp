@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/messaging/robot_codec.hpp"
+#include "common/messaging/senders.hpp"
 
 namespace sidestep {
 namespace {
@@ -26,7 +27,8 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
     robot.is_lifted = spec.is_absent;
     robot.writer = bus.advertise(topics::kFeedback, spec.id);
     bus.subscribe(topics::kCommand, spec.id, [this, &robot](const msg::Command& message) {
-      if (const auto command = decode(message, robot.id)) on_command(robot, *command);
+      if (const auto command = decode(message, robot.id, bus_.now() + robot.clock_offset))
+        on_command(robot, *command);
     });
     report_periodically(robot);
   }
@@ -74,6 +76,7 @@ void IdealRobots::publish_world() {
   const Time now = bus_.now();
   bus_.at(now + cycle_, [this] { publish_world(); });
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world.valid_at_ns(to_ns(now));
   for (const auto& [id, robot] : robots_) {
     if (robot.is_lifted) continue;

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/process_names.hpp"
 #include "deploy/monitor/metrics/report.hpp"
-#include "deploy/monitor/process_names.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 

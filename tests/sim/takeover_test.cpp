@@ -158,6 +158,7 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
   auto writer = attacker.advertise(topics::kCoordinator);
   msg::CoordinatorState state;
   state.coordinator(5);
+  state.header().sender(10005);
   state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   REQUIRE(floor.run_until_speed(0.5));
   const Epoch before = floor.coordinator(0).epoch();

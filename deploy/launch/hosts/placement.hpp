@@ -16,7 +16,7 @@ class Placement {
   /// host names processes that the scenario does not have. The hosts must outlive the placement.
   Placement(const Hosts& hosts, const Scenario& scenario);
 
-  /// `process`: "simulator", "agent 3" etc. (deploy/monitor/process_names.hpp)
+  /// `process`: "simulator", "agent 3" etc. (common/messaging/process_names.hpp)
   const HostSpec& host_of(const std::string& process) const { return *host_by_process_.at(process); }
 
  private:

@@ -124,6 +124,12 @@ std::string to_json(const Report& r) {
                               {"at_s", rounded(death.at_s)},
                               {"restarted", death.restarted}});
   }
+  json["mismatches"] = Json::object();
+  for (const auto& [process, differences] : r.mismatches) {
+    Json& rules = json["mismatches"][process] = Json::object();
+    for (const RuleDifference& rule : differences)
+      rules[rule.key] = {{"run", rule.own}, {"process", rule.others}};
+  }
   json["audit"] = r.audit ? audit_json(*r.audit) : Json(nullptr);
   Json& wall = json["wall_clock"];
   wall["plan_us"] = quantiles(r.plan, false);
@@ -174,6 +180,10 @@ std::string summary(const Report& r) {
                     r.audit->violations, r.audit->received, r.audit->missed, r.audit->compared_pairs);
     for (std::size_t i = 0; i < std::min<std::size_t>(r.audit->first.size(), 5); ++i)
       text += "  " + to_line(r.audit->first[i]) + "\n";
+  }
+  for (const auto& [process, differences] : r.mismatches) {
+    text += fmt::format("{} was refused because it works by other rules: {}\n", process,
+                        differences.empty() ? "it did not say which" : describe(differences));
   }
   for (const Death& death : r.deaths) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/config/shared_rules.hpp"
 #include "common/time/histogram.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
 #include "deploy/monitor/metrics/process_use.hpp"
@@ -64,6 +65,8 @@ struct Report {
   DurationHistogram plan;
   DurationHistogram search;
   std::vector<Death> deaths;
+  /// Processes that work by other rules, and what differs; empty differences: not known.
+  std::map<std::string, std::vector<RuleDifference>> mismatches;
   std::optional<AuditTotals> audit;  ///< none: the run was not audited
   double duration_s = 0;             ///< wall clock
   std::optional<double> startup_s;   ///< until all processes ran and the coordinator granted

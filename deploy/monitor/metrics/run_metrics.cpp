@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/messaging/enumerator.hpp"
+#include "common/messaging/process_names.hpp"
 #include "deploy/monitor/time_range.hpp"
 
 namespace sidestep {
@@ -169,6 +170,11 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
 void RunMetrics::on_death(const std::string& process, const std::string& reason, Time at, bool restarted) {
   const double at_s = granting_since_ ? to_seconds(at - *granting_since_) : 0;
   deaths_.push_back({process, reason, at_s, restarted});
+}
+
+void RunMetrics::on_mismatch(const RulesMismatch& mismatch) {
+  auto& differences = mismatches_[process_name(mismatch.process)];
+  if (!mismatch.differences.empty()) differences = mismatch.differences;
 }
 
 int RunMetrics::arrived() const {

@@ -9,6 +9,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/rules_exchange.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "idl/monitor.hpp"
@@ -42,6 +43,8 @@ class RunMetrics {
   void on_status(const msg::AgentStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
+  /// A process works by other rules, so its messages are refused.
+  void on_mismatch(const RulesMismatch& mismatch);
 
   /// Includes the auditor's findings in reports; the auditor must outlive the last report.
   void set_auditor(const Auditor& auditor) { auditor_ = &auditor; }
@@ -111,6 +114,7 @@ class RunMetrics {
   double max_reference_error_m_ = 0;
   std::uint64_t dropped_messages_ = 0;
   std::vector<Death> deaths_;
+  std::map<std::string, std::vector<RuleDifference>> mismatches_;  ///< by process
 };
 
 /// Subscribes the metrics to a bus; they must outlive the bus's last callback.

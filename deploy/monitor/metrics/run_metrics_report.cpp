@@ -125,6 +125,7 @@ Report RunMetrics::report() const {
   add_clocks(report);
   for (const auto& [life, last] : coordinators_) report.invalid_messages += last.invalid;
   report.deaths = deaths_;
+  report.mismatches = mismatches_;
   report.conflicts = conflicts_;
   if (auditor_) report.audit = auditor_->totals();
   return report;

@@ -138,7 +138,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
       for (const RobotSpec& spec : scenario.robots) robots.push_back(spec.id);
     }
     for (const RobotId robot : robots) {
-      bus.subscribe<Message>(
+      bus.observe<Message>(
           topic, robot, [&bus, &writer, topic, channel = channel_name(topic, robot)](const Message& message) {
             writer.add(bus.now(), topic, channel, &message);
           });
@@ -157,6 +157,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kDisturbance);
   subscribe(topics::kNetworkFault);
   subscribe(topics::kTruth);
+  subscribe(topics::kRules);
 }
 
 PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {

@@ -48,6 +48,7 @@ Json list(const Range& range, Describe describe_one) {
 Json header(const msg::Header& m) {
   return {{"sender", m.sender()},
           {"incarnation", m.incarnation()},
+          {"rules", fmt::format("{:016x}", m.rules())},
           {"message_number", m.message_number()},
           {"stamp_ns", m.stamp_ns()}};
 }
@@ -343,6 +344,12 @@ Json describe(const msg::NetworkFault& m) {
           {"delay_mean_ns", m.delay_mean_ns()},
           {"delay_max_ns", m.delay_max_ns()},
           {"is_cut", m.is_cut()}};
+}
+
+Json describe(const msg::SharedRules& m) {
+  return {{"process", m.process()},
+          {"header", header(m.header())},
+          {"text", std::string(m.text().begin(), m.text().end())}};
 }
 
 }  // namespace sidestep

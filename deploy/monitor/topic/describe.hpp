@@ -7,6 +7,7 @@
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/robot.hpp"
+#include "idl/rules.hpp"
 #include "idl/vision.hpp"
 
 namespace sidestep {
@@ -27,5 +28,6 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Disturbance& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::NetworkFault& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::SharedRules& m);
 
 }  // namespace sidestep

@@ -77,7 +77,8 @@ int echo_topic(const TopicOptions& options) {
       echo.subscribe(topics::kProposal, channel) || echo.subscribe(topics::kVerdict, channel) ||
       echo.subscribe(topics::kLedger, channel) || echo.subscribe(topics::kCoordinator, channel) ||
       echo.subscribe(topics::kStatus, channel) || echo.subscribe(topics::kTruth, channel) ||
-      echo.subscribe(topics::kDisturbance, channel) || echo.subscribe(topics::kNetworkFault, channel);
+      echo.subscribe(topics::kDisturbance, channel) || echo.subscribe(topics::kNetworkFault, channel) ||
+      echo.subscribe(topics::kRules, channel);
   if (!is_known) {
     fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known_topics());
     return kExitFailure;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
+#include "common/messaging/senders.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "simulator/images/image_output.hpp"
 #include "vision/images/image_input.hpp"
@@ -40,10 +41,23 @@ struct VisionProcess {
 
 }  // namespace
 
+/// The id of a process that is not an agent.
+std::uint32_t id_of(const std::string& name, const Scenario& scenario) {
+  if (name == "simulator") return static_cast<std::uint32_t>(Sender::kSimulator);
+  if (name == "vision") return static_cast<std::uint32_t>(Sender::kVision);
+  for (int number = 0; number < scenario.coordinators; ++number) {
+    const auto id = static_cast<std::uint32_t>(Sender::kCoordinator) + static_cast<std::uint32_t>(number);
+    if (name == process_name(id)) return id;
+  }
+  throw std::invalid_argument("the system has no process \"" + name + "\"");
+}
+
 /// Members are destroyed in reverse order: the node before its bus, so the bus never calls a destroyed node.
 struct SimSystem::Process {
-  Process(SimNetwork& network, const SimProcessSpec& spec) : bus(network, spec) {}
+  Process(SimNetwork& network, const SimProcessSpec& spec, std::uint32_t id, const SharedRules& shared)
+      : bus(network, spec), rules(bus, id, shared, [](const RulesMismatch&) {}) {}
   SimBus bus;
+  RulesExchange rules;
   std::shared_ptr<void> node;
 };
 
@@ -60,6 +74,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       metrics_(scenario_),
       auditor_(scenario_, {true, {}}),
       observer_bus_(network_),
+      rules_(observer_bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario_),
+             [this](const RulesMismatch& mismatch) { metrics_.on_mismatch(mismatch); }),
       disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)) {
   observer_bus_.become_observer();
   metrics_.set_auditor(auditor_);
@@ -95,24 +111,27 @@ SimProcessSpec SimSystem::spec_of(const std::string& process) {
 }
 
 void SimSystem::start(const std::string& name) {
-  auto process = std::make_unique<Process>(network_, spec_of(name));
+  const auto agent = robot_of_.find(name);
+  const std::uint32_t id = agent != robot_of_.end() ? agent->second : id_of(name, scenario_);
+  const auto other = scenarios_.find(name);
+  const Scenario& scenario = other != scenarios_.end() ? other->second : scenario_;
+  auto process = std::make_unique<Process>(network_, spec_of(name), id, SharedRules(scenario));
   SimBus& bus = process->bus;
   // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it
   // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
-  if (name == "simulator")
-    process->node = std::make_shared<SimulatorProcess>(bus, scenario_, incarnation, seed_);
-  else if (name == "vision")
-    process->node = std::make_shared<VisionProcess>(bus, scenario_, incarnation);
-  for (int number = 0; number < scenario_.coordinators; ++number) {
-    if (name != coordinator_process(number)) continue;
-    const CoordinatorIdentity self{static_cast<CoordinatorNumber>(number), incarnation};
-    process->node = std::make_shared<CoordinatorNode>(bus, scenario_, self, scenario_.coordinators > 1);
+  if (agent != robot_of_.end()) {
+    const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
+    process->node = std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch);
+  } else if (name == "simulator") {
+    process->node = std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_);
+  } else if (name == "vision") {
+    process->node = std::make_shared<VisionProcess>(bus, scenario, incarnation);
+  } else {
+    const CoordinatorIdentity self{id - static_cast<std::uint32_t>(Sender::kCoordinator), incarnation};
+    process->node = std::make_shared<CoordinatorNode>(bus, scenario, self, scenario.coordinators > 1);
   }
-  if (const auto agent = robot_of_.find(name); agent != robot_of_.end())
-    process->node = std::make_shared<AgentNode>(bus, scenario_, agent->second, incarnation, scratch_);
-  if (!process->node) throw std::invalid_argument("the system has no process \"" + name + "\"");
   processes_[name] = std::move(process);
 }
 

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/messaging/process_names.hpp"
+#include "common/messaging/rules_exchange.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
-#include "deploy/monitor/process_names.hpp"
 
 namespace sidestep {
 
@@ -43,6 +44,8 @@ class SimSystem {
   /// Kills a process as by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3".
   /// Robots, messages in flight and other processes are not affected. Does nothing if it is dead.
   void kill(const std::string& process);
+  /// From its next start on, a process uses another scenario than the system's.
+  void use_scenario(const std::string& process, const Scenario& scenario) { scenarios_[process] = scenario; }
   /// Starts a dead process as a new incarnation without any state of the old one, or twin_process(robot) as a
   /// second agent.
   void restart(const std::string& process);
@@ -75,12 +78,14 @@ class SimSystem {
   std::uint64_t seed_;
   Rng rng_;
   std::map<std::string, Duration> clocks_;
+  std::map<std::string, Scenario> scenarios_;  // of processes that use another one
   Time begin_;
   std::shared_ptr<PlanningScratch> scratch_;  // shared by all agents
   SimNetwork network_;
   RunMetrics metrics_;
   Auditor auditor_;
   SimBus observer_bus_;
+  RulesExchange rules_;
   Writer<msg::Disturbance> disturbance_writer_;
   std::map<std::string, RobotId> robot_of_;  // by agent process
   std::map<std::string, ProcessId> ids_;

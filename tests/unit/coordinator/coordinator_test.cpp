@@ -11,6 +11,7 @@
 namespace sidestep::coordinator_test {
 
 constexpr Epoch kEpoch = 100;
+constexpr Time kNow = time_from_ns(1'000'000'000'000);
 
 struct Floor {
   Coordinator coordinator{floor_for_tests(), {1, 2}, kEpoch};
@@ -18,15 +19,15 @@ struct Floor {
 
   // Messages are decoded as in CoordinatorNode.
   std::optional<Verdict> receive(const msg::Proposal& message) {
-    const auto proposal = decode(message);
+    const auto proposal = decode(message, kNow);
     return proposal ? coordinator.on_proposal(*proposal) : std::nullopt;
   }
   std::optional<Verdict> receive(const msg::Registration& message) {
-    const auto registration = decode(message);
+    const auto registration = decode(message, kNow);
     return registration ? coordinator.on_registration(*registration) : std::nullopt;
   }
   void receive(const msg::Feedback& message) {
-    if (const auto feedback = decode(message, message.robot())) coordinator.on_feedback(*feedback);
+    if (const auto feedback = decode(message, message.robot(), kNow)) coordinator.on_feedback(*feedback);
   }
   void register_both() {
     receive(registration_of(a, kEpoch));
@@ -245,13 +246,13 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
         v.phase_count(static_cast<std::uint8_t>(rng.bits()));
         break;
       case 2:
-        v.start_ns(static_cast<std::int64_t>(rng.bits()));
+        v.start_ns(static_cast<std::int64_t>(rng.bits() >> rng.below(40)));
         break;
       case 3:
         v.phases()[0].duration_ns(static_cast<std::int64_t>(rng.bits()));
         break;
       case 4:
-        v.base(rng.bits());
+        v.base(rng.bits() >> rng.below(64));
         break;
       case 5:
         v.version_number(rng.bits() >> rng.below(64));
@@ -274,7 +275,7 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
     floor.receive(registration);
     auto feedback = fact(floor.a, 1);
     noise(feedback.executing());
-    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits()) >> rng.below(8));
+    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits() >> (16 + rng.below(16))));
     feedback.is_off_reference(rng.chance(0.5));
     floor.receive(feedback);
     contradictions += floor.coordinator.is_contradicted();

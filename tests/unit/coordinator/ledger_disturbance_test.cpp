@@ -200,6 +200,24 @@ TEST_CASE("lifting a robot removes its versions except those still to start") {
   CHECK(two.ledger.versions(1).empty());
 }
 
+TEST_CASE("a lifting does not outlive a restart of the robot, after which its clock may be behind") {
+  Two two({0, 0}, {1, 0});
+  const Incarnation first = 100, second = 200;
+  two.ledger.on_lifted(1, at_s(100), first);
+  CHECK(two.ledger.on_executing(two.a, at_s(50), true, first) == FactOutcome::kStale);
+  const Version placed = rest_version(1, {3, 3}, 13);
+  REQUIRE(two.ledger.grant(placed).is_granted());
+  CHECK(two.ledger.on_executing(placed, at_s(2), false, second) == FactOutcome::kApplied);
+  Version stop = placed;
+  stop.number = 14;
+  CHECK(two.ledger.on_executing(stop, at_s(2.5), true, second) == FactOutcome::kApplied);
+  CHECK(two.ledger.versions(1).front().number == 14);
+  // Lifted again, by its new clock.
+  two.ledger.on_lifted(1, at_s(3), second);
+  CHECK(two.ledger.versions(1).empty());
+  CHECK(two.ledger.on_executing(stop, at_s(2.9), true, second) == FactOutcome::kStale);
+}
+
 TEST_CASE("no grant brings two robots closer than external events have left them, in random histories") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);

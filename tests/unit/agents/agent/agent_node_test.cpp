@@ -6,6 +6,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "idl/disturbance.hpp"
@@ -17,6 +18,8 @@ constexpr RobotId kRobot = 3;
 constexpr Incarnation kSelf = 1000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr std::uint64_t kHuge = std::uint64_t{1} << 61;  ///< as a number, or a time in nanoseconds
+constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
 
 Scenario one_robot() {
   return parse_scenario(
@@ -38,6 +41,7 @@ msg::Feedback valid_feedback() {
 
 msg::CoordinatorState valid_coordinator_state() {
   msg::CoordinatorState state;
+  state.header().sender(kCoordinator);
   state.epoch(7);
   state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   return state;
@@ -45,6 +49,7 @@ msg::CoordinatorState valid_coordinator_state() {
 
 msg::WorldState valid_world() {
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world.robots().emplace_back().robot(kRobot);
   world.robots()[0].observed_at_ns(to_ns(kBegin));
   world.obstacle_count(1);
@@ -55,6 +60,7 @@ msg::WorldState valid_world() {
 /// A page with one version near the robot.
 msg::LedgerPage valid_page() {
   msg::LedgerPage page;
+  page.header().sender(kCoordinator);
   page.epoch(1);
   page.versions().push_back(encode(Version{4, 1, 1, 0, Trajectory::resting(kBegin, {0, 0})}));
   return page;
@@ -108,12 +114,17 @@ TEST_CASE("valid messages are not counted as invalid") {
   NodeFixture f;
   CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
   CHECK(f.send(topics::kCoordinator, valid_coordinator_state()) == 0);
-  CHECK(f.send(topics::kCoordinator, msg::CoordinatorState()) == 0);  // a standby
+  msg::CoordinatorState standby;
+  standby.header().sender(kCoordinator);
+  CHECK(f.send(topics::kCoordinator, standby) == 0);
   msg::Verdict verdict;
   verdict.robot(kRobot);
+  verdict.header().sender(kCoordinator);
   CHECK(f.send(topics::kVerdict, verdict) == 0);
   CHECK(f.send(topics::kWorld, valid_world()) == 0);
-  CHECK(f.send(topics::kWorld, msg::WorldState()) == 0);
+  msg::WorldState empty;
+  empty.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  CHECK(f.send(topics::kWorld, empty) == 0);
   CHECK(f.send(topics::kLedger, valid_page()) == 0);
   CHECK(f.send(topics::kDisturbance, placement(kRobot, 1)) == 0);
   CHECK(f.commands > 0);
@@ -126,7 +137,10 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
   const auto send = [&](auto spoil) { return f.send_spoilt(topics::kFeedback, valid_feedback(), spoil); };
   CHECK(send([](msg::Feedback& m) { m.executing().x_m(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
-  CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kMaxEpoch + 1); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
+  CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.vx_mps(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.robot(kRobot + 1); }) == 1);
   CHECK(f.status.agent_state() == msg::AgentState::AGENT_FENCING);
@@ -143,7 +157,7 @@ TEST_CASE("invalid coordinator states are counted and change nothing") {
     return f.send_spoilt(topics::kCoordinator, valid_coordinator_state(), spoil);
   };
   REQUIRE(f.send(topics::kFeedback, valid_feedback()) == 0);
-  CHECK(send([](msg::CoordinatorState& m) { m.epoch(kMaxEpoch); }) == 1);
+  CHECK(send([](msg::CoordinatorState& m) { m.epoch(kHuge); }) == 1);
   CHECK(send([](msg::CoordinatorState& m) { m.epoch(std::numeric_limits<Epoch>::max()); }) == 1);
   CHECK(send([](msg::CoordinatorState& m) { m.coordinator_mode(static_cast<msg::CoordinatorMode>(9)); }) ==
         1);
@@ -158,6 +172,8 @@ TEST_CASE("invalid verdicts are counted") {
   verdict.robot(kRobot + 1);
   CHECK(f.send(topics::kVerdict, verdict) == 1);
   verdict.robot(kRobot);
+  CHECK(f.send(topics::kVerdict, verdict) == 1);  // not from a coordinator
+  verdict.header().sender(kCoordinator);
   verdict.reasons()[4] = static_cast<msg::Reason>(99);
   CHECK(f.send(topics::kVerdict, verdict) == 1);
 }
@@ -176,11 +192,17 @@ TEST_CASE("each invalid observation of a world is counted") {
         }) == 2);
 }
 
+TEST_CASE("a world that is not from vision is not used, and counts as one invalid message") {
+  NodeFixture f;
+  CHECK(f.send_spoilt(topics::kWorld, valid_world(), [](msg::WorldState& m) { m.header().sender(kRobot); }) ==
+        1);
+}
+
 TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counted") {
   NodeFixture f;
   const auto send = [&](auto spoil) { return f.send_spoilt(topics::kLedger, valid_page(), spoil); };
   CHECK(send([](msg::LedgerPage& m) { m.page_index(kMaxRobots); }) == 1);
-  CHECK(send([](msg::LedgerPage& m) { m.epoch(kMaxEpoch + 1); }) == 1);
+  CHECK(send([](msg::LedgerPage& m) { m.epoch(kHuge); }) == 1);
   CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);
 }
 

@@ -90,6 +90,28 @@ TEST_CASE("planning settings replace the defaults") {
   CHECK_FALSE(d.plans(1.06));
 }
 
+TEST_CASE("inflation lasts until vision has seen the robot at rest where the robot itself believes to be") {
+  DrivenAgent d;
+  Feedback displaced = resting_at({0, 0}, 1);
+  displaced.executing.number = 50;
+  displaced.executing.inflation_m = 0.05;
+  displaced.executing.trajectory = Trajectory::resting(at_s(0.9), {0, 0});
+  displaced.is_off_reference = true;
+  d.agent.on_feedback(displaced);
+  const auto inflation_m = [&](double now) {
+    const auto plan = d.agent.plan(at_s(now), at_s(now + kCycle_s));
+    return plan ? plan->query.inflation_m : -1;
+  };
+  d.observe(0, 0.85, 1.01);  // from before it rested
+  CHECK(inflation_m(1.02) == 0.05);
+  d.observe(0.04, 1.02, 1.03);  // the robot does not know yet that it is elsewhere
+  CHECK(inflation_m(1.04) == 0.05);
+  displaced.valid_at = at_s(1.05);
+  displaced.estimate.position_m = {0.039, 0};
+  d.agent.on_feedback(displaced);
+  CHECK(inflation_m(1.06) == 0);
+}
+
 TEST_CASE("an observation from the future is dropped and counted, and later valid ones are still used") {
   DrivenAgent d;
   d.observe(0, 1e6, 0.61);

@@ -149,6 +149,21 @@ TEST_CASE("an agent whose clock is behind an earlier one's starts above it, and 
   CHECK(f.n.is_superseded());
 }
 
+TEST_CASE("a silent agent continues if a later fact, but not an earlier one, acknowledges it") {
+  NegotiationFixture f;
+  f.become_ready();
+  const Incarnation self = f.n.incarnation();
+  f.n.on_feedback(fact(f.initial, 0.8, self + 5));
+  f.n.on_feedback(fact(f.initial, 0.7, self + 9));
+  REQUIRE(f.n.is_superseded());
+  CHECK_FALSE(f.n.may_propose(at_s(0.8)));
+  f.n.on_feedback(fact(f.initial, 0.8, self));
+  CHECK(f.n.is_superseded());
+  f.n.on_feedback(fact(f.initial, 0.81, self));
+  CHECK_FALSE(f.n.is_superseded());
+  CHECK(f.n.may_propose(at_s(0.82)));
+}
+
 TEST_CASE("a verdict that grants an unknown version is not forwarded") {
   NegotiationFixture f;
   f.become_ready();

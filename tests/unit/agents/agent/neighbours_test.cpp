@@ -19,6 +19,7 @@ Version resting_version(RobotId robot, VersionNumber number, const Vec2& positio
 msg::LedgerPage page_of(std::uint32_t index, std::uint64_t number, std::span<const Version> versions) {
   msg::LedgerPage page;
   page.page_index(index);
+  page.header().sender(10000);
   page.epoch(1);
   page.header().message_number(number);
   for (const Version& version : versions) {
@@ -34,7 +35,7 @@ msg::LedgerPage page_of(std::uint32_t index, std::uint64_t number, std::span<con
 }
 
 void receive(Neighbours& neighbours, const msg::LedgerPage& message) {
-  const auto page = ReceivedPage::decode(message);
+  const auto page = ReceivedPage::decode(message, kNow);
   REQUIRE(page);
   neighbours.on_page(*page);
 }

@@ -8,10 +8,13 @@
 
 namespace sidestep::received_page_test {
 
+constexpr Time kNow = time_from_ns(1'800'000'000'000'000'000);
+
 msg::LedgerPage page_with(VersionNumber number) {
   msg::LedgerPage page;
   page.page_index(5);
   page.epoch(7);
+  page.header().sender(10000);
   page.header().message_number(9);
   page.min_x_m(-1);
   page.min_y_m(-2);
@@ -23,7 +26,7 @@ msg::LedgerPage page_with(VersionNumber number) {
 
 TEST_CASE("a page's header is decoded unchanged") {
   const msg::LedgerPage message = page_with(10);
-  const auto page = ReceivedPage::decode(message);
+  const auto page = ReceivedPage::decode(message, kNow);
   REQUIRE(page);
   CHECK(page->index() == 5);
   CHECK(page->epoch() == 7);
@@ -32,28 +35,33 @@ TEST_CASE("a page's header is decoded unchanged") {
   CHECK(page->bounds_m().max_m == Vec2(3, 4));
 }
 
-TEST_CASE("a page with an index or an epoch out of range is refused") {
+TEST_CASE("a page with an index or an epoch out of range, or not from a coordinator, is refused") {
   msg::LedgerPage message = page_with(10);
   for (const std::uint32_t index : {kMaxRobots, std::numeric_limits<std::uint32_t>::max()}) {
     message.page_index(index);
-    CHECK_FALSE(ReceivedPage::decode(message));
+    CHECK_FALSE(ReceivedPage::decode(message, kNow));
   }
   message.page_index(kMaxRobots - 1);
-  CHECK(ReceivedPage::decode(message));
-  for (const Epoch epoch : {kMaxEpoch + 1, std::numeric_limits<Epoch>::max()}) {
+  CHECK(ReceivedPage::decode(message, kNow));
+  for (const Epoch epoch : {static_cast<Epoch>(to_ns(kNow + std::chrono::hours(1))), Epoch{1} << 62,
+                            std::numeric_limits<Epoch>::max()}) {
     message.epoch(epoch);
-    CHECK_FALSE(ReceivedPage::decode(message));
+    CHECK_FALSE(ReceivedPage::decode(message, kNow));
   }
-  message.epoch(kMaxEpoch);
-  CHECK(ReceivedPage::decode(message));
+  message.epoch(static_cast<Epoch>(to_ns(kNow)));
+  CHECK(ReceivedPage::decode(message, kNow));
+  for (const std::uint32_t sender : {0u, 9999u, 10008u, 20000u}) {
+    message.header().sender(sender);
+    CHECK_FALSE(ReceivedPage::decode(message, kNow));
+  }
 }
 
 TEST_CASE("readers of one message share the view that the first of them decodes") {
   const msg::LedgerPage message = page_with(10);
   MessageAttachment attachment;
   std::shared_ptr<LedgerView> first, second;
-  ReceivedPage::decode(message, &attachment)->update(first);
-  ReceivedPage::decode(message, &attachment)->update(second);
+  ReceivedPage::decode(message, kNow, &attachment)->update(first);
+  ReceivedPage::decode(message, kNow, &attachment)->update(second);
   CHECK(first == second);
   REQUIRE(first->versions.size() == 1);
   CHECK(first->versions[0].number == 10);
@@ -62,13 +70,13 @@ TEST_CASE("readers of one message share the view that the first of them decodes"
 TEST_CASE("a view that others still read is not overwritten, and an unshared one is reused") {
   const msg::LedgerPage older = page_with(10), newer = page_with(11);
   std::shared_ptr<LedgerView> view;
-  ReceivedPage::decode(older)->update(view);
+  ReceivedPage::decode(older, kNow)->update(view);
   const LedgerView* memory = view.get();
-  ReceivedPage::decode(newer)->update(view);
+  ReceivedPage::decode(newer, kNow)->update(view);
   CHECK(view.get() == memory);
   CHECK(view->versions[0].number == 11);
   const std::shared_ptr<LedgerView> other_reader = view;
-  ReceivedPage::decode(older)->update(view);
+  ReceivedPage::decode(older, kNow)->update(view);
   CHECK(view->versions[0].number == 10);
   CHECK(other_reader->versions[0].number == 11);
 }

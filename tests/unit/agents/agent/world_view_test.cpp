@@ -36,6 +36,7 @@ void add_obstacle(msg::WorldState& world, std::uint32_t track, double x) {
 /// The robot among others, and two obstacles.
 msg::WorldState valid_world() {
   msg::WorldState world;
+  world.header().sender(20000);
   world.header().incarnation(9);
   for (const RobotId robot : {1u, kRobot, 7u}) world.robots().push_back(tracked_robot(robot, 0.25 * robot));
   add_obstacle(world, 5, 1);
@@ -68,6 +69,7 @@ TEST_CASE("the robot is found wherever it is in the world, and only if it is the
   WorldView view(kRobot);
   for (int i = 0; i < 2000; ++i) {
     msg::WorldState world;
+    world.header().sender(20000);
     for (RobotId robot = 0; robot < 6; ++robot) {
       if (rng.chance(0.7)) world.robots().push_back(tracked_robot(robot, 0.25 * robot));
     }

@@ -85,6 +85,7 @@ TEST_CASE("neighbours are stored without allocations once warm") {
   for (std::size_t k = 0; k < pages.size(); ++k) {
     pages[k].page_index(static_cast<std::uint32_t>(k % 2));
     pages[k].page_count(2);
+    pages[k].header().sender(10000);
     pages[k].epoch(1);
     for (RobotId robot = 1; robot <= 30; ++robot) {
       pages[k].versions().push_back(encode(random_version(robot + 30 * static_cast<RobotId>(k % 2), rng)));
@@ -101,7 +102,7 @@ TEST_CASE("neighbours are stored without allocations once warm") {
   CHECK(allocations_once_warm([&] {
           msg::LedgerPage& page = pages[number % pages.size()];
           page.header().message_number(++number);
-          neighbours.on_page(*ReceivedPage::decode(page));
+          neighbours.on_page(*ReceivedPage::decode(page, kStart));
           neighbours.collect({0, 0}, 1.6, index);
           collected += index.size();
           collected += neighbours.find_stationary(kStart + std::chrono::seconds(5), {0, 0}, 8).size();
@@ -114,10 +115,13 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   Feedback feedback;
   feedback.executing = random_version(0, rng);
   const msg::Feedback fact = encode(feedback);
-  const msg::Verdict verdict;
+  msg::Verdict verdict;
+  verdict.header().sender(10000);
   msg::CoordinatorState state;
+  state.header().sender(10000);
   state.missing({1, 2, 3});
   msg::WorldState world;
+  world.header().sender(20000);
   world.obstacle_count(msg::MAX_OBSTACLES);
   for (RobotId robot = 0; robot < 100; ++robot) world.robots().emplace_back().robot(robot);
   const Command command{0, 1, 0, Time{}, feedback.executing};
@@ -126,7 +130,7 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   WorldView view(99);
   std::size_t decoded = 0;
   CHECK(allocations_once_warm([&] {
-          decoded += decode(fact, 0).has_value() + decode(verdict, 0).has_value();
+          decoded += decode(fact, 0, kStart).has_value() + decode(verdict, 0).has_value();
           decoded += decode(state, kStart).has_value() + view.decode(world).self.has_value();
           decoded += encode(command).has_version() + encode(proposal).candidate_count() +
                      encode(registration).is_absent();

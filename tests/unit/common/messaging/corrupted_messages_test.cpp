@@ -71,7 +71,10 @@ void check_corrupted(const Topic<Message>& topic, Generate generate, Decode deco
 
 bool is_within(const Vec2& v, double bound) { return v.cwiseAbs().maxCoeff() <= bound; }
 bool is_within(double value, double low, double high) { return value >= low && value <= high; }
-bool is_within(Time time) { return std::abs(to_ns(time)) <= to_ns(kMaxTime); }
+bool is_within(Time time) { return to_ns(time) >= 0 && time < kNow + std::chrono::hours(1); }
+bool is_within(std::uint64_t number) {
+  return number < static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1)));
+}
 
 bool is_valid_phase(const MotionPhase& phase) {
   return phase.duration >= Duration{0} && phase.duration <= std::chrono::minutes(1) &&
@@ -84,8 +87,8 @@ bool is_valid_version(const Version& version, RobotId robot = kRobot) {
   const bool is_valid_intent =
       !intent || (is_within(intent->velocity_mps, 100) && is_within(intent->velocity_duration_s, 0, 60) &&
                   is_within(intent->waypoint_m, 1e4) && is_within(intent->goal_m, 1e4));
-  return version.robot == robot && to_ns(trajectory.start()) >= 0 &&
-         to_ns(trajectory.start()) <= std::int64_t{1} << 62 &&
+  return version.robot == robot && is_within(version.incarnation) && is_within(version.number) &&
+         is_within(version.base) && is_within(trajectory.start()) &&
          is_within(trajectory.at_start().position_m, 1e4) &&
          is_within(trajectory.at_start().velocity_mps, 100) && is_within(version.inflation_m, 0, 10) &&
          std::ranges::all_of(trajectory.phases(), is_valid_phase) && is_valid_intent;
@@ -94,17 +97,17 @@ bool is_valid_version(const Version& version, RobotId robot = kRobot) {
 TEST_CASE("a command with random bytes is refused or within bounds") {
   check_corrupted(
       topics::kCommand, [](Rng& rng) { return message_of(random_command(rng)); },
-      [](const msg::Command& message) { return decode(message, kRobot); },
+      [](const msg::Command& message) { return decode(message, kRobot, kNow); },
       [](const Command& command) {
         const auto& version = command.version;
-        const bool is_valid_number = !version || (version->number > 0 && version->number <= Epoch{1} << 63 &&
-                                                  version->incarnation <= command.incarnation);
+        const bool is_valid_number =
+            !version || (version->number > 0 && version->incarnation <= command.incarnation);
         const bool is_valid_fix = !command.fix || (is_within(command.fix->position_m, 1e4) &&
                                                    std::isfinite(command.fix->heading_rad));
-        return command.robot == kRobot && command.incarnation > 0 &&
-               command.incarnation <= Incarnation{1} << 62 && command.epoch <= kMaxEpoch &&
-               is_within(command.sent_at) && std::isfinite(command.desired_heading_rad) &&
-               (!version || is_valid_version(*version)) && is_valid_number && is_valid_fix;
+        return command.robot == kRobot && command.incarnation > 0 && is_within(command.incarnation) &&
+               is_within(command.epoch) && is_within(command.sent_at) &&
+               std::isfinite(command.desired_heading_rad) && (!version || is_valid_version(*version)) &&
+               is_valid_number && is_valid_fix;
       });
 }
 
@@ -112,14 +115,14 @@ TEST_CASE("feedback with random bytes is refused or within bounds") {
   constexpr double kMax = std::numeric_limits<double>::max();
   check_corrupted(
       topics::kFeedback, [](Rng& rng) { return message_of(random_feedback(rng)); },
-      [](const msg::Feedback& message) { return decode(message, kRobot); },
+      [](const msg::Feedback& message) { return decode(message, kRobot, kNow); },
       [](const Feedback& f) {
         const bool is_valid_echo =
             !f.command || (is_within(f.command->sent_at) && is_within(f.command->received_at));
-        return f.robot == kRobot && f.obeyed_epoch <= kMaxEpoch && is_within(f.valid_at) &&
-               is_valid_version(f.executing) && is_valid_echo && f.estimate.position_m.allFinite() &&
-               f.estimate.velocity_mps.allFinite() && std::isfinite(f.heading_rad) &&
-               is_within(f.tracking_error_m, 0, kMax) &&
+        return f.robot == kRobot && is_within(f.robot_incarnation) && is_within(f.obeyed_incarnation) &&
+               is_within(f.obeyed_epoch) && is_within(f.valid_at) && is_valid_version(f.executing) &&
+               is_valid_echo && f.estimate.position_m.allFinite() && f.estimate.velocity_mps.allFinite() &&
+               std::isfinite(f.heading_rad) && is_within(f.tracking_error_m, 0, kMax) &&
                is_within(f.uncertainty.position_error_rms_m, 0, kMax) &&
                is_within(f.uncertainty.odometry_scale_stddev, 0, kMax);
       });
@@ -129,7 +132,7 @@ TEST_CASE("a proposal with random bytes is refused, or its candidates are malfor
   int malformed = 0;
   check_corrupted(
       topics::kProposal, [](Rng& rng) { return message_of(random_proposal(rng)); },
-      [](const msg::Proposal& message) { return decode(message); },
+      [](const msg::Proposal& message) { return decode(message, kNow); },
       [&](const Proposal& proposal) {
         if (proposal.robot >= kMaxRobots || proposal.candidate_count > msg::MAX_CANDIDATES) return false;
         const Version* first = nullptr;
@@ -151,7 +154,7 @@ TEST_CASE("a registration with random bytes is refused, or its versions are malf
   int malformed = 0;
   check_corrupted(
       topics::kRegistration, [](Rng& rng) { return message_of(random_registration(rng)); },
-      [](const msg::Registration& message) { return decode(message); },
+      [](const msg::Registration& message) { return decode(message, kNow); },
       [&](const Registration& registration) {
         malformed += !registration.versions;
         const auto is_valid = [&](const Version& version) {
@@ -175,18 +178,18 @@ TEST_CASE("a verdict with random bytes is refused or has known reasons") {
 }
 
 TEST_CASE("a coordinator state with random bytes is refused or has a plausible epoch and a known mode") {
-  const Time now = time_from_ns(1'000'000'000'000'000);
   check_corrupted(
       topics::kCoordinator,
       [](Rng& rng) {
         msg::CoordinatorState message;
+        message.header().sender(10000);
         message.epoch(rng.below(1'000'000'000'000'000));
         message.missing({static_cast<RobotId>(rng.bits()), 3});
         return message;
       },
-      [=](const msg::CoordinatorState& message) { return decode(message, now); },
-      [=](const CoordinatorHeartbeat& heartbeat) {
-        return is_plausible(heartbeat.epoch, now) && static_cast<std::uint32_t>(heartbeat.mode) <= 2 &&
+      [](const msg::CoordinatorState& message) { return decode(message, kNow); },
+      [](const CoordinatorHeartbeat& heartbeat) {
+        return is_within(heartbeat.epoch) && static_cast<std::uint32_t>(heartbeat.mode) <= 2 &&
                heartbeat.missing.size() <= kMaxRobots;
       });
 }

@@ -13,7 +13,6 @@ namespace sidestep::negotiation_codec_test {
 using namespace random_messages;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const Time kNow = time_from_ns(1'000'000'000'000'000);
 
 Version resting(VersionNumber number, RobotId robot = kRobot) {
   return {robot, 1, number, 5, Trajectory::resting(Time{}, {1, 2})};
@@ -40,7 +39,7 @@ TEST_CASE("encoding and decoding a proposal preserves it bit for bit") {
   Rng rng(seed);
   for (int i = 0; i < 2000; ++i) {
     const Proposal in = random_proposal(rng);
-    const auto out = decode(message_of(in));
+    const auto out = decode(message_of(in), kNow);
     REQUIRE(out);
     REQUIRE(out->robot == in.robot);
     REQUIRE(out->incarnation == in.incarnation);
@@ -63,7 +62,7 @@ TEST_CASE("encoding and decoding a registration preserves it bit for bit") {
     const Registration in = random_registration(rng);
     const msg::Registration message = message_of(in);
     REQUIRE(message.is_absent() == in.versions->versions().empty());
-    const auto out = decode(message);
+    const auto out = decode(message, kNow);
     REQUIRE(out);
     REQUIRE(out->robot == in.robot);
     REQUIRE(out->incarnation == in.incarnation);
@@ -96,15 +95,15 @@ TEST_CASE("encoding and decoding a verdict preserves it") {
 
 TEST_CASE("a message that does not speak for its sender's robot is refused") {
   const auto check_refused = [](auto message) {
-    REQUIRE(decode(message));
+    REQUIRE(decode(message, kNow));
     message.header().sender(kRobot + 1);
-    CHECK_FALSE(decode(message));
+    CHECK_FALSE(decode(message, kNow));
     message.robot(kRobot + 1);
-    CHECK(decode(message));
+    CHECK(decode(message, kNow));
     for (const RobotId robot : {kMaxRobots, std::numeric_limits<RobotId>::max()}) {
       message.robot(robot);
       message.header().sender(robot);
-      CHECK_FALSE(decode(message));
+      CHECK_FALSE(decode(message, kNow));
     }
   };
   check_refused(full_proposal());
@@ -117,7 +116,7 @@ TEST_CASE("a hostile candidate is malformed, and the other candidates remain") {
   const auto check_malformed = [=](auto spoil) {
     msg::Proposal message = full_proposal();
     spoil(message.candidates()[hostile]);
-    const auto proposal = decode(message);
+    const auto proposal = decode(message, kNow);
     REQUIRE(proposal);
     CHECK(proposal->number == 10);
     REQUIRE(proposal->candidate_count == msg::MAX_CANDIDATES);
@@ -134,15 +133,15 @@ TEST_CASE("candidates with another base or start than the first one are malforme
   msg::Proposal message = full_proposal();
   message.candidates()[1].base(6);
   message.candidates()[3].start_ns(1);
-  const auto proposal = decode(message);
+  const auto proposal = decode(message, kNow);
   REQUIRE(proposal);
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i)
     CHECK(proposal->candidates[i].has_value() == (i != 1 && i != 3));
   // No later candidate agrees with a first one that differs from them.
   message = full_proposal();
   message.candidates()[0].base(6);
-  CHECK(decode(message)->candidates[0]);
-  CHECK_FALSE(decode(message)->candidates[1]);
+  CHECK(decode(message, kNow)->candidates[0]);
+  CHECK_FALSE(decode(message, kNow)->candidates[1]);
 }
 
 TEST_CASE("a proposal without candidates, or with too many, has none") {
@@ -150,7 +149,7 @@ TEST_CASE("a proposal without candidates, or with too many, has none") {
     CAPTURE(count);
     msg::Proposal message = full_proposal();
     message.candidate_count(static_cast<std::uint8_t>(count));
-    const auto proposal = decode(message);
+    const auto proposal = decode(message, kNow);
     REQUIRE(proposal);
     CHECK(proposal->candidate_count == 0);
     CHECK(proposal->number == 10);
@@ -162,9 +161,9 @@ TEST_CASE("a registration with hostile versions has none") {
   using Message = msg::Registration;
   const auto is_malformed = [](auto spoil) {
     Message message = full_registration();
-    REQUIRE(decode(message)->versions);
+    REQUIRE(decode(message, kNow)->versions);
     spoil(message);
-    const auto registration = decode(message);
+    const auto registration = decode(message, kNow);
     REQUIRE(registration);
     return !registration->versions;
   };
@@ -188,6 +187,7 @@ TEST_CASE("a registration with hostile versions has none") {
 TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
   msg::Verdict message;
   message.robot(kRobot);
+  message.header().sender(10003);
   REQUIRE(decode(message, kRobot));
   CHECK_FALSE(decode(message, kRobot + 1));
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) {
@@ -201,8 +201,48 @@ TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
   }
 }
 
+TEST_CASE("a message with an implausible incarnation or epoch is refused") {
+  const auto check_refused = [](auto message) {
+    REQUIRE(decode(message, kNow));
+    for (const std::uint64_t number : {static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))),
+                                       std::uint64_t{1} << 62, std::numeric_limits<std::uint64_t>::max()}) {
+      auto hostile = message;
+      hostile.epoch(number);
+      CHECK_FALSE(decode(hostile, kNow));
+      hostile = message;
+      hostile.header().incarnation(number);
+      CHECK_FALSE(decode(hostile, kNow));
+    }
+  };
+  check_refused(full_proposal());
+  check_refused(full_registration());
+  msg::CoordinatorState state;
+  state.header().sender(10000);
+  check_refused(state);
+}
+
+TEST_CASE("only a coordinator speaks for a coordinator") {
+  msg::CoordinatorState state;
+  msg::Verdict verdict;
+  verdict.robot(kRobot);
+  for (const std::uint32_t sender : {0u, kRobot, 9999u, 10008u, 20000u, 30000u, 4294967295u}) {
+    CAPTURE(sender);
+    state.header().sender(sender);
+    verdict.header().sender(sender);
+    CHECK_FALSE(decode(state, kNow));
+    CHECK_FALSE(decode(verdict, kRobot));
+  }
+  state.header().sender(10007);
+  verdict.header().sender(10007);
+  CHECK_FALSE(decode(state, kNow));  // of another number
+  state.coordinator(7);
+  CHECK(decode(state, kNow));
+  CHECK(decode(verdict, kRobot));
+}
+
 TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
   msg::CoordinatorState message;
+  message.coordinator(1);
   message.header().sender(10001);
   message.header().incarnation(8);
   message.epoch(7);
@@ -223,11 +263,12 @@ TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mod
   const auto now = static_cast<Epoch>(to_ns(kNow));
   constexpr Epoch kHour = 3'600'000'000'000;
   msg::CoordinatorState message;
+  message.header().sender(10000);
   for (const Epoch epoch : {now, now + kHour - 1}) {
     message.epoch(epoch);
     CHECK(decode(message, kNow));
   }
-  for (const Epoch epoch : {now + kHour, kMaxEpoch, kMaxEpoch + 1, std::numeric_limits<Epoch>::max()}) {
+  for (const Epoch epoch : {now + kHour, Epoch{1} << 62, Epoch{1} << 63, std::numeric_limits<Epoch>::max()}) {
     message.epoch(epoch);
     CHECK_FALSE(decode(message, kNow));
   }

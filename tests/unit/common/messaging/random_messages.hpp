@@ -4,18 +4,30 @@
 
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "common/messaging/senders.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::random_messages {
 
 inline constexpr RobotId kRobot = 3;
 
-/// Any time that messages may contain.
-inline Time random_time(Rng& rng) { return time_from_ns(static_cast<std::int64_t>(rng.bits()) >> 2); }
-inline Epoch random_epoch(Rng& rng) { return rng.bits() >> 2; }
+/// The receiver's clock.
+inline constexpr Time kNow = time_from_ns(1'800'000'000'000'000'000);
+
+/// Any incarnation, epoch or version number that messages may contain at kNow.
+inline std::uint64_t random_number(Rng& rng) {
+  return rng.below(static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))));
+}
+/// Any time that messages may contain at kNow.
+inline Time random_time(Rng& rng) { return time_from_ns(static_cast<std::int64_t>(random_number(rng))); }
 
 inline Version random_version(Rng& rng) {
-  Version version{kRobot, rng.bits(), rng.bits(), rng.bits(), random_trajectory(rng), rng.uniform(0, 0.1)};
+  Version version{kRobot,
+                  random_number(rng),
+                  random_number(rng),
+                  random_number(rng),
+                  random_trajectory(rng),
+                  rng.uniform(0, 0.1)};
   // Intents are single precision in messages.
   const auto single = [&](double max) {
     return static_cast<double>(static_cast<float>(rng.uniform(0, max)));
@@ -26,11 +38,11 @@ inline Version random_version(Rng& rng) {
 }
 
 inline Command random_command(Rng& rng) {
-  Command command{kRobot, 1 + rng.below(1'000'000), random_epoch(rng), random_time(rng)};
+  Command command{kRobot, 1 + rng.below(1'000'000), random_number(rng), random_time(rng)};
   if (rng.chance(0.7)) {
     command.version = random_version(rng);
     command.version->incarnation = rng.below(command.incarnation + 1);
-    command.version->number = 1 + (rng.bits() >> 1);
+    command.version->number = 1 + random_number(rng) / 2;
   }
   if (rng.chance(0.7)) command.fix = PoseFix{random_time(rng), random_vector(rng, 20), rng.uniform(-4, 4)};
   command.desired_heading_rad = rng.uniform(-4, 4);
@@ -40,9 +52,9 @@ inline Command random_command(Rng& rng) {
 inline Feedback random_feedback(Rng& rng) {
   Feedback feedback;
   feedback.robot = kRobot;
-  feedback.robot_incarnation = rng.bits();
-  feedback.obeyed_incarnation = rng.bits();
-  feedback.obeyed_epoch = random_epoch(rng);
+  feedback.robot_incarnation = random_number(rng);
+  feedback.obeyed_incarnation = random_number(rng);
+  feedback.obeyed_epoch = random_number(rng);
   feedback.valid_at = random_time(rng);
   feedback.executing = random_version(rng);
   feedback.is_off_reference = rng.chance(0.5);
@@ -57,7 +69,7 @@ inline Feedback random_feedback(Rng& rng) {
 }
 
 inline Proposal random_proposal(Rng& rng) {
-  Proposal proposal{kRobot, rng.bits(), random_epoch(rng), random_time(rng), rng.bits()};
+  Proposal proposal{kRobot, random_number(rng), random_number(rng), random_time(rng), random_number(rng) / 2};
   proposal.candidate_count = 1 + rng.below(msg::MAX_CANDIDATES);
   const Version first = random_version(rng);
   for (std::size_t i = 0; i < proposal.candidate_count; ++i) {
@@ -71,14 +83,14 @@ inline Proposal random_proposal(Rng& rng) {
 }
 
 inline Registration random_registration(Rng& rng) {
-  Registration registration{kRobot, rng.bits(), random_epoch(rng), random_time(rng), VersionSet()};
+  Registration registration{kRobot, random_number(rng), random_number(rng), random_time(rng), VersionSet()};
   for (std::uint64_t count = rng.below(VersionSet::kCapacity + 1); count > 0; --count)
     registration.versions->add(random_version(rng));
   return registration;
 }
 
 inline Verdict random_verdict(Rng& rng) {
-  Verdict verdict{kRobot, random_epoch(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
+  Verdict verdict{kRobot, random_number(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
   for (msg::Reason& reason : verdict.reasons)
     reason = static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_ABSENT) + 1));
   for (RobotId& blocker : verdict.blockers) blocker = static_cast<RobotId>(rng.bits());
@@ -90,6 +102,12 @@ template <typename Value>
 auto message_of(const Value& value) {
   auto message = encode(value);
   message.header().stamp_ns(to_ns(value.sent_at));
+  return message;
+}
+inline msg::Verdict message_of(const Verdict& verdict) {
+  msg::Verdict message = encode(verdict);
+  message.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
+  message.header().stamp_ns(to_ns(verdict.sent_at));
   return message;
 }
 inline msg::Feedback message_of(const Feedback& feedback) { return encode(feedback); }

@@ -155,8 +155,7 @@ TEST_CASE("invalid timestamps change nothing") {
   CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than an exchange takes
   constexpr std::int64_t kValid = 1'000'000'000'000'000;
   const std::vector<std::int64_t> hostile{0, -1, std::numeric_limits<std::int64_t>::min(),
-                                          std::numeric_limits<std::int64_t>::max(),
-                                          (std::int64_t{1} << 61) + 1};
+                                          std::numeric_limits<std::int64_t>::max(), to_ns(kMaxTime) + 1};
   for (const std::int64_t stamp : hostile) {
     for (int position = 0; position < 4; ++position) {
       std::int64_t stamps[4] = {kValid, kValid + 1, kValid + 2, kValid + 3};
@@ -174,7 +173,7 @@ TEST_CASE("invalid timestamps change nothing") {
 
 TEST_CASE("the extreme timestamps that are accepted cause no overflow") {
   ClockOffset measured;
-  const Time last = time_from_ns(std::int64_t{1} << 61), first = time_from_ns(1);
+  const Time last = kMaxTime, first = time_from_ns(1);
   REQUIRE(measured.add({first, last, last, first + Duration{5}}));
   REQUIRE(measured.add({last - Duration{5}, first, first, last}));
   CHECK(measured.jumps() == 1);

@@ -33,7 +33,7 @@ Firmware firmware() { return {kRobot, kStart, 0.5, kBegin, {}}; }
 
 // Decodes a message as the simulator's node does.
 void receive(Firmware& robot, const msg::Command& message, Time now) {
-  if (const auto command = decode(message, kRobot))
+  if (const auto command = decode(message, kRobot, now))
     robot.on_command(*command, now);
   else
     robot.on_malformed_command(now);

@@ -25,8 +25,8 @@ const DiscoveredEndpoint* find(const std::vector<DiscoveredEndpoint>& endpoints,
 }
 
 TEST_CASE("a listener lists writers and readers, and notices when they leave") {
-  constexpr Topic<msg::Verdict> kEvent{
-      {"test/event", "test", Qos::kEvent, false, message_type<msg::Verdict>("sidestep::msg::Verdict")}};
+  constexpr Topic<msg::Verdict> kEvent{{"test/event", "test", Qos::kEvent, false, false,
+                                        message_type<msg::Verdict>("sidestep::msg::Verdict")}};
   DdsListener listener(test_settings("listener"));
   {
     DdsBus bus(test_settings("other"));

@@ -27,6 +27,7 @@ Report example() {
   for (int i = 1; i <= 100; ++i) report.negotiation.add(std::chrono::microseconds(100 * i));
   report.deaths.push_back({"agent 7", "exit code 1", 0.5, false});
   report.conflicts = {{3, 7}};
+  report.mismatches = {{"agent 3", {}}, {"vision", {{"margin_m", "0.01", "0.02"}}}};
   return report;
 }
 
@@ -69,6 +70,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "negotiation_us",
                                          "robot_time_s",
                                          "deaths",
+                                         "mismatches",
                                          "audit",
                                          "wall_clock"});
   CHECK(json["seed"] == 7);
@@ -84,6 +86,10 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK(json["conflicts"].dump() == "[[3,7]]");
   CHECK_THAT(summary(example()), ContainsSubstring("brought robots 3 and 7 into conflict"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
+  CHECK(json["mismatches"].dump() ==
+        R"({"agent 3":{},"vision":{"margin_m":{"run":"0.01","process":"0.02"}}})");
+  CHECK_THAT(summary(example()), ContainsSubstring("vision was refused because it works by other rules: "
+                                                   "margin_m is 0.02 instead of 0.01"));
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
   CHECK_FALSE(json["wall_clock"].contains("processes"));
 }

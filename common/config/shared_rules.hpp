@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+
+namespace sidestep {
+
+/// A rule whose value differs between two processes.
+struct RuleDifference {
+  std::string key;     ///< as in the scenario file, e.g. limits.speed_mps
+  std::string own;     ///< empty: this process does not know the key
+  std::string others;  ///< empty: the other process does not know the key
+};
+
+/// What all processes that share a floor must agree on: the roster, and the rules that the protocol's safety
+/// relies on. One line "key: value" for each; values never contain a line break.
+class SharedRules {
+ public:
+  /// Identifies rules in message headers; never 0.
+  using Fingerprint = std::uint64_t;
+
+  explicit SharedRules(const Scenario& scenario);
+  /// Decodes another process's text(), which may be hostile; nullopt if it is not such a text.
+  [[nodiscard]] static std::optional<SharedRules> parse(std::string_view text);
+
+  const std::string& text() const { return text_; }
+  Fingerprint fingerprint() const { return fingerprint_; }
+  /// The rules that differ, in the order of this process's text().
+  std::vector<RuleDifference> differences(const SharedRules& others) const;
+
+ private:
+  struct Rule {
+    std::string key, value;
+  };
+  SharedRules() = default;
+  const Rule* find(const std::string& key) const;
+  void finish();
+
+  std::vector<Rule> rules_;
+  std::string text_;
+  Fingerprint fingerprint_ = 0;
+};
+
+/// One line that names the differing rules, e.g. "margin_m is 0.02 instead of 0.01".
+std::string describe(const std::vector<RuleDifference>& differences);
+
+}  // namespace sidestep

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/rules_exchange.hpp"
+
+#include "common/messaging/process_names.hpp"
+
+namespace sidestep {
+namespace {
+
+// A hostile sender may invent any number of processes and rules.
+constexpr std::size_t kMaxReported = 256;
+
+}  // namespace
+
+RulesExchange::RulesExchange(Bus& bus, std::uint32_t process, const SharedRules& rules,
+                             OnMismatch on_mismatch)
+    : bus_(bus), process_(process), rules_(rules), on_mismatch_(std::move(on_mismatch)) {
+  bus_.use_rules(rules_.fingerprint(),
+                 [this](const TopicInfo& topic, const msg::Header& header) { on_refused(topic, header); });
+  writer_ = bus_.advertise(topics::kRules);
+  bus_.subscribe(topics::kRules, [this](const msg::SharedRules& message) { on_rules(message); });
+}
+
+void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header) {
+  ++refused_;
+  // The simulator speaks for its robots with their numbers.
+  const bool is_simulator = std::string_view(topic.writer) == "simulator";
+  report(is_simulator ? static_cast<std::uint32_t>(Sender::kSimulator) : header.sender(), header.rules(), {});
+  publish_if_due();
+}
+
+void RulesExchange::on_rules(const msg::SharedRules& message) {
+  const auto others =
+      SharedRules::parse({reinterpret_cast<const char*>(message.text().data()), message.text().size()});
+  if (!others || others->fingerprint() == rules_.fingerprint()) return;
+  report(message.process(), others->fingerprint(), rules_.differences(*others));
+  publish_if_due();
+}
+
+void RulesExchange::report(std::uint32_t process, Fingerprint fingerprint,
+                           std::vector<RuleDifference> differences) {
+  if (reported_.size() >= kMaxReported) return;
+  const auto [known, is_new] = reported_.try_emplace({process, fingerprint}, false);
+  if (!is_new && (known->second || differences.empty())) return;
+  known->second = !differences.empty();
+  on_mismatch_({process, std::move(differences)});
+}
+
+void RulesExchange::publish_if_due() {
+  const Time now = bus_.now();
+  if (published_at_ && now - *published_at_ < kPeriod) return;
+  published_at_ = now;
+  msg::SharedRules message;
+  message.process(process_);
+  message.header().sender(process_);
+  message.text().assign(rules_.text().begin(), rules_.text().end());
+  writer_.publish(message, now);
+}
+
+std::string describe(const RulesMismatch& mismatch) {
+  std::string text = "refuses " + process_name(mismatch.process) + ", which works by other rules";
+  if (!mismatch.differences.empty()) text += ": " + describe(mismatch.differences);
+  return text;
+}
+
+}  // namespace sidestep

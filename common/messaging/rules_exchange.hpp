@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/config/shared_rules.hpp"
+#include "common/messaging/bus.hpp"
+
+namespace sidestep {
+
+/// Another process works by other rules.
+struct RulesMismatch {
+  std::uint32_t process = 0;                ///< process id, see senders.hpp
+  std::vector<RuleDifference> differences;  ///< empty: that process has not sent its rules yet
+};
+
+/// Makes a process refuse all messages of processes with other rules (PROTOCOL.md, "The same rules"), and
+/// tells them its own, so that both sides can name what differs.
+class RulesExchange {
+ public:
+  /// After the first refusal, the rules are sent at most once per kPeriod.
+  static constexpr Duration kPeriod{500'000'000};
+  using OnMismatch = std::function<void(const RulesMismatch&)>;
+
+  /// `process` is this process's id. `on_mismatch` is called once without and once with differences for each
+  /// process and its rules. Create it before the nodes of the process.
+  RulesExchange(Bus& bus, std::uint32_t process, const SharedRules& rules, OnMismatch on_mismatch);
+  RulesExchange(const RulesExchange&) = delete;
+  RulesExchange& operator=(const RulesExchange&) = delete;
+
+  /// Number of messages refused so far.
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  using Fingerprint = SharedRules::Fingerprint;
+  void on_refused(const TopicInfo& topic, const msg::Header& header);
+  void on_rules(const msg::SharedRules& message);
+  void report(std::uint32_t process, Fingerprint fingerprint, std::vector<RuleDifference> differences);
+  void publish_if_due();
+
+  Bus& bus_;
+  const std::uint32_t process_;
+  const SharedRules rules_;
+  const OnMismatch on_mismatch_;
+  Writer<msg::SharedRules> writer_;
+  std::optional<Time> published_at_;
+  /// By process and fingerprint: whether the differences have been reported.
+  std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;
+  std::uint64_t refused_ = 0;
+};
+
+/// "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".
+std::string describe(const RulesMismatch& mismatch);
+
+}  // namespace sidestep

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <functional>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/process_names.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::rules_test {
+
+using namespace std::chrono_literals;
+
+Scenario crossing() {
+  return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/crossing.yaml");
+}
+
+Scenario without_robot(Scenario scenario, RobotId robot) {
+  std::erase_if(scenario.robots, [=](const RobotSpec& spec) { return spec.id == robot; });
+  return scenario;
+}
+
+/// Starts a process again with another scenario.
+void replace(SimSystem& system, const std::string& process, const Scenario& scenario) {
+  system.kill(process);
+  system.use_scenario(process, scenario);
+  system.restart(process);
+}
+
+/// The rules that this process was reported to differ in.
+std::vector<std::string> differing_keys(const Report& report, const std::string& process) {
+  std::vector<std::string> keys;
+  const auto found = report.mismatches.find(process);
+  if (found == report.mismatches.end()) return keys;
+  for (const RuleDifference& rule : found->second) keys.push_back(rule.key);
+  return keys;
+}
+
+double max_speed_mps(const SimSystem& system) {
+  double result = 0;
+  for (const RobotProgress& row : system.metrics().progress()) result = std::max(result, row.speed_mps);
+  return result;
+}
+
+TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and nobody moves") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const Scenario scenario = crossing();
+    SimSystem system(scenario, seed);
+    replace(system, "coordinator", without_robot(scenario, 7));
+    system.run_for(1s);
+    CHECK(differing_keys(system.metrics().report(), "coordinator") ==
+          std::vector<std::string>{"robots.yellow"});
+    for (int i = 0; i < 50; ++i) {
+      system.run_for(100ms);
+      REQUIRE(max_speed_mps(system) < 0.02);
+    }
+    CHECK(system.metrics().report().contacts == 0);
+    replace(system, "coordinator", scenario);
+    CHECK(system.run_until_arrived(system.now() + 20s));
+  }
+}
+
+struct OtherRule {
+  std::string key;
+  std::function<void(Scenario&)> change;
+};
+
+TEST_CASE("a standby with other rules is named within a second, and never takes over") {
+  const auto other =
+      GENERATE(OtherRule{"robots.yellow", [](Scenario& s) { s.robots.pop_back(); }},
+               OtherRule{"robots.blue", [](Scenario& s) { s.robots.erase(s.robots.begin()); }},
+               OtherRule{"radius_m", [](Scenario& s) { s.radius_m = 0.08; }},
+               OtherRule{"margin_m", [](Scenario& s) { s.margin_m = 0.02; }},
+               OtherRule{"tracking_bound_m", [](Scenario& s) { s.tracking_bound_m = 0.002; }},
+               OtherRule{"clock_bound_s", [](Scenario& s) { s.clock_bound_s = 0.0001; }},
+               OtherRule{"limits.speed_mps", [](Scenario& s) { s.limits.speed_mps = 1.9; }},
+               OtherRule{"limits.acceleration_mps2", [](Scenario& s) { s.limits.acceleration_mps2 = 2; }},
+               OtherRule{"limits.deceleration_mps2", [](Scenario& s) { s.limits.deceleration_mps2 = 6; }},
+               OtherRule{"field.length_m", [](Scenario& s) { s.field.length_m += 1; }},
+               OtherRule{"field.width_m", [](Scenario& s) { s.field.width_m += 1; }},
+               OtherRule{"max_opponent_speed_mps", [](Scenario& s) { s.max_opponent_speed_mps = 1; }},
+               OtherRule{"obstacles", [](Scenario& s) { s.obstacles.pop_back(); }});
+  CAPTURE(other.key);
+  Scenario scenario = crossing();
+  scenario.coordinators = 2;
+  SimSystem system(scenario, 3);
+  Scenario changed = scenario;
+  other.change(changed);
+  system.run_for(500ms);
+  replace(system, "coordinator 1", changed);
+  system.run_for(1s);
+  CHECK(differing_keys(system.metrics().report(), "coordinator 1") == std::vector{other.key});
+  system.kill("coordinator");
+  system.run_for(5s);
+  CHECK(max_speed_mps(system) < 0.02);
+  CHECK(system.metrics().arrived() < 8);
+  system.restart("coordinator");
+  CHECK(system.run_until_arrived(system.now() + 20s));
+  const Report report = system.metrics().report();
+  CHECK(report.contacts == 0);
+  CHECK(report.audit->violations == 0);
+}
+
+TEST_CASE("a later agent with other rules does not take its robot") {
+  const Scenario scenario = crossing();
+  SimSystem system(scenario, 4);
+  Scenario changed = scenario;
+  changed.radius_m = 0.05;
+  system.run_for(500ms);
+  system.use_scenario(twin_process(3), changed);
+  system.restart(twin_process(3));
+  CHECK(system.run_until_arrived(system.now() + 20s));
+  const Report report = system.metrics().report();
+  CHECK(report.contacts == 0);
+  CHECK(report.audit->violations == 0);
+  CHECK(differing_keys(report, "agent 3") == std::vector<std::string>{"radius_m"});
+}
+
+TEST_CASE("an agent with other rules is refused and named, and no other robot drives without it") {
+  const Scenario scenario = crossing();
+  SimSystem system(scenario, 5);
+  Scenario changed = scenario;
+  changed.margin_m = 0.05;
+  replace(system, "agent 2", changed);
+  system.run_for(3s);
+  CHECK(max_speed_mps(system) < 0.02);
+  CHECK(differing_keys(system.metrics().report(), "agent 2") == std::vector<std::string>{"margin_m"});
+  replace(system, "agent 2", scenario);
+  CHECK(system.run_until_arrived(system.now() + 20s));
+}
+
+TEST_CASE("what a vision process with another roster sees is not used") {
+  const Scenario scenario = crossing();
+  SimSystem system(scenario, 6);
+  system.run_for(1s);
+  replace(system, "vision", without_robot(scenario, 0));
+  system.run_for(5s);
+  CHECK(max_speed_mps(system) < 0.02);
+  CHECK(differing_keys(system.metrics().report(), "vision") == std::vector<std::string>{"robots.blue"});
+  replace(system, "vision", scenario);
+  CHECK(system.run_until_arrived(system.now() + 20s));
+  CHECK(system.metrics().report().contacts == 0);
+}
+
+}  // namespace sidestep::rules_test

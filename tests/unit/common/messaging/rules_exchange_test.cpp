@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/rules_exchange.hpp"
+
+#include <optional>
+
+#include "common/messaging/process_names.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::rules_exchange_test {
+
+using namespace std::chrono_literals;
+
+Scenario with_margin(double margin_m) {
+  Scenario scenario;
+  scenario.margin_m = margin_m;
+  return scenario;
+}
+
+/// A process that publishes states of a coordinator and counts those that it receives.
+struct Process {
+  Process(SimNetwork& network, std::uint32_t process, std::optional<double> margin_m)
+      : id(process), bus(network) {
+    if (margin_m) {
+      exchange.emplace(bus, id, SharedRules(with_margin(*margin_m)),
+                       [this](const RulesMismatch& mismatch) { mismatches.push_back(describe(mismatch)); });
+    }
+    writer = bus.advertise(topics::kCoordinator);
+    bus.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState&) { ++received; });
+    bus.observe(topics::kCoordinator, 0, [this](const msg::CoordinatorState&) { ++observed; });
+  }
+  void publish() {
+    msg::CoordinatorState state;
+    state.coordinator(id);
+    state.header().sender(id);
+    writer.publish(state, bus.now());
+  }
+
+  std::uint32_t id;
+  SimBus bus;
+  std::optional<RulesExchange> exchange;
+  Writer<msg::CoordinatorState> writer;
+  std::vector<std::string> mismatches;
+  int received = 0, observed = 0;
+};
+
+SimNetwork lossless() { return {1, time_from_ns(1'000'000'000'000), NetworkSpec{}}; }
+
+TEST_CASE("messages of a process with other rules are refused on both sides, and both name the difference") {
+  SimNetwork network = lossless();
+  Process a(network, 10000, 0.01), b(network, 10001, 0.02);
+  for (int i = 0; i < 200; ++i) {
+    a.publish();
+    if (i >= 100) b.publish();
+    network.run_until(network.now() + 20ms);
+  }
+  CHECK(a.received == 200);  // its own
+  CHECK(b.received == 100);
+  CHECK(a.observed == 300);
+  CHECK(a.exchange->refused() == 100);
+  CHECK(b.exchange->refused() == 200);
+  const std::string refuses_b = "refuses coordinator 1, which works by other rules",
+                    refuses_a = "refuses coordinator, which works by other rules";
+  // b learns first that a is there; a learns of b by its rules.
+  CHECK(b.mismatches == std::vector{refuses_a, refuses_a + ": margin_m is 0.01 instead of 0.02"});
+  CHECK(a.mismatches == std::vector{refuses_b + ": margin_m is 0.02 instead of 0.01"});
+}
+
+TEST_CASE("messages without rules are refused by a process with rules, and received by one without") {
+  SimNetwork network = lossless();
+  Process with(network, 10000, 0.01), without(network, 10001, std::nullopt);
+  with.publish();
+  without.publish();
+  network.run_until(network.now() + 1s);
+  CHECK(with.received == 1);
+  CHECK(without.received == 2);
+}
+
+TEST_CASE("rules are sent rarely, however many messages are refused") {
+  SimNetwork network = lossless();
+  Process a(network, 10000, 0.01), b(network, 10001, 0.02);
+  int sent = 0;
+  a.bus.subscribe(topics::kRules, [&](const msg::SharedRules&) { ++sent; });
+  for (int i = 0; i < 1000; ++i) {
+    b.publish();
+    network.run_until(network.now() + 10ms);
+  }
+  CHECK(sent >= 38);
+  CHECK(sent <= 42);  // of two processes, for ten seconds
+  CHECK(a.mismatches.size() == 2);
+}
+
+TEST_CASE("any number of invented processes is named only up to a bound") {
+  SimNetwork network = lossless();
+  Process a(network, 10000, 0.01);
+  SimBus stranger(network);
+  auto writer = stranger.advertise(topics::kCoordinator);
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    msg::CoordinatorState state;
+    state.header().sender(i);
+    writer.publish(state, stranger.now());
+    network.run_until(network.now() + 1ms);
+  }
+  CHECK(a.exchange->refused() == 5000);
+  CHECK(a.mismatches.size() == 256);
+}
+
+}  // namespace sidestep::rules_exchange_test
