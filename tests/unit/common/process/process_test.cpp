@@ -33,6 +33,7 @@ Program test_program() {
   Program program;
   program.name = "sidestep-test";
   program.description = "A program under test.";
+  program.process = [] { return std::uint32_t{1}; };
   program.start = [](Bus&, const Scenario&) { return nullptr; };
   return program;
 }
