@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -71,8 +72,9 @@ class Agent {
 
   /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
   /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
-  /// estimate.
-  [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start);
+  /// estimate. `max_speed_mps`: the speed that the clocks allow.
+  [[nodiscard]] std::optional<MotionPlan> plan(
+      Time now, Time start, double max_speed_mps = std::numeric_limits<double>::infinity());
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
@@ -109,7 +111,8 @@ class Agent {
   double page_horizon_m() const;
   /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
   Intent steer(const State& at_start, Time start, const Route& route);
-  AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route) const;
+  AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
+                             double max_speed_mps) const;
   /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
   Vec2 recovery_direction(const Vec2& position_m, const Route& route) const;
 

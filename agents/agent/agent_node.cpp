@@ -40,7 +40,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       robot_(robot),
       cycle_(scenario.cycle),
       agent_(scenario, robot, incarnation, std::move(scratch), settings),
-      clocks_(from_seconds(scenario.clock_bound_s)),
+      clocks_(budget_of(scenario), scenario.margin_m),
       world_(robot),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),
@@ -180,7 +180,8 @@ void AgentNode::negotiate(Time start) {
     publish_proposal(agent_.propose_rest_version(robot_now(), start));
     return;
   }
-  const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start); });
+  const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
+  const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps); });
   if (!plan) return;
   const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
   if (proposal) publish_proposal(*proposal);

@@ -100,7 +100,7 @@ void Agent::update_route_planner(Time now) {
                          settings_.extra_clearance_m, goal().position_m);
 }
 
-std::optional<MotionPlan> Agent::plan(Time now, Time start) {
+std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
   const Duration fix_age = now - last_fix_;
   // A fix far in the future means that a clock has been set.
   const bool is_lost = fix_age > settings_.max_fix_age || fix_age < -settings_.max_fix_age;
@@ -116,11 +116,11 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start) {
   const Route straight{goal().position_m, (goal().position_m - at_start.position_m).norm()};
   const Route route = route_planner_->route_from(at_start.position_m).value_or(straight);
   const Intent intent = steer(at_start, start, route);
-  const AccelerationCommand desired = follow(intent, at_start, route);
-  return MotionPlan{
-      {start, at_start, desired.acceleration_mps2, desired.hold, inflation_m, obstacles_.recent(now)},
-      base.number,
-      intent};
+  const AccelerationCommand desired = follow(intent, at_start, route, max_speed_mps);
+  SearchQuery query{start,        at_start,    desired.acceleration_mps2,
+                    desired.hold, inflation_m, obstacles_.recent(now)};
+  query.max_speed_mps = max_speed_mps;
+  return MotionPlan{query, base.number, intent};
 }
 
 Intent Agent::steer(const State& at_start, Time start, const Route& route) {
@@ -146,7 +146,8 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
   return steering.choose(at_start, route.waypoint_m, goal().position_m, elapsed_s, last_choice_);
 }
 
-AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route) const {
+AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route,
+                                  double max_speed_mps) const {
   // If it is not observed again, the robot comes to rest before its drift exceeds the tracking bound.
   const double dead_reckoning_m =
       std::max(0.0, max_dead_reckoning_m_ - (at_start.position_m - estimate_.position_m).norm());
@@ -159,6 +160,7 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
     displacement = is_standstill ? Vec2::Zero() : Vec2(length / speed * intent.velocity_mps);
     if (!is_standstill) limits.speed_mps = speed;
   }
+  limits.speed_mps = std::min(limits.speed_mps, max_speed_mps);
   return desired_acceleration(displacement, at_start.velocity_mps, limits, cycle_,
                               cycle_ * negotiation_.lead());
 }

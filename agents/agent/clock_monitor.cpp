@@ -43,13 +43,20 @@ bool ClockMonitor::allows_motion(Time now) const {
   return offset && !offset->is_beyond(bound_);
 }
 
+double ClockMonitor::max_speed_mps(Time now) const {
+  const auto offset = robot_coordinator_offset(now);
+  if (!offset) return 0;
+  const Duration largest = std::max(offset->high, -offset->low);
+  return budget_.max_speed_mps(margin_m_, std::max(0.0, to_seconds(largest)));
+}
+
 bool ClockMonitor::is_beyond_bound(Time now) const {
   const auto offset = robot_coordinator_offset(now);
   return offset && offset->is_beyond(bound_);
 }
 
 bool ClockMonitor::is_measurement_due(Time now) const {
-  return !coordinator_.at(now, kMaxMeasurementAge / 2);
+  return !coordinator_.at(now, kMaxMeasurementAge / 2) || max_speed_mps(now) < budget_.speed_mps;
 }
 
 Duration ClockMonitor::max_robot_offset(Time now) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "common/motion/safety_budget.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "common/time/clock_offset.hpp"
@@ -20,8 +21,8 @@ class ClockMonitor {
   /// Older measurements are ignored, because clocks drift.
   static constexpr Duration kMaxMeasurementAge{2'000'000'000};
 
-  /// `bound`: upper bound of the offset between a robot's clock and the coordinator's.
-  explicit ClockMonitor(Duration bound) : bound_(bound) {}
+  ClockMonitor(const SafetyBudget& budget, double margin_m)
+      : budget_(budget), margin_m_(margin_m), bound_(from_seconds(budget.clock_bound_s)) {}
 
   /// Uses the echoed stamp of a command. A robot echoes commands of the agent that it obeys, so the echo is
   /// ignored unless that agent's incarnation is `own`.
@@ -35,9 +36,13 @@ class ClockMonitor {
 
   /// Both clocks have recent measurements, and an offset within the bound is consistent with them.
   [[nodiscard]] bool allows_motion(Time now) const;
+  /// The speed at which the largest offset that is consistent with the measurements does not use up the
+  /// margin; 0 without recent measurements. Above every speed limit if the network is quick enough.
+  [[nodiscard]] double max_speed_mps(Time now) const;
   /// Recent measurements prove that the offset exceeds the bound.
   [[nodiscard]] bool is_beyond_bound(Time now) const;
-  /// The coordinator's clock should be measured again, before the last measurement becomes too old.
+  /// The coordinator's clock should be measured again, before the last measurement becomes too old, or to
+  /// raise max_speed_mps() to the speed limit.
   [[nodiscard]] bool is_measurement_due(Time now) const;
 
   /// Estimated offset of the robot's clock from the agent's, positive if the robot's clock is ahead: the
@@ -52,6 +57,8 @@ class ClockMonitor {
   void fill(msg::AgentStatus& status, Time now) const;
 
  private:
+  SafetyBudget budget_;
+  double margin_m_;
   Duration bound_;
   ClockOffset robot_, coordinator_;  // offsets from the agent's clock
   Incarnation robot_incarnation_ = 0;

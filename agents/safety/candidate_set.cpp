@@ -49,8 +49,9 @@ CandidateSet::CandidateSet(int samples, const MotionLimits& limits, const batch:
       gaps_(blocks_for(count_)) {}
 
 void CandidateSet::sample_accelerations(const Vec2& velocity, const Vec2& desired, Duration hold_time,
-                                        Rng& rng) {
-  const batch::LimitSettings settings = limit_settings(velocity, desired, limits_, hold_time);
+                                        double max_speed, Rng& rng) {
+  batch::LimitSettings settings = limit_settings(velocity, desired, limits_, hold_time);
+  settings.speed_limit_mps = max_speed;
   sample_in_velocity_frame(settings.is_at_rest, limits_, rng, count_ - 1, sampled_x_.data(),
                            sampled_y_.data());
   for (std::size_t i = 1; i < count_; ++i) {

@@ -18,8 +18,9 @@ class CandidateSet {
   CandidateSet(int samples, const MotionLimits& limits, const batch::Kernels& kernels);
 
   /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), limited to what may
-  /// be held for `hold_time`. Precondition: the desired acceleration obeys the limits.
-  void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time, Rng& rng);
+  /// be held for `hold_time` at this maximum speed. Precondition: the desired acceleration obeys the limits.
+  void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time,
+                            double max_speed_mps, Rng& rng);
   /// Prepares for compare(): samples the motions that begin in `at_start`, hold an acceleration for `hold_s`,
   /// and then stop.
   void sample_motions(const State& at_start, double hold_s, double step_s);

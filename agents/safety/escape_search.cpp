@@ -62,8 +62,8 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
   if (!surroundings.is_in_conflict) return result;
   const auto try_acceleration = [&](const Vec2& desired) {
     if (result.count == SearchResult::kMaxCandidates) return;
-    const Vec2 acceleration =
-        limit_acceleration(desired, query.at_start.velocity_mps, rules.limits, query.hold_time);
+    const Vec2 acceleration = limit_acceleration(desired, query.at_start.velocity_mps,
+                                                 query.limited(rules.limits), query.hold_time);
     const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, acceleration,
                                                        query.hold_time, rules.limits.deceleration_mps2);
     const Version candidate{base.robot,  base.incarnation, base.number + 1,

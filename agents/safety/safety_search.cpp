@@ -65,15 +65,17 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
 
 SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng) {
   const MotionLimits& limits = rules_.limits;
+  const MotionLimits limited = query.limited(limits);
   const Vec2 desired =
-      limit_acceleration(query.desired_mps2, query.at_start.velocity_mps, limits, query.hold_time);
+      limit_acceleration(query.desired_mps2, query.at_start.velocity_mps, limited, query.hold_time);
   const TrajectoryBounds desired_bounds = trajectory_bounds(
       accelerate_then_stop(query.start, query.at_start, desired, query.hold_time, limits.deceleration_mps2));
   const double max_deviation_m =
       (desired.norm() + max_acceleration_mps2(limits)) * deviation_per_mps2(query, limits);
 
   SearchResult result;
-  candidates_.sample_accelerations(query.at_start.velocity_mps, desired, query.hold_time, rng);
+  candidates_.sample_accelerations(query.at_start.velocity_mps, desired, query.hold_time, limited.speed_mps,
+                                   rng);
   find_nearby(query, {desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m}, others);
   compare(query, desired_bounds, max_deviation_m, result.checks);
   while (const auto index = candidates_.take_nearest(settings_.spread_mps2)) {

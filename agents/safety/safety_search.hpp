@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +25,14 @@ struct SearchQuery {
   double inflation_m = 0;                    ///< added to the robot's radius
   std::span<const MovingObstacle> moving{};  ///< obstacles that the robot must be passively safe from
   std::optional<RobotId> robot{};            ///< if set, this robot's versions in the index are ignored
+  /// Below the speed limit if the clocks require it. A robot that is faster already slows down.
+  double max_speed_mps = std::numeric_limits<double>::infinity();
+
+  /// The motion limits, with the lower of both speeds.
+  MotionLimits limited(MotionLimits limits) const {
+    limits.speed_mps = std::min(limits.speed_mps, max_speed_mps);
+    return limits;
+  }
 };
 
 struct SearchSettings {

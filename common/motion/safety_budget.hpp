@@ -16,6 +16,11 @@ struct SafetyBudget {
   constexpr double required_margin_m() const {
     return 2 * tracking_bound_m + 2 * clock_bound_s * 2 * speed_mps;
   }
+  /// The speed at which a robot uses up its half of what the margin leaves for clocks, if its clock is off by
+  /// up to `offset_s` from the coordinator's. Infinite for an offset of 0.
+  constexpr double max_speed_mps(double margin_m, double offset_s) const {
+    return (margin_m / 2 - tracking_bound_m) / offset_s;
+  }
 };
 
 /// One line that shows how the margin is composed; programs print it at start.

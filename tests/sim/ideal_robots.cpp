@@ -157,7 +157,7 @@ State IdealRobots::state_at(RobotId id, Time t) {
 
 const Version& IdealRobots::executing(RobotId id, Time t) {
   Robot& robot = robots_.at(id);
-  advance(robot, t);
+  advance(robot, t + robot.clock_offset);
   return robot.executing;
 }
 

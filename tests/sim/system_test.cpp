@@ -85,7 +85,7 @@ TEST_CASE(
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     MonitoredSystem run(scenario, seed);
-    (void)run.system.run_until_arrived(run.system.begin() + from_seconds(30));
+    (void)run.system.run_until_arrived(run.system.begin() + from_seconds(60));
     run.require_safe();
     arrived += run.system.metrics().arrived();
   }

@@ -14,14 +14,15 @@ constexpr double kCycle_s = 1.0 / 60;
 Time at_s(double seconds) { return time_from_ns(1'000'000'000'000'000) + from_seconds(seconds); }
 
 /// An agent with a robot and a coordinator whose clocks are ahead of the agent's by `robot_s` and
-/// `coordinator_s`. The network's delays are uniform over 0.2 ms to 0.2 ms + `spread_s`.
+/// `coordinator_s`. The network's delays are uniform over `min_delay_s` to that plus
+/// `spread_s`.
 struct ClockFixture {
-  double robot_s = 0, coordinator_s = 0, spread_s = 0.0002;
+  double robot_s = 0, coordinator_s = 0, min_delay_s = 0.0002, spread_s = 0.0002;
   Rng rng{1};
-  ClockMonitor clocks{kBound};
+  ClockMonitor clocks{SafetyBudget{}, 0.01};
 
   ClockFixture() { clocks.on_epoch(kEpoch); }
-  double delay() { return 0.0002 + rng.uniform(0, spread_s); }
+  double delay() { return min_delay_s + rng.uniform(0, spread_s); }
   Feedback feedback(double sent) {
     const double received = sent + delay(), answered = received + 0.003;
     Feedback f;
@@ -76,13 +77,15 @@ TEST_CASE("motion requires recent measurements of both clocks") {
   CHECK(f.clocks.allows_motion(at_s(0.01)));
   f.clocks.fill(status, at_s(0.01));
   CHECK(status.clock_uncertainty_s() > 0);
-  CHECK_FALSE(f.clocks.is_measurement_due(at_s(0.9)));
-  CHECK(f.clocks.is_measurement_due(at_s(1.1)));
-  f.measure_robot(2.5);
-  CHECK_FALSE(f.clocks.allows_motion(at_s(2.6)));
-  f.measure_coordinator(2.6);
-  CHECK(f.clocks.allows_motion(at_s(2.7)));
-  CHECK_FALSE(f.clocks.allows_motion(at_s(5)));
+  f.measure_both(0.01, 48);
+  REQUIRE(f.clocks.max_speed_mps(at_s(0.85)) > 2);
+  CHECK_FALSE(f.clocks.is_measurement_due(at_s(1.7)));
+  CHECK(f.clocks.is_measurement_due(at_s(1.9)));
+  f.measure_robot(3.5);
+  CHECK_FALSE(f.clocks.allows_motion(at_s(3.6)));
+  f.measure_coordinator(3.6);
+  CHECK(f.clocks.allows_motion(at_s(3.7)));
+  CHECK_FALSE(f.clocks.allows_motion(at_s(6)));
 }
 
 TEST_CASE(
@@ -122,6 +125,38 @@ TEST_CASE("an offset beyond the bound by more than the fastest round trips is de
   f.robot_s = 0;
   f.measure_both(1, 10);
   CHECK(f.clocks.allows_motion(at_s(1 + 10 * kCycle_s)));
+}
+
+TEST_CASE("the larger the offset that the measurements permit, the lower the speed") {
+  ClockFixture quick;
+  CHECK(quick.clocks.max_speed_mps(at_s(0)) == 0);
+  quick.measure_robot(0);
+  CHECK(quick.clocks.max_speed_mps(at_s(0.01)) == 0);
+  quick.measure_both(0, 60);
+  CHECK(quick.clocks.max_speed_mps(at_s(1)) > 2);
+  CHECK(quick.clocks.max_speed_mps(at_s(4)) == 0);  // not measured for too long
+
+  // Of the default margin, 2 mm per robot are left for clocks.
+  ClockFixture slow;
+  slow.min_delay_s = 0.01;
+  slow.spread_s = 0;
+  slow.measure_both(0, 60);
+  CHECK(slow.clocks.max_speed_mps(at_s(1)) == Approx(0.002 / 0.02).epsilon(0.05));
+  CHECK(slow.clocks.is_measurement_due(at_s(1)));  // more measurements may raise the speed
+  slow.robot_s = 0.004;
+  slow.measure_both(1, 60);
+  CHECK_FALSE(slow.clocks.is_beyond_bound(at_s(2)));
+  // The offset may have been anywhere in the interval before, so both remain possible.
+  CHECK(slow.clocks.max_speed_mps(at_s(2)) <= 0.002 / 0.019);
+
+  for (const double offset_s : {0.0004, -0.0004}) {
+    ClockFixture known;
+    known.robot_s = offset_s;
+    known.min_delay_s = known.spread_s = 0.00005;
+    known.measure_both(0, 60);
+    CHECK(known.clocks.max_speed_mps(at_s(1)) > 2);
+    CHECK(known.clocks.max_speed_mps(at_s(1)) < 0.002 / 0.0004);
+  }
 }
 
 TEST_CASE("a clock jump while the robot drives is detected within two cycles") {

@@ -28,7 +28,7 @@ TEST_CASE(
     for (int round = 0; round < 500; ++round) {
       CAPTURE(round);
       const State at_start{{0, 0}, random_velocity(rng, 2, 3)};
-      candidates.sample_accelerations(at_start.velocity_mps, {0, 0}, kHold, rng);
+      candidates.sample_accelerations(at_start.velocity_mps, {0, 0}, kHold, limits.speed_mps, rng);
       const auto motion = [&](std::size_t i) {
         return accelerate_then_stop(kStart, at_start, candidates.acceleration(i), kHold,
                                     limits.deceleration_mps2);

@@ -72,6 +72,38 @@ TEST_CASE("robots that were pushed too near to an obstacle or off the field find
   }
 }
 
+TEST_CASE("no escape candidate is moving when an opponent can touch the robot") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const FloorRules rules = test_rules();
+  int found = 0, excluded = 0;
+  for (int i = 0; i < 2000; ++i) {
+    CAPTURE(i);
+    const auto direction = [&] { return rotated({1, 0}, rng.uniform(-3.14, 3.14)); };
+    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction(), rng.uniform(0, 0.02));
+    const Version other = braking(2, Vec2(-0.5, -0.5) + rng.uniform(0.1, 0.18) * direction(), {0, 0});
+    SearchQuery query = query_on(base, 3 * direction());
+    const int without_opponent =
+        static_cast<int>(search_escape(query, base, index_of({&other, 1}), rules).count);
+    const MovingObstacle opponent{query.at_start.position_m + rng.uniform(0.2, 0.8) * direction(), 0.09,
+                                  kStart - from_seconds(rng.uniform(0, 0.2)), rng.uniform(0.2, 2)};
+    query.moving = {&opponent, 1};
+    const SearchResult result = search_escape(query, base, index_of({&other, 1}), rules);
+    excluded += without_opponent - static_cast<int>(result.count);
+    for (std::size_t k = 0; k < result.count; ++k) {
+      ++found;
+      const Trajectory& candidate = result.candidates[k];
+      for (Time t = kStart; t < candidate.end(); t += std::chrono::milliseconds(2)) {
+        const double distance_m = (candidate.state_at(t).position_m - opponent.position_m).norm();
+        REQUIRE(distance_m > opponent.reach_m(t) + rules.radius_m + rules.margin_m);
+      }
+    }
+  }
+  CHECK(found > 500);
+  CHECK(excluded > 500);
+}
+
 TEST_CASE("no escape candidate comes nearer to another robot than the base or the minimum separation") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
