@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 namespace sidestep {
@@ -17,9 +18,10 @@ struct SafetyBudget {
     return 2 * tracking_bound_m + 2 * clock_bound_s * 2 * speed_mps;
   }
   /// The speed at which a robot uses up its half of what the margin leaves for clocks, if its clock is off by
-  /// up to `offset_s` from the coordinator's. Infinite for an offset of 0.
+  /// up to `offset_s` from the coordinator's. Infinite for an offset of 0. A margin below the required one,
+  /// as studies use it, counts as the required one.
   constexpr double max_speed_mps(double margin_m, double offset_s) const {
-    return (margin_m / 2 - tracking_bound_m) / offset_s;
+    return (std::max(margin_m, required_margin_m()) / 2 - tracking_bound_m) / offset_s;
   }
 };
 
