@@ -102,8 +102,8 @@ class Agent {
   std::vector<Circle> moving_obstacles(Time now);
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
-  /// Inflation of a version that continues `base`: the base's inflation, or 0 once vision has observed the
-  /// robot at rest where the robot itself estimates that it is.
+  /// Inflation of a version that continues `base`: the base's inflation, or 0 once the robot is at rest and
+  /// vision agrees with the robot's own position estimate.
   double inflation_from(const Version& base, Time start) const;
   /// Versions that start farther apart than this cannot conflict.
   double search_horizon_m() const;

@@ -39,6 +39,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
     : bus_(bus),
       robot_(robot),
       cycle_(scenario.cycle),
+      max_speed_mps_(scenario.limits.speed_mps),
       agent_(scenario, robot, incarnation, std::move(scratch), settings),
       clocks_(budget_of(scenario), scenario.margin_m),
       world_(robot),
@@ -161,12 +162,15 @@ void AgentNode::register_if_due() {
   }
 }
 
+void AgentNode::measure_coordinator_clock() {
+  if (measurement_wait_ > 0) return;
+  measurement_wait_ = kCyclesBetweenRegistrations;
+  publish_registration();
+}
+
 bool AgentNode::clocks_agree() {
   clocks_.on_epoch(agent_.epoch());
-  if (clocks_.is_measurement_due(bus_.now()) && measurement_wait_ == 0) {
-    measurement_wait_ = kCyclesBetweenRegistrations;
-    publish_registration();
-  }
+  if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock();
   return clocks_.allows_motion(bus_.now());
 }
 
@@ -183,6 +187,8 @@ void AgentNode::negotiate(Time start) {
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
   const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps); });
   if (!plan) return;
+  // More measurements narrow the interval, so that the robot may drive faster.
+  if (max_speed_mps < max_speed_mps_) measure_coordinator_clock();
   const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
   if (proposal) publish_proposal(*proposal);
 }

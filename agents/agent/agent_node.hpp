@@ -42,6 +42,8 @@ class AgentNode {
   }
   void begin_cycle();
   void register_if_due();
+  /// Requests a measurement by a registration, which the coordinator answers, unless it did so recently.
+  void measure_coordinator_clock();
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();
   void measure_robot_clock(const Feedback& feedback);
@@ -61,6 +63,7 @@ class AgentNode {
   Bus& bus_;
   RobotId robot_;
   Duration cycle_;
+  double max_speed_mps_;  // of the scenario
   Agent agent_;
   ClockMonitor clocks_;
   WorldView world_;

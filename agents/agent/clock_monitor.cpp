@@ -40,7 +40,7 @@ std::optional<OffsetInterval> ClockMonitor::robot_coordinator_offset(Time now) c
 
 bool ClockMonitor::allows_motion(Time now) const {
   const auto offset = robot_coordinator_offset(now);
-  return offset && !offset->is_beyond(bound_);
+  return offset && !offset->is_beyond(bound());
 }
 
 double ClockMonitor::max_speed_mps(Time now) const {
@@ -52,11 +52,11 @@ double ClockMonitor::max_speed_mps(Time now) const {
 
 bool ClockMonitor::is_beyond_bound(Time now) const {
   const auto offset = robot_coordinator_offset(now);
-  return offset && offset->is_beyond(bound_);
+  return offset && offset->is_beyond(bound());
 }
 
 bool ClockMonitor::is_measurement_due(Time now) const {
-  return !coordinator_.at(now, kMaxMeasurementAge / 2) || max_speed_mps(now) < budget_.speed_mps;
+  return !coordinator_.at(now, kMaxMeasurementAge / 2);
 }
 
 Duration ClockMonitor::max_robot_offset(Time now) const {

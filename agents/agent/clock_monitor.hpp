@@ -21,8 +21,7 @@ class ClockMonitor {
   /// Older measurements are ignored, because clocks drift.
   static constexpr Duration kMaxMeasurementAge{2'000'000'000};
 
-  ClockMonitor(const SafetyBudget& budget, double margin_m)
-      : budget_(budget), margin_m_(margin_m), bound_(from_seconds(budget.clock_bound_s)) {}
+  ClockMonitor(const SafetyBudget& budget, double margin_m) : budget_(budget), margin_m_(margin_m) {}
 
   /// Uses the echoed stamp of a command. A robot echoes commands of the agent that it obeys, so the echo is
   /// ignored unless that agent's incarnation is `own`.
@@ -41,8 +40,7 @@ class ClockMonitor {
   [[nodiscard]] double max_speed_mps(Time now) const;
   /// Recent measurements prove that the offset exceeds the bound.
   [[nodiscard]] bool is_beyond_bound(Time now) const;
-  /// The coordinator's clock should be measured again, before the last measurement becomes too old, or to
-  /// raise max_speed_mps() to the speed limit.
+  /// The coordinator's clock should be measured again, before the last measurement becomes too old.
   [[nodiscard]] bool is_measurement_due(Time now) const;
 
   /// Estimated offset of the robot's clock from the agent's, positive if the robot's clock is ahead: the
@@ -57,9 +55,10 @@ class ClockMonitor {
   void fill(msg::AgentStatus& status, Time now) const;
 
  private:
+  Duration bound() const { return from_seconds(budget_.clock_bound_s); }
+
   SafetyBudget budget_;
   double margin_m_;
-  Duration bound_;
   ClockOffset robot_, coordinator_;  // offsets from the agent's clock
   Incarnation robot_incarnation_ = 0;
   Epoch epoch_ = 0;

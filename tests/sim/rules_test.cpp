@@ -41,7 +41,7 @@ double max_speed_mps(const SimSystem& system) {
   return result;
 }
 
-TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and nobody moves") {
+TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and no robot moves") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
     const Scenario scenario = crossing();

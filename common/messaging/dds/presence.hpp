@@ -22,9 +22,10 @@ inline constexpr Duration kSilenceLimit{6'000'000'000};
 /// What one participant announces to another.
 struct PresenceNotice {
   enum class Kind : std::uint32_t {
-    kForgotten = 1,  ///< the sender has forgotten `whom`; `number` counts whom it has forgotten so far
-    kAgreed =
-        2,  ///< answer to the kForgotten of `whom` with this number: the sender has forgotten `whom` too
+    /// The sender has forgotten `whom`. `number` identifies this event among the sender's.
+    kForgotten = 1,
+    /// The answer to that notice, with the same number: its receiver has forgotten the other side too.
+    kAgreed = 2,
   };
   ParticipantId whom{};
   Kind kind = Kind::kForgotten;

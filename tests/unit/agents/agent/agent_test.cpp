@@ -90,7 +90,7 @@ TEST_CASE("planning settings replace the defaults") {
   CHECK_FALSE(d.plans(1.06));
 }
 
-TEST_CASE("inflation lasts until vision has seen the robot at rest where the robot itself believes to be") {
+TEST_CASE("inflation lasts until the robot is at rest and vision agrees with its own estimate") {
   DrivenAgent d;
   Feedback displaced = resting_at({0, 0}, 1);
   displaced.executing.number = 50;
@@ -104,7 +104,7 @@ TEST_CASE("inflation lasts until vision has seen the robot at rest where the rob
   };
   d.observe(0, 0.85, 1.01);  // from before it rested
   CHECK(inflation_m(1.02) == 0.05);
-  d.observe(0.04, 1.02, 1.03);  // the robot does not know yet that it is elsewhere
+  d.observe(0.04, 1.02, 1.03);  // the robot has not received this observation yet
   CHECK(inflation_m(1.04) == 0.05);
   displaced.valid_at = at_s(1.05);
   displaced.estimate.position_m = {0.039, 0};
