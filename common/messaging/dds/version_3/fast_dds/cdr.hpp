@@ -12,6 +12,7 @@
 #include "idl/monitorCdrAux.hpp"
 #include "idl/negotiationCdrAux.hpp"
 #include "idl/robotCdrAux.hpp"
+#include "idl/rulesCdrAux.hpp"
 #include "idl/visionCdrAux.hpp"
 
 /// Fast CDR 2 and the types that Fast DDS-Gen 4 generates. Their encoding is that of version 2 (XCDR 1).
