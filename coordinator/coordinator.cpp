@@ -19,14 +19,16 @@ bool is_malformed(const Registration& registration) {
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
     : ledger_(rules, std::move(roster)),
+      displaced_(rules.margin_m),
       epoch_(epoch),
       unregistered_count_(ledger_.roster().size()),
       records_(kMaxRobots) {}
 
 void Coordinator::begin_epoch(Epoch epoch) {
   epoch_ = epoch;
-  contradicted_ = false;
   ledger_.clear();
+  displaced_.clear();
+  watched_until_ = {};
   for (Record& record : records_) record = {};
   unregistered_count_ = ledger_.roster().size();
 }
@@ -56,10 +58,12 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   const Incarnation agent = registration.incarnation;
   if (record.registered && agent == record.incarnation) return msg::Reason::REASON_GRANTED;
   if (record.registered && agent < record.incarnation) return msg::Reason::REASON_OLD_INCARNATION;
-  if (!record.registered) {
+  if (!record.registered || ledger_.is_quarantined(robot)) {
+    // The robot obeys the new agent, so it can execute no version that the registration does not list.
     ledger_.register_robot(robot, versions);
+    if (!record.registered && !record.attested) --unregistered_count_;
     record.registered = true;
-    --unregistered_count_;
+    record.attested = false;
   } else {
     // A new agent of a registered robot: the ledger already contains the robot's versions, and no others may
     // be added without checks.
@@ -74,19 +78,55 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   return msg::Reason::REASON_GRANTED;
 }
 
-void Coordinator::on_feedback(const Feedback& feedback) {
-  if (!is_active()) return;
+bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
+  if (!is_active()) return true;
   if (!ledger_.has_robot(feedback.robot) || !ends_at_rest(feedback.executing)) {
     ++invalid_;
-    return;
+    return true;
   }
-  if (!record_of(feedback.robot).registered) return;
+  Record& record = record_of(feedback.robot);
+  // Older gaps count for less and less.
+  if (record.heard_at) record.longest_gap = std::max(now - *record.heard_at, record.longest_gap * 15 / 16);
+  record.heard_at = now;
+  if (!record.registered && !record.attested) return true;
   if (feedback.is_absent()) {
     ledger_.on_lifted(feedback.robot, feedback.valid_at, feedback.robot_incarnation);
-  } else if (ledger_.on_executing(feedback.executing, feedback.valid_at, feedback.is_off_reference,
-                                  feedback.robot_incarnation) == FactOutcome::kContradiction) {
-    contradicted_ = true;
+    return true;
   }
+  return ledger_.on_executing(feedback.executing, feedback.valid_at, feedback.is_off_reference,
+                              feedback.robot_incarnation) != FactOutcome::kContradiction;
+}
+
+void Coordinator::on_world(std::span<const RobotObservation> robots, Time valid_at, Time now) {
+  if (!is_active()) return;
+  find_silent(now);
+  watched_until_ = std::max(watched_until_, valid_at);
+  for (const RobotObservation& robot : robots) {
+    if (!ledger_.has_robot(robot.robot)) continue;
+    const Record& record = record_of(robot.robot);
+    if (record.registered || record.attested) displaced_.observe(robot, ledger_);
+  }
+}
+
+void Coordinator::find_silent(Time now) {
+  silent_count_ = 0;
+  for (const RobotId robot : ledger_.roster()) {
+    Record& record = record_of(robot);
+    const auto moves = [=](const Version& version) { return version.trajectory.end() > now; };
+    record.silent = record.registered && record.heard_at &&
+                    now - *record.heard_at > std::max(kMaxSilence, 2 * record.longest_gap) &&
+                    std::ranges::any_of(ledger_.versions(robot), moves);
+    silent_count_ += record.silent;
+  }
+}
+
+bool Coordinator::on_attestation(RobotId robot) {
+  if (!is_active() || !ledger_.has_robot(robot)) return false;
+  Record& record = record_of(robot);
+  if (record.registered || record.attested) return false;
+  record.attested = true;
+  --unregistered_count_;
+  return true;
 }
 
 std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
@@ -111,6 +151,10 @@ std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
     again.request_sent_at = proposal.sent_at;
     return again;
   }
+  if (const auto suspension = suspension_reason(proposal.robot); suspension != msg::Reason::REASON_GRANTED) {
+    verdict.reasons.fill(suspension);
+    return verdict;
+  }
   ++proposals_;
   verdict.reasons.fill(msg::Reason::REASON_NOT_EVALUATED);
   decide(proposal, record, verdict);
@@ -126,6 +170,14 @@ msg::Reason Coordinator::refusal_reason(const Proposal& proposal, const Record& 
   if (proposal.incarnation < record.incarnation) return msg::Reason::REASON_OLD_INCARNATION;
   if (proposal.candidate_count == 0) return msg::Reason::REASON_MALFORMED;
   return msg::Reason::REASON_GRANTED;
+}
+
+msg::Reason Coordinator::suspension_reason(RobotId robot) const {
+  if (ledger_.is_quarantined(robot)) return msg::Reason::REASON_QUARANTINED;
+  // A robot that is absent may be seen in somebody's hands. It is granted a place to be put down.
+  const bool is_absent = ledger_.versions(robot).empty();
+  return displaced_.contains(robot) && !is_absent ? msg::Reason::REASON_DISPLACED
+                                                  : msg::Reason::REASON_GRANTED;
 }
 
 const Verdict* Coordinator::find_verdict(const Record& record, VersionNumber proposal_number) const {
@@ -170,13 +222,28 @@ msg::CoordinatorState Coordinator::state() const {
     state.conflict_first(conflicts.front().first);
     state.conflict_second(conflicts.front().second);
   }
+  if (!is_active()) return state;
+  state.watched_until_ns(to_ns(watched_until_));
   for (const RobotId robot : ledger_.roster()) {
-    if (!is_active()) continue;
-    if (!records_[robot].registered) {
-      state.missing().push_back(robot);
-    } else if (ledger_.versions(robot).empty()) {
-      state.absent(state.absent() + 1);
+    const Record& record = records_[robot];
+    const bool is_missing = !record.registered && !record.attested;
+    if (!is_missing && ledger_.versions(robot).empty()) state.absent(state.absent() + 1);
+    msg::RobotNotice notice;
+    notice.robot(robot);
+    notice.is_missing(is_missing);
+    notice.is_quarantined(ledger_.is_quarantined(robot));
+    notice.is_displaced(displaced_.contains(robot));
+    const auto seen = displaced_.last_observation(robot);
+    notice.is_silent(record.silent && seen);
+    if (is_uncontrolled(notice)) {
+      notice.observed_at_ns(to_ns(seen->observed_at));
+      notice.x_m(seen->position_m.x());
+      notice.y_m(seen->position_m.y());
+      notice.vx_mps(seen->velocity_mps.x());
+      notice.vy_mps(seen->velocity_mps.y());
+      notice.position_variance_m2(seen->position_variance_m2);
     }
+    if (is_missing || notice.is_quarantined() || is_uncontrolled(notice)) state.notices().push_back(notice);
   }
   return state;
 }

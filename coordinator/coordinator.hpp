@@ -7,12 +7,14 @@
 
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
+#include "coordinator/displaced_robots.hpp"
 #include "coordinator/ledger.hpp"
 
 namespace sidestep {
 
-/// The only place where versions are compared: registration, verdicts and the ledger of one epoch. It needs
-/// no clock. Messages may be late, repeated or wrong; an invalid one changes nothing.
+/// The only place where versions are compared: registration, verdicts and the ledger of one epoch. What it
+/// grants depends on no clock; `now` only shows which robots have fallen silent. Messages may be late,
+/// repeated or wrong; an invalid one changes nothing.
 class Coordinator {
  public:
   /// In epoch 0 the coordinator stands by and answers no messages.
@@ -26,17 +28,27 @@ class Coordinator {
   /// The answer to a registration, with proposal_number 0 and REASON_GRANTED if the agent is registered now;
   /// nullopt as for on_proposal().
   std::optional<Verdict> on_registration(const Registration& registration);
-  /// A fact from a robot.
-  void on_feedback(const Feedback& feedback);
-  /// A robot has reported a fact that is inconsistent with the ledger. Nothing is granted until a new epoch
-  /// begins.
-  bool is_contradicted() const { return contradicted_; }
+  /// A fact from a robot. False if it contradicts the ledger, so that the robot is quarantined: until it is
+  /// lifted or a new agent registers it, nothing is granted to it.
+  bool on_feedback(const Feedback& feedback, Time now);
+  /// Where vision sees the robots in the world state of this time. Nothing is granted to displaced robots.
+  void on_world(std::span<const RobotObservation> robots, Time valid_at, Time now);
+  /// The operator attests that a robot is not on the floor, for this epoch. False unless the coordinator
+  /// awaits the robot's registration.
+  bool on_attestation(RobotId robot);
 
   bool is_active() const { return epoch_ != 0; }
-  /// False until every robot of the roster has registered, and after a contradiction.
-  bool is_granting() const { return is_active() && unregistered_count_ == 0 && !contradicted_; }
+  /// False until every robot of the roster has registered, or its absence is attested.
+  bool is_granting() const { return is_active() && unregistered_count_ == 0; }
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
+  const DisplacedRobots& displaced() const { return displaced_; }
+  /// A robot that should be in motion is silent if no fact has arrived for kMaxSilence, or for twice the
+  /// longest gap of late, so that a slow network does not silence robots.
+  bool is_silent(RobotId robot) const { return records_[robot].silent; }
+  static constexpr Duration kMaxSilence{50'000'000};
+  /// Whether any robot is displaced or silent.
+  bool has_uncontrolled_robots() const { return displaced_.any() || silent_count_ > 0; }
 
   msg::CoordinatorState state() const;
 
@@ -46,6 +58,10 @@ class Coordinator {
   /// State of one robot's agent.
   struct Record {
     bool registered = false;
+    bool attested = false;  // as absent, instead of its registration
+    bool silent = false;
+    std::optional<Time> heard_at;  // when the last fact arrived
+    Duration longest_gap{0};       // between facts lately
     Incarnation incarnation = 0;
     VersionNumber newest_number = 0;  // highest version number proposed so far
     std::array<Verdict, kVerdictHistory> verdicts;
@@ -57,11 +73,15 @@ class Coordinator {
   const Verdict* find_verdict(const Record& record, VersionNumber proposal_number) const;
   void decide(const Proposal& proposal, Record& record, Verdict& verdict);
   msg::Reason refusal_reason(const Proposal& proposal, const Record& record) const;
+  void find_silent(Time now);
+  /// Why nothing is granted to a registered robot, or REASON_GRANTED.
+  msg::Reason suspension_reason(RobotId robot) const;
 
   Ledger ledger_;
+  DisplacedRobots displaced_;
+  Time watched_until_{};  // time of the latest world state
   Epoch epoch_;
-  bool contradicted_ = false;
-  std::size_t unregistered_count_;
+  std::size_t unregistered_count_, silent_count_ = 0;
   std::vector<Record> records_;  // by robot
   std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;
 };

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
+#include <fmt/format.h>
+
 #include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/observation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "coordinator/ledger_pages.hpp"
@@ -11,6 +14,11 @@ namespace {
 
 // A standby announces itself every kStandbyAnnouncePeriod heartbeat periods.
 constexpr int kStandbyAnnouncePeriod = 10;
+// A robot that has been heard of within this time is not absent.
+constexpr Duration kSilence{1'000'000'000};
+// A world state that is valid later by this coordinator's clock is refused: it would make all others
+// outdated.
+constexpr Duration kMaxVisionAhead{100'000'000};
 
 }  // namespace
 
@@ -35,6 +43,9 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
                  [this](const msg::Registration& message) { take(decode(message, bus_.now())); });
   bus_.subscribe(topics::kProposal,
                  [this](const msg::Proposal& message) { take(decode(message, bus_.now())); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world(message); });
+  bus_.subscribe(topics::kAttestation,
+                 [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
   update_failover();
   publish_state_periodically();
   publish_ledger();
@@ -69,10 +80,52 @@ void CoordinatorNode::handle(const Registration& registration) {
 
 void CoordinatorNode::handle(const Feedback& feedback) {
   observe_epoch(feedback.robot, feedback.obeyed_epoch);
-  coordinator_.on_feedback(feedback);
-  if (!coordinator_.is_contradicted()) return;
-  failover_.begin_epoch(bus_.now());
-  apply_epoch();
+  if (!feedback.is_absent()) heard_at_[feedback.robot] = bus_.now();
+  const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
+  if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
+  report(fmt::format("robot {} is quarantined: it executes version {}, which it was never granted",
+                     feedback.robot, feedback.executing.number));
+  publish_state();
+}
+
+void CoordinatorNode::on_world(const msg::WorldState& message) {
+  const Time valid_at = time_from_ns(message.valid_at_ns());
+  if (message.header().sender() != static_cast<std::uint32_t>(Sender::kVision) ||
+      valid_at > bus_.now() + kMaxVisionAhead) {
+    ++invalid_;
+    return;
+  }
+  observations_.clear();
+  for (const msg::TrackedRobot& robot : message.robots()) {
+    const auto observation = decode(robot, bus_.now());
+    if (observation && observation->observed_at <= bus_.now() + Ledger::kMaxClockDifference)
+      observations_.push_back(*observation);
+    else
+      ++invalid_;
+  }
+  const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
+  coordinator_.on_world(observations_, valid_at, bus_.now());
+  // Agents need the latest places at once.
+  if (was_uncontrolled || coordinator_.has_uncontrolled_robots()) publish_state();
+}
+
+void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
+  const RobotId robot = message.robot();
+  if (message.header().sender() != static_cast<std::uint32_t>(Sender::kOperator)) {
+    ++invalid_;
+    return;
+  }
+  if (!coordinator_.is_active()) return;
+  const auto heard = heard_at_.find(robot);
+  if (heard != heard_at_.end() && bus_.now() - heard->second < kSilence) {
+    report(fmt::format("robot {} reports that it is on the floor: its attested absence is ignored", robot));
+  } else if (coordinator_.on_attestation(robot)) {
+    report(fmt::format("an operator attests that robot {} is absent; valid in epoch {}", robot,
+                       coordinator_.epoch()));
+    publish_state();
+  } else {
+    report(fmt::format("robot {} is not missing: its attested absence is ignored", robot));
+  }
 }
 
 void CoordinatorNode::handle(const Proposal& proposal) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
@@ -20,6 +23,9 @@ class CoordinatorNode {
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
+  /// Sets a callback for events that an operator should know of, in plain words.
+  void on_event(std::function<void(const std::string&)> callback) { on_event_ = std::move(callback); }
+
   const Coordinator& coordinator() const { return coordinator_; }
 
  private:
@@ -32,6 +38,11 @@ class CoordinatorNode {
   void handle(const Registration& registration);
   void handle(const Feedback& feedback);
   void handle(const Proposal& proposal);
+  void on_world(const msg::WorldState& message);
+  void on_attestation(const msg::AbsenceAttestation& message);
+  void report(const std::string& event) {
+    if (on_event_) on_event_(event);
+  }
   /// Records the epoch that an agent or a robot obeys.
   void observe_epoch(RobotId robot, Epoch epoch);
   void answer(const Verdict& verdict);
@@ -50,8 +61,11 @@ class CoordinatorNode {
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
-  int standby_periods_ = 0;    // heartbeat periods while standing by
-  std::uint64_t invalid_ = 0;  // messages that decoding refused
+  std::function<void(const std::string&)> on_event_;
+  std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
+  std::vector<RobotObservation> observations_;  // of the last world state
+  int standby_periods_ = 0;                     // heartbeat periods while standing by
+  std::uint64_t invalid_ = 0;                   // messages that decoding refused
 };
 
 }  // namespace sidestep

@@ -2,6 +2,7 @@
 #include "coordinator/ledger.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/escape.hpp"
@@ -69,11 +70,36 @@ std::size_t Ledger::index_of(RobotId robot) const {
 }
 
 std::span<const Version> Ledger::versions(RobotId robot) const {
-  return has_robot(robot) ? entries_[index_of(robot)].set.versions() : std::span<const Version>{};
+  return has_robot(robot) ? entries_[index_of(robot)].versions() : std::span<const Version>{};
+}
+
+bool Ledger::is_quarantined(RobotId robot) const {
+  return has_robot(robot) && !entries_[index_of(robot)].quarantined.empty();
+}
+
+void Ledger::Entry::quarantine(const Version& reported) {
+  quarantined.assign(set.versions().begin(), set.versions().end());
+  quarantined.push_back(reported);
+  agreeing = 0;
+}
+
+bool Ledger::Entry::may_forget() {
+  if (quarantined.empty()) return true;
+  if (++agreeing < kFactsUntilReleased) return false;
+  release();
+  return true;
+}
+
+void Ledger::Entry::store_former(const VersionSet& before, Time left_at) {
+  for (const Version& version : before.versions()) {
+    if (!set.find(version.number)) former.add(version, left_at);
+  }
 }
 
 void Ledger::register_robot(RobotId robot, std::span<const Version> versions) {
   Entry& entry = entry_of(robot);
+  entry.set.clear();
+  entry.quarantined.clear();
   for (const Version& version : versions) entry.set.add(version);
   update_bounds(index_of(robot));
   find_conflicts(robot);
@@ -110,22 +136,40 @@ msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base
 
 FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference, Incarnation life) {
   Entry& entry = entry_of(executing.robot);
-  const auto versions = entry.set.versions();
-  const auto is_older = [&](const Version& held) { return held.number < executing.number; };
   if (life == entry.lifted_life && at <= entry.lifted_at) return FactOutcome::kStale;
-  if (const Version* held = entry.set.find(executing.number)) {
-    if (!is_same(*held, executing)) return FactOutcome::kContradiction;
-    entry.set.forget(executing.number, at);
+  const auto is_older = [&](const Version& held) { return held.number < executing.number; };
+  const auto versions = entry.set.versions();
+  const Version* held = entry.set.find(executing.number);
+  if (!held && !versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
+  const bool is_known = held && is_same(*held, executing);
+  const bool is_own_stop = is_off_reference && !held && std::ranges::all_of(versions, is_older);
+  if (!is_known && !is_own_stop) {
+    entry.quarantine(executing);
     update_bounds(index_of(executing.robot));
-    end_conflicts(executing.robot);
+    find_conflicts(executing.robot);
+    return FactOutcome::kContradiction;
+  }
+  if (!entry.may_forget()) {
+    if (is_own_stop) {
+      entry.quarantined.back() = executing;
+      update_bounds(index_of(executing.robot));
+      find_conflicts(executing.robot);
+    }
     return FactOutcome::kApplied;
   }
-  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
-  if (!is_off_reference || !std::ranges::all_of(versions, is_older)) return FactOutcome::kContradiction;
-  entry.set.clear();
-  entry.set.add(executing);
+  const VersionSet before = entry.set;
+  if (is_own_stop) {
+    entry.set.clear();
+    entry.set.add(executing);
+  } else {
+    entry.set.forget(executing.number, at);
+  }
+  entry.store_former(before, at);
   update_bounds(index_of(executing.robot));
-  find_conflicts(executing.robot);
+  if (is_own_stop)
+    find_conflicts(executing.robot);
+  else
+    end_conflicts(executing.robot);
   return FactOutcome::kApplied;
 }
 
@@ -133,9 +177,35 @@ void Ledger::on_lifted(RobotId robot, Time at, Incarnation life) {
   Entry& entry = entry_of(robot);
   entry.lifted_at = life == entry.lifted_life ? std::max(entry.lifted_at, at) : at;
   entry.lifted_life = life;
+  const VersionSet before = entry.set;
   entry.set.forget_started(at);
+  entry.store_former(before, at);
+  if (!entry.quarantined.empty()) {
+    const Version reported = entry.quarantined.back();
+    entry.quarantined.clear();
+    if (reported.trajectory.start() > at) entry.quarantine(reported);
+  }
   update_bounds(index_of(robot));
   end_conflicts(robot);
+}
+
+std::optional<double> Ledger::distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const {
+  if (!has_robot(robot)) return std::nullopt;
+  const Entry& entry = entries_[index_of(robot)];
+  std::optional<double> least;
+  const auto compare = [&](const Version& version) {
+    if (version.trajectory.start() > at + kMaxClockDifference) return;
+    const Vec2 reference_m = version.trajectory.state_at(at).position_m;
+    const double distance = (position_m - reference_m).norm() - version.inflation_m;
+    least = std::min(least.value_or(distance), distance);
+  };
+  for (const Version& version : entry.versions()) compare(version);
+  for (const FormerVersions::Entry& former : entry.former.entries()) {
+    if (former.left_at >= at - kMaxClockDifference) compare(former.version);
+  }
+  if (!least && entry.versions().empty() && at > entry.lifted_at + kMaxClockDifference)
+    return std::numeric_limits<double>::infinity();
+  return least;
 }
 
 void Ledger::clear() {
@@ -148,7 +218,7 @@ void Ledger::clear() {
 
 void Ledger::update_bounds(std::size_t index) {
   Entry& entry = entries_[index];
-  const auto versions = entry.set.versions();
+  const auto versions = entry.versions();
   if (versions.empty()) {
     grid_.remove(static_cast<std::uint32_t>(index));
     return;
@@ -180,7 +250,7 @@ std::optional<RobotId> Ledger::find_blocker(const Version& candidate, const Vers
   grid_.find(search_disc, nearby_);
   for (const std::uint32_t index : nearby_) {
     if (roster_[index] == candidate.robot) continue;
-    const auto versions = entries_[index].set.versions();
+    const auto versions = entries_[index].versions();
     for (std::size_t i = 0; i < versions.size(); ++i) {
       if (touch(entries_[index].discs[i], search_disc) && !are_compatible(candidate, base, versions[i]))
         return roster_[index];
@@ -190,8 +260,8 @@ std::optional<RobotId> Ledger::find_blocker(const Version& candidate, const Vers
 }
 
 bool Ledger::are_in_conflict(const Entry& a, const Entry& b) const {
-  return std::ranges::any_of(a.set.versions(), [&](const Version& v) {
-    return std::ranges::any_of(b.set.versions(),
+  return std::ranges::any_of(a.versions(), [&](const Version& v) {
+    return std::ranges::any_of(b.versions(),
                                [&](const Version& w) { return !are_compatible(v, nullptr, w); });
   });
 }
@@ -199,7 +269,7 @@ bool Ledger::are_in_conflict(const Entry& a, const Entry& b) const {
 void Ledger::find_conflicts(RobotId robot) {
   std::erase_if(conflicts_, [=](const Conflict& c) { return c.first == robot || c.second == robot; });
   const Entry& entry = entry_of(robot);
-  for (std::size_t i = 0; i < entry.set.versions().size(); ++i) {
+  for (std::size_t i = 0; i < entry.versions().size(); ++i) {
     Circle search_disc = entry.discs[i];
     search_disc.radius_m += rules_.min_separation_m() + kClearanceTolerance_m;
     grid_.find(search_disc, nearby_);

@@ -10,6 +10,7 @@
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
 #include "coordinator/disc_grid.hpp"
+#include "coordinator/former_versions.hpp"
 #include "idl/negotiation.hpp"
 
 namespace sidestep {
@@ -26,7 +27,7 @@ struct Ruling {
 enum class FactOutcome {
   kApplied,
   kStale,          ///< superseded by a later fact
-  kContradiction,  ///< inconsistent with the ledger, so the ledger is wrong
+  kContradiction,  ///< inconsistent with the ledger: the robot is quarantined
 };
 
 /// Two robots that may come closer than their margin and inflations permit; the lower number first.
@@ -35,18 +36,25 @@ using Conflict = std::pair<RobotId, RobotId>;
 /// For every robot, the versions that it may execute, now or later; implements the rules of PROTOCOL.md, "The
 /// ledger". Invariant: every version of one robot is clear of every version of every other robot, except for
 /// the pairs in conflicts(), which external events have brought too close; no grant brings those closer. A
-/// robot without versions is not on the floor.
+/// robot without versions is not on the floor. A robot that has reported a version that it was never granted
+/// is quarantined: the ledger keeps all its versions and the reported one, until kFactsUntilReleased facts in
+/// a row agree with the ledger.
 class Ledger {
  public:
+  /// About a second at 60 Hz.
+  static constexpr int kFactsUntilReleased = 60;
+
   /// `roster`: the robots that the ledger covers.
   Ledger(const FloorRules& rules, std::vector<RobotId> roster);
 
   bool has_robot(RobotId robot) const { return index_of(robot) < roster_.size(); }
   std::span<const RobotId> roster() const { return roster_; }
+  /// The versions in the order in which they were added; those that the robot was never granted come last.
   std::span<const Version> versions(RobotId robot) const;
+  bool is_quarantined(RobotId robot) const;
 
-  /// Adds, without checks, the versions that a robot may execute when an epoch begins. Precondition: the
-  /// robot is on the roster and has no versions.
+  /// Replaces, without checks, the robot's versions by those that it may execute: when an epoch begins, or a
+  /// new agent of a quarantined robot has fenced it. Precondition: the robot is on the roster.
   void register_robot(RobotId robot, std::span<const Version> versions);
 
   /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
@@ -63,17 +71,37 @@ class Ledger {
   /// In no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
 
+  /// Distance of a position from the nearest place to which the robot's versions, also the former ones, may
+  /// have taken it at a time by the robot's clock, less that version's inflation. Infinite for a robot that
+  /// was not on the floor then, nullopt if the ledger does not reach back so far. Conservative: never
+  /// overestimated while the robot's clock differs by at most kMaxClockDifference.
+  std::optional<double> distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const;
+  static constexpr Duration kMaxClockDifference{5'000'000};
+
   void clear();
 
  private:
   struct Entry {
     VersionSet set;
+    // If the robot is quarantined: the versions of the set, and the one that it reported last without having
+    // been granted it.
+    std::vector<Version> quarantined;
+    int agreeing = 0;  // facts in a row that agree with the set, while quarantined
+    FormerVersions former;
     // Bounding disc of each version's motion, including its inflation.
-    std::array<Circle, VersionSet::kCapacity> discs;
+    std::array<Circle, VersionSet::kCapacity + 1> discs;
     // Latest time at which it was reported off the floor, and its incarnation then. After a restart its clock
     // may be behind that time.
     Time lifted_at{};
     Incarnation lifted_life = 0;
+
+    std::span<const Version> versions() const { return quarantined.empty() ? set.versions() : quarantined; }
+    void quarantine(const Version& reported);
+    void release() { quarantined.clear(); }
+    /// Counts a fact that agrees with the set. Whether the robot is not quarantined, or no longer.
+    bool may_forget();
+    /// Stores the versions that are no longer in the set.
+    void store_former(const VersionSet& before, Time left_at);
   };
   std::size_t index_of(RobotId robot) const;
   Entry& entry_of(RobotId robot) { return entries_[index_of(robot)]; }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <optional>
 
 #include "common/messaging/senders.hpp"
@@ -27,7 +28,11 @@ int main(int argc, char** argv) {
   program.process = [&] { return static_cast<std::uint32_t>(Sender::kCoordinator) + own_number(); };
   program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const CoordinatorIdentity self{own_number(), static_cast<Incarnation>(to_ns(bus.now()))};
-    return std::make_shared<CoordinatorNode>(bus, scenario, self, is_standby);
+    auto node = std::make_shared<CoordinatorNode>(bus, scenario, self, is_standby);
+    node->on_event([name = program.participant()](const std::string& event) {
+      fmt::print(stderr, "{}: {}\n", name, event);
+    });
+    return node;
   };
   return run_process(argc, argv, program);
 }

@@ -10,7 +10,9 @@
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
 #include "deploy/evaluation/planning/plan_command.hpp"
+#include "deploy/fault/attest_command.hpp"
 #include "deploy/fault/fault_command.hpp"
+#include "deploy/fault/test_command.hpp"
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/run_command.hpp"
 #include "deploy/monitor/audit/audit_command.hpp"
@@ -47,6 +49,8 @@ int main(int argc, char** argv) {
   add_simulate_command(app, action);
   add_topic_command(app, action);
   add_fault_command(app, action);
+  add_test_command(app, action);
+  add_attest_command(app, action);
   add_audit_command(app, action);
   add_record_command(app, action);
   add_plan_command(app, action);

@@ -26,6 +26,8 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
       obstacles_(scenario.max_opponent_speed_mps, max_clock_difference_),
+      displaced_(robot, scenario.radius_m, scenario.margin_m,
+                 std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps), max_clock_difference_),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
@@ -64,7 +66,7 @@ void Agent::update_goal(const Feedback& feedback) {
 }
 
 void Agent::on_world(const WorldObservations& world, Time now) {
-  obstacles_.on_world(world, now);
+  obstacles_.on_world(world);
   if (!world.self || world.self->captured_at <= last_fix_) return;
   if (world.self->captured_at > now + max_clock_difference_) {
     ++invalid_;
@@ -73,6 +75,13 @@ void Agent::on_world(const WorldObservations& world, Time now) {
   fix_ = world.self;
   last_fix_ = fix_->captured_at;
   last_fix_m_ = fix_->position_m;
+}
+
+void Agent::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
+  negotiation_.on_coordinator_state(heartbeat, now);
+  if (heartbeat.epoch != negotiation_.epoch()) return;
+  displaced_.on_heartbeat(heartbeat, now);
+  watched_until_ = heartbeat.watched_until;
 }
 
 Agent::VerdictResult Agent::on_verdict(const Verdict& verdict, Time now) {

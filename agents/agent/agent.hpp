@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "agents/agent/displaced_obstacles.hpp"
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/observed_obstacles.hpp"
@@ -46,12 +47,14 @@ class Agent {
   bool on_feedback(const Feedback& feedback);
   /// `now`: upper bound of the time by the robot's clock.
   void on_world(const WorldObservations& world, Time now);
+  /// `now`: as for on_world().
+  void on_obstacles(const ObstacleObservations& list, Time now) {
+    obstacles_.on_list(list, estimate_.position_m, now);
+  }
   void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
   /// Learns where the lifted robot is to be put down.
   void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
-  void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
-    negotiation_.on_coordinator_state(heartbeat, now);
-  }
+  void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
   /// Closes the cycle that ends now: abandons its proposals that have no verdict.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
@@ -72,7 +75,8 @@ class Agent {
 
   /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
   /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
-  /// estimate. `max_speed_mps`: the speed that the clocks allow.
+  /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles
+  /// recently. `max_speed_mps`: the speed that the clocks allow.
   [[nodiscard]] std::optional<MotionPlan> plan(
       Time now, Time start, double max_speed_mps = std::numeric_limits<double>::infinity());
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
@@ -99,6 +103,8 @@ class Agent {
   /// Replaces the route planner if stationary robots or moving obstacles have changed.
   void update_route_planner(Time now);
   std::vector<Circle> temporary_obstacles(Time now);
+  /// Everything that moves outside the protocol.
+  std::span<const MovingObstacle> find_moving(Time now);
   std::vector<Circle> moving_obstacles(Time now);
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
@@ -127,6 +133,9 @@ class Agent {
   Negotiation negotiation_;
   Neighbours neighbours_;
   ObservedObstacles obstacles_;
+  DisplacedObstacles displaced_;
+  Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions
+  std::vector<MovingObstacle> moving_;  // obstacles_ and displaced_
   LastChoice last_choice_;
   Rng rng_;
   std::size_t goal_index_ = 0;

@@ -58,6 +58,7 @@ void AgentNode::subscribe() {
   bus_.subscribe(topics::kFeedback, robot_, [this](const msg::Feedback& m) { on_feedback(m); });
   bus_.subscribe(topics::kVerdict, robot_, [this](const msg::Verdict& m) { on_verdict(m); });
   bus_.subscribe(topics::kWorld, [this](const msg::WorldState& m) { on_world(m); });
+  bus_.subscribe(topics::kObstacles, [this](const msg::ObstacleList& m) { on_obstacles(m); });
   bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& m) { on_disturbance(m); });
   bus_.subscribe(topics::kLedger, [this](const msg::LedgerPage& m) { on_page(m); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& m) { on_coordinator_state(m); });
@@ -85,7 +86,15 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
 }
 
 void AgentNode::on_world(const msg::WorldState& message) {
-  agent_.on_world(world_.decode(message), bus_.now() + clocks_.max_robot_offset(bus_.now()));
+  WorldObservations world = world_.decode(message);
+  // The robot would take the place for that of another time.
+  if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
+  agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()));
+}
+
+void AgentNode::on_obstacles(const msg::ObstacleList& message) {
+  const auto list = obstacles_.decode(message);
+  if (accept(list)) agent_.on_obstacles(*list, bus_.now() + clocks_.max_robot_offset(bus_.now()));
 }
 
 void AgentNode::on_page(const msg::LedgerPage& message) {

@@ -3,6 +3,7 @@
 
 #include "agents/agent/agent.hpp"
 #include "agents/agent/clock_monitor.hpp"
+#include "agents/agent/obstacle_view.hpp"
 #include "agents/agent/world_view.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/time/histogram.hpp"
@@ -31,6 +32,7 @@ class AgentNode {
   void on_feedback(const msg::Feedback& message);
   void on_verdict(const msg::Verdict& message);
   void on_world(const msg::WorldState& message);
+  void on_obstacles(const msg::ObstacleList& message);
   void on_page(const msg::LedgerPage& message);
   void on_coordinator_state(const msg::CoordinatorState& message);
   void on_disturbance(const msg::Disturbance& message);
@@ -67,6 +69,7 @@ class AgentNode {
   Agent agent_;
   ClockMonitor clocks_;
   WorldView world_;
+  ObstacleView obstacles_;
   std::uint64_t invalid_ = 0;  // messages that could not be decoded
   std::function<void(bool)> on_superseded_;
   bool was_superseded_ = false;  // at the start of the last cycle

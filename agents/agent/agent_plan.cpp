@@ -54,11 +54,18 @@ double Agent::planning_separation_m() const {
   return rules_.radius_m + rules_.margin_m + settings_.extra_clearance_m;
 }
 
+std::span<const MovingObstacle> Agent::find_moving(Time now) {
+  const auto observed = obstacles_.recent(now);
+  moving_.assign(observed.begin(), observed.end());
+  for (const UncontrolledBody& body : displaced_.recent(now)) moving_.push_back(body.reach);
+  return moving_;
+}
+
 std::vector<Circle> Agent::moving_obstacles(Time now) {
   const Vec2& position = estimate_.position_m;
   const double grid_m = settings_.moving_grid_m;
   std::vector<Circle> found;
-  for (const MovingObstacle& obstacle : obstacles_.recent(now)) {
+  for (const MovingObstacle& obstacle : find_moving(now)) {
     if ((obstacle.position_m - position).norm() > settings_.moving_range_m) continue;
     const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
     const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
@@ -101,9 +108,11 @@ void Agent::update_route_planner(Time now) {
 }
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
-  const Duration fix_age = now - last_fix_;
-  // A fix far in the future means that a clock has been set.
-  const bool is_lost = fix_age > settings_.max_fix_age || fix_age < -settings_.max_fix_age;
+  // A time far in the future means that a clock has been set.
+  const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
+  const bool is_lost = !is_recent(last_fix_, settings_.max_fix_age) ||
+                       !is_recent(obstacles_.complete_at(), settings_.max_fix_age) ||
+                       !is_recent(watched_until_, settings_.max_watch_age);
   if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
@@ -119,7 +128,10 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const AccelerationCommand desired = follow(intent, at_start, route, max_speed_mps);
   SearchQuery query{start,        at_start,    desired.acceleration_mps2,
                     desired.hold, inflation_m, obstacles_.recent(now)};
+  query.uncontrolled = displaced_.recent(now);
+  query.stop = &base.trajectory;
   query.max_speed_mps = max_speed_mps;
+  query.seen = obstacles_.seen(now);
   return MotionPlan{query, base.number, intent};
 }
 

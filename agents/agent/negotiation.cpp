@@ -10,6 +10,9 @@ namespace {
 // A coordinator that has been silent for longer does not count as granting.
 constexpr Duration kCoordinatorTimeout{500'000'000};
 constexpr int kMaxProposalsPerStart = 4;
+// For as many cycles beyond its lead an agent proposes although it hears nothing from its robot. A robot
+// without power rolls on, while others count on its versions.
+constexpr int kMaxSilentCycles = 1;
 // Two agents that both restart above the same incarnation add different increments below this bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
 
@@ -30,6 +33,7 @@ void Negotiation::on_feedback(const Feedback& feedback) {
   // A robot never obeys an earlier agent again, so a later fact that acknowledges this agent shows that the
   // one about another agent was false.
   if (superseded_at_ && feedback.valid_at > *superseded_at_) superseded_at_.reset();
+  silent_cycles_ = 0;
   robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
   if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {
@@ -52,8 +56,10 @@ void Negotiation::apply_fact(const Feedback& feedback) {
     executing_ = executing.number;
     if (has_advanced) pacing_.on_version_taken();
   } else {
+    // A later fact about an older version shows that an earlier fact was false: robots never go back.
     const auto is_older = [&](const Version& held) { return held.number < executing.number; };
-    if (!std::ranges::any_of(held_.versions(), is_older)) return;  // late
+    if (!std::ranges::any_of(held_.versions(), is_older) && at <= latest_fact_) return;  // late
+    latest_fact_ = std::max(latest_fact_, at);
     return rebase(executing);
   }
   latest_fact_ = std::max(latest_fact_, at);
@@ -121,13 +127,14 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   }
   if (heartbeat.epoch > epoch_) adopt_epoch(heartbeat.epoch);
   last_heartbeat_at_ = now;
-  missing_ = std::ranges::find(heartbeat.missing, robot_) != heartbeat.missing.end();
+  missing_ = is_missing(heartbeat, robot_);
   granting_ = heartbeat.mode == msg::CoordinatorMode::COORDINATOR_GRANTING;
 }
 
 bool Negotiation::may_propose(Time now) const {
   return fenced_ && !is_superseded() && robot_epoch_ == epoch_ && !registration_pending_ && granting_ &&
-         now - last_heartbeat_at_ < kCoordinatorTimeout && !held_.is_full();
+         now - last_heartbeat_at_ < kCoordinatorTimeout && !held_.is_full() &&
+         silent_cycles_ <= lead() + kMaxSilentCycles;
 }
 
 bool Negotiation::has_upcoming_version(Time now) const {
@@ -224,6 +231,7 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
 }
 
 void Negotiation::close_cycle(Time now) {
+  ++silent_cycles_;
   int missed = 0;
   for (SentProposal& sent : proposals_) {
     if (!sent.open || sent.start() > now) continue;

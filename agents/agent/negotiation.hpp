@@ -117,6 +117,7 @@ class Negotiation {
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
   bool missing_ = false, granting_ = false;  // by the coordinator's last heartbeat
   Time last_heartbeat_at_{};                 // when that heartbeat arrived
+  int silent_cycles_ = 0;                    // since the last fact that acknowledges this agent
   VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   Time latest_fact_{};  // by the robot's clock

@@ -4,55 +4,92 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/protocol/obstacle_bounds.hpp"
+
 namespace sidestep {
 namespace {
 
-// In each axis, an error of a normal distribution exceeds 4 sigma once in 16,000 cases.
-constexpr double kSigmas = 4;
+/// How near the obstacle can have come to a position by a time.
+double min_distance_m(const MovingObstacle& obstacle, const Vec2& position_m, Time t) {
+  return (obstacle.position_m - position_m).norm() - obstacle.reach_m(t);
+}
 
 }  // namespace
 
-void ObservedObstacles::on_world(const WorldObservations& world, Time now) {
-  for (std::size_t i = 0; i < world.obstacle_count; ++i) {
-    const ObservedObstacle& observed = world.obstacles[i];
+ObservedObstacles::ObservedObstacles(double max_speed_mps, Duration max_clock_difference)
+    : max_speed_mps_(max_speed_mps),
+      max_clock_difference_(max_clock_difference),
+      completeness_(max_speed_mps, max_clock_difference) {
+  tracks_.reserve(kCapacity);
+  obstacles_.reserve(kCapacity);
+}
+
+void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now) {
+  if (list.valid_at > now + kMaxListLead) {
+    ++invalid_;
+    return;
+  }
+  bool is_whole = true;
+  for (const ObservedObstacle& observed : list.obstacles) {
     if (observed.observed_at > now + max_clock_difference_) {
       ++invalid_;
+      is_whole = false;
       continue;
     }
     if (observed.observed_at < now - kMaxObservationAge) continue;
-    store({world.vision, observed.track},
-          {observed.position_m, observed.radius_m + kSigmas * std::sqrt(observed.position_variance_m2),
-           observed.observed_at - max_clock_difference_, max_speed_mps_});
+    const double radius_m = observed.radius_m + kObstacleSigmas * std::sqrt(observed.position_variance_m2);
+    store({list.vision, observed.track},
+          {observed.position_m, radius_m, observed.observed_at - max_clock_difference_, max_speed_mps_},
+          robot_m, now);
   }
+  if (is_whole) completeness_.on_list(list);
 }
 
-void ObservedObstacles::store(const Track& track, const MovingObstacle& obstacle) {
-  const auto end = tracks_.begin() + static_cast<std::ptrdiff_t>(count_);
-  auto index = static_cast<std::size_t>(std::find(tracks_.begin(), end, track) - tracks_.begin());
-  if (index < count_) {
-    if (obstacle.observed_at <= obstacles_[index].observed_at) return;
-  } else if (count_ < kCapacity) {
-    ++count_;
-  } else {
-    const auto oldest = std::ranges::min_element(obstacles_, {}, &MovingObstacle::observed_at);
-    if (obstacle.observed_at <= oldest->observed_at) return;
-    index = static_cast<std::size_t>(oldest - obstacles_.begin());
+void ObservedObstacles::store(const Track& track, const MovingObstacle& obstacle, const Vec2& robot_m,
+                              Time now) {
+  auto place = std::ranges::lower_bound(tracks_, track);
+  if (place != tracks_.end() && *place == track) {
+    MovingObstacle& known = obstacles_[static_cast<std::size_t>(place - tracks_.begin())];
+    if (obstacle.observed_at > known.observed_at) known = obstacle;
+    return;
   }
-  tracks_[index] = track;
-  obstacles_[index] = obstacle;
+  if (tracks_.size() == kCapacity) {
+    if (!make_room_for(obstacle, robot_m, now)) return;
+    place = std::ranges::lower_bound(tracks_, track);
+  }
+  obstacles_.insert(obstacles_.begin() + (place - tracks_.begin()), obstacle);
+  tracks_.insert(place, track);
 }
 
-void ObservedObstacles::drop(std::size_t index) {
-  --count_;
-  tracks_[index] = tracks_[count_];
-  obstacles_[index] = obstacles_[count_];
+bool ObservedObstacles::make_room_for(const MovingObstacle& obstacle, const Vec2& robot_m, Time now) {
+  drop_old(now);
+  if (tracks_.size() < kCapacity) return true;
+  const auto distance_m = [&](const MovingObstacle& o) { return min_distance_m(o, robot_m, now); };
+  const auto farthest = std::ranges::max_element(obstacles_, {}, distance_m);
+  const bool is_nearer = distance_m(obstacle) < distance_m(*farthest);
+  completeness_.on_forgotten({robot_m, distance_m(is_nearer ? *farthest : obstacle), now, max_speed_mps_},
+                             now + kMaxObservationAge + max_clock_difference_);
+  if (is_nearer) {
+    tracks_.erase(tracks_.begin() + (farthest - obstacles_.begin()));
+    obstacles_.erase(farthest);
+  }
+  return is_nearer;
+}
+
+void ObservedObstacles::drop_old(Time now) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (now - obstacles_[i].observed_at > kMaxObservationAge + max_clock_difference_) continue;
+    tracks_[kept] = tracks_[i];
+    obstacles_[kept++] = obstacles_[i];
+  }
+  tracks_.resize(kept);
+  obstacles_.resize(kept);
 }
 
 std::span<const MovingObstacle> ObservedObstacles::recent(Time now) {
-  for (std::size_t i = count_; i-- > 0;) {
-    if (now - obstacles_[i].observed_at > kMaxObservationAge + max_clock_difference_) drop(i);
-  }
-  return {obstacles_.data(), count_};
+  drop_old(now);
+  return obstacles_;
 }
 
 }  // namespace sidestep

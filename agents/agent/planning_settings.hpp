@@ -27,7 +27,11 @@ struct PlanningSettings {
   double neighbour_at_goal_m = 0.02;  ///< a neighbour at rest this close to its goal is assumed to stay
 
   // Observation.
-  Duration max_fix_age{300'000'000};  ///< a robot stops if vision has not observed it for longer
+  /// A robot stops if vision has not observed it, or its agent has had no list of obstacles, for longer.
+  Duration max_fix_age{300'000'000};
+
+  /// A robot stops if the coordinator has compared no robots with their versions for longer.
+  Duration max_watch_age{600'000'000};
 
   // Right of way, and deadlocks.
   Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long

@@ -60,6 +60,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
   SearchResult result;
   const Surroundings surroundings = find_surroundings(query, base, others, rules);
   if (!surroundings.is_in_conflict) return result;
+  const double min_separation_m = rules.radius_m + rules.margin_m + query.inflation_m;
   const auto try_acceleration = [&](const Vec2& desired) {
     if (result.count == SearchResult::kMaxCandidates) return;
     const Vec2 acceleration = limit_acceleration(desired, query.at_start.velocity_mps,
@@ -72,9 +73,11 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;
     result.checks += static_cast<int>(surroundings.others.size());
-    if (!is_passively_safe_from_all(trajectory, query.moving,
-                                    rules.radius_m + rules.margin_m + query.inflation_m))
+    if (!may_follow(trajectory, query.stop, query.uncontrolled, min_separation_m,
+                    rules.limits.deceleration_mps2))
       return;
+    if (!is_passively_safe_from_all(trajectory, query.moving, min_separation_m)) return;
+    if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) return;
     if (check_workspace_with_escape(candidate, base.trajectory, rules) != Validity::kValid) return;
     const bool is_clear_of_all = std::ranges::all_of(surroundings.others, [&](const Other& other) {
       return is_clear(trajectory, *other.trajectory, other.separation_m);

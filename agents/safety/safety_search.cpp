@@ -61,6 +61,8 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
   others_.reserve(kTypicalCount);
   nearby_.reserve(kTypicalCount);
   exact_.reserve(kTypicalCount);
+  constexpr std::size_t kTypicalMovingCount = 512;
+  moving_.reserve(kTypicalMovingCount);
 }
 
 SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng) {
@@ -73,19 +75,23 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   const double max_deviation_m =
       (desired.norm() + max_acceleration_mps2(limits)) * deviation_per_mps2(query, limits);
 
+  const double min_separation_m = rules_.radius_m + rules_.margin_m + query.inflation_m;
   SearchResult result;
   candidates_.sample_accelerations(query.at_start.velocity_mps, desired, query.hold_time, limited.speed_mps,
                                    rng);
-  find_nearby(query, {desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m}, others);
+  const Circle disc{desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m};
+  find_nearby(query, disc, others);
+  find_moving(query, disc);
   compare(query, desired_bounds, max_deviation_m, result.checks);
   while (const auto index = candidates_.take_nearest(settings_.spread_mps2)) {
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, candidates_.acceleration(*index), query.hold_time,
                              limits.deceleration_mps2);
     if (!is_allowed(trajectory, candidates_.is_certainly_clear(*index))) continue;
-    if (!is_passively_safe_from_all(trajectory, query.moving,
-                                    rules_.radius_m + rules_.margin_m + query.inflation_m))
+    if (!may_follow(trajectory, query.stop, query.uncontrolled, min_separation_m, limits.deceleration_mps2))
       continue;
+    if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m)) continue;
+    if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) continue;
     candidates_.accept(*index);
     result.desired_is_clear = result.desired_is_clear || *index == 0;
     result.candidates[result.count++] = trajectory;
@@ -121,6 +127,17 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
   const double half_x = rules_.field.length_m / 2 - rules_.radius_m - disc.radius_m;
   const double half_y = rules_.field.width_m / 2 - rules_.radius_m - disc.radius_m;
   is_near_border_ = !(std::abs(disc.centre_m.x()) < half_x && std::abs(disc.centre_m.y()) < half_y);
+}
+
+void SafetySearch::find_moving(const SearchQuery& query, const Circle& disc) {
+  constexpr double kRounding_m = 1e-6;
+  const double separation = rules_.radius_m + rules_.margin_m + query.inflation_m + kRounding_m;
+  const Time latest_end = query.start + query.hold_time + from_seconds(max_stop_s(query, rules_.limits));
+  moving_.clear();
+  for (const MovingObstacle& obstacle : query.moving) {
+    const double reach = std::max(obstacle.reach_m(query.start), obstacle.reach_m(latest_end));
+    if (touch(disc, {obstacle.position_m, reach + separation})) moving_.push_back(obstacle);
+  }
 }
 
 /// All candidates stay within `extra_clearance_m` of the desired motion. A neighbour that is clear of the

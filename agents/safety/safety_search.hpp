@@ -10,7 +10,9 @@
 
 #include "agents/safety/candidate_set.hpp"
 #include "agents/safety/moving_obstacle.hpp"
+#include "agents/safety/seen_region.hpp"
 #include "agents/safety/trajectory_index.hpp"
+#include "agents/safety/uncontrolled_body.hpp"
 #include "common/motion/validity.hpp"
 #include "common/random/rng.hpp"
 
@@ -24,9 +26,13 @@ struct SearchQuery {
   Duration hold_time{};                      ///< how long the acceleration is held before the stop
   double inflation_m = 0;                    ///< added to the robot's radius
   std::span<const MovingObstacle> moving{};  ///< obstacles that the robot must be passively safe from
-  std::optional<RobotId> robot{};            ///< if set, this robot's versions in the index are ignored
+  std::span<const UncontrolledBody> uncontrolled{};
+  const Trajectory* stop =
+      nullptr;  ///< what the robot follows otherwise; not null if `uncontrolled` is not empty
+  std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored
   /// Below the speed limit if the clocks require it. A robot that is faster already slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
+  SeenRegion seen{};  ///< where there are no obstacles but those in `moving`
 
   /// The motion limits, with the lower of both speeds.
   MotionLimits limited(MotionLimits limits) const {
@@ -70,6 +76,8 @@ class SafetySearch {
   };
   /// Collects everything that a candidate within the disc may come near to.
   void find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
+  /// Collects the moving obstacles that could reach a candidate within the disc before it is at rest.
+  void find_moving(const SearchQuery& query, const Circle& disc);
   void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
                int& checks);
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
@@ -84,6 +92,7 @@ class SafetySearch {
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
+  std::vector<MovingObstacle> moving_;  // the subset of the query's that may be near
 };
 
 /// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.

@@ -113,7 +113,8 @@ struct Scenario {
   double command_loss = 0;  ///< probability that the radio link between agent and robot drops a command
   NetworkSpec network;
   RestartSpec restart;
-  int coordinators = 1;  ///< one is active, the others are standbys
+  int coordinators = 1;        ///< one is active, the others are standbys
+  bool has_test_keys = false;  ///< it has `faults` or `expect`, which only `sidestep test` applies
 };
 
 FloorRules floor_rules(const Scenario& scenario);

@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "idl/vision.hpp"
-
 namespace sidestep {
 namespace {
 
 constexpr Range kCoordinate_m{-1000, 1000};
 constexpr Range kSpeed_mps{0.01, 20};
 constexpr std::size_t kMaxObstacles = 1000;
+constexpr std::size_t kMaxOpponents = 1000;
 constexpr std::size_t kMaxWaypoints = 1000;
 
 void read_obstacles(YamlMap& map, Scenario& scenario) {
@@ -56,8 +55,7 @@ void read_opponents(YamlMap& map, Scenario& scenario) {
   const YAML::Node node = map.find("opponents");
   if (!node.IsDefined()) return;
   const YamlLocation location = map.location_of("opponents");
-  // Detection messages hold at most MAX_OBSTACLES.
-  for (const YAML::Node& element : list_from(node, location, msg::MAX_OBSTACLES)) {
+  for (const YAML::Node& element : list_from(node, location, kMaxOpponents)) {
     YamlMap inner(element, location.of(element, fmt::format("opponents[{}]", scenario.opponents.size())));
     scenario.opponents.push_back(read_opponent(inner, scenario.max_opponent_speed_mps));
   }

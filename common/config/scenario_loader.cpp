@@ -172,6 +172,9 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   read_network(map, scenario.network);
   read_restart(map, scenario.restart);
   map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
+  // `sidestep test` reads these (deploy/fault/plan).
+  for (const char* key : {"faults", "expect"})
+    scenario.has_test_keys = map.find(key).IsDefined() || scenario.has_test_keys;
   // Placements are checked after all keys, because a misspelt key may be what makes one invalid.
   map.find("robots");
   map.find("circle");

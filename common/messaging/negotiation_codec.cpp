@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/enumerator.hpp"
+#include "common/messaging/observation_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/messaging/version_codec.hpp"
 
@@ -20,6 +21,10 @@ template <typename Message>
 bool is_plausible(const Message& message, Time now) {
   return sidestep::is_plausible(message.header().incarnation(), now) &&
          sidestep::is_plausible(message.epoch(), now);
+}
+
+bool is_checked(const msg::RobotNotice& notice, Time now) {
+  return is_uncontrolled(notice) ? decode(notice, now).has_value() : notice.robot() < kMaxRobots;
 }
 
 std::optional<VersionSet> decode_versions(const msg::Registration& message, Time now) {
@@ -59,7 +64,9 @@ std::optional<Registration> decode(const msg::Registration& message, Time now) {
 }
 
 std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
-  const auto is_known = [](msg::Reason reason) { return is_enumerator(reason, msg::Reason::REASON_ABSENT); };
+  const auto is_known = [](msg::Reason reason) {
+    return is_enumerator(reason, msg::Reason::REASON_DISPLACED);
+  };
   const bool is_valid = message.robot() == robot && is_coordinator(message.header().sender()) &&
                         std::ranges::all_of(message.reasons(), is_known);
   if (!is_valid) return std::nullopt;
@@ -80,10 +87,13 @@ std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message,
       message.coordinator() < kMaxCoordinators &&
       message.header().sender() == static_cast<std::uint32_t>(Sender::kCoordinator) + message.coordinator() &&
       is_plausible(message, now) &&
-      is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING);
+      is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING) &&
+      sidestep::is_plausible(time_from_ns(message.watched_until_ns()), now) &&
+      std::ranges::all_of(message.notices(), [=](const auto& notice) { return is_checked(notice, now); });
   if (!is_valid) return std::nullopt;
-  return CoordinatorHeartbeat{message.header().sender(), message.header().incarnation(), message.epoch(),
-                              message.coordinator_mode(), message.missing()};
+  return CoordinatorHeartbeat{
+      message.header().sender(),  message.header().incarnation(),           message.epoch(),
+      message.coordinator_mode(), time_from_ns(message.watched_until_ns()), message.notices()};
 }
 
 msg::Proposal encode(const Proposal& proposal) {

@@ -20,7 +20,7 @@ namespace sidestep {
 /// reasons are known.
 [[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
 /// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator of that
-/// number, or if its epoch or mode is implausible.
+/// number, or if its epoch, its mode, a time or the place of a displaced robot is implausible.
 /// Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
 

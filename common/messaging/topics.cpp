@@ -4,10 +4,11 @@
 namespace sidestep {
 
 std::vector<TopicInfo> all_topics() {
-  return {topics::kImages,       topics::kDetections,   topics::kWorld,    topics::kCommand,
-          topics::kFeedback,     topics::kRegistration, topics::kProposal, topics::kVerdict,
-          topics::kLedger,       topics::kCoordinator,  topics::kStatus,   topics::kDisturbance,
-          topics::kNetworkFault, topics::kTruth,        topics::kRules};
+  return {topics::kImages,      topics::kDetections,  topics::kWorld,        topics::kObstacles,
+          topics::kCommand,     topics::kFeedback,    topics::kRegistration, topics::kProposal,
+          topics::kVerdict,     topics::kLedger,      topics::kCoordinator,  topics::kStatus,
+          topics::kDisturbance, topics::kAttestation, topics::kNetworkFault, topics::kTruth,
+          topics::kRules};
 }
 
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {

@@ -93,6 +93,9 @@ inline constexpr Topic<msg::DetectionFrame> kDetections{
 inline constexpr Topic<msg::WorldState> kWorld{
     {"world", "vision", Qos::kState, false, true,
      message_type<msg::WorldState>("sidestep::msg::WorldState", 1024)}};
+inline constexpr Topic<msg::ObstacleList> kObstacles{
+    {"obstacles", "vision", Qos::kState, false, true,
+     message_type<msg::ObstacleList>("sidestep::msg::ObstacleList", msg::MAX_OBSTACLES)}};
 inline constexpr Topic<msg::Command> kCommand{
     {"command", "agent", Qos::kState, true, true, message_type<msg::Command>("sidestep::msg::Command")}};
 inline constexpr Topic<msg::Feedback> kFeedback{{"feedback", "simulator", Qos::kState, true, true,
@@ -110,6 +113,9 @@ inline constexpr Topic<msg::LedgerPage> kLedger{
 inline constexpr Topic<msg::CoordinatorState> kCoordinator{
     {"coordinator", "coordinator", Qos::kState, false, true,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
+inline constexpr Topic<msg::AbsenceAttestation> kAttestation{
+    {"attestation", "robot absent", Qos::kEvent, false, false,
+     message_type<msg::AbsenceAttestation>("sidestep::msg::AbsenceAttestation")}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", "agent", Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};

@@ -7,7 +7,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxSpeed_mps = 100;
 constexpr double kMaxInflation_m = 10;
 constexpr double kMaxAcceleration_mps2 = 1000;
 constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);

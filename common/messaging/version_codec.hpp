@@ -10,6 +10,8 @@ namespace sidestep {
 
 /// Codecs refuse positions with larger coordinates: they are beyond any floor.
 inline constexpr double kMaxCoordinate_m = 1e4;
+/// Codecs refuse larger speeds: no robot is as fast.
+inline constexpr double kMaxSpeed_mps = 100;
 
 /// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
 /// times and durations within bounds, and phase count and robot id in range.

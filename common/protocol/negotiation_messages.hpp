@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -50,7 +51,21 @@ struct CoordinatorHeartbeat {
   Incarnation incarnation = 0;
   Epoch epoch = 0;  ///< 0: standing by
   msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
-  std::span<const RobotId> missing;  ///< unregistered robots; valid as long as the decoded message
+  /// The world state with which the robots' places were last compared.
+  Time watched_until{};
+  std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message
 };
+
+/// Whether nothing can be said of where a robot is going, so that it counts as a moving obstacle.
+inline bool is_uncontrolled(const msg::RobotNotice& notice) {
+  return notice.is_displaced() || notice.is_silent();
+}
+
+/// Whether a robot has not registered with the coordinator.
+inline bool is_missing(const CoordinatorHeartbeat& heartbeat, RobotId robot) {
+  return std::ranges::any_of(heartbeat.notices, [=](const msg::RobotNotice& notice) {
+    return notice.robot() == robot && notice.is_missing();
+  });
+}
 
 }  // namespace sidestep

@@ -60,13 +60,13 @@ std::vector<std::string> namespaces_of_host(const std::string& host) {
 
 void set_link_fault(const std::string& namespace_name, const LinkFault& fault) {
   std::string rules = kDeleteTable + "table inet sidestep_fault {\n";
-  const auto chain = [&](const char* hook, const char* interface, double loss) {
-    if (loss <= 0) return;
-    rules += fmt::format("chain {} {{ type filter hook {} priority 0; {} != \"lo\" {}; }}\n", hook, hook,
-                         interface, drop_rule(loss));
+  const auto chain = [&](const char* name, const char* hook, const std::string& rule) {
+    rules += fmt::format("chain {} {{ type filter hook {} priority 0; {}; }}\n", name, hook, rule);
   };
-  chain("input", "iifname", fault.loss_in);
-  chain("output", "oifname", fault.loss_out);
+  if (fault.loss_in > 0) chain("input", "input", "iifname != \"lo\" " + drop_rule(fault.loss_in));
+  if (fault.loss_out > 0) chain("output", "output", "oifname != \"lo\" " + drop_rule(fault.loss_out));
+  if (!fault.cut_from.empty())
+    chain("cut", "input", fmt::format("ip saddr {{ {} }} drop", fmt::join(fault.cut_from, ", ")));
   nft(namespace_name, rules + "}\n");
 }
 

@@ -8,8 +8,9 @@ namespace sidestep {
 
 /// Packet loss between a namespace host and the other hosts.
 struct LinkFault {
-  double loss_in = 0;   ///< probability that an incoming packet is dropped
-  double loss_out = 0;  ///< probability that an outgoing packet is dropped
+  double loss_in = 0;                      ///< probability that an incoming packet is dropped
+  double loss_out = 0;                     ///< probability that an outgoing packet is dropped
+  std::vector<std::string> cut_from = {};  ///< IPv4 addresses whose packets are all dropped
 };
 
 /// The namespaces of a host. `host` is the namespace's name in the hosts file of a running system, its full

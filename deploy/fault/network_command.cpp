@@ -13,6 +13,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/fault/fault_target.hpp"
+#include "deploy/fault/network_message.hpp"
 #include "deploy/fault/operator_messages.hpp"
 
 namespace sidestep {
@@ -31,25 +32,11 @@ struct NetworkOptions {
   DdsSettings dds;
 };
 
-msg::NetworkFault cleared_fault(std::uint32_t target) {
-  msg::NetworkFault fault;
-  fault.target(target);
-  fault.mean_burst(1);
-  return fault;
-}
-
 msg::NetworkFault fault_from(const NetworkOptions& options, std::uint32_t target) {
-  msg::NetworkFault fault = cleared_fault(target);
-  const auto ns = [&](std::size_t i) { return std::llround(options.delay_ms[i] * 1e6); };
-  fault.seed(options.seed);
-  fault.loss(options.loss);
-  fault.mean_burst(options.burst);
-  fault.duplicate(options.duplicate);
-  fault.delay_min_ns(ns(0));
-  fault.delay_mean_ns(ns(1));
-  fault.delay_max_ns(ns(2));
-  fault.is_cut(options.is_cut);
-  return fault;
+  const auto delay = [&](std::size_t i) { return from_seconds(options.delay_ms[i] * 1e-3); };
+  const LinkQuality quality{options.loss, options.burst, options.duplicate, delay(0),
+                            delay(1),     delay(2),      options.is_cut};
+  return encode(quality, target, options.seed);
 }
 
 void send(OperatorChannel& channel, msg::NetworkFault fault) {
@@ -72,7 +59,7 @@ int apply(const NetworkOptions& options) {
   if (!options.seconds) return 0;
   std::fflush(stdout);
   loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
-  send(channel, cleared_fault(target->number));
+  send(channel, encode(kUnimpairedLink, target->number, 0));
   fmt::print("cleared\n");
   return 0;
 }

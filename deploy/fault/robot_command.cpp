@@ -103,6 +103,12 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
   add_pair(place, "--at", options->position_m, 1000, "position X,Y in m");
   place.add_option("--heading", options->heading_rad, "in rad").check(angle);
   add("reboot", "Restarts a robot's firmware", Kind::DISTURBANCE_REBOOT);
+  add("switch-off", "Takes a robot's power away: it rolls freely", Kind::DISTURBANCE_SWITCH_OFF);
+  add("switch-on", "Gives a robot its power back", Kind::DISTURBANCE_SWITCH_ON);
+  const CliCommand carry =
+      add("carry", "Moves a robot by hand, close above the floor", Kind::DISTURBANCE_CARRY);
+  add_pair(carry, "--to", options->position_m, 1000, "position X,Y in m");
+  add_seconds(carry);
   const CliCommand clock =
       add("clock", "Sets a robot's clock relative to its host's clock", Kind::DISTURBANCE_CLOCK);
   clock.add_option("--offset-ms", options->offset_ms, "positive: ahead, negative: behind")

@@ -74,9 +74,9 @@ Report Launcher::run() {
   start_core();
   while (!is_over()) {
     start_due_agents();
-    bus_.run_until(bus_.now() + kPollPeriod);
+    bus_.run_until(next_poll());
     for (const ChildEvent& event : group_.poll(0ms)) handle(event);
-    display_.update(metrics_, bus_.now());
+    if (!options_.is_quiet) display_.update(metrics_, bus_.now());
   }
   if (recording_) recording_->close();
   Report report = metrics_.report();
@@ -94,19 +94,45 @@ Report Launcher::run() {
 
 void Launcher::print(const std::string& line) {
   group_.log(line);
-  display_.print(line);
+  if (!options_.is_quiet) display_.print(line);
 }
 
-void Launcher::start(const std::string& name, const std::string& program, bool restart,
+Time Launcher::next_poll() {
+  const Time latest = bus_.now() + kPollPeriod;
+  return is_ready_ && director_.next ? std::min(latest, director_.next()) : latest;
+}
+
+void Launcher::start(const std::string& name, const std::string& program, bool is_restarted,
                      const std::vector<std::string>& arguments) {
-  const HostSpec& host = placement_.host_of(name);
-  ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, restart};
+  ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, is_restarted};
   if (options_.faults) process.arguments.push_back("--faults");
-  const pid_t pid =
-      group_.start(child_spec(process, host, network_ ? network_->full_name(host.target) : host.target));
-  print(fmt::format("started {} as pid {}{}", name, pid,
-                    options_.hosts_file.empty() ? "" : " on host " + host.name));
+  start(process, placement_.host_of(name));
   last_start_ = bus_.now();
+}
+
+void Launcher::start(const ProcessSpec& process, const HostSpec& host) {
+  const pid_t pid = group_.start(child(process, host));
+  processes_[process.name] = process;
+  print(fmt::format("started {} as pid {}{}", process.name, pid,
+                    options_.hosts_file.empty() ? "" : " on host " + host.name));
+}
+
+ChildSpec Launcher::child(const ProcessSpec& process, const HostSpec& host) const {
+  return child_spec(process, host, network_ ? network_->full_name(host.target) : host.target);
+}
+
+void Launcher::restart(const std::string& process, const std::string& scenario_file) {
+  ProcessSpec spec = processes_.at(process);
+  spec.scenario_file = scenario_file;
+  group_.restart(child(spec, placement_.host_of(process)));
+  dead_.erase(process);
+}
+
+void Launcher::start_twin(RobotId robot, const std::string& name) {
+  ProcessSpec spec = processes_.at(agent_process(robot));
+  spec.name = name;
+  spec.restart = false;
+  start(spec, placement_.host_of(agent_process(robot)));
 }
 
 void Launcher::start_core() {
@@ -140,7 +166,7 @@ void Launcher::handle(const ChildEvent& event) {
                     event.will_restart ? "; it will be restarted" : ""));
   const auto lines = group_.last_lines(event.name);
   for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
-    display_.print("  " + lines[i]);
+    if (!options_.is_quiet) display_.print("  " + lines[i]);
   }
   if (event.will_restart) return;
   dead_.insert(event.name);
@@ -149,9 +175,10 @@ void Launcher::handle(const ChildEvent& event) {
 }
 
 bool Launcher::is_over() {
-  if (is_interrupted_) abort_reason_ = "interrupted";
+  if (is_interrupted_) abort_reason_ = kInterrupted;
   if (!abort_reason_.empty()) return true;
-  return is_ready_ ? is_drive_over() : is_startup_over();
+  if (!is_ready_) return is_startup_over();
+  return director_.act ? director_.act() : is_drive_over();
 }
 
 bool Launcher::is_startup_over() {

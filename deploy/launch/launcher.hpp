@@ -3,9 +3,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/config/scenario.hpp"
@@ -13,6 +16,7 @@
 #include "common/messaging/rules_exchange.hpp"
 #include "deploy/launch/hosts/namespaces.hpp"
 #include "deploy/launch/hosts/placement.hpp"
+#include "deploy/launch/process_command.hpp"
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/run.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
@@ -22,6 +26,14 @@
 
 namespace sidestep {
 
+/// Directs a run: it acts on its processes, and decides when the run is over.
+struct RunDirector {
+  /// When to call `act` at the latest.
+  std::function<Time()> next;
+  /// Called at least every 20 ms once the coordinator grants. Returns whether the run is over.
+  std::function<bool()> act;
+};
+
 /// Starts the processes of one run, monitors them until the run is over, and stops them.
 class Launcher {
  public:
@@ -30,15 +42,33 @@ class Launcher {
   Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
            const NamespaceNetwork* network, const std::string& log_path);
 
+  /// The director decides when the run is over, instead of arrivals, deaths and the time limit.
+  void follow(RunDirector director) { director_ = std::move(director); }
+
   Report run();
+
+  // For directors. Processes are named as in the report.
+  DdsBus& bus() { return bus_; }
+  const RunMetrics& metrics() const { return metrics_; }
+  /// Sends a signal to a process; false if it does not run.
+  [[nodiscard]] bool send_signal(const std::string& process, int signal) {
+    return group_.send_signal(process, signal);
+  }
+  /// Kills a process if it runs, and starts it again with a scenario file.
+  void restart(const std::string& process, const std::string& scenario_file);
+  /// Starts another agent of a robot, as the process `name`.
+  void start_twin(RobotId robot, const std::string& name);
 
  private:
   /// Prints a line and writes it to the log.
   void print(const std::string& line);
-  void start(const std::string& name, const std::string& program, bool restart,
+  void start(const std::string& name, const std::string& program, bool is_restarted,
              const std::vector<std::string>& arguments = {});
+  void start(const ProcessSpec& process, const HostSpec& host);
+  ChildSpec child(const ProcessSpec& process, const HostSpec& host) const;
   void start_core();
   void start_due_agents();
+  Time next_poll();
   void handle(const ChildEvent& event);
   /// Whether the run is over; then abort_reason_ says why if it was aborted.
   bool is_over();
@@ -54,6 +84,8 @@ class Launcher {
   const Placement& placement_;
   const NamespaceNetwork* network_;
   ProcessGroup group_;
+  std::map<std::string, ProcessSpec> processes_;  ///< by name
+  RunDirector director_;
   DdsBus bus_;
   RulesExchange rules_;
   RunMetrics metrics_;

@@ -108,6 +108,7 @@ struct ProcessGroup::Child {
   int input = -1;
   int output = -1;
   bool is_running = false;
+  bool must_restart = false;  // once, as soon as it has ended
   SteadyTime started{};
   SteadyTime restart_at = SteadyTime::max();
   Milliseconds backoff = kMinBackoff;
@@ -150,6 +151,29 @@ pid_t ProcessGroup::start(const ChildSpec& spec) {
   spawn(*child);
   children_.push_back(std::move(child));
   return children_.back()->pid;
+}
+
+ProcessGroup::Child* ProcessGroup::find(const std::string& name) {
+  const auto found = std::find_if(children_.rbegin(), children_.rend(),
+                                  [&](const auto& child) { return child->spec.name == name; });
+  return found == children_.rend() ? nullptr : found->get();
+}
+
+bool ProcessGroup::send_signal(const std::string& name, int signal) {
+  const Child* const child = find(name);
+  return child && child->is_running && kill(child->pid, signal) == 0;
+}
+
+void ProcessGroup::restart(const ChildSpec& spec) {
+  Child* const child = find(spec.name);
+  if (!child) throw std::runtime_error("there is no process " + spec.name + " to start again");
+  child->spec = spec;
+  if (child->is_running) {
+    child->must_restart = true;
+    kill(child->pid, SIGKILL);
+  } else {
+    child->restart_at = steady_clock::now();
+  }
 }
 
 void ProcessGroup::spawn(Child& child) {
@@ -230,8 +254,12 @@ bool ProcessGroup::reap(Child& child, ChildEvent& event) {
   drain(child);
   close_fd(child.output);  // a grandchild may still hold the other end
   event = {ChildEvent::Kind::kDied, child.spec.name, child.pid, reason_of(status), false};
-  if (child.spec.restart && !is_terminating_) {
-    const auto now = steady_clock::now();
+  const auto now = steady_clock::now();
+  if (child.must_restart && !is_terminating_) {
+    child.must_restart = false;
+    child.restart_at = now;
+    event.will_restart = true;
+  } else if (child.spec.restart && !is_terminating_) {
     const bool lived_long = now - child.started > kMaxBackoff;
     child.backoff = lived_long ? kMinBackoff : std::min(2 * child.backoff, kMaxBackoff);
     child.restart_at = now + child.backoff;

@@ -50,6 +50,12 @@ class ProcessGroup {
 
   /// Throws std::runtime_error when the program does not exist or the process cannot be created.
   pid_t start(const ChildSpec& spec);
+  /// Sends a signal to the running child of this name; false if none runs.
+  [[nodiscard]] bool send_signal(const std::string& name, int signal);
+  /// Starts the child of this name again by a new specification, as a new process: at the next poll(), or
+  /// when the running one, which is killed, has ended. Throws std::runtime_error if no such child was ever
+  /// started.
+  void restart(const ChildSpec& spec);
   /// Waits for events of children, at most for the timeout, and returns them. Restarts children that are due.
   std::vector<ChildEvent> poll(Milliseconds timeout);
   /// Asks all children to end, kills those that have not ended after the timeout, and waits for all. Returns
@@ -66,6 +72,8 @@ class ProcessGroup {
 
  private:
   struct Child;
+  /// The latest child of this name, or nullptr.
+  Child* find(const std::string& name);
   void spawn(Child& child);
   void wait_for_activity(Milliseconds timeout);
   void drain(Child& child);

@@ -9,6 +9,9 @@
 
 namespace sidestep {
 
+/// Report::abort_reason of a run that the user interrupted.
+inline constexpr const char* kInterrupted = "interrupted";
+
 struct RunOptions {
   std::string scenario_file;
   std::string hosts_file;      ///< empty: all processes on this machine, on the interface of `dds`
@@ -19,12 +22,14 @@ struct RunOptions {
   std::optional<double> seconds;                  ///< overrides the scenario's time limit
   bool faults = false;                            ///< processes accept `sidestep fault network`
   std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
+  bool is_quiet = false;                          ///< prints nothing; the log contains everything
 };
 
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
 /// or the user interrupts, stops them, and writes the report. Returns the exit code: 0 only if all robots
-/// arrived without contact and the auditor found no violation. Throws ConfigError, and std::runtime_error
-/// when a process cannot be started or a file cannot be written.
+/// arrived without contact and the auditor found no violation; kExitNotJudged if that may be so, but the
+/// audit covered too little. Throws ConfigError, and std::runtime_error when a process cannot be started or a
+/// file cannot be written.
 int run(const RunOptions& options);
 
 }  // namespace sidestep

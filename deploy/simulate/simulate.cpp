@@ -8,7 +8,6 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
-#include "common/process/process.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
@@ -98,7 +97,7 @@ int finish(const SimulateOptions& options, Report& report, const RunPicture& pic
   if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
   fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
              summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
-  return report.failure_reason().empty() ? 0 : kExitFailure;
+  return exit_code(report.verdict());
 }
 
 }  // namespace
@@ -127,6 +126,9 @@ int simulate_trial(const SimulateOptions& options) {
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
   fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.has_test_keys)
+    fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",
+               options.scenario_file);
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
   RunPicture picture(scenario);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/simulate_command.hpp"
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "common/process/command_line.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
+#include "deploy/simulate/seed_range.hpp"
 #include "deploy/simulate/simulate.hpp"
 
 namespace sidestep {
@@ -18,15 +18,11 @@ struct Options {
   CampaignOptions campaign;
 };
 
-/// Reads "FIRST..LAST"; throws UsageError.
+/// Throws UsageError.
 void read_seeds(const std::string& text, CampaignOptions& campaign) {
-  std::size_t first = 0, last = 0;
-  int end = 0;
-  const bool is_range = std::sscanf(text.c_str(), "%zu..%zu%n", &first, &last, &end) == 2;
-  if (!is_range || static_cast<std::size_t>(end) != text.size() || last < first)
-    throw UsageError("expected FIRST..LAST, got \"" + text + "\"");
-  campaign.first_seed = first;
-  campaign.last_seed = last;
+  const SeedRange seeds = parse_seed_range(text);
+  campaign.first_seed = seeds.first;
+  campaign.last_seed = seeds.last;
 }
 
 int run_seeds(Options& options) {

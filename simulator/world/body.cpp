@@ -24,10 +24,25 @@ Body::Body(const Vec2& position_m, double heading_rad, const BodySettings& setti
       decay_(std::exp(-kPhysicsStepSeconds / settings.lag_s)) {}
 
 void Body::step(const Actuation& command) {
-  if (is_rolling_)
+  if (is_rolling_) {
     roll(command);
-  else if (is_on_floor_)
+  } else if (carried_mps_) {
+    state_.position_m += *carried_mps_ * kPhysicsStepSeconds;
+    slid_m_ += *carried_mps_ * kPhysicsStepSeconds;
+  } else if (is_on_floor_ && !is_powered_) {
+    coast();
+  } else if (is_on_floor_) {
     slide(command);
+  }
+}
+
+void Body::coast() {
+  constexpr double dt = kPhysicsStepSeconds;
+  const double speed = state_.velocity_mps.norm();
+  const double lost = settings_.rolling_mps2 * dt;
+  const Vec2 before = state_.velocity_mps;
+  state_.velocity_mps *= speed > lost ? 1 - lost / speed : 0;
+  state_.position_m += 0.5 * dt * (before + state_.velocity_mps);
 }
 
 void Body::roll(const Actuation& command) {
@@ -85,26 +100,45 @@ void Body::slide(const Actuation& command) {
   const Vec2 moved = 0.5 * dt * (before.velocity_mps + state_.velocity_mps);
   state_.position_m = before.position_m + moved;
   slid_m_ += moved - rolled;
-  is_rolling_ = !is_sliding();
+  update_rolling();
 }
 
 bool Body::is_sliding() const { return grip_ < 1 || blocked_rad_ || !slip_mps_.isZero(0); }
+
+void Body::update_rolling() { is_rolling_ = is_on_floor_ && is_powered_ && !carried_mps_ && !is_sliding(); }
+
+void Body::set_powered(bool is_powered) {
+  is_powered_ = is_powered;
+  acceleration_mps2_.setZero();
+  slip_mps_.setZero();
+  angular_radps_ = angular_acceleration_radps2_ = 0;
+  update_rolling();
+}
+
+void Body::carry(const std::optional<Vec2>& velocity_mps) {
+  carried_mps_ = velocity_mps;
+  state_.velocity_mps = velocity_mps.value_or(Vec2(0, 0));
+  acceleration_mps2_.setZero();
+  slip_mps_.setZero();
+  angular_radps_ = angular_acceleration_radps2_ = 0;
+  update_rolling();
+}
 
 void Body::push(const Vec2& velocity_change_mps) {
   const Vec2 wheels = state_.velocity_mps - slip_mps_;
   state_.velocity_mps = limited(state_.velocity_mps + velocity_change_mps, settings_.speed_mps);
   slip_mps_ = state_.velocity_mps - wheels;
-  is_rolling_ = is_on_floor_ && !is_sliding();
+  update_rolling();
 }
 
 void Body::set_grip(double share) {
   grip_ = share;
-  is_rolling_ = is_on_floor_ && !is_sliding();
+  update_rolling();
 }
 
 void Body::set_blocked(std::optional<double> direction_rad) {
   blocked_rad_ = direction_rad;
-  is_rolling_ = is_on_floor_ && !is_sliding();
+  update_rolling();
 }
 
 void Body::lift() {
@@ -112,6 +146,7 @@ void Body::lift() {
   acceleration_mps2_.setZero();
   slip_mps_.setZero();
   angular_radps_ = angular_acceleration_radps2_ = 0;
+  carried_mps_.reset();
   is_rolling_ = is_on_floor_ = false;
 }
 
@@ -119,7 +154,7 @@ void Body::put_down(const Vec2& position_m, double heading_rad) {
   state_.position_m = position_m;
   heading_rad_ = heading_rad;
   is_on_floor_ = true;
-  is_rolling_ = !is_sliding();
+  update_rolling();
 }
 
 }  // namespace sidestep

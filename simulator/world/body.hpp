@@ -20,7 +20,8 @@ struct BodySettings {
   double speed_mps = 2.5;
   double angular_acceleration_radps2 = 40;
   double angular_speed_radps = 8;
-  double friction_mps2 = 6;  ///< acceleration that the floor exerts on a body whose wheels slip
+  double friction_mps2 = 6;   ///< acceleration that the floor exerts on a body whose wheels slip
+  double rolling_mps2 = 0.5;  ///< deceleration of a body without power
 };
 
 /// Accelerations commanded to the motors, in the world frame.
@@ -50,6 +51,11 @@ class Body {
   /// Blocks a wheel: the wheels do not roll along a direction, given as an angle from the heading. nullopt:
   /// no wheel is blocked.
   void set_blocked(std::optional<double> direction_rad);
+  /// A body without power rolls on until friction stops it, and obeys no command.
+  void set_powered(bool is_powered);
+  /// Moves the body at a velocity, close above the floor, so that its wheels do not roll; nullopt: puts it
+  /// down, at rest.
+  void carry(const std::optional<Vec2>& velocity_mps);
   /// Takes the body off the floor, where it does not move.
   void lift();
   /// Puts the body on the floor, at rest.
@@ -68,7 +74,9 @@ class Body {
  private:
   void roll(const Actuation& command);
   void slide(const Actuation& command);
+  void coast();
   bool is_sliding() const;
+  void update_rolling();
 
   State state_;
   Vec2 acceleration_mps2_{0, 0};
@@ -78,7 +86,9 @@ class Body {
   BodySettings settings_;
   double decay_;  ///< of the lag, over one step
 
-  bool is_rolling_ = true;  ///< on the floor and free of slip
+  bool is_rolling_ = true;  ///< on the floor, powered, and free of slip
+  bool is_powered_ = true;
+  std::optional<Vec2> carried_mps_;
   bool is_on_floor_ = true;
   double grip_ = 1;
   std::optional<double> blocked_rad_;

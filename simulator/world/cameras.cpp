@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/messaging/detected_obstacles.hpp"
 #include "common/messaging/topics.hpp"
 
 namespace sidestep {
@@ -75,16 +76,15 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
 
 void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> opponents,
                                msg::DetectionFrame& frame) {
-  std::uint8_t count = 0;
+  seen_opponents_.clear();
   for (const Circle& opponent : opponents) {
-    if (count == msg::MAX_OBSTACLES) break;
     if (!view.sees(opponent.centre_m) || rng_.chance(spec_.miss_probability)) continue;
-    msg::ObstacleDetection& seen = frame.obstacles()[count++];
-    seen.x_m(opponent.centre_m.x() + spec_.position_noise_m * rng_.normal());
-    seen.y_m(opponent.centre_m.y() + spec_.position_noise_m * rng_.normal());
-    seen.radius_m(std::max(kMinRadius_m, opponent.radius_m + spec_.position_noise_m * rng_.normal()));
+    const double x = opponent.centre_m.x() + spec_.position_noise_m * rng_.normal();
+    const double y = opponent.centre_m.y() + spec_.position_noise_m * rng_.normal();
+    const double radius = opponent.radius_m + spec_.position_noise_m * rng_.normal();
+    seen_opponents_.push_back({{x, y}, std::max(kMinRadius_m, radius)});
   }
-  frame.obstacle_count(count);
+  set_obstacles(seen_opponents_, frame);
 }
 
 void Cameras::add_ghost(const CameraView& view, msg::DetectionFrame& frame) {

@@ -37,7 +37,7 @@ class Cameras {
   /// When the next frame is due.
   Time next_capture() const { return due_[next_]; }
   /// Captures that frame from the given objects and drops the camera's overdue frames. Sets everything but
-  /// the header.
+  /// the header. Of more opponents than a frame holds, those nearest to the detected robots are listed.
   void capture(Time now, const VisibleObjects& objects, msg::DetectionFrame& frame);
 
   std::span<const CameraView> views() const { return views_; }
@@ -55,6 +55,7 @@ class Cameras {
   std::size_t next_ = 0;
   Duration period_;
   Rng rng_;
+  std::vector<Circle> seen_opponents_;  // in the frame that is being captured
 };
 
 }  // namespace sidestep

@@ -32,8 +32,13 @@ bool is_valid(const RobotDisturbance& disturbance, const Field& field, double ro
              field.contains(disturbance.place_m, robot_radius_m);
     case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       return disturbance.clock_offset >= -kMaxDuration && disturbance.clock_offset <= kMaxDuration;
+    case msg::DisturbanceKind::DISTURBANCE_CARRY:
+      return has_valid_duration(disturbance) && disturbance.duration > Duration{0} &&
+             disturbance.place_m.allFinite() && field.contains(disturbance.place_m, robot_radius_m);
     case msg::DisturbanceKind::DISTURBANCE_LIFT:
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
+    case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
+    case msg::DisturbanceKind::DISTURBANCE_SWITCH_ON:
       return true;
   }
   return false;

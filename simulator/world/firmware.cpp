@@ -247,6 +247,12 @@ void Firmware::put_down(double heading_rad, Time now) {
   last_actuation_ = modelled_ = {};
 }
 
+void Firmware::switch_on(Time now) {
+  estimator_ = PoseEstimator(estimator_.position_m(), estimator_.heading_rad(), now, settings_.estimator);
+  last_actuation_ = modelled_ = {};
+  is_rebooting_ = !is_lifted_;
+}
+
 void Firmware::restart(Time now) {
   Firmware again(robot_, estimator_.position_m(), estimator_.heading_rad(), now, settings_);
   again.estimator_ = estimator_;

@@ -73,6 +73,8 @@ class Firmware {
   /// its own and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest
   /// number seen.
   void reboot() { is_rebooting_ = true; }
+  /// As reboot(), after a time without power: the robot takes itself to be at rest.
+  void switch_on(Time now);
 
   /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls.
   Feedback feedback(Time now);

@@ -121,6 +121,11 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
+  if (!world_.is_powered(robot)) {
+    feedback_due_[robot] = now + cycle_;
+    world_.clear_pending_feedback(robot);
+    return;
+  }
   Feedback facts = world_.feedback(robot, now);
   facts.robot_incarnation = incarnation_;
   msg::Feedback message = encode(facts);

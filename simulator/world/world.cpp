@@ -78,6 +78,7 @@ void World::step() {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];
     const Time now = robot_time(i, time_);
+    if (!robot.is_powered) continue;
     switch_versions(i, now);
     robot.actuation = robot.firmware.tick(now, measure(i));
     if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.last_own_stop) {
@@ -97,7 +98,8 @@ Time World::robot_time(std::size_t index, Time now) {
 
 Time World::next_start(std::size_t index) const {
   const Time start = robots_[index].firmware.next_start();
-  return start == Time::max() ? start : start - robots_[index].clock_offset;
+  return !robots_[index].is_powered || start == Time::max() ? Time::max()
+                                                            : start - robots_[index].clock_offset;
 }
 
 Odometry World::measure(std::size_t index) {
@@ -139,6 +141,7 @@ void World::clear_pending_feedback(std::size_t index) {
 
 void World::on_command(std::size_t index, const Command& command, Time now) {
   Robot& robot = robots_[index];
+  if (!robot.is_powered) return;
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
   robot.monitor.command_arrived(command, clock);
@@ -150,6 +153,7 @@ void World::on_command(std::size_t index, const Command& command, Time now) {
 }
 
 void World::on_malformed_command(std::size_t index, Time now) {
+  if (!robots_[index].is_powered) return;
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
   robots_[index].firmware.on_malformed_command(clock);

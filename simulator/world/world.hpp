@@ -53,6 +53,8 @@ class World {
 
   std::size_t robot_count() const { return robots_.size(); }
   RobotId id(std::size_t robot) const { return robots_[robot].id; }
+  /// A robot without power neither hears nor says anything.
+  bool is_powered(std::size_t robot) const { return robots_[robot].is_powered; }
   const Firmware& firmware(std::size_t robot) const { return robots_[robot].firmware; }
   /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.
   Time next_start(std::size_t robot) const;
@@ -82,6 +84,7 @@ class World {
     VersionNumber last_own_stop = 0;
     std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later
     bool has_pending_feedback = false;
+    bool is_powered = true;
   };
   /// A disturbance with a duration, or a placement that waits for its rest version.
   struct ActiveDisturbance {
@@ -100,6 +103,9 @@ class World {
   void start_disturbance(const ActiveDisturbance& disturbance);
   void cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind);
   void lift(std::size_t robot, Time now);
+  void switch_off(std::size_t robot, Time now);
+  void switch_on(std::size_t robot, Time now);
+  void carry(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void switch_versions(std::size_t robot, Time now);
   void request_feedback(std::size_t robot);
   Odometry measure(std::size_t robot);

@@ -39,6 +39,7 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       start_disturbance({index, kind, Time::max(), disturbance.place_m, disturbance.heading_rad});
       return true;
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
+      if (!robot.is_powered) return false;
       if (!body.is_on_floor()) {
         lift(index, now);
       } else {
@@ -51,12 +52,25 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       robot_time(index, now);
       robot.clock_offset = disturbance.clock_offset;
       return true;
+    case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
+      if (!robot.is_powered) return false;
+      switch_off(index, now);
+      return true;
+    case msg::DisturbanceKind::DISTURBANCE_SWITCH_ON:
+      if (robot.is_powered) return false;
+      switch_on(index, now);
+      return true;
+    case msg::DisturbanceKind::DISTURBANCE_CARRY:
+      if (!body.is_on_floor()) return false;
+      carry(index, disturbance, now);
+      return true;
   }
   return false;
 }
 
 void World::lift(std::size_t index, Time now) {
   cancel_disturbances(index, msg::DisturbanceKind::DISTURBANCE_PLACE);
+  cancel_disturbances(index, msg::DisturbanceKind::DISTURBANCE_CARRY);
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
   bodies_[index].lift();
@@ -67,6 +81,37 @@ void World::lift(std::size_t index, Time now) {
   opponents_.invalidate_near_pairs();
   record_disturbance(index, now);
   request_feedback(index);
+}
+
+void World::switch_off(std::size_t index, Time now) {
+  switch_versions(index, robot_time(index, now));
+  robots_[index].is_powered = false;
+  robots_[index].actuation = {};
+  bodies_[index].set_powered(false);
+  // The body is off its reference until it has power again.
+  start_disturbance({index, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, Time::max(), Vec2(0, 0), 0});
+  record_disturbance(index, now);
+}
+
+void World::switch_on(std::size_t index, Time now) {
+  Robot& robot = robots_[index];
+  cancel_disturbances(index, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF);
+  robot.is_powered = true;
+  bodies_[index].set_powered(true);
+  // What the wheels did without power is not known.
+  robot.last_position_m = bodies_[index].rolled_position_m();
+  robot.last_heading_rad = bodies_[index].heading_rad();
+  robot.firmware.switch_on(robot_time(index, now));
+  if (!robot.firmware.is_lifted()) robot.monitor.rebooted();
+  record_disturbance(index, now);
+  request_feedback(index);
+}
+
+void World::carry(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  const Vec2 path_m = disturbance.place_m - bodies_[index].position_m();
+  bodies_[index].carry(Vec2(path_m / to_seconds(disturbance.duration)));
+  start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
+  record_disturbance(index, now);
 }
 
 void World::record_disturbance(std::size_t index, Time at) {
@@ -99,10 +144,13 @@ void World::end_disturbances() {
     if (active.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return try_put_down(active);
     if (active.end > time_) return false;
     record_disturbance(active.robot, active.end);
+    Body& body = bodies_[active.robot];
     if (active.kind == msg::DisturbanceKind::DISTURBANCE_SLIP)
-      bodies_[active.robot].set_grip(1);
+      body.set_grip(1);
+    else if (active.kind == msg::DisturbanceKind::DISTURBANCE_CARRY)
+      body.carry(std::nullopt);
     else
-      bodies_[active.robot].set_blocked(std::nullopt);
+      body.set_blocked(std::nullopt);
     return true;
   });
 }

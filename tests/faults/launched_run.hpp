@@ -110,7 +110,7 @@ std::string crossing_images();
 /// times. `extra_keys` are added to the scenario.
 std::string shuttles(int times, const std::string& extra_keys);
 /// Fails the test unless the report exists and shows no contact, no firmware violation and no audit
-/// violation.
+/// violation. A run that ends with exit code 0 was judged, too.
 void require_no_violations(const nlohmann::json& report);
 /// Whether a process with this id exists and is not a zombie.
 bool is_running(pid_t pid);

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "common/messaging/dds/presence.hpp"
+#include "deploy/monitor/audit/audit_totals.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
@@ -19,6 +20,11 @@ void pause(LaunchedRun& run, pid_t pid, Duration duration) {
   REQUIRE(kill(pid, SIGCONT) == 0);
 }
 
+/// A process that is forgotten is not heard for a while, so that the audit may not judge the run.
+void check_sound(const std::string& end) {
+  CHECK((end == "exit code 0" || end == "exit code " + std::to_string(kExitNotJudged)));
+}
+
 }  // namespace
 
 TEST_CASE("all robots arrive without contact although each kind of process pauses for two seconds") {
@@ -28,8 +34,9 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
     REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), std::chrono::seconds(2));
   }
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string end = run.wait_for_end();
   INFO(run.output());
+  CHECK(end == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -45,8 +52,9 @@ TEST_CASE(
     REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), until_forgotten);
   }
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string end = run.wait_for_end();
   INFO(run.output());
+  check_sound(end);
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -55,8 +63,9 @@ TEST_CASE("a process with cameras that pauses until it is forgotten is found aga
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   pause(run, run.pid_of("simulator"), kSilenceLimit + std::chrono::seconds(2));
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string end = run.wait_for_end();
   INFO(run.output());
+  check_sound(end);
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -71,8 +80,9 @@ TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arri
     REQUIRE(kill(before, SIGKILL) == 0);
     REQUIRE(run.wait_until([&] { return run.pid_of(process) != before; }));
   }
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string end = run.wait_for_end();
   INFO(run.output());
+  CHECK(end == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
   CHECK(run.report()["deaths"].size() == 3);
@@ -101,8 +111,9 @@ TEST_CASE("of two living agents of one robot the later one drives it, without co
   CHECK(run.wait_until([&] { return obeyed.size() == 2; }));
   CHECK(is_running(run.pid_of("agent 3")));
   CHECK(is_running(twin));
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string end = run.wait_for_end();
   INFO(run.output());
+  CHECK(end == "exit code 0");
   CHECK_FALSE(run.exit_reason("twin"));
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);

@@ -63,6 +63,35 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their go
   CHECK(report["deaths"][0].dump().find("coordinator") != std::string::npos);
 }
 
+TEST_CASE("robots wait for one that is silent when an epoch begins, until an operator attests its absence") {
+  LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "20"});
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
+  const auto command = [&](std::vector<std::string> arguments) {
+    for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+    return run.command(arguments);
+  };
+  bool is_missing = false;
+  run.bus().subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+    is_missing =
+        state.notices().size() == 1 && state.notices()[0].robot() == 7 && state.notices()[0].is_missing();
+  });
+  INFO(run.output());
+  CHECK(command({"robot", "absent", "7"}) == "exit code 1");
+  CHECK(run.printed("robot 7 is not missing"));
+  REQUIRE(command({"fault", "switch-off", "7"}) == "exit code 0");
+  REQUIRE(command({"fault", "lift", "7"}) == "exit code 0");
+  REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
+  REQUIRE(run.wait_until([&] { return is_missing && run.max_speed_mps() < 0.03; }));
+  CHECK(command({"robot", "absent", "7"}) == "exit code 0");
+  CHECK(run.printed("robot 7 counts as absent in epoch"));
+  CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
+  CHECK(run.wait_for_end() == "exit code 1");
+  CHECK(run.logged("an operator attests that robot 7 is absent"));
+  const auto report = run.report();
+  CHECK(report["contacts"] == 0);
+  CHECK(report["audit"]["violations"] == 0);
+}
+
 TEST_CASE("all robots arrive after an agent and vision die and are restarted") {
   LaunchedRun run(shipped_scenario("crossing") + "restart: [agents, vision]\n");
   REQUIRE(run.wait_until([&] { return run.speed_mps(5) > 0.8; }));

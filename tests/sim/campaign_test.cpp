@@ -18,6 +18,9 @@ TEST_CASE("in dense scenes without faults nearly all robots keep moving") {
     trial.plan.healed_at = 18s;
     const TrialResult result = run_trial(trial);
     REQUIRE(result.failures.empty());
+    REQUIRE(result.excused_contacts == 0);
+    REQUIRE(result.pair_s > 0);
+    REQUIRE(result.excused_pair_s == 0);
     robots += result.robots;
     stationary += result.stationary;
   }

@@ -63,7 +63,7 @@ struct Driver {
   void drive(Coordinator& coordinator, Robot& robot, double direction, int cycles, Time& now) {
     for (int i = 0; i < cycles; ++i) {
       now += kCycle;
-      coordinator.on_feedback(robot.fact(now));
+      coordinator.on_feedback(robot.fact(now), now);
       fence(robot, now);
       receive_heartbeat(coordinator, now);
       if (!negotiation.may_propose(now)) continue;
@@ -84,7 +84,7 @@ struct Driver {
   void rest(Coordinator& coordinator, Robot& robot, Time& now) {
     for (int i = 0; i < 60; ++i) {
       now += kCycle;
-      coordinator.on_feedback(robot.fact(now));
+      coordinator.on_feedback(robot.fact(now), now);
       fence(robot, now);
     }
   }

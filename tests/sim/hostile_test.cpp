@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
+#include <limits>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/process_names.hpp"
@@ -32,7 +33,8 @@ class Forger {
         state_writer_(bus_.advertise(topics::kCoordinator)),
         verdict_writer_(bus_.advertise(topics::kVerdict, kVictim)),
         page_writer_(bus_.advertise(topics::kLedger)),
-        world_writer_(bus_.advertise(topics::kWorld)) {
+        world_writer_(bus_.advertise(topics::kWorld)),
+        obstacle_writer_(bus_.advertise(topics::kObstacles)) {
     keep(topics::kFeedback, feedback);
     keep(topics::kCommand, command);
     keep(topics::kRegistration, registration);
@@ -41,6 +43,7 @@ class Forger {
     keep(topics::kVerdict, verdict);
     keep(topics::kLedger, page);
     keep(topics::kWorld, world);
+    keep(topics::kObstacles, obstacles);
   }
   /// Sends all messages that it has been given.
   void send() {
@@ -52,6 +55,7 @@ class Forger {
     publish(verdict_writer_, verdict);
     publish(page_writer_, page);
     publish(world_writer_, world);
+    publish(obstacle_writer_, obstacles);
   }
   void stop_listening() { is_listening_ = false; }
 
@@ -73,6 +77,7 @@ class Forger {
   Forged<msg::Verdict> verdict;
   Forged<msg::LedgerPage> page;
   Forged<msg::WorldState> world;
+  Forged<msg::ObstacleList> obstacles;
 
  private:
   template <typename Message>
@@ -100,6 +105,7 @@ class Forger {
   Writer<msg::Verdict> verdict_writer_;
   Writer<msg::LedgerPage> page_writer_;
   Writer<msg::WorldState> world_writer_;
+  Writer<msg::ObstacleList> obstacle_writer_;
 };
 
 struct Forgery {
@@ -160,9 +166,56 @@ const std::vector<Forgery> kForgeries{
        f.page().header().sender(kVictim);
        f.page().header().message_number(kHuge);
      }},
-    {"world: from an agent", [](Forger& f) {
+    {"world: from an agent",
+     [](Forger& f) {
        f.world().header().sender(kVictim);
        for (auto& robot : f.world().robots()) robot.observed_x_m(3);
+     }},
+    {"world: valid in half an hour",
+     [](Forger& f) { f.world().valid_at_ns(f.world().valid_at_ns() + 1'800'000'000'000); }},
+    {"world: robots elsewhere, observed in half an hour",
+     [](Forger& f) {
+       for (auto& robot : f.world().robots()) {
+         robot.observed_x_m(robot.observed_x_m() + 1);
+         robot.observed_at_ns(robot.observed_at_ns() + 1'800'000'000'000);
+       }
+     }},
+    {"world: robots elsewhere",
+     [](Forger& f) {
+       for (auto& robot : f.world().robots()) {
+         robot.observed_x_m(robot.observed_x_m() + 1);
+         robot.observed_at_ns(robot.observed_at_ns() + 1'000'000);
+       }
+     }},
+    {"feedback: a version that was never granted",
+     [](Forger& f) {
+       f.feedback().executing().version_number(f.feedback().executing().version_number() + 1000);
+       f.feedback().executing().x_m(0);
+     }},
+    {"coordinator state: vision heard in half an hour",
+     [](Forger& f) { f.state().watched_until_ns(f.state().watched_until_ns() + 1'800'000'000'000); }},
+    {"obstacle list: from an agent, valid soon",
+     [](Forger& f) {
+       f.obstacles().header().sender(kVictim);
+       f.obstacles().valid_at_ns(f.obstacles().valid_at_ns() + 1'000'000'000);
+     }},
+    {"obstacle list: valid far ahead",
+     [](Forger& f) { f.obstacles().valid_at_ns(static_cast<std::int64_t>(kHuge)); }},
+    {"obstacle list: valid in a minute",
+     [](Forger& f) { f.obstacles().valid_at_ns(f.obstacles().valid_at_ns() + 60'000'000'000); }},
+    {"obstacle list: incomplete",
+     [](Forger& f) {
+       f.obstacles().valid_at_ns(f.obstacles().valid_at_ns() + 5'000'000);
+       f.obstacles().complete_within_m(0);
+     }},
+    {"obstacle list: an obstacle without a position",
+     [](Forger& f) {
+       f.obstacles().obstacles().resize(1);
+       f.obstacles().obstacles()[0].x_m(std::numeric_limits<double>::quiet_NaN());
+     }},
+    {"obstacle list: an obstacle observed far ahead", [](Forger& f) {
+       f.obstacles().obstacles().resize(1);
+       f.obstacles().obstacles()[0].observed_at_ns(static_cast<std::int64_t>(kHuge));
      }}};
 
 TEST_CASE("one hostile message of any kind costs no robot more than a moment") {

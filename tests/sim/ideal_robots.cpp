@@ -6,12 +6,25 @@
 
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/protocol/obstacle_bounds.hpp"
 
 namespace sidestep {
 namespace {
 
 // Agents number their versions upwards from their incarnations; none counts this far in a year.
 constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
+
+Vec2 rounded(const Vec2& v) { return v.cast<float>().cast<double>(); }
+
+Version rounded(const Version& version) {
+  Version result = version;
+  const State& start = version.trajectory.at_start();
+  result.trajectory =
+      Trajectory(version.trajectory.start(), {rounded(start.position_m), rounded(start.velocity_mps)});
+  for (const MotionPhase& phase : version.trajectory.phases())
+    result.trajectory.append(phase.duration, rounded(phase.acceleration_mps2));
+  return result;
+}
 
 }  // namespace
 
@@ -33,6 +46,7 @@ IdealRobots::IdealRobots(Bus& bus, const Scenario& scenario)
     report_periodically(robot);
   }
   world_writer_ = bus.advertise(topics::kWorld);
+  obstacle_writer_ = bus.advertise(topics::kObstacles);
   disturbance_writer_ = bus.advertise(topics::kDisturbance);
   publish_world();
 }
@@ -88,6 +102,11 @@ void IdealRobots::publish_world() {
     tracked.observed_y_m(position.y());
   }
   world_writer_.publish(world, now);
+  msg::ObstacleList no_obstacles;
+  no_obstacles.header() = world.header();
+  no_obstacles.valid_at_ns(world.valid_at_ns());
+  no_obstacles.complete_within_m(kCompleteEverywhere_m);
+  obstacle_writer_.publish(no_obstacles, now);
 }
 
 void IdealRobots::on_command(Robot& robot, const Command& command) {
@@ -109,7 +128,7 @@ void IdealRobots::on_command(Robot& robot, const Command& command) {
   robot.highest = std::max(robot.highest, version.number);
   const auto is_same = [&](const Version& held) { return held.number == version.number; };
   if (version.trajectory.start() <= now || std::ranges::any_of(robot.pending, is_same)) return;
-  robot.pending.push_back(version);
+  robot.pending.push_back(robot.rounds_versions ? rounded(version) : version);
   std::ranges::sort(robot.pending, {}, [](const Version& v) { return v.trajectory.start(); });
   bus_.at(version.trajectory.start() - robot.clock_offset, [this, &robot] { report(robot); });
 }

@@ -33,6 +33,8 @@ class IdealRobots {
   void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double inflation_m = 0);
   /// Restarts its firmware, which keeps only the incarnation, epoch and version number that it has obeyed.
   void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
+  /// From now on the robot executes versions rounded to single precision.
+  void round_versions(RobotId robot) { robots_.at(robot).rounds_versions = true; }
   void lift(RobotId robot);
   /// Requests to put a lifted robot down. It is on the floor once it executes a rest version.
   void place(RobotId robot, const Vec2& position_m);
@@ -47,6 +49,7 @@ class IdealRobots {
     Version executing;
     VersionNumber highest = 0;  // of all version numbers and incarnations received
     bool is_off_reference = false, is_lifted = false;
+    bool rounds_versions = false;
     std::vector<Version> pending;  // ascending by start
     Writer<msg::Feedback> writer;
   };
@@ -62,6 +65,7 @@ class IdealRobots {
   Duration cycle_;
   std::map<RobotId, Robot> robots_;
   Writer<msg::WorldState> world_writer_;
+  Writer<msg::ObstacleList> obstacle_writer_;
   Writer<msg::Disturbance> disturbance_writer_;
 };
 

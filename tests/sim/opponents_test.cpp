@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/protocol/obstacle_bounds.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -76,6 +77,105 @@ TEST_CASE("among random opponents no robot is moving when it is touched, over a 
   // Without crashes the test would prove nothing; without arrivals robots that never move would pass.
   CHECK(crashes > 50);
   CHECK(arrived > robots / 2);
+}
+
+RobotSpec robot_with_goal(std::size_t index, const Vec2& start_m, const Vec2& goal_m) {
+  RobotSpec robot;
+  robot.id = static_cast<RobotId>(index);
+  robot.start_m = start_m;
+  robot.goals = {{goal_m, std::nullopt}};
+  return robot;
+}
+
+/// Four robots cross the paths of four opponents at full speed. Fifty-six more stand along the sides, and
+/// come first or last in the scenario.
+Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
+  Rng rng(seed);
+  Scenario scenario;
+  scenario.name = "sixty-opponents";
+  scenario.field = {6, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double y = -0.9 + 0.6 * static_cast<double>(i);
+    scenario.robots.push_back(robot_with_goal(i, {-2.5, y}, {2.5, y}));
+  }
+  std::vector<OpponentSpec> standing, crossing;
+  for (int i = 0; i < 28; ++i) {
+    for (const double y : {-2.4, 2.4}) standing.push_back({0.08, 1, {{-2.8 + 0.2 * i, y}}});
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double x = -1.2 + 0.8 * i, y = rng.uniform(-1.5, 1.5);
+    crossing.push_back({0.1, scenario.max_opponent_speed_mps, {{x, y}, {x, 1.6}, {x, -1.6}}});
+  }
+  const auto& first = standing_first ? standing : crossing;
+  const auto& last = standing_first ? crossing : standing;
+  scenario.opponents = first;
+  scenario.opponents.insert(scenario.opponents.end(), last.begin(), last.end());
+  return scenario;
+}
+
+TEST_CASE(
+    "of sixty opponents none touches a moving robot, whether the nearest are the oldest or the newest") {
+  const bool standing_first = GENERATE(true, false);
+  std::uint64_t crashes = 0;
+  int arrived = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    CAPTURE(standing_first, seed);
+    SimSystem system(crowded_scene(seed, standing_first), seed);
+    (void)system.run_until_arrived(system.begin() + from_seconds(20));
+    const Report report = system.metrics().report();
+    CHECK(report.contacts == 0);
+    CHECK(report.crashes_while_moving == 0);
+    crashes += report.crashes;
+    arrived += report.arrived;
+  }
+  CAPTURE(crashes, arrived);
+  CHECK(crashes > 0);
+  CHECK(arrived > 0);
+}
+
+TEST_CASE("among more opponents than a list holds, robots drive, and none is moving when it is touched") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  Scenario scenario;
+  scenario.name = "six-hundred-opponents";
+  scenario.field = {20, 20};
+  scenario.vision.rows = 2;
+  scenario.max_opponent_speed_mps = 0.5;
+  PositionSampler places{rng, scenario.field, {}};
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Vec2 start = places.sample(1), goal = places.sample_any();
+    scenario.robots.push_back(robot_with_goal(i, start, goal));
+  }
+  for (int i = 0; i < 600; ++i) {
+    OpponentSpec opponent{0.06, rng.uniform(0.1, 0.5), {places.sample(0.35)}};
+    opponent.path_m.push_back(places.sample_any());
+    scenario.opponents.push_back(opponent);
+  }
+  SimSystem system(scenario, seed);
+  SimBus observer(system.network());
+  observer.become_observer();
+  int lists = 0, incomplete = 0;
+  observer.subscribe(topics::kObstacles, [&](const msg::ObstacleList& list) {
+    ++lists;
+    if (list.obstacles().size() < msg::MAX_OBSTACLES || list.complete_within_m() >= kCompleteEverywhere_m)
+      return;
+    incomplete += list.complete_within_m() > 1;  // and far enough to be of use
+  });
+  double longest_way_m = 0;
+  system.on_truth([&](const msg::GroundTruth& truth) {
+    for (const msg::TrueRobotState& robot : truth.robots()) {
+      const Vec2 way = Vec2(robot.x_m(), robot.y_m()) - scenario.robots.at(robot.robot()).start_m;
+      longest_way_m = std::max(longest_way_m, way.norm());
+    }
+  });
+  system.run_for(std::chrono::seconds(6));
+  const Report report = system.metrics().report();
+  CHECK(report.contacts == 0);
+  CHECK(report.crashes_while_moving == 0);
+  CHECK(lists > 300);
+  CHECK(incomplete > lists / 2);
+  CHECK(longest_way_m > 0.5);
 }
 
 }  // namespace sidestep::opponents_test

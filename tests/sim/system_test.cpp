@@ -29,6 +29,7 @@ struct MonitoredSystem {
     for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
     REQUIRE(report.audit->violations == 0);
     REQUIRE(report.audit->compared_pairs > 0);
+    REQUIRE(report.audit->verdict() == AuditVerdict::kPassed);
   }
   double speed_mps(RobotId robot) {
     for (const RobotProgress& row : system.metrics().progress()) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "common/messaging/detected_obstacles.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -179,15 +181,8 @@ void Detector::find_obstacles(const ImageView& image, std::span<const ExpectedRo
     if (std::ranges::find(robots_, robot.robot, &IdentifiedRobot::robot) == robots_.end())
       footprints_.push_back({robot.pose.position_m, settings_.robot_radius_m + kMissedRobotMargin_m});
   }
-  std::uint8_t count = 0;
-  for (const Circle& obstacle : obstacle_finder_.find(image, segmenter_.classes(), regions_, footprints_)) {
-    if (count == msg::MAX_OBSTACLES) break;
-    msg::ObstacleDetection& detection = frame.obstacles()[count++];
-    detection.x_m(obstacle.centre_m.x());
-    detection.y_m(obstacle.centre_m.y());
-    detection.radius_m(obstacle.radius_m);
-  }
-  frame.obstacle_count(count);
+  set_obstacles(obstacle_finder_.find(image, segmenter_.classes(), regions_, footprints_), frame);
+  if (obstacle_finder_.has_overflowed()) frame.obstacles_complete_within_m(0);
 }
 
 }  // namespace sidestep

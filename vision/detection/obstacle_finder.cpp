@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMaxBlobs = 256;        // a frame with more is noise
+constexpr std::size_t kMaxBlobs = 1024;       // more would take too long to merge
 constexpr int kMaxGap_px = 2;                 // between adjacent regions
 constexpr double kMinRegionAreaRatio = 0.15;  // of the smallest obstacle's area: smaller regions are noise
 constexpr double kMaxDotAreaRatio = 3;     // of the largest dot's area: larger blobs are no dot and no ball
@@ -49,11 +49,16 @@ void ObstacleFinder::collect_blobs(std::span<const Region> regions, const Vertic
            std::max(a.top_px, b.top_px) - std::min(a.bottom_px, b.bottom_px) <= kMaxGap_px;
   };
   blobs_.clear();
+  has_overflowed_ = false;
   for (const Region& region : regions) {
-    if (has(settings_.ground_colours, region.colour) || blobs_.size() == kMaxBlobs) continue;
+    if (has(settings_.ground_colours, region.colour)) continue;
     const auto projected = project_region(region, camera_, 0);
     if (!projected || projected->area_m2 < kMinRegionAreaRatio * disc_m2(settings_.min_radius_m)) continue;
     if (is_region_on_robot(region, robots)) continue;
+    if (blobs_.size() == kMaxBlobs) {
+      has_overflowed_ = true;
+      break;
+    }
     Blob merged{region, region.left_px, region.right_px, region.top_px, region.bottom_px, region.area_px};
     for (std::size_t i = 0; i < blobs_.size();) {
       if (!are_adjacent(merged, blobs_[i])) {
@@ -159,9 +164,8 @@ Circle ObstacleFinder::fit_circle(const ImageView& image, const VerticalCylinder
   return {below_m + (near_m + radius_m) * silhouette.direction, radius_m};
 }
 
-std::span<const Circle> ObstacleFinder::find(const ImageView& image, const ColourClasses& classes,
-                                             std::span<const Region> regions,
-                                             std::span<const Circle> robots) {
+std::span<Circle> ObstacleFinder::find(const ImageView& image, const ColourClasses& classes,
+                                       std::span<const Region> regions, std::span<const Circle> robots) {
   const VerticalCylinders robot_cylinders{robots, settings_.robot_height_m};
   found_.clear();
   obstacles_.clear();

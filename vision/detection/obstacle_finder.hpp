@@ -35,12 +35,14 @@ class ObstacleFinder {
   ObstacleFinder(const CameraModel& camera, const ObstacleFinderSettings& settings)
       : camera_(camera), settings_(settings) {}
 
-  /// Obstacles, largest first. Pixels on or behind one of the `robots`, which fill these circles from the
-  /// floor to their tops, are ignored. Valid until the next call; allocates when the scene has more blobs or
-  /// contour points than any before.
-  std::span<const Circle> find(const ImageView& image, const ColourClasses& classes,
-                               std::span<const Region> regions, std::span<const Circle> robots);
+  /// Obstacles, largest first, which the caller may reorder. Pixels on or behind one of the `robots`, which
+  /// fill these circles from the floor to their tops, are ignored. Valid until the next call; allocates when
+  /// the scene has more blobs or contour points than any before.
+  std::span<Circle> find(const ImageView& image, const ColourClasses& classes,
+                         std::span<const Region> regions, std::span<const Circle> robots);
 
+  /// Whether the last image had more blobs than the finder handles, so that it may have missed any obstacle.
+  bool has_overflowed() const { return has_overflowed_; }
   /// Whether a region lies within the largest region of an obstacle of the last call, known ones included.
   bool is_part_of_obstacle(const Region& region) const;
 
@@ -66,6 +68,7 @@ class ObstacleFinder {
   CameraModel camera_;
   ObstacleFinderSettings settings_;
   std::vector<Blob> blobs_, found_;
+  bool has_overflowed_ = false;
   std::vector<Vec2> contour_;
   Vec2 chroma_{0, 0};  ///< mean U and V inside the contour, relative to grey
   std::vector<Circle> obstacles_;

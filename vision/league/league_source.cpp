@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/messaging/detected_obstacles.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -86,15 +88,20 @@ void LeagueSource::fill_frame(const league::DetectionFrame& detection, Time capt
   frame_.camera(detection.camera);
   frame_.captured_at_ns(to_ns(captured_at));
   frame_.robots().clear();
-  frame_.obstacle_count(0);
+  obstacles_.clear();
   for (const league::DetectedRobot& robot : detection.yellow) add_robot(Team::kYellow, robot);
   for (const league::DetectedRobot& robot : detection.blue) add_robot(Team::kBlue, robot);
+  set_obstacles(obstacles_, frame_);
+  counts_.dropped += obstacles_.size() - frame_.obstacle_count();
   add_balls(detection.balls);
 }
 
 void LeagueSource::add_robot(Team team, const league::DetectedRobot& robot) {
   const auto id = robot.number ? ids_[index_of(team)][*robot.number] : std::nullopt;
-  if (!id) return add_obstacle(robot.position_m);
+  if (!id) {
+    obstacles_.push_back({robot.position_m, kLeagueRadius_m});
+    return;
+  }
   if (!robot.heading_rad) {
     ++counts_.dropped;
     return;
@@ -106,19 +113,6 @@ void LeagueSource::add_robot(Team team, const league::DetectedRobot& robot) {
   converted.heading_rad(*robot.heading_rad);
   converted.confidence(robot.confidence);
   frame_.robots().push_back(converted);
-}
-
-void LeagueSource::add_obstacle(const Vec2& position_m) {
-  const std::uint8_t count = frame_.obstacle_count();
-  if (count == msg::MAX_OBSTACLES) {
-    ++counts_.dropped;
-    return;
-  }
-  msg::ObstacleDetection& obstacle = frame_.obstacles()[count];
-  obstacle.x_m(position_m.x());
-  obstacle.y_m(position_m.y());
-  obstacle.radius_m(kLeagueRadius_m);
-  frame_.obstacle_count(static_cast<std::uint8_t>(count + 1));
 }
 
 void LeagueSource::add_balls(std::span<const league::DetectedBall> balls) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/geometry/circle.hpp"
 #include "common/league/multicast.hpp"
 #include "common/league/vision_packet.hpp"
 #include "idl/vision.hpp"
@@ -27,8 +28,9 @@ class LeagueSource {
     std::array<std::uint64_t, league::kDecodeErrors> rejected{};  ///< packets, by league::DecodeError
     std::uint64_t duplicates = 0;                                 ///< frames received before
     std::uint64_t unsynchronised = 0;  ///< frames whose capture time could not be determined
-    std::uint64_t dropped = 0;         ///< detections: balls or obstacles beyond the capacity of a frame, and
-                                       ///< robots of the scenario without a heading
+    /// Detections: balls beyond the capacity of a frame, obstacles beyond it, of which those nearest to
+    /// robots are kept, and robots of the scenario without a heading.
+    std::uint64_t dropped = 0;
   };
 
   /// Throws std::invalid_argument when two robots of the scenario have the same team and number.
@@ -68,12 +70,12 @@ class LeagueSource {
   static bool is_duplicate(Sender& sender, const league::DetectionFrame& detection);
   void fill_frame(const league::DetectionFrame& detection, Time captured_at);
   void add_robot(Team team, const league::DetectedRobot& robot);
-  void add_obstacle(const Vec2& position_m);
   void add_balls(std::span<const league::DetectedBall> balls);
 
   std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;  ///< by team and number
   std::vector<Sender> senders_;
   msg::DetectionFrame frame_;
+  std::vector<Circle> obstacles_;  ///< in the frame that is being filled
   std::vector<const league::DetectedBall*> by_confidence_;
   std::optional<league::FieldSize> field_;
   league::DecodeError error_ = league::DecodeError::kNone;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/protocol/obstacle_bounds.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr Duration kMaxAhead{100'000'000};
 // Comparisons with NaN are false, so both reject it.
 bool is_within(double value, double bound) { return std::abs(value) <= bound; }
 bool is_probability(double value) { return value >= 0 && value <= 1; }
+bool is_completeness(double value) { return value >= 0 && value <= kCompleteEverywhere_m; }
 
 bool is_valid(const msg::RobotDetection& d) {
   return d.robot() < kMaxRobots && is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
@@ -43,17 +46,20 @@ void Frame::clear(const msg::DetectionFrame& message) {
   captured_at_ = time_from_ns(message.captured_at_ns());
   is_usable_ = false;
   robot_count_ = ball_count_ = obstacle_count_ = 0;
+  obstacles_complete_within_m_ = 0;
   rejected_ = 0;
 }
 
 void Frame::assign(const msg::DetectionFrame& message, Time now) {
   clear(message);
   if (!is_timely(message.captured_at_ns(), now) || message.ball_count() > msg::MAX_DETECTED_BALLS ||
-      message.obstacle_count() > msg::MAX_OBSTACLES || message.robots().size() > kMaxRobots) {
+      message.obstacle_count() > msg::MAX_OBSTACLES ||
+      !is_completeness(message.obstacles_complete_within_m()) || message.robots().size() > kMaxRobots) {
     rejected_ = std::max<std::uint64_t>(1, message.robots().size());
     return;
   }
   is_usable_ = true;
+  obstacles_complete_within_m_ = message.obstacles_complete_within_m();
   for (const auto& d : message.robots()) {
     if (is_valid(d)) {
       robots_[robot_count_++] = {d.robot(), {d.x_m(), d.y_m()}, wrapped_rad(d.heading_rad())};

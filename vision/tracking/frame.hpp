@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-struct RobotObservation {
+struct RobotPoseObservation {
   RobotId robot = 0;
   Vec2 position_m{0, 0};
   double heading_rad = 0;  ///< in [-pi, pi]
@@ -32,11 +32,14 @@ class Frame {
  public:
   std::uint32_t camera() const { return camera_; }
   Time captured_at() const { return captured_at_; }
-  /// False when the capture time or a count was invalid; the frame then holds no detections.
+  /// False when the capture time, a count or the obstacles' completeness was invalid; the frame then holds no
+  /// detections.
   bool is_usable() const { return is_usable_; }
-  std::span<const RobotObservation> robots() const { return {robots_.data(), robot_count_}; }
+  std::span<const RobotPoseObservation> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
+  /// Every obstacle that the camera detected nearer than this to one of the frame's robots is in obstacles().
+  double obstacles_complete_within_m() const { return obstacles_complete_within_m_; }
   /// Number of detections of the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }
 
@@ -53,8 +56,9 @@ class Frame {
   std::size_t robot_count_ = 0;
   std::size_t ball_count_ = 0;
   std::size_t obstacle_count_ = 0;
+  double obstacles_complete_within_m_ = 0;
   std::uint64_t rejected_ = 0;
-  std::array<RobotObservation, kMaxRobots> robots_;
+  std::array<RobotPoseObservation, kMaxRobots> robots_;
   std::array<Vec2, msg::MAX_DETECTED_BALLS> balls_;
   std::array<ObstacleObservation, msg::MAX_OBSTACLES> obstacles_;
 };

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+
+#include "common/protocol/obstacle_bounds.hpp"
 
 namespace sidestep {
 namespace {
@@ -23,40 +27,74 @@ void fill(msg::TrackedObstacle& message, std::uint32_t number, Time observed_at,
   message.position_variance_m2(filter.covariance()(0, 0));
 }
 
+/// Distance of the observed edge from the frame's nearest robot; 0 without robots.
+double robot_distance_m(const ObstacleObservation& observation, const Frame& frame) {
+  if (frame.robots().empty()) return 0;
+  double min_distance = std::numeric_limits<double>::infinity();
+  for (const RobotPoseObservation& robot : frame.robots())
+    min_distance = std::min(min_distance, (robot.position_m - observation.position_m).norm());
+  return std::max(0.0, min_distance - observation.radius_m);
+}
+
 }  // namespace
 
+ObstacleTracker::ObstacleTracker(const ObstacleTrackerSettings& settings)
+    : settings_(settings),
+      incomplete_frames_(settings.max_speed_mps, kObstacleSigmas * settings.position_noise_m,
+                         settings.drop_after) {
+  tracks_.reserve(kMaxTracks);
+  pairs_.reserve(std::size_t{4} * kMaxTracks);
+  robots_m_.reserve(kMaxRobots);
+  listed_.reserve(kMaxTracks);
+}
+
 void ObstacleTracker::update(const Frame& frame) {
-  if (frame.obstacles().empty()) return;
-  drop_stale_tracks(frame.captured_at());
-  std::array<bool, msg::MAX_OBSTACLES> is_used{};
-  associate(frame, is_used);
+  double complete_within_m = frame.obstacles_complete_within_m();
+  const int confirm_hits = incomplete_frames_.is_empty() ? settings_.confirm_hits : 1;
+  if (!frame.obstacles().empty()) {
+    drop_stale_tracks(frame.captured_at());
+    associate(frame);
+  }
   for (std::size_t i = 0; i < frame.obstacles().size(); ++i) {
-    if (!is_used[i]) start_track(frame.captured_at(), frame.obstacles()[i]);
+    const ObstacleObservation& observation = frame.obstacles()[i];
+    if (is_used_[i] || start_track(frame.captured_at(), observation, confirm_hits)) continue;
+    ++rejected_;
+    complete_within_m = std::min(complete_within_m, robot_distance_m(observation, frame));
+  }
+  incomplete_frames_.update(frame, complete_within_m);
+}
+
+/// Lists the pairs of tracks and observations within the tracks' gates. Observations are sorted by x, so that
+/// a track is compared with those in its gate's range of x only.
+void ObstacleTracker::find_pairs(const Frame& frame) {
+  const auto observations = frame.obstacles();
+  const auto x_of = [&](std::uint16_t index) { return observations[index].position_m.x(); };
+  const std::span<std::uint16_t> by_x(by_x_.data(), observations.size());
+  std::iota(by_x.begin(), by_x.end(), std::uint16_t{0});
+  std::ranges::sort(by_x, {}, x_of);
+  pairs_.clear();
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Vec2& centre = tracks_[t].filter.position();
+    const double gate = gate_m(tracks_[t], frame.captured_at());
+    for (auto o = std::ranges::lower_bound(by_x, centre.x() - gate, {}, x_of); o != by_x.end(); ++o) {
+      if (x_of(*o) > centre.x() + gate) break;
+      const Vec2& position_m = observations[*o].position_m;
+      if ((position_m - centre).norm() > gate) continue;
+      pairs_.push_back({predicted_distance_m(tracks_[t], frame.captured_at(), position_m),
+                        static_cast<std::uint16_t>(t), *o});
+    }
   }
 }
 
-void ObstacleTracker::associate(const Frame& frame, std::array<bool, msg::MAX_OBSTACLES>& is_used) {
-  const Time at = frame.captured_at();
-  const auto observations = frame.obstacles();
-  std::array<bool, kMaxTracks> is_updated{};
-  for (std::size_t round = 0; round < observations.size(); ++round) {
-    double min_distance = std::numeric_limits<double>::infinity();
-    std::size_t nearest_track = 0, nearest_observation = 0;
-    for (std::size_t t = 0; t < count_; ++t) {
-      if (is_updated[t]) continue;
-      const double gate = gate_m(tracks_[t], at);
-      for (std::size_t o = 0; o < observations.size(); ++o) {
-        if (is_used[o] || (observations[o].position_m - tracks_[t].filter.position()).norm() > gate) continue;
-        const double distance = predicted_distance_m(tracks_[t], at, observations[o].position_m);
-        if (distance >= min_distance) continue;
-        min_distance = distance;
-        nearest_track = t;
-        nearest_observation = o;
-      }
-    }
-    if (!std::isfinite(min_distance)) return;
-    is_updated[nearest_track] = is_used[nearest_observation] = true;
-    update_track(tracks_[nearest_track], at, observations[nearest_observation]);
+void ObstacleTracker::associate(const Frame& frame) {
+  find_pairs(frame);
+  std::ranges::sort(pairs_);
+  is_used_.fill(false);
+  is_updated_.fill(false);
+  for (const Pair& pair : pairs_) {
+    if (is_updated_[pair.track] || is_used_[pair.observation]) continue;
+    is_updated_[pair.track] = is_used_[pair.observation] = true;
+    update_track(tracks_[pair.track], frame.captured_at(), frame.obstacles()[pair.observation]);
   }
 }
 
@@ -89,46 +127,49 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   if (++track.hits >= settings_.confirm_hits && track.number == 0) track.number = ++last_number_;
 }
 
-void ObstacleTracker::start_track(Time at, const ObstacleObservation& observation) {
-  if (count_ == kMaxTracks) {
-    ++rejected_;
-    return;
-  }
+bool ObstacleTracker::start_track(Time at, const ObstacleObservation& observation, int confirm_hits) {
+  if (tracks_.size() == kMaxTracks) return false;
   const double variance = settings_.position_noise_m * settings_.position_noise_m;
   const ConstantVelocityFilter<2> filter(observation.position_m, variance,
                                          settings_.max_speed_mps * settings_.max_speed_mps);
-  tracks_[count_++] = {settings_.confirm_hits <= 1 ? ++last_number_ : 0, 1, at, observation.radius_m, filter};
+  tracks_.push_back({confirm_hits <= 1 ? ++last_number_ : 0, 1, at, observation.radius_m, filter});
+  return true;
 }
 
 void ObstacleTracker::drop_stale_tracks(Time now) {
-  const auto end = tracks_.begin() + static_cast<std::ptrdiff_t>(count_);
-  const auto kept_end = std::remove_if(tracks_.begin(), end, [&](const Track& track) {
-    return now - track.observed_at > settings_.drop_after;
-  });
-  count_ = static_cast<std::size_t>(kept_end - tracks_.begin());
+  std::erase_if(tracks_, [&](const Track& track) { return now - track.observed_at > settings_.drop_after; });
 }
 
-void ObstacleTracker::world_at(Time t, msg::WorldState& world) const {
-  std::array<const Track*, kMaxTracks> current{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Track& track = tracks_[i];
-    if (track.number > 0 && t - track.observed_at <= settings_.drop_after) current[count++] = &track;
+double ObstacleTracker::min_distance_m(const Track& track, Time t) const {
+  double min_squared = std::numeric_limits<double>::infinity();
+  for (const Vec2& robot : robots_m_)
+    min_squared = std::min(min_squared, (track.filter.position() - robot).squaredNorm());
+  return std::sqrt(min_squared) - track.radius_m -
+         kObstacleSigmas * std::sqrt(track.filter.covariance()(0, 0)) -
+         settings_.max_speed_mps * std::abs(to_seconds(t - track.observed_at));
+}
+
+void ObstacleTracker::list_at(Time t, std::span<const msg::TrackedRobot> robots, msg::ObstacleList& list) {
+  robots_m_.clear();
+  for (const msg::TrackedRobot& robot : robots) robots_m_.emplace_back(robot.x_m(), robot.y_m());
+  listed_.clear();
+  for (const Track& track : tracks_) {
+    if (track.number > 0 && t - track.observed_at <= settings_.drop_after)
+      listed_.push_back({min_distance_m(track, t), &track});
   }
-  const auto end = current.begin() + static_cast<std::ptrdiff_t>(count);
-  if (count > msg::MAX_OBSTACLES) {
-    std::nth_element(
-        current.begin(), current.begin() + msg::MAX_OBSTACLES, end, [](const Track* a, const Track* b) {
-          return a->observed_at != b->observed_at ? a->observed_at > b->observed_at : a->number < b->number;
-        });
-    count = msg::MAX_OBSTACLES;
-  }
-  std::sort(current.begin(), current.begin() + static_cast<std::ptrdiff_t>(count),
-            [](const Track* a, const Track* b) { return a->number < b->number; });
-  world.obstacle_count(static_cast<std::uint8_t>(count));
+  std::ranges::sort(listed_, {}, [](const ListedTrack& listed) {
+    return std::pair(listed.distance_m, listed.track->number);
+  });
+  const std::size_t count = std::min<std::size_t>(listed_.size(), msg::MAX_OBSTACLES);
+  double complete_within_m = incomplete_frames_.complete_within_m(robots_m_, t);
+  if (count < listed_.size())
+    complete_within_m = robots.empty() ? 0 : std::min(complete_within_m, listed_[count - 1].distance_m);
+  list.valid_at_ns(to_ns(t));
+  list.complete_within_m(std::max(0.0, complete_within_m));
+  list.obstacles().resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Track& track = *current[i];
-    fill(world.obstacles()[i], track.number, track.observed_at, track.radius_m, track.filter);
+    const Track& track = *listed_[i].track;
+    fill(list.obstacles()[i], track.number, track.observed_at, track.radius_m, track.filter);
   }
 }
 

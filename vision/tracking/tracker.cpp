@@ -97,7 +97,7 @@ void Tracker::update(const Frame& frame) {
   rejected_ += frame.rejected();
   if (!frame.is_usable()) return;
   bool is_new = frame.robots().empty() && frame.balls().empty();
-  for (const RobotObservation& robot : frame.robots()) {
+  for (const RobotPoseObservation& robot : frame.robots()) {
     const std::uint16_t index = index_of_[robot.robot];
     if (index == kNotInRoster) {
       ++rejected_;
@@ -130,9 +130,12 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
   world.valid_at_ns(to_ns(t));
   world.frames(frames_);
   world.rejected(rejected);
-  obstacles_.world_at(t, world);
   const bool is_tracked = estimate_at(ball_.state(), t, settings_.ball).has_value();
   world.ball(is_tracked ? tracked_ball(ball_at(t, world)) : msg::TrackedBall());
+}
+
+void Tracker::obstacles_at(const msg::WorldState& world, msg::ObstacleList& list) {
+  obstacles_.list_at(time_from_ns(world.valid_at_ns()), world.robots(), list);
 }
 
 /// Precondition: `world` holds the robots at time `t`.

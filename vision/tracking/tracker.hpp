@@ -32,17 +32,20 @@ struct TrackerSettings {
 [[nodiscard]] TrackerSettings tracker_settings(const Scenario& scenario);
 
 /// Fuses the frames of all cameras, in any order of arrival, into one world. Ignores robots that are not in
-/// the roster. Allocates only in the constructor.
+/// the roster. Allocates only in the constructor, and for obstacles as ObstacleTracker does.
 class Tracker {
  public:
   /// Precondition: the roster's numbers are below kMaxRobots.
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Fills in valid_at_ns, the counters, the ball and robots extrapolated from their last observations to
-  /// this time, and obstacles at their last observations; ascending by number. An unobserved ball bounces off
-  /// everything known on the floor. Allocates when the message has held fewer robots so far.
+  /// Fills in valid_at_ns, the counters, and the ball and robots extrapolated from their last observations to
+  /// this time; ascending by number. An unobserved ball bounces off everything known on the floor. Allocates
+  /// when the message has held fewer robots so far.
   void world_at(Time t, msg::WorldState& world) const;
+  /// Fills in everything but the header, for the time and the robots of a world: obstacles at their last
+  /// observations. Allocates when the message has held fewer obstacles so far.
+  void obstacles_at(const msg::WorldState& world, msg::ObstacleList& list);
 
  private:
   State ball_at(Time t, const msg::WorldState& world) const;

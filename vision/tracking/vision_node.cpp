@@ -9,11 +9,15 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
       period_(from_seconds(1 / scenario.vision.rate_hz)),
       next_(bus.now() + period_),
       tracker_(tracker_settings(scenario), roster_of(scenario)),
-      writer_(bus.advertise(topics::kWorld)) {
+      world_writer_(bus.advertise(topics::kWorld)),
+      obstacle_writer_(bus.advertise(topics::kObstacles)) {
   world_.vision(0);
   world_.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world_.header().incarnation(incarnation);
   world_.robots().reserve(scenario.robots.size());
+  obstacles_.vision(world_.vision());
+  obstacles_.header() = world_.header();
+  obstacles_.obstacles().reserve(msg::MAX_OBSTACLES);
   if (source == FrameSource::kBus) {
     bus_.subscribe<msg::DetectionFrame>(topics::kDetections,
                                         [this](const msg::DetectionFrame& message) { add_frame(message); });
@@ -29,7 +33,9 @@ void VisionNode::add_frame(const msg::DetectionFrame& message) {
 void VisionNode::publish() {
   const Time now = bus_.now();
   tracker_.world_at(now, world_);
-  writer_.publish(world_, now);
+  tracker_.obstacles_at(world_, obstacles_);
+  world_writer_.publish(world_, now);
+  obstacle_writer_.publish(obstacles_, now);
   if (listener_) listener_(world_);
   next_ += period_;
   if (next_ < now) next_ = now + period_;

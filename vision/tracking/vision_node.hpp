@@ -12,8 +12,8 @@ namespace sidestep {
 /// Where a vision node gets its frames: detections on the bus, or calls of VisionNode::add_frame().
 enum class FrameSource { kBus, kCaller };
 
-/// The vision service on a bus: fuses frames and publishes the world state at the cameras' rate, also when no
-/// frames arrive.
+/// The vision service on a bus: fuses frames and publishes the world state and the list of obstacles at the
+/// cameras' rate, also when no frames arrive.
 class VisionNode {
  public:
   /// Precondition: the bus makes no callbacks after the node's destruction.
@@ -38,7 +38,9 @@ class VisionNode {
   Frame frame_;
   Tracker tracker_;
   msg::WorldState world_;
-  Writer<msg::WorldState> writer_;
+  msg::ObstacleList obstacles_;
+  Writer<msg::WorldState> world_writer_;
+  Writer<msg::ObstacleList> obstacle_writer_;
   std::function<void(const msg::WorldState&)> listener_;
 };
 

@@ -41,24 +41,24 @@ void print_violations(Auditor& auditor, bool is_json) {
 
 std::string audit_summary(const AuditTotals& totals) {
   std::string text = fmt::format(
-      "audit: {} violations; {} messages received, {} missed, {} invalid; {} pairs of versions compared, {} "
-      "undecided because of missed messages\n",
-      totals.violations, totals.received, totals.missed, totals.invalid, totals.compared_pairs,
-      totals.undecided_pairs);
+      "{} violations; {} messages received, {} missed, {} invalid, {} refused because of other rules\n"
+      "{} pairs of versions compared, {} undecided because of missed messages; positions and contacts from: "
+      "{}\n",
+      totals.violations, totals.received, totals.missed, totals.invalid, totals.refused,
+      totals.compared_pairs, totals.undecided_pairs, name_of(totals.reference));
   for (std::size_t i = 0; i < kAuditRules; ++i) {
     const AuditRuleInfo& rule = audit_rule(static_cast<AuditRule>(i));
     if (totals.by_rule[i] > 0)
       text +=
           fmt::format("  {} x {} ({}): {}\n", totals.by_rule[i], rule.name, rule.reference, rule.requirement);
   }
-  if (totals.received == 0) text += "audit: no messages were received, so nothing was checked\n";
   return text;
 }
 
-int print_summary(const Auditor& auditor) {
-  const AuditTotals totals = auditor.totals();
-  fmt::print(stderr, "{}", audit_summary(totals));
-  return totals.violations == 0 && totals.received > 0 ? 0 : kExitFailure;
+/// Prints the summary and the verdict, and returns the exit code.
+int finish(const AuditTotals& totals) {
+  fmt::print(stderr, "{}audit: {}\n", audit_summary(totals), verdict_line(totals));
+  return exit_code(totals.verdict());
 }
 
 int audit_recording(const AuditOptions& options) {
@@ -71,6 +71,7 @@ int audit_recording(const AuditOptions& options) {
   input.is_complete = bus.header().is_complete;
   Auditor auditor(scenario, input);
   print_violations(auditor, options.is_json);
+  refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
   const PlaybackResult result = bus.play();
   fmt::print(stderr, "{}: {} messages of scenario {}{}\n", options.recording_file, result.messages,
@@ -78,7 +79,10 @@ int audit_recording(const AuditOptions& options) {
              result.unreadable > 0 ? fmt::format(", {} of them unreadable", result.unreadable) : "");
   if (!result.damage.empty())
     fmt::print(stderr, "{}: {}; the messages before that were used\n", options.recording_file, result.damage);
-  return print_summary(auditor);
+  auditor.advance(bus.now());
+  AuditTotals totals = auditor.totals();
+  totals.is_cut_off = !result.damage.empty();
+  return finish(totals);
 }
 
 int audit_live(const AuditOptions& options) {
@@ -86,10 +90,12 @@ int audit_live(const AuditOptions& options) {
   Auditor auditor(scenario, AuditInput());
   print_violations(auditor, options.is_json);
   DdsBus bus(options.dds);
+  refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
   fmt::print(stderr, "auditing domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
   run_for(bus, options.seconds);
-  return print_summary(auditor);
+  auditor.advance(bus.now());
+  return finish(auditor.totals());
 }
 
 }  // namespace

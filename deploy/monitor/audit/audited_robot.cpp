@@ -60,6 +60,7 @@ KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
     const auto excluded = std::ranges::find_if(versions, is_excluded);
     const auto evicted = excluded == versions.end() ? versions.begin() : excluded;
     max_evicted_version = std::max(max_evicted_version, evicted->number);
+    forgotten_.add(*evicted, traceable_from_ns);
     if (evicted - versions.begin() < static_cast<std::ptrdiff_t>(first_recent)) --first_recent;
     versions.erase(evicted);
   }
@@ -80,11 +81,33 @@ ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number, VersionNumber 
   return nullptr;
 }
 
+bool AuditedRobot::continues(VersionNumber from, VersionNumber to) const {
+  for (const KnownVersion* step = find(to); step; step = find(step->version.base())) {
+    if (step->number <= from) return step->number == from;
+    if (!step->has_content || step->version.base() >= step->number) return false;
+  }
+  return false;
+}
+
+void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t from_ns) {
+  const bool is_of_agent = version.number != 0 && !version.is_own_stop;
+  if (!version.was_executed || !is_of_agent || version.path.start_ns() <= from_ns) return;
+  ++all;
+  traced += version.is_traced();
+}
+
+AuditedRobot::ExecutedVersions AuditedRobot::executed_versions() const {
+  ExecutedVersions total = forgotten_;
+  for (const KnownVersion& known : versions) total.add(known, traceable_from_ns);
+  return total;
+}
+
 void AuditedRobot::forget(std::int64_t before_ns) {
   if (versions.empty() || versions.front().excluded_ns >= before_ns) return;
   std::erase_if(versions, [&](const KnownVersion& known) {
     if (known.excluded_ns >= before_ns) return false;
     max_evicted_version = std::max(max_evicted_version, known.number);
+    forgotten_.add(known, traceable_from_ns);
     return true;
   });
   first_recent = 0;
@@ -107,8 +130,10 @@ ProposalRecord& AuditedRobot::add_proposal() {
 
 void AuditedRobot::reset() {
   const RobotId kept_id = id;
+  const ExecutedVersions kept_versions = executed_versions();
   *this = AuditedRobot();
   id = kept_id;
+  forgotten_ = kept_versions;
 }
 
 Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {

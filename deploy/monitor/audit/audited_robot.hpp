@@ -27,6 +27,7 @@ class EpochMemory {
  public:
   void add(Epoch epoch);
   bool holds(Epoch epoch) const;
+  bool is_empty() const { return epochs_.front() == 0; }
   /// Whether the epoch is held or may have been evicted.
   bool may_have_held(Epoch epoch) const { return holds(epoch) || (epoch != 0 && epoch <= max_evicted_); }
 
@@ -53,11 +54,16 @@ struct KnownVersion {
   std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that carries it
   Epoch sent_epoch = 0;             ///< the highest epoch of those commands
   bool is_granted_by_page = false;  ///< inferred from a ledger page, because the verdict was missed
+  bool is_proposed = false;         ///< its proposal was received, or may have been evicted
   bool is_reported_unsent = false;  ///< so that a breach is reported once
   msg::Version version;
 
   /// Whether it was granted or registered in the epoch.
   bool is_in(Epoch epoch) const;
+  /// Whether a ledger has held it, as far as is known.
+  bool was_in_ledger() const { return number == 0 || granted_in != 0 || !registered_in.is_empty(); }
+  /// Whether its proposal, its grant and a command with it were received.
+  bool is_traced() const { return is_proposed && granted_in != 0 && sent_ns != kNever; }
   /// Whether it is or may be in the epoch. A coordinator may resume after more epochs than are remembered.
   bool may_be_in(Epoch epoch) const;
 };
@@ -94,9 +100,10 @@ class AuditedRobot {
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
   std::size_t early_verdict_count = 0;
-  std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
-  VersionNumber max_evicted_version = 0;   ///< versions up to this number may have been evicted
-  std::size_t first_recent = 0;            ///< versions before this index were excluded long ago
+  std::uint64_t max_evicted_proposal = 0;   ///< proposals up to this number may have been evicted
+  VersionNumber max_evicted_version = 0;    ///< versions up to this number may have been evicted
+  std::int64_t traceable_from_ns = kNever;  ///< versions that start later were granted during the audit
+  std::size_t first_recent = 0;             ///< versions before this index were excluded long ago
 
   /// The latest fact.
   struct Fact {
@@ -124,6 +131,13 @@ class AuditedRobot {
   };
   std::optional<Registered> registered;
   EpochMemory registered_in;
+
+  /// Executed versions, and those of them that are traced. Only versions that an agent made and that were
+  /// granted during the audit count.
+  struct ExecutedVersions {
+    std::uint64_t all = 0, traced = 0;
+    void add(const KnownVersion& version, std::int64_t from_ns);
+  };
   Epoch newest_granted_in = 0;
   VersionNumber newest_granted = 0;
 
@@ -133,6 +147,10 @@ class AuditedRobot {
   const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
   /// Whether the version is unknown and may have been evicted.
   bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
+  /// Whether all versions are known that the robot executed from one version to another, which may be equal.
+  bool continues(VersionNumber from, VersionNumber to) const;
+  /// Those of the robot's whole life.
+  ExecutedVersions executed_versions() const;
   /// The version's record, inserted if it is new. When full, evicts the least relevant record.
   KnownVersion& find_or_insert(VersionNumber number);
   /// The proposal with this number, or, for number 0, the newest one with this candidate.
@@ -146,8 +164,11 @@ class AuditedRobot {
   void make_recent(VersionNumber number);
   /// Slot for one more proposal; evicts the oldest one when full.
   ProposalRecord& add_proposal();
-  /// Forgets everything but the id: a new simulator starts with a new floor.
+  /// Forgets everything but the id and the counters: a new simulator starts with a new floor.
   void reset();
+
+ private:
+  ExecutedVersions forgotten_;
 };
 
 /// Whether and why the fact rules out that the version is executed from then on.

@@ -4,10 +4,37 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "common/config/shared_rules.hpp"
+#include "common/messaging/robot_notices.hpp"
+
 namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxEpochs = 64;
+constexpr Duration kAdvancePeriod = std::chrono::milliseconds(100);
+// Robots in contact may appear this far apart, because their positions are sampled.
+constexpr double kContactTolerance_m = 0.001;
+// For messages and a few cycles, beyond braking itself.
+constexpr Duration kReactionTime = std::chrono::milliseconds(200);
+
+DisturbanceSettings disturbance_settings(const Scenario& scenario) {
+  const double braking_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2;
+  return {2 * scenario.radius_m + kContactTolerance_m, 2 * scenario.radius_m + scenario.margin_m,
+          from_seconds(braking_s) + kReactionTime};
+}
+
+/// How far a robot may seem to be from its version because of errors of vision and clocks.
+double sight_allowance_m(const Scenario& scenario) {
+  return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
+}
+
+/// Lets the auditor know the time, also when no message arrives.
+void advance_periodically(Bus& bus, Auditor& auditor) {
+  bus.at(bus.now() + kAdvancePeriod, [&bus, &auditor] {
+    auditor.advance(bus.now());
+    advance_periodically(bus, auditor);
+  });
+}
 
 }  // namespace
 
@@ -16,9 +43,15 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
       input_(input),
       tracking_bound_m_(scenario.tracking_bound_m),
       clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),
+      sight_allowance_m_(sight_allowance_m(scenario)),
       trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
-      positions_m_(scenario.robots.size()),
-      disturbances_(scenario.robots.size(), input.is_complete),
+      agent_trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
+      facts_time_(scenario.robots.size()),
+      sights_(scenario.robots.size()),
+      seen_displacements_(scenario.robots.size()),
+      observed_(scenario.robots.size()),
+      seen_contacts_(scenario),
+      disturbances_(scenario.robots.size(), disturbance_settings(scenario)),
       index_(kMaxRobots, scenario.robots.size()) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
@@ -28,13 +61,6 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
   live_versions_.resize(robots_.size());
   observations_.resize(robots_.size());
   has_sound_clock_.resize(robots_.size());
-}
-
-AuditTotals Auditor::totals() const {
-  AuditTotals totals = totals_;
-  totals.received = trace_.received();
-  totals.missed = trace_.missed();
-  return totals;
 }
 
 void Auditor::report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch,
@@ -64,7 +90,9 @@ AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& header) 
 }
 
 Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
-  return trace_.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
+  const bool is_of_agent = kind == kProposalKind || kind == kRegistrationKind || kind == kCommandKind;
+  MessageTrace& messages = is_of_agent ? agent_trace_ : trace_;
+  return messages.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
 }
 
 KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
@@ -118,6 +146,7 @@ void Auditor::on_proposal(const msg::Proposal& proposal, Time now) {
     record.candidates[i] = proposal.candidates()[i];
     // The verdict may have overtaken the proposal.
     KnownVersion* known = robot->find(record.candidates[i].version_number());
+    if (known) known->is_proposed = true;
     if (!known || known->has_content || known->granted_in == 0) continue;
     if (KnownVersion* stored = store(*robot, record.candidates[i])) {
       check_content(*robot, *stored);
@@ -158,15 +187,21 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
 void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   now_ = now;
   const Reception reception = trace(kCoordinatorKind, 0, state.header());
+  if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
+    begin_run();
+    named_displaced_ = displaced_robots(state);
+  }
   const auto known = epochs_.find(state.epoch());
-  if (known == epochs_.end() || known->second.is_reported || state.missing().empty()) return;
+  if (known == epochs_.end() || known->second.is_reported) return;
+  const std::vector<RobotId> missing = missing_robots(state);
+  if (missing.empty()) return;
   if (known->second.granter_life != state.header().incarnation() ||
       reception.earliest_ns <= known->second.first_grant_ns)
     return;
   known->second.is_reported = true;
-  report(AuditRule::kAllRegistered, state.missing().front(), nullptr, state.epoch(),
+  report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
          fmt::format("{} robots' registrations are missing, although the coordinator has granted",
-                     state.missing().size()));
+                     missing.size()));
 }
 
 void Auditor::on_command(const msg::Command& command, Time now) {
@@ -220,11 +255,20 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
   subscribe(topics::kCoordinator, 0, &Auditor::on_coordinator);
   subscribe(topics::kLedger, 0, &Auditor::on_ledger);
   subscribe(topics::kTruth, 0, &Auditor::on_truth);
+  subscribe(topics::kWorld, 0, &Auditor::on_world);
+  subscribe(topics::kDisturbance, 0, &Auditor::on_disturbance);
+  subscribe(topics::kAttestation, 0, &Auditor::on_attestation);
   for (const RobotSpec& robot : scenario.robots) {
     subscribe(topics::kVerdict, robot.id, &Auditor::on_verdict);
     subscribe(topics::kCommand, robot.id, &Auditor::on_command);
     subscribe(topics::kFeedback, robot.id, &Auditor::on_feedback);
   }
+  advance_periodically(bus, auditor);
+}
+
+void refuse_other_rules(Bus& bus, const Scenario& scenario, Auditor& auditor) {
+  bus.use_rules(SharedRules(scenario).fingerprint(),
+                [&auditor](const TopicInfo&, const msg::Header&) { auditor.on_refused(); });
 }
 
 }  // namespace sidestep

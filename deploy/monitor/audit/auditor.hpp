@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/monitor/audit/audited_robot.hpp"
 #include "deploy/monitor/audit/disturbances.hpp"
+#include "deploy/monitor/audit/heard_time.hpp"
 #include "deploy/monitor/audit/message_trace.hpp"
+#include "deploy/monitor/audit/seen_contacts.hpp"
 
 namespace sidestep {
 
@@ -27,7 +35,8 @@ struct AuditInput {
 /// Checks all messages of a run against the rules of the safety protocol and reports each violation with the
 /// robots and versions involved. Shares no code with the components under audit. The auditor may join late,
 /// miss messages and receive them out of order. It then relies only on contradictions between received
-/// messages: it finds less, but never raises a false alarm. Memory is bounded by the roster.
+/// messages: it finds less, but never raises a false alarm, and its totals state how much it covered. Memory
+/// is bounded by the roster.
 class Auditor {
  public:
   Auditor(const Scenario& scenario, const AuditInput& input);
@@ -39,9 +48,18 @@ class Auditor {
   void on_ledger(const msg::LedgerPage& page, Time now);
   void on_command(const msg::Command& command, Time now);
   void on_feedback(const msg::Feedback& feedback, Time now);
-  /// Contacts and position errors of a robot are excused from an operator's disturbance until the robot is
-  /// observed on its reference again.
+  /// The reference for positions and contacts, and for which robots were disturbed.
   void on_truth(const msg::GroundTruth& truth, Time now);
+  /// The reference if no ground truth is received.
+  void on_world(const msg::WorldState& world, Time now);
+  /// Names the cause of a disturbance. Without ground truth it also tells that there was one.
+  void on_disturbance(const msg::Disturbance& disturbance, Time now);
+  /// The operator attests that a robot that says nothing is not on the floor.
+  void on_attestation(const msg::AbsenceAttestation& attestation, Time now);
+  /// A message of a process with other rules was refused.
+  void on_refused() { ++totals_.refused; }
+  /// Time passes, perhaps without messages.
+  void advance(Time now) { now_ = std::max(now_, now); }
 
   AuditTotals totals() const;
   /// Calls back for each violation when it is found.
@@ -61,10 +79,15 @@ class Auditor {
     bool was_executed;
     bool operator==(const Evidence&) const = default;
   };
-  /// The latest ground truth of one robot that has not been compared with feedback yet.
+  /// The latest position of one robot in the reference that has not been compared with feedback yet.
   struct Observation {
     std::int64_t at_ns = kNever;
     double x = 0, y = 0;
+  };
+  /// A displacement that vision shows.
+  struct SeenDisplacement {
+    std::int64_t since_ns = kNever;  ///< in all observations since then the robot is out of place
+    bool is_reported = false;        ///< so that it is reported once
   };
 
   void report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch, std::string detail);
@@ -82,12 +105,24 @@ class Auditor {
     kLedgerKind,
     kCommandKind,
     kFeedbackKind,
-    kTruthKind
+    kTruthKind,
+    kWorldKind
   };
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
   /// Stores the version's content and returns its record; nullptr if the content is invalid.
   KnownVersion* store(AuditedRobot& robot, const msg::Version& version);
   EpochRecord& epoch_record(Epoch epoch);
+
+  bool is_known_to_be_displaced(const AuditedRobot& robot) const;
+
+  // Coverage.
+  /// Something shows that robots may move. Silence counts once every robot has been heard, at the latest a
+  /// second later.
+  void begin_run();
+  void hear_fact(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
+  void use_reference(AuditReference reference);
+  bool has_ground_truth() const;
+  Coverage coverage() const;
 
   // Grants.
   void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
@@ -111,15 +146,33 @@ class Auditor {
   void check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop);
   void check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                            const Reception& reception);
-  void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
-  /// `reported`: number of contacts in the previous ground truth.
-  void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
-  void record_positions(const msg::GroundTruth& truth);
-  /// nullopt: not on the roster.
-  std::optional<std::size_t> roster_index(RobotId robot) const;
+  bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
   static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Reception& reception,
                       std::int64_t now_ns);
-  bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
+
+  // Positions and contacts.
+  void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
+  void check_true_position(const AuditedRobot& robot, const KnownVersion& executed, double error_m,
+                           std::int64_t at_ns);
+  void check_seen_position(const AuditedRobot& robot, const KnownVersion& executed, double error_m,
+                           std::int64_t at_ns);
+  /// `reported`: number of contacts in the previous ground truth.
+  void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
+  /// Whether a contact is excused; it is then counted. nullopt: an obstacle.
+  bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at);
+  void record_positions(const msg::GroundTruth& truth);
+  void record_sights(const msg::WorldState& world);
+  /// Whether vision is the reference, because it has shown robots for a while without any ground truth.
+  bool is_vision_needed();
+  void check_sights(const msg::WorldState& world);
+  /// `error_m`: distance from the place that its version prescribes, of which `allowance_m` may be an error
+  /// of the observation.
+  ObservedRobot observed_robot(std::size_t robot, const Vec2& position_m, double speed_mps, double error_m,
+                               double allowance_m) const;
+  /// The version that the robot executed at a time by its clock, as far as is known.
+  static const KnownVersion* executed_at(const AuditedRobot& robot, VersionNumber latest, std::int64_t at_ns);
+  /// nullopt: not on the roster.
+  std::optional<std::size_t> roster_index(RobotId robot) const;
 
   // Pairs.
   /// `before`: the evidence for the robot's recent versions before the current fact.
@@ -144,16 +197,28 @@ class Auditor {
   AuditInput input_;
   double tracking_bound_m_;
   std::int64_t clock_bound_ns_;
-  MessageTrace trace_;
+  double sight_allowance_m_;
+  MessageTrace trace_;        ///< of robots, coordinators and the reference
+  MessageTrace agent_trace_;  ///< of agents
   Time now_{};
+  std::optional<Time> motion_sign_at_, begun_at_;  ///< of the run
+  HeardTime facts_time_;                           ///< of all robots
+  std::optional<HeardTime> reference_time_;
+  std::optional<Time> first_sight_at_;
   std::vector<AuditedRobot> robots_;                     ///< ascending by id
   std::vector<BoundingDisc> bounds_;                     ///< parallel to robots_
   std::vector<std::vector<LiveVersion>> live_versions_;  ///< parallel to robots_
   double max_inflation_m_ = 0;                           ///< of all versions received so far
   std::vector<bool> has_sound_clock_;
   std::vector<Observation> observations_;
-  std::vector<std::optional<Vec2>> positions_m_;  ///< in the latest ground truth, parallel to robots_
+  std::vector<Sight> sights_;                           ///< parallel to robots_
+  std::vector<SeenDisplacement> seen_displacements_;    ///< parallel to robots_
+  std::vector<std::optional<ObservedRobot>> observed_;  ///< on the floor at last, parallel to robots_
+  SeenContacts seen_contacts_;
+  std::vector<RobotId> named_displaced_;  // by the coordinator that grants
   Disturbances disturbances_;
+  /// Number of excused contacts by cause and robots.
+  std::map<std::tuple<std::string_view, RobotId, std::optional<RobotId>>, std::uint64_t> excused_;
   std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
   struct AgentStream {
@@ -171,5 +236,8 @@ class Auditor {
 
 /// Subscribes the auditor to a bus; the auditor must outlive the bus's last callback.
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor);
+/// Makes a bus that is not used otherwise refuse messages of processes with other rules (PROTOCOL.md, "The
+/// same rules"); the auditor counts them. The rest of a process does that with RulesExchange.
+void refuse_other_rules(Bus& bus, const Scenario& scenario, Auditor& auditor);
 
 }  // namespace sidestep

@@ -16,6 +16,9 @@ constexpr std::int64_t kRetention_ns = 1'500'000'000;
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
 // A robot checks its tracking error once per millisecond, but reports the position in between.
 constexpr double kReportingTolerance_m = 0.0005;
+// Versions that begin this long after a robot's first fact were granted after that fact, and after an auditor
+// that joined a run had found all senders.
+constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
 // A robot may take 25 ms to return to its reference, plus a millisecond until its next check.
 constexpr std::int64_t kRecoveryTimeout_ns = 26'000'000;
 
@@ -70,6 +73,7 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
       executing->is_own_stop = true;
     }
   }
+  hear_fact(*robot, feedback.executing().version_number(), reception);
   AuditedRobot::Fact fact;
   fact.life = life;
   fact.at_ns = feedback.valid_at_ns();
@@ -106,6 +110,7 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
   has_sound_clock_[index_of(*robot)] = is_clock_sound(feedback, reception);
   check_position(*robot, feedback, reception);
 
+  if (!robot->fact) robot->traceable_from_ns = fact.at_ns + kMaxLead_ns;
   robot->fact = fact;
 
   check_pairs(*robot, earlier_evidence_);

@@ -43,6 +43,7 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
     decide(robot, *proposal, verdict.epoch(), verdict.granted_version());
   }
   if (verdict.granted_version() == 0) return;
+  begin_run();
   const KnownVersion* before = robot.find(verdict.granted_version());
   // A delayed coordinator may repeat its verdict on an old proposal, whose version may have been evicted
   // here.
@@ -73,6 +74,7 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   known->granted_in = verdict.epoch();
   known->granted_by_ns = reception.latest_ns;
   known->is_granted_by_page = false;
+  if (candidate || verdict.proposal_number() <= robot.max_evicted_proposal) known->is_proposed = true;
   check_grant(robot, *known, verdict);
 }
 
@@ -131,6 +133,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     ++totals_.invalid;
     return;
   }
+  begin_run();
   const auto granter = epochs_.find(page.epoch());
   const bool is_of_epoch =
       granter == epochs_.end() || granter->second.granter_life == page.header().incarnation();
@@ -152,9 +155,10 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     KnownVersion* stored = store(robot, version);
     if (!stored || stored->is_in(page.epoch()) || stored->granted_in != 0) continue;
     // A version that an agent proposed or sent is not the robot's own stop, so its verdict was missed.
-    const bool was_granted = !input_.is_complete &&
-                             (stored->sent_ns != kNever || robot.find_proposal(0, stored->number) != nullptr);
+    const bool was_proposed = robot.find_proposal(0, stored->number) != nullptr;
+    const bool was_granted = !input_.is_complete && (stored->sent_ns != kNever || was_proposed);
     if (!stored->is_own_stop && !was_granted) continue;
+    if (was_proposed) stored->is_proposed = true;
     stored->granted_in = page.epoch();
     stored->granted_by_ns = reception.latest_ns;
     stored->is_granted_by_page = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/time_range.hpp"
@@ -10,62 +11,88 @@
 namespace sidestep {
 namespace {
 
-// Robots in contact may appear this far apart, because their positions are sampled.
-constexpr double kContactTolerance_m = 0.001;
 constexpr std::size_t kMaxSimulatorLives = 16;
 
 }  // namespace
 
 void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception) {
-  Observation& pending = observations_[index_of(robot)];
-  if (!input_.is_complete || pending.at_ns == kNever) return;
-  const std::int64_t clock_offset_ns = feedback.valid_at_ns() - reception.latest_ns;
-  const std::int64_t at_ns = pending.at_ns + clock_offset_ns;  // by the robot's clock
+  const std::size_t index = index_of(robot);
+  const bool is_vision = totals_.reference == AuditReference::kVision;
+  Observation& pending = observations_[index];
+  if (pending.at_ns == kNever || !(input_.is_complete || is_vision)) return;
+  // By the robot's clock. Ground truth is stamped by the auditor's clock, cameras' clocks are within bound.
+  const std::int64_t at_ns = pending.at_ns + (is_vision ? 0 : feedback.valid_at_ns() - reception.latest_ns);
   if (feedback.valid_at_ns() < at_ns) return;
-  const Observation observation = pending;
-  pending = {};
+  const Observation observation = std::exchange(pending, Observation());
   const bool is_off = feedback.is_off_reference() || feedback.is_lifted() || !robot.fact ||
-                      robot.fact->is_off_reference || robot.fact->is_lifted;
-  const KnownVersion* executed = robot.find(feedback.executing().version_number());
-  while (executed && executed->has_content && executed->path.start_ns() > at_ns && executed->number != 0)
-    executed = robot.find(executed->version.base());
-  if (is_off || !executed || !executed->has_content) return;
+                      robot.fact->is_off_reference || robot.fact->is_lifted ||
+                      (is_vision && !has_sound_clock_[index]);
+  const KnownVersion* executed = executed_at(robot, feedback.executing().version_number(), at_ns);
+  if (is_off || !executed) {
+    seen_displacements_[index] = {};
+    return;
+  }
   const AuditPath::Node reference = executed->path.at_ns(at_ns);
-  const double error = std::hypot(observation.x - reference.x, observation.y - reference.y);
-  const double bound = tracking_bound_m_ + executed->version.inflation_m();
-  totals_.max_position_error_m = std::max(totals_.max_position_error_m, error);
-  totals_.beyond_tracking_bound += error > bound;
-  if (error <= bound) disturbances_.confirm_in_place(index_of(robot));
-  if (error <= scenario_.margin_m + executed->version.inflation_m()) return;
-  if (disturbances_.is_disturbed(index_of(robot))) {
+  const double error_m = std::hypot(observation.x - reference.x, observation.y - reference.y);
+  totals_.max_position_error_m = std::max(totals_.max_position_error_m, error_m);
+  totals_.beyond_tracking_bound += error_m > tracking_bound_m_ + executed->version.inflation_m();
+  if (is_vision)
+    check_seen_position(robot, *executed, error_m, at_ns);
+  else
+    check_true_position(robot, *executed, error_m, at_ns);
+}
+
+// A robot that cannot use observations, because its clock is off, never learns that it was displaced. Others
+// keep clear of it for as long as the coordinator names it.
+bool Auditor::is_known_to_be_displaced(const AuditedRobot& robot) const {
+  return disturbances_.is_displaced(index_of(robot)) ||
+         (disturbances_.was_disturbed(index_of(robot)) && std::ranges::count(named_displaced_, robot.id) > 0);
+}
+
+void Auditor::check_true_position(const AuditedRobot& robot, const KnownVersion& executed, double error_m,
+                                  std::int64_t at_ns) {
+  if (error_m <= scenario_.margin_m + executed.version.inflation_m()) return;
+  if (is_known_to_be_displaced(robot)) {
     ++totals_.excused_displacements;
     return;
   }
-  report(AuditRule::kPosition, robot.id, executed, 0,
-         fmt::format("is {:.6f} m from its reference at {} ns; the margin is {:.6f} m", error, at_ns,
+  report(AuditRule::kPosition, robot.id, &executed, 0,
+         fmt::format("is {:.6f} m from its reference at {} ns; the margin is {:.6f} m", error_m, at_ns,
                      scenario_.margin_m));
+}
+
+const KnownVersion* Auditor::executed_at(const AuditedRobot& robot, VersionNumber latest,
+                                         std::int64_t at_ns) {
+  const KnownVersion* executed = robot.find(latest);
+  while (executed && executed->has_content && executed->path.start_ns() > at_ns && executed->number != 0)
+    executed = robot.find(executed->version.base());
+  return executed && executed->has_content ? executed : nullptr;
+}
+
+bool Auditor::is_excused_contact(RobotId first, std::optional<RobotId> second, Time at) {
+  const auto cause =
+      disturbances_.on_contact(roster_index(first), second ? roster_index(*second) : std::nullopt, at);
+  if (!cause) return false;
+  ++totals_.excused_contacts;
+  ++excused_[{*cause, first, second}];
+  return true;
 }
 
 void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t reported) {
   const std::uint64_t added = truth.contacts() - reported,
                       listed = std::min<std::uint64_t>(added, msg::MAX_CONTACTS);
-  bool are_all_excused = true;
+  totals_.unidentified_contacts += added - listed;
   for (std::uint64_t k = truth.contacts() - listed; k < truth.contacts(); ++k) {
     const msg::ContactPair& contact = truth.recent_contacts()[k % msg::MAX_CONTACTS];
-    if (disturbances_.on_contact(roster_index(contact.first()), roster_index(contact.second()))) {
-      ++totals_.excused_contacts;
-      continue;
-    }
-    are_all_excused = false;
-    const std::string touched =
-        contact.second() == msg::NO_ROBOT ? "an obstacle" : fmt::format("robot {}", contact.second());
+    const std::optional<RobotId> second =
+        contact.second() == msg::NO_ROBOT ? std::nullopt : std::optional<RobotId>(contact.second());
+    if (is_excused_contact(contact.first(), second, time_from_ns(truth.valid_at_ns()))) continue;
+    const std::string touched = second ? fmt::format("robot {}", *second) : "an obstacle";
     report(
         AuditRule::kContact, contact.first(), nullptr, 0,
         fmt::format("touches {}; {} contacts so far, {:.9f} m s of penetration, minimum clearance {:.6f} m",
                     touched, truth.contacts(), truth.penetration_m_s(), truth.min_clearance_m()));
   }
-  // Contacts beyond the list are excused if all listed ones are.
-  if (are_all_excused) totals_.excused_contacts += added - listed;
 }
 
 std::optional<std::size_t> Auditor::roster_index(RobotId robot) const {
@@ -81,12 +108,16 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
     return;
   }
   if (!reception.is_newest) return;
+  if (!has_ground_truth()) use_reference(AuditReference::kGroundTruth);
+  // Its counters report contacts that happened while it was not received.
+  reference_time_->hear(0, now_, Duration{0});
   if (truths_.size() >= kMaxSimulatorLives && !truths_.contains(truth.header().incarnation()))
     truths_.erase(truths_.begin());
   record_positions(truth);
   msg::GroundTruth& last = truths_[truth.header().incarnation()];
   const RobotId any_robot = robots_.empty() ? 0 : robots_.front().id;
   if (truth.contacts() > last.contacts()) check_contacts(truth, last.contacts());
+  disturbances_.update(time_from_ns(truth.valid_at_ns()), observed_);
   if (truth.firmware_violations() > last.firmware_violations())
     report(AuditRule::kFirmwareMonitor, any_robot, nullptr, 0,
            fmt::format("{} violations so far", truth.firmware_violations()));
@@ -102,16 +133,30 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
 
 void Auditor::record_positions(const msg::GroundTruth& truth) {
   const Time at = time_from_ns(truth.valid_at_ns());
-  std::ranges::fill(positions_m_, std::nullopt);
+  std::ranges::fill(observed_, std::nullopt);
   for (const msg::TrueRobotState& state : truth.robots()) {
     const auto index = roster_index(state.robot());
     if (!index || !std::isfinite(state.x_m()) || !std::isfinite(state.y_m())) continue;
     observations_[*index] = {truth.valid_at_ns(), state.x_m(), state.y_m()};
-    positions_m_[*index] = Vec2(state.x_m(), state.y_m());
+    observed_[*index] =
+        observed_robot(*index, {state.x_m(), state.y_m()}, std::hypot(state.vx_mps(), state.vy_mps()),
+                       state.reference_error_m(), 0);
     if (state.disturbance_end_ns() >= 0)
       disturbances_.disturb(*index, time_from_ns(state.disturbance_end_ns()), at);
   }
-  disturbances_.update(at, positions_m_, 2 * scenario_.radius_m + kContactTolerance_m);
+}
+
+ObservedRobot Auditor::observed_robot(std::size_t index, const Vec2& position_m, double speed_mps,
+                                      double error_m, double allowance_m) const {
+  const AuditedRobot& robot = robots_[index];
+  ObservedRobot observed{position_m, speed_mps, 0, false};
+  const bool is_executing = robot.fact && !robot.fact->is_lifted;
+  const KnownVersion* const version = is_executing ? robot.find(robot.fact->executing) : nullptr;
+  if (!version || !version->has_content) return observed;
+  observed.inflation_m = version->version.inflation_m();
+  observed.is_in_place =
+      version->was_in_ledger() && error_m <= tracking_bound_m_ + observed.inflation_m + allowance_m;
+  return observed;
 }
 
 }  // namespace sidestep

@@ -3,48 +3,96 @@
 
 #include <cstddef>
 #include <optional>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "common/geometry/vec2.hpp"
 #include "common/time/time.hpp"
+#include "idl/disturbance.hpp"
 
 namespace sidestep {
 
-/// Robots displaced by an operator, and robots those push in turn. Their contacts and positions say nothing
-/// about the protocol. Robots are given by their index in the roster; times are the simulator's.
+/// A robot on the floor, as ground truth or vision shows it.
+struct ObservedRobot {
+  Vec2 position_m{0, 0};
+  double speed_mps = 0;
+  double inflation_m = 0;    ///< of the version that it executes
+  bool is_in_place = false;  ///< where that version prescribes, and a ledger has held the version
+};
+
+struct DisturbanceSettings {
+  double contact_distance_m = 0;  ///< robots farther apart do not touch
+  double separation_m = 0;        ///< robots without inflation that are nearer are in conflict
+  /// Motion that was granted before a disturbance became known ends within this time.
+  Duration braking_time{0};
+};
+
+/// Decides which contacts disturbances of robots excuse. A contact of two robots is excused only if one of
+/// them was disturbed, or was pushed by a disturbed robot. The excuse of a pair begins with the disturbance.
+/// It ends when the disturbed robot is back in place, at rest or in motion, the other one has rested since
+/// then, and the two are not in conflict. Robots are given by their index in the roster; times are those of
+/// ground truth or vision.
 class Disturbances {
  public:
-  /// Without position checks, a robot is assumed to be back in place after a timeout.
-  Disturbances(std::size_t robots, bool has_position_checks);
+  static constexpr std::string_view kUnknownCause = "unknown";
 
-  /// Ground truth reports that an operator disturbed the robot until `end_time`. Repetitions count once.
-  void disturb(std::size_t robot, Time end_time, Time now);
-  /// New ground truth: the positions of the robots that it contains. Robots farther apart than
-  /// `contact_distance_m` do not touch.
-  void update(Time now, const std::vector<std::optional<Vec2>>& positions_m, double contact_distance_m);
-  /// A contact began; nullopt stands for anything but a robot. Returns whether a disturbed robot is involved.
-  /// If only one of two robots is, the other one counts as disturbed for as long as they touch.
-  bool on_contact(std::optional<std::size_t> first, std::optional<std::size_t> second);
-  /// The robot was observed within its tracking bound.
-  void confirm_in_place(std::size_t robot);
+  Disturbances(std::size_t robots, const DisturbanceSettings& settings);
 
-  bool is_disturbed(std::size_t robot) const { return states_[robot].until.has_value(); }
+  /// An operator's message names the cause of a disturbance. By itself it excuses nothing.
+  void announce(std::size_t robot, std::string_view cause);
+  /// The robot is disturbed until `end`; Time::max(): the end is not known. Repetitions count once.
+  void disturb(std::size_t robot, Time end, Time now);
+  /// A contact began; nullopt stands for anything but a robot. Returns its cause if it is excused. A robot
+  /// that a disturbed one pushes counts as disturbed by the same cause, for as long as they touch.
+  [[nodiscard]] std::optional<std::string_view> on_contact(std::optional<std::size_t> first,
+                                                           std::optional<std::size_t> second, Time now);
+  /// The robots on the floor at this time.
+  void update(Time now, const std::vector<std::optional<ObservedRobot>>& robots);
+
+  /// Whether the robot was disturbed and is not back in place.
+  bool is_displaced(std::size_t robot) const;
+  /// Whether the robot was ever disturbed.
+  bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
+  /// Sum over all pairs of robots on the floor of the observed time, and of the part of it in which a contact
+  /// of the pair would have been excused.
+  double pair_s() const { return pair_s_; }
+  double excused_pair_s() const { return excused_pair_s_; }
 
  private:
+  struct Displacement {
+    std::string_view cause;
+    Time end{};  ///< of the disturbance
+    std::optional<Time> back_at;
+    std::vector<bool> is_over;  ///< by robot: contacts with it are no longer excused
+  };
   struct State {
     std::optional<Time> reported_end;  ///< as last reported
-    std::optional<Time> until;         ///< earliest time at which the robot can count as back in place
+    std::optional<std::string_view> announced;
+    std::optional<Time> rests_since;
+    std::optional<Displacement> displacement;
   };
   struct Push {
     std::size_t pushing, pushed;
   };
-  void extend(std::size_t robot, Time end_time);
 
-  bool has_position_checks_;
-  Time now_{};
+  void displace(std::size_t robot, std::string_view cause, Time end);
+  std::optional<std::string_view> excuse(std::optional<std::size_t> first,
+                                         std::optional<std::size_t> second) const;
+  void add_pair_time(Time now);
+  void update_pushes();
+  void update_displacement(std::size_t robot);
+  bool has_rested(std::size_t robot, Time since) const;
+  bool are_in_conflict(std::size_t a, std::size_t b) const;
+
+  DisturbanceSettings settings_;
+  std::optional<Time> now_;
+  std::vector<std::optional<ObservedRobot>> robots_;
   std::vector<State> states_;
   std::vector<Push> pushes_;
+  double pair_s_ = 0, excused_pair_s_ = 0;
 };
+
+/// The name of a cause of contacts; nullopt if this kind does not move a body.
+[[nodiscard]] std::optional<std::string_view> cause_of(msg::DisturbanceKind kind);
 
 }  // namespace sidestep

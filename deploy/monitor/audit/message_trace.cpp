@@ -25,19 +25,27 @@ Reception MessageTrace::record(std::uint64_t channel, const msg::Header& header,
 
   Reception reception;
   if (is_new) {
-    stream = {number, 1, now_ns - stamp_ns, now_ns, 0};
+    // Messages before the first one are neither received nor missed.
+    stream = {number, ~std::uint64_t{0}, now_ns - stamp_ns, now_ns, 0};
     reception.is_newest = true;
     reception.is_next = number == 1;
+    reception.missed = number > 0 ? number - 1 : 0;
+    ++distinct_;
   } else if (number > stream.newest) {
     const std::uint64_t ahead = number - stream.newest;
     reception.is_newest = true;
     reception.is_next = ahead == 1;
+    reception.missed = ahead - 1;
     missed_ += ahead - 1;
+    ++distinct_;
     stream.window = ahead < kWindow ? stream.window << ahead | 1 : 1;
     stream.newest = number;
   } else if (const std::uint64_t back = stream.newest - number; back < kWindow) {
     const std::uint64_t bit = std::uint64_t{1} << back;
-    if (!(stream.window & bit) && missed_ > 0) --missed_;
+    if (!(stream.window & bit)) {
+      --missed_;
+      ++distinct_;
+    }
     stream.window |= bit;
   }
   bound(stream, stamp_ns, now_ns, reception);

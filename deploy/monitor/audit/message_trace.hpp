@@ -15,6 +15,7 @@ namespace sidestep {
 struct Reception {
   std::int64_t earliest_ns = 0;  ///< lower bound of the sending time
   std::int64_t latest_ns = 0;    ///< upper bound of the sending time
+  std::uint64_t missed = 0;      ///< messages between the newest one received before and this one
   bool is_next = false;          ///< directly follows the newest message previously received from that sender
   bool is_newest = false;        ///< neither this nor a later message of that sender was received before
 };
@@ -29,7 +30,11 @@ class MessageTrace {
   /// `channel` distinguishes the streams that one sender numbers separately.
   [[nodiscard]] Reception record(std::uint64_t channel, const msg::Header& header, Time now);
 
+  /// Including repetitions of one message.
   std::uint64_t received() const { return received_; }
+  /// Messages that were received, each counted once.
+  std::uint64_t distinct() const { return distinct_; }
+  /// Messages between received ones of the same sender and topic that were not received.
   std::uint64_t missed() const { return missed_; }
 
  private:
@@ -50,7 +55,8 @@ class MessageTrace {
   };
   struct Stream {
     std::uint64_t newest = 0;
-    std::uint64_t window = 0;            ///< bit i: message newest - i was received
+    /// Bit i: message newest - i was received, or precedes the first one that was received.
+    std::uint64_t window = 0;
     std::int64_t min_difference_ns = 0;  ///< minimum of (received - stamp): clock offset + minimum latency
     std::int64_t updated_ns = 0;         ///< when min_difference_ns was updated
     int count = 0;                       ///< messages behind that minimum, up to kMinSamples
@@ -59,7 +65,7 @@ class MessageTrace {
 
   std::int64_t min_latency_bound_ns_;
   std::unordered_map<Key, Stream, Hash> streams_;
-  std::uint64_t received_ = 0, missed_ = 0;
+  std::uint64_t received_ = 0, distinct_ = 0, missed_ = 0;
 };
 
 }  // namespace sidestep

@@ -57,11 +57,13 @@ std::string progress_line(const RunMetrics& metrics, Time now) {
   const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
                                                 static_cast<double>(report.cycles)
                                           : 0;
+  const std::string named = metrics.named_robots();
   return fmt::format(
-      "{}  {} of {} arrived  {} contacts{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
+      "{}  {} of {} arrived  {} contacts{}{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
       "negotiation {:.2f} / {:.2f} ms{}",
       since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
       report.contacts, metrics.conflicts() > 0 ? fmt::format("  {} in conflict", metrics.conflicts()) : "",
+      named.empty() ? "" : "  " + named,
       report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
       report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
       milliseconds(report.negotiation.quantile(0.99)), clock_text(report));

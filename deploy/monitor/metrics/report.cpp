@@ -15,6 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t kShown = 5;  // violations, and pairs with excused contacts
+
 /// Rounds to micrometres or microseconds, for readable reports.
 Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
@@ -32,8 +34,29 @@ Json quantiles(const DurationHistogram& histogram, bool with_max) {
   return json;
 }
 
+Json coverage_json(const AuditTotals& audit) {
+  const Coverage& coverage = audit.coverage;
+  return {{"share", rounded(coverage.share())},     {"messages", rounded(coverage.messages)},
+          {"versions", rounded(coverage.versions)}, {"pairs", rounded(coverage.pairs)},
+          {"time", rounded(coverage.time)},         {"reference", rounded(coverage.reference)},
+          {"minimum", Coverage::kMinimum},          {"run_s", rounded(audit.run_s)}};
+}
+
+Json excused_json(const AuditTotals& audit) {
+  Json json = Json::array();
+  for (const ExcusedContacts& excused : audit.excused) {
+    Json robots = Json::array({excused.first});
+    if (excused.second) robots.push_back(*excused.second);
+    json.push_back({{"cause", excused.cause}, {"robots", robots}, {"contacts", excused.contacts}});
+  }
+  return json;
+}
+
 Json audit_json(const AuditTotals& audit) {
   Json json;
+  json["verdict"] = name_of(audit.verdict());
+  json["coverage"] = coverage_json(audit);
+  json["reference"] = name_of(audit.reference);
   json["violations"] = audit.violations;
   json["by_rule"] = Json::object();
   for (std::size_t i = 0; i < kAuditRules; ++i) {
@@ -46,12 +69,45 @@ Json audit_json(const AuditTotals& audit) {
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
   json["excused_contacts"] = audit.excused_contacts;
+  json["excused"] = excused_json(audit);
+  json["excused_time_share"] = rounded(audit.excused_time_share());
   json["excused_displacements"] = audit.excused_displacements;
+  json["unidentified_contacts"] = audit.unidentified_contacts;
   json["compared_pairs"] = audit.compared_pairs;
   json["undecided_pairs"] = audit.undecided_pairs;
   json["max_position_error_m"] = rounded(audit.max_position_error_m);
   json["beyond_tracking_bound"] = audit.beyond_tracking_bound;
   return json;
+}
+
+/// Why the run did not pass.
+std::string reason_of(const Report& report) {
+  if (report.verdict() == AuditVerdict::kNotJudged) return "not judged: " + shortfall(*report.audit);
+  return report.failure_reason();
+}
+
+/// What the audit found, in a few lines.
+std::string audit_text(const AuditTotals& audit) {
+  std::string text = fmt::format(
+      "audit: {}\n"
+      "{} violations; {} messages received, {} missed; {} pairs of versions compared; positions and contacts "
+      "from: {}\n",
+      verdict_line(audit), audit.violations, audit.received, audit.missed, audit.compared_pairs,
+      name_of(audit.reference));
+  const auto shown = [](const auto& list) { return std::min<std::size_t>(list.size(), kShown); };
+  for (std::size_t i = 0; i < shown(audit.first); ++i) text += "  " + to_line(audit.first[i]) + "\n";
+  if (audit.excused_contacts > 0) {
+    text += fmt::format(
+        "{} contacts are excused by disturbances, which excuse {:.2f} % of the time of all pairs\n",
+        audit.excused_contacts, 100 * audit.excused_time_share());
+  }
+  for (std::size_t i = 0; i < shown(audit.excused); ++i) {
+    const ExcusedContacts& excused = audit.excused[i];
+    text +=
+        fmt::format("  {} of robot {} and {}, cause: {}\n", excused.contacts, excused.first,
+                    excused.second ? fmt::format("robot {}", *excused.second) : "an obstacle", excused.cause);
+  }
+  return text;
 }
 
 std::string to_text(const std::optional<double>& value, const char* unit) {
@@ -61,8 +117,13 @@ std::string to_text(const std::optional<double>& value, const char* unit) {
 }  // namespace
 
 std::uint64_t Report::unexcused_contacts() const {
-  const std::uint64_t excused = audit ? audit->excused_contacts : 0;
-  return contacts > excused ? contacts - excused : 0;
+  const std::uint64_t excluded = audit ? audit->excused_contacts + audit->unidentified_contacts : 0;
+  return contacts > excluded ? contacts - excluded : 0;
+}
+
+AuditVerdict Report::verdict() const {
+  if (!failure_reason().empty()) return AuditVerdict::kFailed;
+  return audit ? audit->verdict() : AuditVerdict::kPassed;
 }
 
 std::string Report::failure_reason() const {
@@ -85,8 +146,9 @@ std::string to_json(const Report& r) {
   json["program"] = r.program;
   json["scenario"] = r.scenario;
   json["seed"] = r.seed ? Json(*r.seed) : Json(nullptr);
-  json["passed"] = r.failure_reason().empty();
-  json["failure"] = r.failure_reason().empty() ? Json(nullptr) : Json(r.failure_reason());
+  const bool has_passed = r.verdict() == AuditVerdict::kPassed;
+  json["passed"] = has_passed;
+  json["failure"] = has_passed ? Json(nullptr) : Json(reason_of(r));
   json["robots"] = r.robots;
   json["arrived"] = r.arrived;
   json["contacts"] = r.contacts;
@@ -112,6 +174,8 @@ std::string to_json(const Report& r) {
   json["invalid_messages"] = r.invalid_messages;
   json["firmware_violations"] = r.firmware_violations;
   json["conflicts"] = r.conflicts;
+  json["quarantined"] = r.quarantined;
+  json["displaced"] = r.displaced;
   json["max_reference_error_m"] = rounded(r.max_reference_error_m);
   json["max_clock_offset_s"] = rounded(r.max_clock_offset_s);
   json["clock_uncertainty_s"] = rounded(r.clock_uncertainty_s);
@@ -171,16 +235,14 @@ std::string summary(const Report& r) {
         "robot share {:.2f} m/s\n",
         r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
+  for (const RobotId robot : r.quarantined)
+    text += fmt::format("robot {} was quarantined: it executed a version that it was never granted\n", robot);
+  for (const RobotId robot : r.displaced)
+    text += fmt::format("robot {} was displaced: vision saw it where none of its versions led\n", robot);
   for (const auto& [first, second] : r.conflicts)
     text +=
         fmt::format("a cause outside the protocol brought robots {} and {} into conflict\n", first, second);
-  if (r.audit) {
-    text +=
-        fmt::format("audit: {} violations; {} messages received, {} missed; {} pairs of versions compared\n",
-                    r.audit->violations, r.audit->received, r.audit->missed, r.audit->compared_pairs);
-    for (std::size_t i = 0; i < std::min<std::size_t>(r.audit->first.size(), 5); ++i)
-      text += "  " + to_line(r.audit->first[i]) + "\n";
-  }
+  if (r.audit) text += audit_text(*r.audit);
   for (const auto& [process, differences] : r.mismatches) {
     text += fmt::format("{} was refused because it works by other rules: {}\n", process,
                         differences.empty() ? "it did not say which" : describe(differences));
@@ -189,8 +251,15 @@ std::string summary(const Report& r) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");
   }
-  const std::string reason = r.failure_reason();
-  return text + (reason.empty() ? "passed\n" : "failed: " + reason + "\n");
+  switch (r.verdict()) {
+    case AuditVerdict::kPassed:
+      return text + "passed\n";
+    case AuditVerdict::kFailed:
+      return text + "failed: " + reason_of(r) + "\n";
+    case AuditVerdict::kNotJudged:
+      break;
+  }
+  return text + reason_of(r) + "\n";
 }
 
 void write_report(const Report& report, const std::string& path) { write_file(path, to_json(report)); }

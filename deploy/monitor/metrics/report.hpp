@@ -11,7 +11,7 @@
 #include "common/config/scenario.hpp"
 #include "common/config/shared_rules.hpp"
 #include "common/time/histogram.hpp"
-#include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/monitor/metrics/process_use.hpp"
 
 namespace sidestep {
@@ -54,7 +54,9 @@ struct Report {
   std::uint64_t invalid_messages = 0;
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>>
-      conflicts;  ///< pairs that a cause outside the protocol brought into conflict
+      conflicts;                  ///< pairs that a cause outside the protocol brought into conflict
+  std::set<RobotId> quarantined;  ///< robots that executed a version that they were never granted
+  std::set<RobotId> displaced;    ///< robots that vision saw where none of their versions led
   double max_reference_error_m = 0;
   /// Largest measured offset of a robot's clock from the coordinator's, and its uncertainty; none: not
   /// measured.
@@ -73,11 +75,14 @@ struct Report {
   std::string fast_dds;              ///< the launcher's version of Fast DDS; empty: not over DDS
   std::map<std::string, ProcessUse> processes;
 
-  /// Contacts, except for those excused because a robot was disturbed from outside.
+  /// Contacts, except for those that a disturbance excuses, and those of which the audit does not know the
+  /// robots.
   std::uint64_t unexcused_contacts() const;
-  /// Why the run failed, in one line. Empty if it passed: it was not aborted, no robot touched anything
+  /// Why the run failed, in one line. Empty if it did not fail: it was not aborted, no robot touched anything
   /// without excuse, none moved in a crash, no rule was broken, and all robots arrived if they had to.
   [[nodiscard]] std::string failure_reason() const;
+  /// A run that did not fail passed only if its audit covered enough to judge it, or there was no audit.
+  [[nodiscard]] AuditVerdict verdict() const;
 };
 
 /// The report as JSON with a fixed order of keys. Machine-dependent values are under "wall_clock".

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/process_names.hpp"
+#include "common/messaging/robot_notices.hpp"
 #include "deploy/monitor/time_range.hpp"
 
 namespace sidestep {
@@ -160,6 +163,11 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
   if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
   if (active_ && state.epoch() < active_->epoch()) return;
   active_ = state;
+  for (const msg::RobotNotice& notice : state.notices()) {
+    if (!find(notice.robot())) continue;
+    if (notice.is_quarantined()) quarantined_.insert(notice.robot());
+    if (notice.is_displaced()) displaced_.insert(notice.robot());
+  }
   if (state.conflicts() > 0 && find(state.conflict_first()) && find(state.conflict_second()))
     conflicts_.emplace(state.conflict_first(), state.conflict_second());
   if (!granting_since_ && state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
@@ -197,9 +205,20 @@ std::vector<RobotId> RunMetrics::silent_agents() const {
   return silent;
 }
 
+std::string RunMetrics::named_robots() const {
+  std::vector<std::string> named;
+  if (active_) {
+    for (const RobotId robot : displaced_robots(*active_))
+      named.push_back(fmt::format("robot {} displaced", robot));
+    for (const RobotId robot : quarantined_robots(*active_))
+      named.push_back(fmt::format("robot {} quarantined", robot));
+  }
+  return fmt::format("{}", fmt::join(named, ", "));
+}
+
 std::vector<RobotId> RunMetrics::unregistered_robots() const {
   if (!active_) return {};
-  return {active_->missing().begin(), active_->missing().end()};
+  return missing_robots(*active_);
 }
 
 void listen(Bus& bus, RunMetrics& metrics) {

@@ -59,6 +59,8 @@ class RunMetrics {
   bool has_coordinator_state() const { return active_.has_value(); }
   /// Number of robot pairs in conflict, as last reported by the coordinator.
   std::uint32_t conflicts() const { return active_ ? active_->conflicts() : 0; }
+  /// The robots that the coordinator names at present, in words: "robot 3 displaced, robot 5 quarantined".
+  std::string named_robots() const;
   /// Robots whose registrations are missing, as last reported by the coordinator.
   std::vector<RobotId> unregistered_robots() const;
   /// When a coordinator first reported that it grants.
@@ -109,6 +111,7 @@ class RunMetrics {
       coordinators_;                             ///< by number and incarnation
   std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
+  std::set<RobotId> quarantined_, displaced_;  ///< named at any time
   std::optional<Time> granting_since_;
   std::optional<Time> truth_at_;
   double max_reference_error_m_ = 0;

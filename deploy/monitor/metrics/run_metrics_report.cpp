@@ -127,6 +127,8 @@ Report RunMetrics::report() const {
   report.deaths = deaths_;
   report.mismatches = mismatches_;
   report.conflicts = conflicts_;
+  report.quarantined = quarantined_;
+  report.displaced = displaced_;
   if (auditor_) report.audit = auditor_->totals();
   return report;
 }

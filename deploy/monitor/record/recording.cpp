@@ -146,6 +146,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   };
   subscribe(topics::kDetections);
   subscribe(topics::kWorld);
+  subscribe(topics::kObstacles);
   subscribe(topics::kCommand);
   subscribe(topics::kFeedback);
   subscribe(topics::kRegistration);
@@ -154,6 +155,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kLedger);
   subscribe(topics::kCoordinator);
   subscribe(topics::kStatus);
+  subscribe(topics::kAttestation);
   subscribe(topics::kDisturbance);
   subscribe(topics::kNetworkFault);
   subscribe(topics::kTruth);

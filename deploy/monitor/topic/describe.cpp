@@ -25,12 +25,13 @@ constexpr const char* kReasons[] = {
     "granted",         "not evaluated", "malformed",    "wrong epoch",    "not all registered",
     "old incarnation", "old version",   "base unknown", "not continuous", "beyond limits",
     "not at rest",     "outside field", "obstacle",     "conflict",       "ledger full",
-    "absent"};
+    "absent",          "quarantined",   "displaced"};
 constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
 constexpr const char* kAgentStates[] = {"fencing", "registering",        "waiting", "driving",
                                         "arrived", "clock out of bound", "absent"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
-constexpr const char* kDisturbances[] = {"push", "slip", "block", "lift", "place", "reboot", "clock"};
+constexpr const char* kDisturbances[] = {"push",   "slip",  "block",      "lift",      "place",
+                                         "reboot", "clock", "switch off", "switch on", "carry"};
 
 template <typename Range, typename Describe>
 Json list(const Range& range, std::size_t count, Describe describe_one) {
@@ -51,6 +52,20 @@ Json header(const msg::Header& m) {
           {"rules", fmt::format("{:016x}", m.rules())},
           {"message_number", m.message_number()},
           {"stamp_ns", m.stamp_ns()}};
+}
+
+Json notice(const msg::RobotNotice& m) {
+  return {{"robot", m.robot()},
+          {"is_missing", m.is_missing()},
+          {"is_quarantined", m.is_quarantined()},
+          {"is_displaced", m.is_displaced()},
+          {"is_silent", m.is_silent()},
+          {"observed_at_ns", m.observed_at_ns()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"position_variance_m2", m.position_variance_m2()}};
 }
 
 Json phase(const msg::MotionPhase& m) {
@@ -121,6 +136,7 @@ Json describe(const msg::DetectionFrame& m) {
           {"captured_at_ns", m.captured_at_ns()},
           {"ball_count", m.ball_count()},
           {"balls", list(m.balls(), m.ball_count(), ball)},
+          {"obstacles_complete_within_m", m.obstacles_complete_within_m()},
           {"obstacle_count", m.obstacle_count()},
           {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
           {"robots", list(m.robots(), robot)}};
@@ -142,12 +158,6 @@ Json describe(const msg::WorldState& m) {
             {"observed_y_m", r.observed_y_m()},
             {"observed_heading_rad", r.observed_heading_rad()}};
   };
-  const auto obstacle = [](const msg::TrackedObstacle& o) -> Json {
-    return {{"obstacle", o.obstacle()}, {"observed_at_ns", o.observed_at_ns()},
-            {"x_m", o.x_m()},           {"y_m", o.y_m()},
-            {"vx_mps", o.vx_mps()},     {"vy_mps", o.vy_mps()},
-            {"radius_m", o.radius_m()}, {"position_variance_m2", o.position_variance_m2()}};
-  };
   const msg::TrackedBall& b = m.ball();
   const Json ball = {{"is_visible", b.is_visible()},
                      {"x_m", b.x_m()},
@@ -160,9 +170,21 @@ Json describe(const msg::WorldState& m) {
           {"frames", m.frames()},
           {"rejected", m.rejected()},
           {"ball", ball},
-          {"obstacle_count", m.obstacle_count()},
-          {"obstacles", list(m.obstacles(), m.obstacle_count(), obstacle)},
           {"robots", list(m.robots(), robot)}};
+}
+
+Json describe(const msg::ObstacleList& m) {
+  const auto obstacle = [](const msg::TrackedObstacle& o) -> Json {
+    return {{"obstacle", o.obstacle()}, {"observed_at_ns", o.observed_at_ns()},
+            {"x_m", o.x_m()},           {"y_m", o.y_m()},
+            {"vx_mps", o.vx_mps()},     {"vy_mps", o.vy_mps()},
+            {"radius_m", o.radius_m()}, {"position_variance_m2", o.position_variance_m2()}};
+  };
+  return {{"vision", m.vision()},
+          {"header", header(m.header())},
+          {"valid_at_ns", m.valid_at_ns()},
+          {"complete_within_m", m.complete_within_m()},
+          {"obstacles", list(m.obstacles(), obstacle)}};
 }
 
 Json describe(const msg::Command& m) {
@@ -262,7 +284,12 @@ Json describe(const msg::CoordinatorState& m) {
           {"conflict_first", m.conflict_first()},
           {"conflict_second", m.conflict_second()},
           {"absent", m.absent()},
-          {"missing", m.missing()}};
+          {"watched_until_ns", m.watched_until_ns()},
+          {"notices", list(m.notices(), notice)}};
+}
+
+Json describe(const msg::AbsenceAttestation& m) {
+  return {{"robot", m.robot()}, {"header", header(m.header())}};
 }
 
 Json describe(const msg::AgentStatus& m) {

@@ -17,6 +17,7 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::CameraImage& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::DetectionFrame& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::WorldState& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::ObstacleList& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Command& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Feedback& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Registration& m);
@@ -24,6 +25,7 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Verdict& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::LedgerPage& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::CoordinatorState& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::AbsenceAttestation& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AgentStatus& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Disturbance& m);

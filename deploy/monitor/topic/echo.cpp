@@ -72,12 +72,13 @@ int echo_topic(const TopicOptions& options) {
   const std::string& channel = options.topic;
   const bool is_known =
       echo.subscribe(topics::kImages, channel) || echo.subscribe(topics::kDetections, channel) ||
-      echo.subscribe(topics::kWorld, channel) || echo.subscribe(topics::kCommand, channel) ||
-      echo.subscribe(topics::kFeedback, channel) || echo.subscribe(topics::kRegistration, channel) ||
-      echo.subscribe(topics::kProposal, channel) || echo.subscribe(topics::kVerdict, channel) ||
-      echo.subscribe(topics::kLedger, channel) || echo.subscribe(topics::kCoordinator, channel) ||
-      echo.subscribe(topics::kStatus, channel) || echo.subscribe(topics::kTruth, channel) ||
-      echo.subscribe(topics::kDisturbance, channel) || echo.subscribe(topics::kNetworkFault, channel) ||
+      echo.subscribe(topics::kWorld, channel) || echo.subscribe(topics::kObstacles, channel) ||
+      echo.subscribe(topics::kCommand, channel) || echo.subscribe(topics::kFeedback, channel) ||
+      echo.subscribe(topics::kRegistration, channel) || echo.subscribe(topics::kProposal, channel) ||
+      echo.subscribe(topics::kVerdict, channel) || echo.subscribe(topics::kLedger, channel) ||
+      echo.subscribe(topics::kCoordinator, channel) || echo.subscribe(topics::kStatus, channel) ||
+      echo.subscribe(topics::kTruth, channel) || echo.subscribe(topics::kDisturbance, channel) ||
+      echo.subscribe(topics::kNetworkFault, channel) || echo.subscribe(topics::kAttestation, channel) ||
       echo.subscribe(topics::kRules, channel);
   if (!is_known) {
     fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known_topics());

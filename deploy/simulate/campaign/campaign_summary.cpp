@@ -57,6 +57,23 @@ double CampaignSummary::robot_hours() const {
   return total_s / 3600;
 }
 
+std::map<std::string, std::uint64_t> CampaignSummary::excused_by_cause() const {
+  std::map<std::string, std::uint64_t> total;
+  for (const auto& [seed, result] : results_) {
+    for (const auto& [cause, contacts] : result.excused_by_cause) total[cause] += contacts;
+  }
+  return total;
+}
+
+double CampaignSummary::excused_time_share() const {
+  double pair_s = 0, excused_pair_s = 0;
+  for (const auto& [seed, result] : results_) {
+    pair_s += result.pair_s;
+    excused_pair_s += result.excused_pair_s;
+  }
+  return pair_s > 0 ? excused_pair_s / pair_s : 0;
+}
+
 template <typename Value>
 std::string CampaignSummary::extremes(Value value, bool are_largest) const {
   const double sign = are_largest ? -1 : 1;
@@ -84,10 +101,11 @@ std::string CampaignSummary::text() const {
       "violations\n",
       seeds(), failed(), hours, distance_m / 1000, contacts(), sum(&TrialResult::audit_violations),
       sum(&TrialResult::firmware_violations));
-  if (const auto excused = sum(&TrialResult::excused_contacts); excused > 0) {
-    text += fmt::format("{} excused contacts of robots that were pushed, slipped, blocked or rebooted\n",
-                        excused);
-  }
+  text += fmt::format("{} excused contacts", sum(&TrialResult::excused_contacts));
+  for (const auto& [cause, excused] : excused_by_cause())
+    text += fmt::format(", {} of cause {}", excused, cause);
+  text += fmt::format("; contacts are excused in {:.2f} % of the time of all pairs\n",
+                      100 * excused_time_share());
   text += fmt::format("with 95 % confidence at most {:.3g} contacts per robot-hour under these faults\n",
                       upper_bound_95(contacts(), hours));
   text += fmt::format("{} proposals, {:.2f} % denied; {:.0f} robot-seconds per second and core\n",
@@ -116,6 +134,9 @@ std::string CampaignSummary::json() const {
   json["failed"] = failed();
   json["robot_hours"] = robot_hours();
   json["contacts"] = contacts();
+  json["excused_contacts"] = sum(&TrialResult::excused_contacts);
+  json["excused_by_cause"] = excused_by_cause();
+  json["excused_time_share"] = excused_time_share();
   json["audit_violations"] = sum(&TrialResult::audit_violations);
   json["firmware_violations"] = sum(&TrialResult::firmware_violations);
   json["contacts_per_robot_hour_95"] = upper_bound_95(contacts(), robot_hours());

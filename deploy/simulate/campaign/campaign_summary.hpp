@@ -18,6 +18,10 @@ class CampaignSummary {
   std::uint64_t failed() const;
   std::uint64_t contacts() const { return sum(&TrialResult::contacts); }
   double robot_hours() const;
+  /// Number of excused contacts by cause.
+  std::map<std::string, std::uint64_t> excused_by_cause() const;
+  /// Share of the time of all pairs of robots in which a contact would have been excused.
+  double excused_time_share() const;
 
   /// A few lines of text.
   std::string text() const;

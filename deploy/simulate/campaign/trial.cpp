@@ -58,7 +58,11 @@ bool is_detection_certain(const Trial& trial) {
 
 void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult& result) {
   result.contacts = report.unexcused_contacts();
-  result.excused_contacts = report.contacts - result.contacts;
+  result.excused_contacts = report.audit->excused_contacts;
+  for (const ExcusedContacts& excused : report.audit->excused)
+    result.excused_by_cause[excused.cause] += excused.contacts;
+  result.pair_s = report.audit->pair_s;
+  result.excused_pair_s = report.audit->excused_pair_s;
   result.audit_violations = report.audit->violations;
   result.firmware_violations = report.firmware_violations;
   result.proposals = report.proposals;
@@ -78,6 +82,8 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
     fail(fmt::format("{} audit violations, the first: {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
+  if (report.audit->verdict() == AuditVerdict::kNotJudged)
+    fail("the audit did not judge the run: " + shortfall(*report.audit));
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
   const std::vector<RobotId>& out_of_bound = trial.plan.robots_out_of_clock_bound;
   const bool may_move = static_cast<int>(out_of_bound.size()) < result.robots;

@@ -12,6 +12,9 @@ Json to_json(const TrialResult& r) {
           {"failures", r.failures},
           {"contacts", r.contacts},
           {"excused_contacts", r.excused_contacts},
+          {"excused_by_cause", r.excused_by_cause},
+          {"pair_s", r.pair_s},
+          {"excused_pair_s", r.excused_pair_s},
           {"audit_violations", r.audit_violations},
           {"firmware_violations", r.firmware_violations},
           {"proposals", r.proposals},
@@ -35,6 +38,9 @@ TrialResult parse_trial_result(const std::string& line) {
   json.at("failures").get_to(r.failures);
   json.at("contacts").get_to(r.contacts);
   json.at("excused_contacts").get_to(r.excused_contacts);
+  json.at("excused_by_cause").get_to(r.excused_by_cause);
+  json.at("pair_s").get_to(r.pair_s);
+  json.at("excused_pair_s").get_to(r.excused_pair_s);
   json.at("audit_violations").get_to(r.audit_violations);
   json.at("firmware_violations").get_to(r.firmware_violations);
   json.at("proposals").get_to(r.proposals);

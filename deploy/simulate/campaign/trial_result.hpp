@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -12,8 +13,11 @@ namespace sidestep {
 struct TrialResult {
   std::uint64_t seed = 0;
   std::vector<std::string> failures;
-  std::uint64_t contacts = 0;          ///< excluding excused ones
-  std::uint64_t excused_contacts = 0;  ///< of robots that were disturbed from outside
+  std::uint64_t contacts = 0;                             ///< excluding excused ones
+  std::uint64_t excused_contacts = 0;                     ///< that a disturbance of a robot excuses
+  std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same by cause
+  double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
+  double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused
   std::uint64_t audit_violations = 0, firmware_violations = 0;
   std::uint64_t proposals = 0, grants = 0, denials = 0;
   double robot_s = 0;                    ///< number of robots times simulated time

@@ -160,6 +160,75 @@ TEST_CASE("an agent that obeys an implausible epoch is counted and does not chan
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
+struct Attested : Floor {
+  std::vector<std::string> events;
+  Attested() {
+    node.on_event([this](const std::string& event) { events.push_back(event); });
+    send(topics::kRegistration, registration_of(b, node.coordinator().epoch()));
+  }
+  void attest(RobotId robot, Sender sender = Sender::kOperator) {
+    msg::AbsenceAttestation message;
+    message.robot(robot);
+    message.header().sender(static_cast<std::uint32_t>(sender));
+    send(topics::kAttestation, message);
+  }
+};
+
+TEST_CASE("an operator attests that a silent robot is absent, and the coordinator says so and grants") {
+  Attested floor;
+  floor.attest(1);
+  CHECK(floor.node.coordinator().is_granting());
+  REQUIRE(floor.events.size() == 1);
+  CHECK_THAT(floor.events[0], ContainsSubstring("an operator attests that robot 1 is absent"));
+  CHECK(floor.state.absent() == 1);
+  CHECK(floor.state.notices().empty());
+}
+
+TEST_CASE(
+    "an attestation is ignored if the robot was heard a moment ago, is not missing, or by anybody else") {
+  Attested floor;
+  SECTION("it was heard") {
+    floor.send(topics::kFeedback, fact(floor.a, 1000));
+    floor.attest(1);
+    REQUIRE(floor.events.size() == 1);
+    CHECK_THAT(floor.events[0], ContainsSubstring("robot 1 reports that it is on the floor"));
+  }
+  SECTION("another robot has registered") { floor.attest(2); }
+  SECTION("no such robot") { floor.attest(77); }
+  SECTION("the sender is no operator") {
+    floor.attest(1, Sender::kVision);
+    CHECK(floor.state.invalid() == 1);
+  }
+  CHECK_FALSE(floor.node.coordinator().is_granting());
+}
+
+TEST_CASE("the place of a displaced robot is published with every world state") {
+  Floor floor;
+  floor.register_both();
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  auto& robot = world.robots().emplace_back();
+  robot.robot(1);
+  const auto see = [&](double x) {
+    world.valid_at_ns(to_ns(floor.network.now()));
+    world.robots()[0].observed_at_ns(to_ns(floor.network.now()));
+    world.robots()[0].observed_x_m(x);
+    floor.send(topics::kWorld, world);
+  };
+  see(0);
+  CHECK(floor.state.notices().empty());
+  CHECK(floor.state.watched_until_ns() == world.valid_at_ns());
+  see(0.3);
+  REQUIRE(floor.state.notices().size() == 1);
+  CHECK(floor.state.notices()[0].x_m() == 0.3);
+  see(0.4);
+  CHECK(floor.state.notices()[0].x_m() == 0.4);
+  world.header().sender(1);
+  see(0.5);
+  CHECK(floor.state.notices()[0].x_m() == 0.4);
+  CHECK(floor.state.invalid() == 1);
+}
+
 TEST_CASE("a coordinator that stands by answers nothing") {
   Floor floor(true);
   floor.send(topics::kRegistration, registration_of(floor.a, 0));

@@ -27,7 +27,8 @@ struct Floor {
     return registration ? coordinator.on_registration(*registration) : std::nullopt;
   }
   void receive(const msg::Feedback& message) {
-    if (const auto feedback = decode(message, message.robot(), kNow)) coordinator.on_feedback(*feedback);
+    if (const auto feedback = decode(message, message.robot(), kNow))
+      coordinator.on_feedback(*feedback, feedback->valid_at);
   }
   void register_both() {
     receive(registration_of(a, kEpoch));
@@ -41,13 +42,22 @@ struct Floor {
   }
 };
 
+std::vector<RobotId> missing(const Coordinator& coordinator) {
+  std::vector<RobotId> robots;
+  const msg::CoordinatorState state = coordinator.state();
+  for (const msg::RobotNotice& notice : state.notices()) {
+    if (notice.is_missing()) robots.push_back(notice.robot());
+  }
+  return robots;
+}
+
 TEST_CASE("nothing is granted until every robot of the roster has registered") {
   Floor floor;
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
   floor.receive(registration_of(floor.a, kEpoch));
   CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
-  CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
+  CHECK(missing(floor.coordinator) == std::vector<RobotId>{2});
   floor.receive(registration_of(floor.b, kEpoch));
   CHECK(floor.ask(proposal).granted_version == 10);
 }
@@ -116,7 +126,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   CHECK_FALSE(floor.coordinator.is_granting());
   CHECK(floor.coordinator.state().coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY);
   CHECK(floor.coordinator.state().epoch() == 0);
-  CHECK(floor.coordinator.state().missing().empty());
+  CHECK(missing(floor.coordinator).empty());
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   CHECK_FALSE(floor.receive(proposal));
   CHECK_FALSE(floor.receive(proposal_of({continued(floor.a, 10, 1, {0, 3})}, 0)));
@@ -124,7 +134,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   floor.receive(fact(floor.a, 1));
   CHECK(floor.coordinator.ledger().versions(1).empty());
   floor.coordinator.begin_epoch(kEpoch + 5);
-  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(missing(floor.coordinator).size() == 2);
   CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_WRONG_EPOCH);
 }
 
@@ -143,7 +153,7 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
   };
   CHECK(answer(registration_of(floor.a, kEpoch + 50)) == msg::Reason::REASON_WRONG_EPOCH);
   CHECK(answer(registration_of(floor.a, kEpoch - 50)) == msg::Reason::REASON_WRONG_EPOCH);
-  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(missing(floor.coordinator).size() == 2);
   CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::Reason::REASON_GRANTED);
   CHECK(answer(registration_of(floor.a, kEpoch, 2)) == msg::Reason::REASON_GRANTED);
   CHECK(answer(registration_of(floor.a, kEpoch, 1)) == msg::Reason::REASON_OLD_INCARNATION);
@@ -153,7 +163,7 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
   CHECK_FALSE(floor.receive(registration_of(rest_version(3, {0, 0}), kEpoch)));
   malformed.header().sender(1);
   CHECK_FALSE(floor.receive(malformed));
-  CHECK(floor.coordinator.state().missing() == std::vector<std::uint32_t>{2});
+  CHECK(missing(floor.coordinator) == std::vector<RobotId>{2});
 }
 
 TEST_CASE("a verdict echoes the time stamp of its proposal, also of a repeated one") {
@@ -175,7 +185,7 @@ TEST_CASE("a registration that lists a version twice is refused") {
   registration.version_count(2);
   registration.versions()[1] = encode(rest_version(1, {1, 1}));
   floor.receive(registration);
-  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(missing(floor.coordinator).size() == 2);
   CHECK(floor.coordinator.state().invalid() == 1);
 }
 
@@ -278,9 +288,10 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
     feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits() >> (16 + rng.below(16))));
     feedback.is_off_reference(rng.chance(0.5));
     floor.receive(feedback);
-    contradictions += floor.coordinator.is_contradicted();
+    const bool is_quarantined = floor.coordinator.ledger().is_quarantined(1);
+    contradictions += is_quarantined;
     // An own stop with a very high number would make all later facts stale.
-    if (floor.coordinator.is_contradicted() || i % 100 == 0) {
+    if (is_quarantined || i % 100 == 0) {
       floor.coordinator.begin_epoch(kEpoch);
       floor.register_both();
     }
@@ -291,18 +302,162 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
   CHECK(floor.coordinator.state().grants() > 3000);
 }
 
-TEST_CASE(
-    "after a fact that contradicts the ledger nothing is granted until robots register in a new epoch") {
+TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the others go on") {
   Floor floor;
   floor.register_both();
-  const Version unknown = continued(floor.a, 10, 1, {0, 3});
-  floor.receive(fact(unknown, 1.5));
-  CHECK(floor.coordinator.is_contradicted());
-  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 0);
+  const Version granted = continued(floor.a, 10, 1, {0, 3});
+  REQUIRE(floor.ask(proposal_of({granted}, kEpoch)).granted_version == 10);
+  Version rounded = granted;  // as by firmware that computes with less precision
+  rounded.trajectory = Trajectory(granted.trajectory.start(), {{1e-7, 0}, {0, 0}});
+  rounded.trajectory.append(from_seconds(1.0 / 60), {0, 3});
+  append_stop(rounded.trajectory, 5);
+  floor.receive(fact(rounded, 1.01));
+  CHECK(floor.coordinator.ledger().is_quarantined(1));
+  CHECK(floor.coordinator.is_granting());
+  const auto state = floor.coordinator.state();
+  REQUIRE(state.notices().size() == 1);
+  CHECK(state.notices()[0].robot() == 1);
+  CHECK(state.notices()[0].is_quarantined());
+  CHECK_FALSE(state.notices()[0].is_missing());
+  // Its versions and the reported one stay, whatever it reports.
+  CHECK(floor.coordinator.ledger().versions(1).size() == 3);
+  floor.receive(fact(floor.a, 1.02));
+  floor.receive(fact(granted, 1.5));
+  floor.receive(fact(rounded, 1.6));
+  CHECK(floor.coordinator.ledger().versions(1).size() == 3);
+  CHECK(floor.ask(proposal_of({continued(granted, 11, 2, {0, 3})}, kEpoch)).reasons[0] ==
+        msg::Reason::REASON_QUARANTINED);
+  // A verdict that was given before is repeated.
+  CHECK(floor.ask(proposal_of({granted}, kEpoch)).granted_version == 10);
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 20);
+}
+
+TEST_CASE("other robots keep clear of what a quarantined robot has reported") {
+  Floor floor;
+  floor.register_both();
+  floor.receive(fact(rest_version(1, {0.5, 0}, 7), 1));
+  REQUIRE(floor.coordinator.ledger().is_quarantined(1));
+  const auto towards = [&](VersionNumber number) {
+    return proposal_of({continued(floor.b, number, 2, {-3, 0}, 0.5)}, kEpoch);
+  };
+  CHECK(floor.ask(towards(20)).reasons[0] == msg::Reason::REASON_CONFLICT);
+  CHECK(floor.ask(towards(21)).blockers[0] == 1);
+}
+
+TEST_CASE("a quarantined robot is released by a new agent, a new epoch, or when it is lifted") {
+  Floor floor;
+  floor.register_both();
+  const Version unknown = rest_version(1, {0.5, 0}, 7);
+  floor.receive(fact(unknown, 1));
+  REQUIRE(floor.coordinator.ledger().is_quarantined(1));
+  SECTION("the same agent does not release it") {
+    CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
+    CHECK(floor.coordinator.ledger().is_quarantined(1));
+  }
+  SECTION("a new agent lists what the robot may execute") {
+    CHECK(floor.receive(registration_of(unknown, kEpoch, 2))->reasons[0] == msg::Reason::REASON_GRANTED);
+    CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+    REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
+    CHECK(floor.coordinator.ledger().versions(1)[0].number == 7);
+    floor.receive(fact(unknown, 2));
+    CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+  }
+  SECTION("a new epoch begins with registrations") {
+    floor.coordinator.begin_epoch(kEpoch + 1);
+    CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+    CHECK(missing(floor.coordinator).size() == 2);
+  }
+  SECTION("a lifted robot executes nothing") {
+    auto lifted = fact(rest_version(1, {0, 0}), 2);
+    lifted.is_lifted(true);
+    floor.receive(lifted);
+    CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+    CHECK(floor.coordinator.ledger().versions(1).empty());
+  }
+}
+
+TEST_CASE("an operator can attest the absence of a robot that has not registered, until it registers") {
+  Floor floor;
+  CHECK_FALSE(floor.coordinator.on_attestation(3));  // not on the roster
+  floor.receive(registration_of(floor.b, kEpoch));
+  CHECK_FALSE(floor.coordinator.on_attestation(2));  // it has registered
+  CHECK(floor.coordinator.on_attestation(1));
+  CHECK_FALSE(floor.coordinator.on_attestation(1));
+  CHECK(floor.coordinator.is_granting());
+  CHECK(missing(floor.coordinator).empty());
+  CHECK(floor.coordinator.state().absent() == 1);
+  const Version crossing = continued(floor.b, 20, 1, {-3, 0}, 0.6);
+  CHECK(floor.ask(proposal_of({crossing}, kEpoch)).granted_version == 20);
+  // It is on the floor after all.
+  CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
+  CHECK(floor.coordinator.is_granting());
+  CHECK(floor.coordinator.state().absent() == 0);
+  CHECK(floor.coordinator.state().conflicts() == 1);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
+}
+
+TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept clear of") {
+  Floor floor;
+  floor.receive(registration_of(floor.b, kEpoch));
+  REQUIRE(floor.coordinator.on_attestation(1));
+  floor.receive(fact(floor.a, 1));
+  CHECK(floor.coordinator.ledger().is_quarantined(1));
+  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
+  floor.receive(registration_of(floor.a, kEpoch));
+  CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   floor.coordinator.begin_epoch(kEpoch + 1);
-  CHECK_FALSE(floor.coordinator.is_contradicted());
-  CHECK_FALSE(floor.coordinator.is_granting());
-  CHECK(floor.coordinator.state().missing().size() == 2);
+  CHECK(missing(floor.coordinator).size() == 2);
+  REQUIRE(floor.coordinator.on_attestation(1));
+  floor.coordinator.begin_epoch(kEpoch + 2);
+  CHECK(missing(floor.coordinator).size() == 2);
+}
+
+TEST_CASE("a robot that should move is silent 50 ms after its last fact, until its versions have ended") {
+  Floor floor;
+  floor.register_both();
+  const auto silent_at = [&](double at) {
+    const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
+    floor.coordinator.on_world({&observation, 1}, at_s(at), at_s(at));
+    const auto state = floor.coordinator.state();
+    return state.notices().size() == 1 && state.notices()[0].robot() == 1 && state.notices()[0].is_silent();
+  };
+  CHECK_FALSE(silent_at(0.9));  // at rest
+  const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
+  floor.receive(fact(p, 1.01));
+  CHECK_FALSE(silent_at(1.05));
+  CHECK(silent_at(1.07));
+  // After a gap of 60 ms it may be silent for 120 ms.
+  floor.receive(fact(p, 1.07));
+  CHECK_FALSE(silent_at(1.18));
+  CHECK(silent_at(1.2));
+  CHECK_FALSE(silent_at(to_seconds(p.trajectory.end().time_since_epoch()) + 0.01));
+}
+
+TEST_CASE("nothing is granted to a robot that vision sees away from its versions, and it is named") {
+  Floor floor;
+  floor.register_both();
+  const auto see = [&](RobotId robot, Vec2 position, double at) {
+    const RobotObservation observation{robot, at_s(at), position, Vec2(0, 0), 1e-6};
+    floor.coordinator.on_world({&observation, 1}, at_s(at), at_s(at));
+  };
+  see(1, {0.005, 0}, 1);
+  CHECK_FALSE(floor.coordinator.displaced().any());
+  see(1, {0.05, 0}, 1.1);
+  REQUIRE(floor.coordinator.displaced().contains(1));
+  const auto state = floor.coordinator.state();
+  CHECK(state.watched_until_ns() == to_ns(at_s(1.1)));
+  REQUIRE(state.notices().size() == 1);
+  CHECK(state.notices()[0].robot() == 1);
+  CHECK(state.notices()[0].is_displaced());
+  CHECK(state.notices()[0].x_m() == 0.05);
+  CHECK(state.notices()[0].observed_at_ns() == to_ns(at_s(1.1)));
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 2, {0, 3})}, kEpoch)).reasons[0] ==
+        msg::Reason::REASON_DISPLACED);
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 2, {0, 3})}, kEpoch)).granted_version == 20);
+  for (const double at : {1.2, 1.3, 1.4}) see(1, {0, 0}, at);
+  CHECK_FALSE(floor.coordinator.displaced().any());
+  CHECK(floor.ask(proposal_of({continued(floor.a, 11, 2, {0, 3})}, kEpoch)).granted_version == 11);
 }
 
 TEST_CASE("the stop of a robot that lost its reference enters the ledger, and its conflicts are reported") {
@@ -312,7 +467,7 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   stop.inflation_m = 0.01;
   auto feedback = fact(stop, 1);
   floor.receive(feedback);
-  CHECK(floor.coordinator.is_contradicted());  // the fact does not say that the robot lost its reference
+  CHECK(floor.coordinator.ledger().is_quarantined(1));  // the fact does not say that it lost its reference
   floor.coordinator.begin_epoch(kEpoch);
   floor.register_both();
   feedback.is_off_reference(true);

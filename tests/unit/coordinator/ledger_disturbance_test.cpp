@@ -96,7 +96,7 @@ TEST_CASE("a stop off reference that is not newer than all versions is a contrad
   REQUIRE(two.ledger.grant(p).is_granted());
   CHECK(two.ledger.on_executing(off_reference(1, 5, 0.9, {0, 0.1}, {0, 0}), at_s(0.9), true) ==
         FactOutcome::kContradiction);
-  CHECK(two.ledger.versions(1).size() == 2);
+  CHECK(two.ledger.versions(1).size() == 3);  // and the robot is quarantined
 }
 
 TEST_CASE("other robots keep clear of a robot's inflation, which ends only where the robot rests") {

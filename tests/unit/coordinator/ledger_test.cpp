@@ -106,7 +106,7 @@ TEST_CASE("facts may arrive late, twice and in any order") {
   CHECK(two.ledger.versions(1)[0].number == 11);
 }
 
-TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and changes nothing") {
+TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and removes nothing") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -119,11 +119,55 @@ TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and ch
   // A known number with other contents.
   other.trajectory = continued(two.a, 10, 1, {2.9, 0}).trajectory;
   CHECK(two.fact(other, 100) == FactOutcome::kContradiction);
-  CHECK(two.ledger.versions(1).size() == 3);
-  // A fact about a version older than all held ones may be late.
+  // The version that the robot reported last is kept besides.
+  REQUIRE(two.ledger.versions(1).size() == 4);
+  CHECK(two.ledger.versions(1)[3].trajectory.rest_position_m() == other.trajectory.rest_position_m());
+  CHECK(two.ledger.is_quarantined(1));
+}
+
+TEST_CASE("a fact about a version older than all held ones is late, not a contradiction") {
+  Two two(5);
+  const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
+  REQUIRE(two.ledger.grant(p).is_granted());
+  REQUIRE(two.ledger.grant(q).is_granted());
   REQUIRE(two.fact(q, 1.2) == FactOutcome::kApplied);
-  CHECK(two.fact(unknown, 1.3) == FactOutcome::kContradiction);
   CHECK(two.fact(p, 1.3) == FactOutcome::kStale);
+  CHECK_FALSE(two.ledger.is_quarantined(1));
+}
+
+TEST_CASE("a quarantine ends after sixty facts in a row that agree with the ledger") {
+  Two two(5);
+  const Version p = continued(two.a, 10, 1, {3, 0});
+  REQUIRE(two.ledger.grant(p).is_granted());
+  Version unknown = p;
+  unknown.number = 999;
+  const auto report = [&](const Version& executing, int times) {
+    for (int i = 0; i < times; ++i) (void)two.fact(executing, 1.5);
+  };
+  REQUIRE(two.fact(unknown, 1.2) == FactOutcome::kContradiction);
+  report(p, 59);
+  CHECK(two.ledger.is_quarantined(1));
+  CHECK(two.ledger.versions(1).size() == 3);
+  REQUIRE(two.fact(unknown, 1.3) == FactOutcome::kContradiction);
+  report(p, 59);
+  CHECK(two.ledger.is_quarantined(1));
+  report(p, 1);
+  CHECK_FALSE(two.ledger.is_quarantined(1));
+  REQUIRE(two.ledger.versions(1).size() == 1);
+  CHECK(two.ledger.versions(1)[0].number == 10);
+}
+
+TEST_CASE("a quarantined robot that is pushed keeps its versions, and its own stop besides") {
+  Two two(5);
+  REQUIRE(two.fact(continued(two.a, 999, 1, {3, 0}), 1.2) == FactOutcome::kContradiction);
+  Version stop = rest_version(1, {0.5, 0}, 5000);
+  CHECK(two.ledger.on_executing(stop, at_s(2), true) == FactOutcome::kApplied);
+  REQUIRE(two.ledger.versions(1).size() == 2);
+  CHECK(two.ledger.versions(1)[1].number == 5000);
+  for (int i = 0; i < 60; ++i) (void)two.ledger.on_executing(stop, at_s(3), true);
+  CHECK_FALSE(two.ledger.is_quarantined(1));
+  REQUIRE(two.ledger.versions(1).size() == 1);
+  CHECK(two.ledger.versions(1)[0].number == 5000);
 }
 
 TEST_CASE("without facts the ledger fills up and then grants nothing") {

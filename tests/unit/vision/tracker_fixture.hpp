@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "common/protocol/obstacle_bounds.hpp"
 #include "common/random/rng.hpp"
 #include "tests/unit/common/random/normal_vector.hpp"
 #include "vision/tracking/tracker.hpp"
@@ -82,6 +83,7 @@ inline msg::DetectionFrame frame_message(std::uint32_t camera, Time captured_at)
   frame.camera(camera);
   frame.captured_at_ns(to_ns(captured_at));
   frame.ball_count(0);
+  frame.obstacles_complete_within_m(kCompleteEverywhere_m);
   return frame;
 }
 
@@ -94,6 +96,14 @@ inline void add_robot(msg::DetectionFrame& frame, RobotId id, const Vec2& positi
   d.heading_rad(wrapped_rad(heading_rad));
   d.confidence(1);
   frame.robots().push_back(d);
+}
+
+inline void add_obstacle(msg::DetectionFrame& frame, const Vec2& position_m, double radius_m = 0.1) {
+  auto& d = frame.obstacles().at(frame.obstacle_count());
+  d.x_m(position_m.x());
+  d.y_m(position_m.y());
+  d.radius_m(radius_m);
+  frame.obstacle_count(static_cast<std::uint16_t>(frame.obstacle_count() + 1));
 }
 
 inline void add_ball(msg::DetectionFrame& frame, const Vec2& position_m) {
@@ -127,6 +137,10 @@ class TrackerFixture {
     tracker_.world_at(t, world_);
     return world_;
   }
+  const msg::ObstacleList& obstacles_at(Time t) {
+    tracker_.obstacles_at(world_at(t), list_);
+    return list_;
+  }
   /// A robot in the world at a time, or nullptr.
   const msg::TrackedRobot* robot_at(RobotId id, Time t) {
     for (const auto& robot : world_at(t).robots()) {
@@ -144,6 +158,7 @@ class TrackerFixture {
   Tracker tracker_;
   Frame frame_;
   msg::WorldState world_;
+  msg::ObstacleList list_;
 };
 
 inline Vec2 position_of(const msg::TrackedRobot& r) { return {r.x_m(), r.y_m()}; }

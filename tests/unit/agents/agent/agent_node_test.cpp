@@ -52,9 +52,15 @@ msg::WorldState valid_world() {
   world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world.robots().emplace_back().robot(kRobot);
   world.robots()[0].observed_at_ns(to_ns(kBegin));
-  world.obstacle_count(1);
-  world.obstacles()[0].observed_at_ns(to_ns(kBegin));
   return world;
+}
+
+msg::ObstacleList valid_obstacles() {
+  msg::ObstacleList list;
+  list.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  list.valid_at_ns(to_ns(kBegin));
+  list.obstacles().emplace_back().observed_at_ns(to_ns(kBegin));
+  return list;
 }
 
 /// A page with one version near the robot.
@@ -125,6 +131,7 @@ TEST_CASE("valid messages are not counted as invalid") {
   msg::WorldState empty;
   empty.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   CHECK(f.send(topics::kWorld, empty) == 0);
+  CHECK(f.send(topics::kObstacles, valid_obstacles()) == 0);
   CHECK(f.send(topics::kLedger, valid_page()) == 0);
   CHECK(f.send(topics::kDisturbance, placement(kRobot, 1)) == 0);
   CHECK(f.commands > 0);
@@ -183,13 +190,21 @@ TEST_CASE("each invalid observation of a world is counted") {
   const auto send = [&](auto spoil) { return f.send_spoilt(topics::kWorld, valid_world(), spoil); };
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_x_m(kNan); }) == 1);
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
-  CHECK(send([](msg::WorldState& m) { m.obstacles()[0].radius_m(-1); }) == 1);
-  CHECK(send([](msg::WorldState& m) { m.obstacles()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
-  CHECK(send([](msg::WorldState& m) { m.obstacle_count(msg::MAX_OBSTACLES + 1); }) == 1);
-  CHECK(send([](msg::WorldState& m) {
-          m.robots()[0].observed_heading_rad(kNan);
-          m.obstacles()[0].x_m(kNan);
-        }) == 2);
+  CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_heading_rad(kNan); }) == 1);
+  CHECK(send([](msg::WorldState& m) { m.robots()[0].y_m(kNan); }) == 1);
+}
+
+TEST_CASE("each invalid list of obstacles is counted") {
+  NodeFixture f;
+  using List = msg::ObstacleList;
+  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kObstacles, valid_obstacles(), spoil); };
+  CHECK(send([](List& m) { m.obstacles()[0].radius_m(-1); }) == 1);
+  CHECK(send([](List& m) { m.obstacles()[0].x_m(kNan); }) == 1);
+  CHECK(send([](List& m) { m.obstacles()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
+  CHECK(send([](List& m) { m.obstacles().resize(msg::MAX_OBSTACLES + 1); }) == 1);
+  CHECK(send([](List& m) { m.complete_within_m(kNan); }) == 1);
+  CHECK(send([](List& m) { m.valid_at_ns(to_ns(kMaxTime)); }) == 1);
+  CHECK(send([](List& m) { m.header().sender(kRobot); }) == 1);
 }
 
 TEST_CASE("a world that is not from vision is not used, and counts as one invalid message") {

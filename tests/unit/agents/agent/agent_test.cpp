@@ -2,6 +2,7 @@
 #include "agents/agent/agent.hpp"
 
 #include "common/config/scenario_loader.hpp"
+#include "common/protocol/obstacle_bounds.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::agent_test {
@@ -31,18 +32,26 @@ Feedback resting_at(const Vec2& position, double at, Epoch epoch = 7) {
 }
 
 /// The coordinator grants, and the agent has registered.
-void become_ready(Agent& agent) {
+void become_ready(Agent& agent, double now = 0.6, double watched_until = 0) {
   CoordinatorHeartbeat heartbeat;
   heartbeat.epoch = 7;
   heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
-  agent.on_coordinator_state(heartbeat, at_s(0.6));
+  heartbeat.watched_until = at_s(watched_until);
+  agent.on_coordinator_state(heartbeat, at_s(now));
   (void)agent.registration();
 }
 
 WorldObservations observation(double x, double observed_at) {
   WorldObservations world;
+  world.valid_at = at_s(observed_at);
   world.self = PoseFix{at_s(observed_at), {x, 0}, 0};
+  world.self_m = {x, 0};
   return world;
+}
+
+/// A list without obstacles.
+ObstacleObservations empty_list(double valid_at, double complete_within_m = kCompleteEverywhere_m) {
+  return {0, at_s(valid_at), complete_within_m, {}};
 }
 
 struct DrivenAgent {
@@ -54,15 +63,26 @@ struct DrivenAgent {
     agent.on_feedback(resting_at({0, 0}, 0.5));
     become_ready(agent);
   }
-  void observe(double x, double observed_at, double now) {
+  /// The world state only, which the coordinator receives too.
+  void observe_self(double x, double observed_at, double now) {
+    CoordinatorHeartbeat heartbeat;
+    heartbeat.epoch = 7;
+    heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
+    heartbeat.watched_until = at_s(now);
+    agent.on_coordinator_state(heartbeat, at_s(now));
     agent.on_world(observation(x, observed_at), at_s(now));
+  }
+  void observe(double x, double observed_at, double now) {
+    observe_self(x, observed_at, now);
+    agent.on_obstacles(empty_list(observed_at), at_s(now));
   }
   /// As observe(), with a moving obstacle.
   void observe_obstacle(double x, double y, double observed_at, double now) {
-    WorldObservations world = observation(0, observed_at);
-    world.obstacle_count = 1;
-    world.obstacles[0] = {0, at_s(observed_at), {x, y}, 0.09, 0};
-    agent.on_world(world, at_s(now));
+    observe_self(0, observed_at, now);
+    const ObservedObstacle obstacle{0, at_s(observed_at), {x, y}, 0.09, 0};
+    ObstacleObservations list = empty_list(observed_at);
+    list.obstacles = {&obstacle, 1};
+    agent.on_obstacles(list, at_s(now));
   }
   bool plans(double now) { return agent.plan(at_s(now), at_s(now + kCycle_s)).has_value(); }
 };
@@ -79,6 +99,53 @@ TEST_CASE("an agent plans towards its goal as long as vision observes its robot"
   CHECK_FALSE(d.plans(0.95));
   d.observe(0, 0.94, 0.95);
   CHECK(d.plans(0.95));
+}
+
+TEST_CASE("an agent plans only as long as the coordinator hears vision") {
+  DrivenAgent d;
+  d.observe(0, 0.6, 0.61);
+  CHECK(d.plans(0.62));
+  for (const double at : {0.8, 1.0, 1.2}) {
+    d.agent.on_world(observation(0, at), at_s(at));
+    d.agent.on_obstacles(empty_list(at), at_s(at));
+    become_ready(d.agent, at, 0.61);
+  }
+  CHECK(d.plans(1.2));
+  CHECK_FALSE(d.plans(1.22));
+  become_ready(d.agent, 1.2, 1.19);
+  CHECK(d.plans(1.22));
+}
+
+TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
+  DrivenAgent d;
+  d.observe_self(0, 0.6, 0.61);
+  CHECK_FALSE(d.plans(0.62));
+  d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
+  CHECK(d.plans(0.62));
+  d.observe_self(0, 0.85, 0.86);
+  CHECK(d.plans(0.89));
+  CHECK_FALSE(d.plans(0.95));
+  // An incomplete list counts with the world state of its time.
+  d.agent.on_obstacles(empty_list(0.92, 1), at_s(0.93));
+  CHECK_FALSE(d.plans(0.95));
+  d.observe_self(0, 0.92, 0.94);
+  CHECK(d.plans(0.95));
+}
+
+TEST_CASE("a robot does not drive to where an obstacle that is not listed could reach it") {
+  const auto drives = [](double complete_within_m) {
+    DrivenAgent d;
+    d.observe_self(0, 0.6, 0.61);
+    d.agent.on_obstacles(empty_list(0.6, complete_within_m), at_s(0.61));
+    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+    REQUIRE(plan);
+    CHECK(plan->query.seen.is_everywhere() == (complete_within_m == kCompleteEverywhere_m));
+    return d.agent.search(*plan, at_s(0.62)).has_value();
+  };
+  CHECK(drives(kCompleteEverywhere_m));
+  CHECK(drives(2));
+  CHECK_FALSE(drives(0.1));  // as large as the robot and its margin
+  CHECK_FALSE(drives(0));
 }
 
 TEST_CASE("planning settings replace the defaults") {
@@ -114,7 +181,8 @@ TEST_CASE("inflation lasts until the robot is at rest and vision agrees with its
 
 TEST_CASE("an observation from the future is dropped and counted, and later valid ones are still used") {
   DrivenAgent d;
-  d.observe(0, 1e6, 0.61);
+  d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
+  d.observe_self(0, 1e6, 0.61);
   WorldObservations latest = observation(0, 0);
   latest.self->captured_at = Time::max();
   d.agent.on_world(latest, at_s(0.61));
@@ -162,6 +230,7 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   agent.on_feedback(resting_at({0, 0}, 0.5, 0));
   become_ready(agent);
   agent.on_world(observation(0, 0.6), at_s(0.61));
+  agent.on_obstacles(empty_list(0.6), at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
   CHECK(agent.status(at_s(1)).agent_state() == msg::AgentState::AGENT_ARRIVED);
 }

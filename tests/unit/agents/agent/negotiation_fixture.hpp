@@ -25,13 +25,19 @@ inline Feedback fact(const Version& executing, double at, Incarnation obeyed = k
   return feedback;
 }
 
-/// Valid as long as `missing`.
+/// Valid until the next call.
 inline CoordinatorHeartbeat heartbeat(Epoch epoch, const std::vector<RobotId>& missing = {}) {
+  static std::vector<msg::RobotNotice> notices;
+  notices.assign(missing.size(), {});
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    notices[i].robot(missing[i]);
+    notices[i].is_missing(true);
+  }
   CoordinatorHeartbeat state;
   state.epoch = epoch;
   state.mode = missing.empty() ? msg::CoordinatorMode::COORDINATOR_GRANTING
                                : msg::CoordinatorMode::COORDINATOR_REGISTERING;
-  state.missing = missing;
+  state.notices = notices;
   return state;
 }
 

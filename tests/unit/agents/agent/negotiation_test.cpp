@@ -229,6 +229,23 @@ TEST_CASE("late facts change nothing") {
   CHECK(f.n.counts().lost == 0);
 }
 
+TEST_CASE("an agent recovers from a false fact about a version that its robot does not execute") {
+  NegotiationFixture f;
+  f.become_ready();
+  const auto granted = f.grant(f.propose(1, 0.96), 0.97);
+  REQUIRE(granted);
+  f.n.on_feedback(fact(*granted, 1.01));
+  Version forged = *granted;
+  forged.number += 1000;
+  f.n.on_feedback(fact(forged, 1.02));
+  CHECK(f.n.executing().number == forged.number);
+  f.n.on_feedback(fact(*granted, 1.0));  // late
+  CHECK(f.n.executing().number == forged.number);
+  f.n.on_feedback(fact(*granted, 1.03));
+  CHECK(f.n.executing().number == granted->number);
+  CHECK(f.n.is_contradicted());
+}
+
 TEST_CASE("an agent that a later one has fenced falls silent") {
   NegotiationFixture f;
   f.become_ready();

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/observed_obstacles.hpp"
 
+#include <algorithm>
+#include <limits>
+
+#include "common/protocol/obstacle_bounds.hpp"
+#include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::observed_obstacles_test {
@@ -10,40 +15,57 @@ constexpr double kSpeed_mps = 1.5;
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
+/// A list, and the memory of its obstacles.
+struct List {
+  std::vector<ObservedObstacle> obstacles;
+  ObstacleObservations observations;
+
+  explicit List(double valid_at, Incarnation vision = 1)
+      : observations{vision, at_s(valid_at), kCompleteEverywhere_m, {}} {}
+  List& add(std::uint32_t track, const Vec2& position_m, Time observed_at) {
+    obstacles.push_back({track, observed_at, position_m, 0.1, 0.0001});
+    return *this;
+  }
+  List& add(std::uint32_t track, double x, double observed_at) {
+    return add(track, {x, 0}, at_s(observed_at));
+  }
+  operator ObstacleObservations() const {
+    ObstacleObservations result = observations;
+    result.obstacles = obstacles;
+    return result;
+  }
+};
+
 struct Fixture {
   ObservedObstacles obstacles{kSpeed_mps, kSlack};
 
-  static WorldObservations world(std::uint32_t track, double x, double observed_at, Incarnation vision = 1) {
-    WorldObservations observations;
-    observations.vision = vision;
-    add(observations, track, x, observed_at);
-    return observations;
-  }
-  static void add(WorldObservations& observations, std::uint32_t track, double x, double observed_at) {
-    observations.obstacles[observations.obstacle_count++] = {track, at_s(observed_at), {x, 0}, 0.1, 0.0001};
+  /// The robot is at the origin.
+  void receive(const List& list, double now) { obstacles.on_list(list, {0, 0}, at_s(now)); }
+  void receive(std::uint32_t track, double x, double observed_at, double now, Incarnation vision = 1) {
+    receive(List(observed_at, vision).add(track, x, observed_at), now);
   }
 };
 
 TEST_CASE("an observation is kept with its uncertainty until a newer one of the same track arrives") {
   Fixture f;
-  f.obstacles.on_world(Fixture::world(5, 1, 10), at_s(10.02));
+  f.receive(5, 1, 10, 10.02);
   REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);
   const MovingObstacle first = f.obstacles.recent(at_s(10.02))[0];
   CHECK(first.position_m == Vec2(1, 0));
   CHECK(first.radius_m == Approx(0.1 + 4 * 0.01));
   CHECK(first.speed_mps == kSpeed_mps);
   CHECK(first.observed_at == at_s(10) - kSlack);
-  f.obstacles.on_world(Fixture::world(5, 1.2, 10.1), at_s(10.12));
+  f.receive(5, 1.2, 10.1, 10.12);
   // A late message.
-  f.obstacles.on_world(Fixture::world(5, 1.1, 10.05), at_s(10.13));
+  f.receive(5, 1.1, 10.05, 10.13);
   REQUIRE(f.obstacles.recent(at_s(10.13)).size() == 1);
   CHECK(f.obstacles.recent(at_s(10.13))[0].position_m == Vec2(1.2, 0));
 }
 
 TEST_CASE("an obstacle that is no longer observed is kept for a second, and its reach grows") {
   Fixture f;
-  f.obstacles.on_world(Fixture::world(5, 1, 10), at_s(10.02));
-  f.obstacles.on_world(WorldObservations(), at_s(10.5));
+  f.receive(5, 1, 10, 10.02);
+  f.receive(List(10.5), 10.5);
   REQUIRE(f.obstacles.recent(at_s(10.9)).size() == 1);
   CHECK(f.obstacles.recent(at_s(10.9))[0].reach_m(at_s(10.9)) ==
         Approx(0.14 + 0.9 * kSpeed_mps).margin(0.01));
@@ -52,47 +74,103 @@ TEST_CASE("an obstacle that is no longer observed is kept for a second, and its 
 
 TEST_CASE("tracks of a restarted vision process do not replace those of its predecessor") {
   Fixture f;
-  f.obstacles.on_world(Fixture::world(1, 1, 10, 1), at_s(10.02));
-  f.obstacles.on_world(Fixture::world(1, -1, 10.1, 2), at_s(10.12));
+  f.receive(1, 1, 10, 10.02, 1);
+  f.receive(1, -1, 10.1, 10.12, 2);
   CHECK(f.obstacles.recent(at_s(10.2)).size() == 2);
 }
 
-TEST_CASE("observations from the future are counted and dropped, and the others are still used") {
+TEST_CASE("the latest observation of every track is kept, in any order of tracks and lists") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
   Fixture f;
+  std::vector<Time> latest(100);
+  for (int i = 0; i < 300; ++i) {
+    List list(10);
+    for (std::uint64_t left = rng.below(50); left > 0; --left) {
+      const auto track = static_cast<std::uint32_t>(rng.below(100));
+      const Time observed_at = at_s(rng.uniform(9.5, 10));
+      list.add(track, {static_cast<double>(track), to_seconds(observed_at - at_s(9))}, observed_at);
+      latest[track] = std::max(latest[track], observed_at);
+    }
+    f.receive(list, 10);
+  }
+  const auto recent = f.obstacles.recent(at_s(10));
+  CHECK(recent.size() ==
+        static_cast<std::size_t>(std::ranges::count_if(latest, [](Time t) { return t != Time{}; })));
+  for (const MovingObstacle& obstacle : recent) {
+    const Time expected = latest.at(static_cast<std::size_t>(obstacle.position_m.x()));
+    REQUIRE(obstacle.observed_at == expected - kSlack);
+    REQUIRE(obstacle.position_m.y() == to_seconds(expected - at_s(9)));
+  }
+}
+
+TEST_CASE("an observation from the future is counted and dropped, and its list does not count as complete") {
   const Time now = at_s(10.02);
   for (const Time observed_at : {at_s(10.03), Time::max()}) {
-    const auto before = f.obstacles.invalid();
-    WorldObservations world = Fixture::world(5, 1, 10);
-    world.obstacles[0].observed_at = observed_at;
-    Fixture::add(world, 6, 2, 10);
-    f.obstacles.on_world(world, now);
-    CHECK(f.obstacles.invalid() == before + 1);
+    Fixture f;
+    f.receive(List(10).add(5, {1, 0}, observed_at).add(6, 2, 10), 10.02);
+    CHECK(f.obstacles.invalid() == 1);
     REQUIRE(f.obstacles.recent(now).size() == 1);
     CHECK(f.obstacles.recent(now)[0].position_m == Vec2(2, 0));
+    CHECK(f.obstacles.complete_at() == Time{});
+  }
+}
+
+TEST_CASE("a list from the future is counted and dropped as a whole") {
+  for (const Time valid_at : {at_s(10.2), Time::max()}) {
+    Fixture f;
+    List list(0);
+    list.observations.valid_at = valid_at;
+    f.receive(list.add(5, 1, 10), 10.02);
+    CHECK(f.obstacles.invalid() == 1);
+    CHECK(f.obstacles.recent(at_s(10.02)).empty());
+    CHECK(f.obstacles.complete_at() == Time{});
+    // Vision's clock needs to be only roughly right.
+    f.receive(List(10.1), 10.02);
+    CHECK(f.obstacles.invalid() == 1);
+    CHECK(f.obstacles.complete_at() == at_s(10.1));
   }
 }
 
 TEST_CASE("old observations are dropped, and not counted as invalid") {
-  Fixture f;
-  WorldObservations world = Fixture::world(7, 1, 10);
   for (const Time observed_at : {at_s(9), Time::min()}) {
-    world.obstacles[0].observed_at = observed_at;
-    f.obstacles.on_world(world, at_s(10.02));
+    Fixture f;
+    f.receive(List(10).add(7, {1, 0}, observed_at), 10.02);
     CHECK(f.obstacles.recent(at_s(10.02)).empty());
+    CHECK(f.obstacles.invalid() == 0);
+    CHECK(f.obstacles.complete_at() == at_s(10));
   }
-  CHECK(f.obstacles.invalid() == 0);
 }
 
-TEST_CASE("beyond the capacity, the oldest observations are dropped") {
+TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all that are nearer are known") {
+  const std::uint64_t seed = GENERATE(range(1u, 11u));
+  CAPTURE(seed);
+  Rng rng(seed);
   Fixture f;
-  for (std::uint32_t track = 0; track < 3 * ObservedObstacles::kCapacity; ++track) {
-    const double observed_at = 10 + 0.001 * track;
-    f.obstacles.on_world(Fixture::world(track, track, observed_at), at_s(observed_at + 0.001));
+  std::vector<MovingObstacle> all;
+  const std::uint32_t count = 2 * ObservedObstacles::kCapacity;
+  for (std::uint32_t track = 0; track < count; ++track) {
+    const double x = rng.uniform(-5, 5), y = rng.uniform(-5, 5), observed_at = 10 + 0.0001 * track;
+    f.receive(List(observed_at).add(track, {x, y}, at_s(observed_at)), observed_at + 0.001);
+    all.push_back({{x, y}, 0.14, at_s(observed_at) - kSlack, kSpeed_mps});
   }
-  const auto recent = f.obstacles.recent(at_s(10.1));
+  const Time now = at_s(10.15);
+  const auto recent = f.obstacles.recent(now);
   REQUIRE(recent.size() == ObservedObstacles::kCapacity);
-  for (const MovingObstacle& obstacle : recent)
-    CHECK(obstacle.position_m.x() >= 2 * ObservedObstacles::kCapacity);
+  const SeenRegion seen = f.obstacles.seen(now);
+  REQUIRE_FALSE(seen.is_everywhere());
+  CHECK(seen.radius_at_m(now) > 2);
+  for (const MovingObstacle& obstacle : all) {
+    const auto is_same = [&](const MovingObstacle& known) { return known.position_m == obstacle.position_m; };
+    if (std::ranges::any_of(recent, is_same)) continue;
+    const double distance = (obstacle.position_m - seen.centre_m).norm();
+    for (const double later_s : {0.0, 0.1, 0.5})
+      REQUIRE(distance - obstacle.reach_m(now + from_seconds(later_s)) >=
+              seen.radius_at_m(now + from_seconds(later_s)) - 1e-9);
+  }
+  // They would have been dropped by now.
+  CHECK(f.obstacles.seen(now + from_seconds(1.2)).is_everywhere());
 }
 
 }  // namespace sidestep::observed_obstacles_test

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/neighbours.hpp"
+#include "agents/agent/observed_obstacles.hpp"
+#include "agents/agent/obstacle_view.hpp"
 #include "agents/agent/world_view.hpp"
 #include "agents/batch/dispatch.hpp"
 #include "agents/batch/lanes.hpp"
@@ -119,10 +121,9 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   verdict.header().sender(10000);
   msg::CoordinatorState state;
   state.header().sender(10000);
-  state.missing({1, 2, 3});
+  state.notices().resize(3);
   msg::WorldState world;
   world.header().sender(20000);
-  world.obstacle_count(msg::MAX_OBSTACLES);
   for (RobotId robot = 0; robot < 100; ++robot) world.robots().emplace_back().robot(robot);
   const Command command{0, 1, 0, Time{}, feedback.executing};
   const Proposal proposal{0, 1, 0, Time{}, 0, 1, {feedback.executing}};
@@ -136,6 +137,41 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
                      encode(registration).is_absent();
         }) == 0);
   CHECK(decoded == 7 * 600);
+}
+
+TEST_CASE(
+    "lists of obstacles are decoded and stored, and searches avoid the obstacles, without allocations") {
+  Rng rng(5);
+  std::vector<msg::ObstacleList> lists(40);
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    lists[k].header().sender(20000);
+    lists[k].complete_within_m(1);
+    for (std::uint32_t i = 0; i < msg::MAX_OBSTACLES; ++i) {
+      msg::TrackedObstacle& obstacle = lists[k].obstacles().emplace_back();
+      obstacle.obstacle(static_cast<std::uint32_t>(rng.below(2000)));  // more than can be stored
+      obstacle.x_m(rng.uniform(-3, 3));
+      obstacle.y_m(rng.uniform(-3, 3));
+    }
+  }
+  ObstacleView view;
+  ObservedObstacles obstacles(1.5, Duration{1'000'000});
+  SafetySearch search({}, {});
+  TrajectoryIndex empty_index;
+  Time now = kStart;
+  std::size_t k = 0, stored = 0, found = 0;
+  CHECK(allocations_once_warm([&] {
+          msg::ObstacleList& list = lists[k++ % lists.size()];
+          now += kCycle;
+          list.valid_at_ns(to_ns(now));
+          for (msg::TrackedObstacle& obstacle : list.obstacles()) obstacle.observed_at_ns(to_ns(now));
+          obstacles.on_list(*view.decode(list), {0, 0}, now);
+          SearchQuery query{now, {{0, 0}, {1, 0}}, random_vector(rng, 3), kCycle};
+          query.moving = obstacles.recent(now);
+          query.seen = obstacles.seen(now);
+          stored += query.moving.size();
+          found += search.search(query, empty_index, rng).count;
+        }) == 0);
+  CHECK(stored + found > 100 * ObservedObstacles::kCapacity);
 }
 
 }  // namespace sidestep::allocation_test

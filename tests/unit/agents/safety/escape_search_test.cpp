@@ -104,6 +104,37 @@ TEST_CASE("no escape candidate is moving when an opponent can touch the robot") 
   CHECK(excluded > 500);
 }
 
+TEST_CASE(
+    "no escape candidate is moving when an unknown obstacle beyond the seen region can touch the robot") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const FloorRules rules = test_rules();
+  int found = 0, excluded = 0;
+  for (int i = 0; i < 2000; ++i) {
+    CAPTURE(i);
+    const auto direction = [&] { return rotated({1, 0}, rng.uniform(-3.14, 3.14)); };
+    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction(), rng.uniform(0, 0.02));
+    const Version other = braking(2, Vec2(-0.5, -0.5) + rng.uniform(0.1, 0.18) * direction(), {0, 0});
+    SearchQuery query = query_on(base, 3 * direction());
+    const SearchResult without = search_escape(query, base, index_of({&other, 1}), rules);
+    const double radius_m = rng.uniform(0.1, 1), age_s = rng.uniform(0, 0.2);
+    query.seen = {query.at_start.position_m, radius_m, kStart - from_seconds(age_s), 1};
+    const SearchResult result = search_escape(query, base, index_of({&other, 1}), rules);
+    excluded += static_cast<int>(without.count) - static_cast<int>(result.count);
+    for (std::size_t k = 0; k < result.count; ++k) {
+      ++found;
+      const Trajectory& candidate = result.candidates[k];
+      for (Time t = kStart; t < candidate.end(); t += std::chrono::milliseconds(2)) {
+        const double distance_m = (candidate.state_at(t).position_m - query.seen.centre_m).norm();
+        REQUIRE(distance_m + rules.radius_m + rules.margin_m < query.seen.radius_at_m(t));
+      }
+    }
+  }
+  CHECK(found > 500);
+  CHECK(excluded > 500);
+}
+
 TEST_CASE("no escape candidate comes nearer to another robot than the base or the minimum separation") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);

@@ -215,4 +215,77 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
   CHECK(refused > 100);
 }
 
+TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen region could reach it") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  FloorRules rules;
+  rules.field = {6, 6};
+  SafetySearch search(rules, {});
+  TrajectoryIndex empty_index;
+  std::size_t found = 0, blocked = 0, refused = 0;
+  for (int scene = 0; scene < 1000; ++scene) {
+    const Vec2 velocity = random_velocity(rng, 2, 3);
+    const double age_s = rng.uniform(0, 0.2), direction_rad = rng.uniform(-3, 3);
+    SearchQuery query{kStart, {{0, 0}, velocity}, 3 * rotated({1, 0}, direction_rad), kCycle};
+    Rng again = rng;
+    const std::size_t without = search.search(query, empty_index, again).count;
+    query.inflation_m = rng.chance(0.3) ? 0.02 : 0;
+    query.seen = {random_vector(rng, 0.2), rng.uniform(0.1, 2), kStart - from_seconds(age_s), 1.5};
+    const auto result = search.search(query, empty_index, rng);
+    ++(result.count ? found : blocked);
+    refused += result.count < without;
+    for (std::size_t i = 0; i < result.count; ++i) {
+      const Trajectory& candidate = result.candidates[i];
+      // By dense sampling.
+      for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
+        const double distance = (candidate.state_at(t).position_m - query.seen.centre_m).norm();
+        REQUIRE(distance + rules.radius_m + rules.margin_m + query.inflation_m < query.seen.radius_at_m(t));
+      }
+    }
+  }
+  CHECK(found > 100);
+  CHECK(blocked > 100);
+  CHECK(refused > 100);
+}
+
+TEST_CASE(
+    "with hundreds of moving obstacles every candidate is passively safe from all, and no safe one is "
+    "refused") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  FloorRules rules;
+  rules.field = {20, 20};
+  SafetySearch search(rules, {});
+  TrajectoryIndex empty_index;
+  int found = 0, restricted = 0;
+  for (int scene = 0; scene < 300; ++scene) {
+    std::vector<MovingObstacle> moving;
+    for (int i = 0; i < 200; ++i) {
+      const Vec2 position = random_vector(rng, 9);
+      const double age_s = rng.uniform(-0.1, 0.3);
+      moving.push_back({position, 0.09, kStart - from_seconds(age_s), 1.5});
+    }
+    SearchQuery query{kStart, {{0, 0}, random_velocity(rng, 2, 3)}, {3, 0}, kCycle};
+    query.moving = moving;
+    Rng again = rng;
+    const auto result = search.search(query, empty_index, rng);
+    query.moving = {};
+    const auto all = search.search(query, empty_index, again);
+    const auto is_safe = [&](const Trajectory& candidate) {
+      return is_passively_safe_from_all(candidate, moving, rules.radius_m + rules.margin_m);
+    };
+    REQUIRE(std::all_of(result.candidates.begin(), result.candidates.begin() + result.count, is_safe));
+    // If none has to be refused, the search takes the same ones.
+    const bool is_restricted =
+        !std::all_of(all.candidates.begin(), all.candidates.begin() + all.count, is_safe);
+    if (!is_restricted) REQUIRE(result.count == all.count);
+    found += result.count > 0;
+    restricted += is_restricted;
+  }
+  CHECK(found > 30);
+  CHECK(restricted > 30);
+}
+
 }  // namespace sidestep::safety_search_test

@@ -52,8 +52,8 @@ TEST_CASE("invalid opponents are rejected with their line") {
   check_rejected(opponent("radius_m: 0.1, speed_mps: 1, path_m: [[0.1, 0.16]]"), 1,
                  "overlaps the first point of an opponent");
   std::string many = kRobot + "opponents:\n";
-  for (int i = 0; i < 17; ++i) many += "- {radius_m: 0.1, speed_mps: 1, path_m: [[2, 2]]}\n";
-  check_rejected(many, 3, "expected at most 16 elements, got 17");
+  for (int i = 0; i < 1001; ++i) many += "- {radius_m: 0.1, speed_mps: 1, path_m: [[2, 2]]}\n";
+  check_rejected(many, 3, "expected at most 1000 elements, got 1001");
 }
 
 TEST_CASE("invalid images are rejected with their line") {

@@ -172,7 +172,7 @@ TEST_CASE("a verdict with random bytes is refused or has known reasons") {
       [](const msg::Verdict& message) { return decode(message, kRobot); },
       [](const Verdict& verdict) {
         return verdict.robot == kRobot && std::ranges::all_of(verdict.reasons, [](msg::Reason reason) {
-                 return static_cast<std::uint32_t>(reason) <= 15;
+                 return static_cast<std::uint32_t>(reason) <= 17;
                });
       });
 }
@@ -184,13 +184,21 @@ TEST_CASE("a coordinator state with random bytes is refused or has a plausible e
         msg::CoordinatorState message;
         message.header().sender(10000);
         message.epoch(rng.below(1'000'000'000'000'000));
-        message.missing({static_cast<RobotId>(rng.bits()), 3});
+        msg::RobotNotice missing, displaced;
+        missing.is_missing(true);
+        displaced.robot(3);
+        displaced.is_displaced(true);
+        message.notices({missing, displaced});
         return message;
       },
       [](const msg::CoordinatorState& message) { return decode(message, kNow); },
       [](const CoordinatorHeartbeat& heartbeat) {
         return is_within(heartbeat.epoch) && static_cast<std::uint32_t>(heartbeat.mode) <= 2 &&
-               heartbeat.missing.size() <= kMaxRobots;
+               heartbeat.notices.size() <= kMaxRobots &&
+               std::ranges::all_of(heartbeat.notices, [](const msg::RobotNotice& notice) {
+                 return notice.robot() < kMaxRobots &&
+                        (!notice.is_displaced() || std::isfinite(notice.x_m()));
+               });
       });
 }
 

@@ -191,7 +191,7 @@ TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
   REQUIRE(decode(message, kRobot));
   CHECK_FALSE(decode(message, kRobot + 1));
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) {
-    for (const std::uint32_t reason : {static_cast<std::uint32_t>(msg::Reason::REASON_ABSENT) + 1,
+    for (const std::uint32_t reason : {static_cast<std::uint32_t>(msg::Reason::REASON_DISPLACED) + 1,
                                        std::numeric_limits<std::uint32_t>::max()}) {
       CAPTURE(i, reason);
       msg::Verdict hostile = message;
@@ -247,16 +247,53 @@ TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
   message.header().incarnation(8);
   message.epoch(7);
   message.coordinator_mode(msg::CoordinatorMode::COORDINATOR_REGISTERING);
-  message.missing({4, 9});
+  message.watched_until_ns(to_ns(kNow));
+  msg::RobotNotice missing, displaced;
+  missing.robot(4);
+  missing.is_missing(true);
+  displaced.robot(9);
+  displaced.is_displaced(true);
+  displaced.x_m(2);
+  message.notices({missing, displaced});
   const auto heartbeat = decode(message, kNow);
   REQUIRE(heartbeat);
   CHECK(heartbeat->sender == 10001);
   CHECK(heartbeat->incarnation == 8);
   CHECK(heartbeat->epoch == 7);
   CHECK(heartbeat->mode == msg::CoordinatorMode::COORDINATOR_REGISTERING);
-  CHECK(std::ranges::equal(heartbeat->missing, std::vector<RobotId>{4, 9}));
+  CHECK(heartbeat->watched_until == kNow);
+  CHECK(is_missing(*heartbeat, 4));
+  CHECK_FALSE(is_missing(*heartbeat, 9));
+  REQUIRE(heartbeat->notices.size() == 2);
+  CHECK(heartbeat->notices[1].x_m() == 2);
   message.epoch(0);
   CHECK(decode(message, kNow)->epoch == 0);
+}
+
+TEST_CASE("a coordinator's heartbeat that places a displaced robot nowhere is refused") {
+  msg::CoordinatorState message;
+  message.header().sender(10000);
+  msg::RobotNotice good;
+  good.robot(9);
+  good.is_displaced(true);
+  message.notices({good});
+  REQUIRE(decode(message, kNow));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refuses = [&](auto spoil) {
+    msg::RobotNotice notice = good;
+    spoil(notice);
+    message.notices({notice});
+    return !decode(message, kNow);
+  };
+  CHECK(refuses([&](auto& n) { n.x_m(nan); }));
+  CHECK(refuses([&](auto& n) { n.y_m(1e9); }));
+  CHECK(refuses([&](auto& n) { n.position_variance_m2(-1); }));
+  CHECK(refuses([&](auto& n) { n.position_variance_m2(nan); }));
+  CHECK(refuses([&](auto& n) { n.robot(kMaxRobots); }));
+  CHECK(refuses([&](auto& n) { n.observed_at_ns(to_ns(kNow) + 3'600'000'000'000); }));
+  message.notices({good});
+  message.watched_until_ns(to_ns(kNow) + 3'600'000'000'000);
+  CHECK_FALSE(decode(message, kNow));
 }
 
 TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mode is refused") {

@@ -92,7 +92,8 @@ inline Registration random_registration(Rng& rng) {
 inline Verdict random_verdict(Rng& rng) {
   Verdict verdict{kRobot, random_number(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
   for (msg::Reason& reason : verdict.reasons)
-    reason = static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_ABSENT) + 1));
+    reason =
+        static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_DISPLACED) + 1));
   for (RobotId& blocker : verdict.blockers) blocker = static_cast<RobotId>(rng.bits());
   return verdict;
 }

@@ -144,6 +144,28 @@ TEST_CASE("a child with `restart` is started again after each death, as a new pr
   CHECK(group.poll(0ms).empty());
 }
 
+TEST_CASE("a child that is alive or dead is started again on request, once, with new arguments") {
+  ProcessGroup group(log_path());
+  const pid_t first = group.start(shell("target", "echo first; exec sleep 1000"));
+  wait_for_line(group, "target", "first");
+  group.restart(shell("target", "echo second; exec sleep 1000"));
+  const auto events = group.poll(kDeadline);
+  REQUIRE(events.size() == 2);
+  CHECK(events[0].pid == first);
+  CHECK(events[0].will_restart);
+  CHECK(events[1].kind == Kind::kStarted);
+  wait_for_line(group, "target", "second");
+  CHECK(group.send_signal("target", SIGKILL));
+  CHECK_FALSE(next_event(group).will_restart);
+  CHECK_FALSE(group.send_signal("target", SIGKILL));
+  group.restart(shell("target", "echo third; exec sleep 1000"));
+  CHECK(next_event(group).kind == Kind::kStarted);
+  wait_for_line(group, "target", "third");
+  CHECK(group.running() == 1);
+  CHECK_THROWS_WITH(group.restart(shell("nobody", "true")), ContainsSubstring("there is no process nobody"));
+  CHECK_FALSE(group.send_signal("nobody", SIGKILL));
+}
+
 TEST_CASE("terminating ends children by SIGTERM, those that ignore it by SIGKILL, and restarts none") {
   ProcessGroup group(log_path());
   group.start(

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "common/protocol/obstacle_bounds.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::cameras_test {
@@ -132,7 +133,7 @@ TEST_CASE("a delayed camera drops overdue frames") {
   CHECK(taken == 2);
 }
 
-TEST_CASE("opponents are detected as obstacles, with noise and dropouts, up to the capacity of a message") {
+TEST_CASE("opponents are detected as obstacles, with noise and dropouts") {
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(seed);
   Scenario scenario = scene();
@@ -140,7 +141,7 @@ TEST_CASE("opponents are detected as obstacles, with noise and dropouts, up to t
   scenario.vision.position_noise_m = 0.002;
   scenario.vision.miss_probability = 0.1;
   Cameras cameras(scenario, kBegin, seed);
-  std::vector<Circle> opponents{{{1, 1}, 0.2}, {{100, 0}, 0.2}, {{-1, 0.5}, 0.002}};
+  const std::vector<Circle> opponents{{{1, 1}, 0.2}, {{100, 0}, 0.2}, {{-1, 0.5}, 0.002}};
   msg::DetectionFrame frame;
   int count = 0;
   double square = 0;
@@ -158,9 +159,27 @@ TEST_CASE("opponents are detected as obstacles, with noise and dropouts, up to t
   }
   CHECK(count / 10'000.0 == Approx(0.9).epsilon(0.02));
   CHECK(std::sqrt(square / (2 * count)) == Approx(0.002).epsilon(0.05));
-  opponents.assign(40, {{0, 0}, 0.1});
-  cameras.capture(cameras.next_capture(), {{}, nullptr, opponents}, frame);
+}
+
+TEST_CASE("of more opponents than a frame holds, those nearest to a detected robot are listed") {
+  Scenario scenario = scene();
+  scenario.vision.columns = 1;
+  scenario.vision.position_noise_m = 0;
+  scenario.robots.resize(1);  // at (-3, 1)
+  Cameras cameras(scenario, kBegin, 1);
+  const auto bodies = bodies_of(scenario);
+  std::vector<Circle> opponents;
+  for (int i = 400; i > 0; --i) opponents.push_back({{-3 + 0.015 * i, 1}, 0.01});
+  msg::DetectionFrame frame;
+  cameras.capture(cameras.next_capture(), {bodies, nullptr, opponents}, frame);
+  REQUIRE(frame.obstacle_count() == msg::MAX_OBSTACLES);
+  for (const msg::ObstacleDetection& obstacle : frame.obstacles())
+    CHECK(obstacle.x_m() < -3 + 0.015 * (msg::MAX_OBSTACLES + 0.5));
+  CHECK(frame.obstacles_complete_within_m() == Approx(0.015 * msg::MAX_OBSTACLES - 0.01));
+  opponents.resize(msg::MAX_OBSTACLES);
+  cameras.capture(cameras.next_capture(), {bodies, nullptr, opponents}, frame);
   CHECK(frame.obstacle_count() == msg::MAX_OBSTACLES);
+  CHECK(frame.obstacles_complete_within_m() == kCompleteEverywhere_m);
 }
 
 }  // namespace sidestep::cameras_test

@@ -315,7 +315,7 @@ TEST_CASE("an invalid disturbance is refused") {
   CHECK(is_valid(clock));
   clock.clock_offset = Duration::min();
   CHECK_FALSE(is_valid(clock));
-  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(7))));
+  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(10))));
   CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
   CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT)));
   CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT)));

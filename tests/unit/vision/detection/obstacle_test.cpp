@@ -268,6 +268,22 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
   }
 }
 
+TEST_CASE("a finder says so if an image has more blobs than it handles") {
+  ObstacleFixture fixture(21);
+  const Image image = fixture.floor.frame({});
+  const ColourClasses classes(default_colours(PixelFormat::kYuv422).boxes);
+  ObstacleFinder finder(fixture.floor.camera, {});
+  std::vector<Region> regions;
+  for (int y = 50; y < 500; y += 10) {
+    for (int x = 50; x < 700; x += 10) regions.push_back({0, 36, x + 2.5, y + 2.5, x, x + 5, y, y + 5});
+  }
+  for (const std::size_t count : {1024u, 1025u, 1024u}) {
+    CAPTURE(count);
+    finder.find(image.view(), classes, std::span(regions).first(count), {});
+    CHECK(finder.has_overflowed() == (count > 1024));
+  }
+}
+
 TEST_CASE("several obstacles are separated and the largest comes first") {
   ObstacleFixture fixture(16);
   const std::array cylinders{SceneCylinder{{{1, 1}, 0.1}, 0.15, named(Colour::kCyan).rgb},

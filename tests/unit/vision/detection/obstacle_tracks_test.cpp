@@ -40,8 +40,8 @@ struct TwoCameraFixture {
     scenario.vision.images = ImageSpec{};
     return scenario;
   }
-  /// The world after frame i, which shows one obstacle.
-  msg::WorldState world_after(int i, const Circle& obstacle) {
+  /// The tracked obstacles after frame i, which shows one obstacle.
+  std::vector<msg::TrackedObstacle> obstacles_after(int i, const Circle& obstacle) {
     const std::array cylinders{SceneCylinder{obstacle}};
     const Time at = kBegin + i * kFrameInterval;
     const auto camera = static_cast<std::size_t>(i % 2);
@@ -51,7 +51,9 @@ struct TwoCameraFixture {
     tracker.update(frame);
     msg::WorldState world;
     tracker.world_at(at, world);
-    return world;
+    msg::ObstacleList list;
+    tracker.obstacles_at(world, list);
+    return list.obstacles();
   }
 };
 
@@ -60,10 +62,10 @@ TEST_CASE("an obstacle in the view of two cameras is one stationary track") {
   for (const double y_m : {-2.0, -0.5, 1.3}) {
     CAPTURE(y_m);
     const Circle obstacle{{0.1, y_m}, 0.12};
-    msg::WorldState world;
-    for (int i = 0; i < 60; ++i) world = fixture.world_after(i, obstacle);
-    REQUIRE(world.obstacle_count() == 1);
-    const msg::TrackedObstacle& track = world.obstacles()[0];
+    std::vector<msg::TrackedObstacle> tracks;
+    for (int i = 0; i < 60; ++i) tracks = fixture.obstacles_after(i, obstacle);
+    REQUIRE(tracks.size() == 1);
+    const msg::TrackedObstacle& track = tracks[0];
     CHECK((Vec2(track.x_m(), track.y_m()) - obstacle.centre_m).norm() < 0.02);
     CHECK(std::hypot(track.vx_mps(), track.vy_mps()) < 0.2);
     CHECK(track.radius_m() > 0.11);
@@ -77,11 +79,11 @@ TEST_CASE("an obstacle that crosses from one camera to the other keeps its track
   std::uint32_t number = 0;
   for (int i = 0; i < 240; ++i) {
     const Circle obstacle{{-1 + 1.0 * to_seconds(i * kFrameInterval), 0.8}, 0.12};
-    const msg::WorldState world = fixture.world_after(i, obstacle);
+    const std::vector<msg::TrackedObstacle> tracks = fixture.obstacles_after(i, obstacle);
     if (i < 20) continue;
     CAPTURE(i);
-    REQUIRE(world.obstacle_count() == 1);
-    const msg::TrackedObstacle& track = world.obstacles()[0];
+    REQUIRE(tracks.size() == 1);
+    const msg::TrackedObstacle& track = tracks[0];
     if (number == 0) number = track.obstacle();
     CHECK(track.obstacle() == number);
     CHECK((Vec2(track.x_m(), track.y_m()) - obstacle.centre_m).norm() < 0.04);

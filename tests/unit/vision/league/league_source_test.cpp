@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "common/protocol/obstacle_bounds.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
 #include "vision/tracking/frame.hpp"
@@ -92,18 +93,20 @@ TEST_CASE("a scenario in which two robots have the same team and number is refus
   CHECK_THROWS_AS(LeagueSource(scenario), std::invalid_argument);
 }
 
-TEST_CASE("robots without a heading and obstacles beyond the capacity of a frame are dropped") {
+TEST_CASE("robots without a heading are dropped") {
   LeagueSource source(two_teams());
   synchronise(source, kCaptured);
   league::DetectionFrame detection = detection_at(kCaptured, 1);
   detection.blue = {robot(3, {0, 0}, 0)};
   detection.blue[0].heading_rad.reset();
-  for (int i = 0; i < 20; ++i) detection.yellow.push_back(robot(std::nullopt, {0.1 * i, 0}, 0));
+  detection.yellow = {robot(0, {0, 0}, 0)};
+  for (int i = 0; i < 63; ++i) detection.yellow.push_back(robot(std::nullopt, {0.02 * i, 0}, 0));
   const auto* frame = source.decode(datagram(detection), kSender, kNow);
   REQUIRE(frame);
-  CHECK(frame->robots().empty());
-  CHECK(frame->obstacle_count() == msg::MAX_OBSTACLES);
-  CHECK(source.counts().dropped == 1 + 20 - msg::MAX_OBSTACLES);
+  CHECK(frame->robots().size() == 1);
+  CHECK(frame->obstacle_count() == 63);
+  CHECK(frame->obstacles_complete_within_m() == kCompleteEverywhere_m);
+  CHECK(source.counts().dropped == 1);
 }
 
 TEST_CASE("of too many balls those with the highest confidence are kept") {

@@ -97,6 +97,7 @@ TEST_CASE("a frame with counts out of range is rejected as a whole") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   std::uint64_t expected = 1;
   SECTION("balls") { message.ball_count(5); }
+  SECTION("obstacles") { message.obstacle_count(msg::MAX_OBSTACLES + 1); }
   SECTION("robots") {
     message.robots().assign(kMaxRobots + 1, valid_robot());
     expected = kMaxRobots + 1;
@@ -107,6 +108,25 @@ TEST_CASE("a frame with counts out of range is rejected as a whole") {
   CHECK(frame.robots().empty());
   CHECK(frame.balls().empty());
   CHECK(frame.rejected() == expected);
+}
+
+TEST_CASE("a frame whose claim of completeness is impossible is rejected as a whole") {
+  const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), -1e-9, 1.001e9,
+                              std::numeric_limits<double>::infinity());
+  CAPTURE(bad);
+  msg::DetectionFrame message = frame_message(0, kBegin);
+  message.robots().push_back(valid_robot());
+  add_obstacle(message, {1, 1});
+  message.obstacles_complete_within_m(bad);
+  Frame frame;
+  frame.assign(message, kBegin);
+  CHECK_FALSE(frame.is_usable());
+  CHECK(frame.obstacles().empty());
+  CHECK(frame.rejected() == 1);
+  message.obstacles_complete_within_m(0.5);
+  frame.assign(message, kBegin);
+  CHECK(frame.obstacles().size() == 1);
+  CHECK(frame.obstacles_complete_within_m() == 0.5);
 }
 
 TEST_CASE("a reused frame holds nothing of its previous message") {

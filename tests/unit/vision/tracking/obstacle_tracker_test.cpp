@@ -12,14 +12,6 @@ namespace sidestep::obstacle_tracker_test {
 
 using namespace sidestep::test;
 
-void add_obstacle(msg::DetectionFrame& frame, const Vec2& position_m, double radius_m = 0.1) {
-  auto& d = frame.obstacles().at(frame.obstacle_count());
-  d.x_m(position_m.x());
-  d.y_m(position_m.y());
-  d.radius_m(radius_m);
-  frame.obstacle_count(static_cast<std::uint8_t>(frame.obstacle_count() + 1));
-}
-
 msg::DetectionFrame empty_frame(std::uint32_t camera, Time at) {
   auto frame = frame_message(camera, at);
   frame.obstacle_count(0);
@@ -38,11 +30,10 @@ struct Walker {
   }
 };
 
-const msg::TrackedObstacle* nearest(const msg::WorldState& world, const Vec2& to_m) {
+const msg::TrackedObstacle* nearest(const msg::ObstacleList& list, const Vec2& to_m) {
   const msg::TrackedObstacle* best = nullptr;
   double min_distance = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < world.obstacle_count(); ++i) {
-    const auto& o = world.obstacles()[i];
+  for (const msg::TrackedObstacle& o : list.obstacles()) {
     const double distance = (Vec2(o.x_m(), o.y_m()) - to_m).norm();
     if (distance < min_distance) best = &o, min_distance = distance;
   }
@@ -73,10 +64,11 @@ TEST_CASE("walkers keep their numbers and are reported at their last observation
     }
     fixture.feed(frame);
     if (k < 40) continue;
-    const auto& world = fixture.world_at(t + kFrame);
-    REQUIRE(world.obstacle_count() == walkers.size());
+    const auto& list = fixture.obstacles_at(t + kFrame);
+    REQUIRE(list.obstacles().size() == walkers.size());
+    REQUIRE(list.complete_within_m() == kCompleteEverywhere_m);
     for (std::size_t i = 0; i < walkers.size(); ++i) {
-      const auto* found = nearest(world, walkers[i].at(t));
+      const auto* found = nearest(list, walkers[i].at(t));
       numbers[i].insert(found->obstacle());
       observed_at = time_from_ns(found->observed_at_ns());
       REQUIRE(observed_at <= t);
@@ -98,19 +90,19 @@ TEST_CASE("an obstacle is published after its second observation, and dropped 1 
   auto frame = empty_frame(0, kBegin);
   add_obstacle(frame, {1, 1});
   fixture.feed(frame);
-  CHECK(fixture.world_at(kBegin).obstacle_count() == 0);
+  CHECK(fixture.obstacles_at(kBegin).obstacles().size() == 0);
   frame.captured_at_ns(to_ns(kBegin + kFrame));
   fixture.feed(frame);
-  CHECK(fixture.world_at(kBegin + kFrame).obstacle_count() == 1);
-  CHECK(fixture.world_at(kBegin + kFrame + 1000 * kMs).obstacle_count() == 1);
-  CHECK(fixture.world_at(kBegin + kFrame + 1001 * kMs).obstacle_count() == 0);
-  const auto first = fixture.world_at(kBegin + kFrame).obstacles()[0].obstacle();
+  CHECK(fixture.obstacles_at(kBegin + kFrame).obstacles().size() == 1);
+  CHECK(fixture.obstacles_at(kBegin + kFrame + 1000 * kMs).obstacles().size() == 1);
+  CHECK(fixture.obstacles_at(kBegin + kFrame + 1001 * kMs).obstacles().size() == 0);
+  const auto first = fixture.obstacles_at(kBegin + kFrame).obstacles()[0].obstacle();
   for (int i = 0; i < 2; ++i) {
     frame.captured_at_ns(to_ns(kBegin + 3000 * kMs + i * kFrame));
     fixture.feed(frame);
   }
-  REQUIRE(fixture.world_at(kBegin + 3100 * kMs).obstacle_count() == 1);
-  CHECK(fixture.world_at(kBegin + 3100 * kMs).obstacles()[0].obstacle() > first);
+  REQUIRE(fixture.obstacles_at(kBegin + 3100 * kMs).obstacles().size() == 1);
+  CHECK(fixture.obstacles_at(kBegin + 3100 * kMs).obstacles()[0].obstacle() > first);
 }
 
 TEST_CASE("late and duplicate frames change no track and start none") {
@@ -126,33 +118,12 @@ TEST_CASE("late and duplicate frames change no track and start none") {
     const Time now = kBegin + kFrame * static_cast<int>(k);
     fixture.feed(frames[k], now);
     if (k > 3) fixture.feed(frames[k - 1 - rng.below(3)], now);
-    if (k > 1) REQUIRE(fixture.world_at(now).obstacle_count() == 1);
+    if (k > 1) REQUIRE(fixture.obstacles_at(now).obstacles().size() == 1);
   }
-  const auto& world = fixture.world_at(kBegin + kFrame * 119);
-  CHECK(world.obstacles()[0].obstacle() == 1);
-  CHECK(world.obstacles()[0].observed_at_ns() == to_ns(kBegin + kFrame * 119));
-  CHECK(world.obstacles()[0].vx_mps() == Approx(1.5).margin(0.1));
-}
-
-TEST_CASE("of more obstacles than a message holds those observed last are reported") {
-  TrackerFixture fixture(0);
-  for (int k = 0; k < 3; ++k) {
-    for (const double y : {0.0, 3.0}) {
-      auto frame = empty_frame(0, kBegin + kFrame * k + (y > 0 ? kMs : Duration(0)));
-      for (std::size_t i = 0; i < msg::MAX_OBSTACLES; ++i)
-        add_obstacle(frame, {0.5 * static_cast<double>(i), y});
-      fixture.feed(frame);
-    }
-  }
-  const auto& world = fixture.world_at(kBegin + 3 * kFrame);
-  REQUIRE(world.obstacle_count() == msg::MAX_OBSTACLES);
-  for (std::size_t i = 0; i < world.obstacle_count(); ++i) CHECK(world.obstacles()[i].y_m() == Approx(3));
-  // There is no capacity for a third row of tracks.
-  auto frame = empty_frame(0, kBegin + 3 * kFrame);
-  for (std::size_t i = 0; i < msg::MAX_OBSTACLES; ++i)
-    add_obstacle(frame, {0.5 * static_cast<double>(i), -3});
-  fixture.feed(frame);
-  CHECK(fixture.world_at(kBegin + 3 * kFrame).rejected() == msg::MAX_OBSTACLES);
+  const auto& list = fixture.obstacles_at(kBegin + kFrame * 119);
+  CHECK(list.obstacles()[0].obstacle() == 1);
+  CHECK(list.obstacles()[0].observed_at_ns() == to_ns(kBegin + kFrame * 119));
+  CHECK(list.obstacles()[0].vx_mps() == Approx(1.5).margin(0.1));
 }
 
 TEST_CASE("an invalid obstacle is dropped alone, and an invalid count with its frame") {
@@ -170,7 +141,7 @@ TEST_CASE("an invalid obstacle is dropped alone, and an invalid count with its f
   REQUIRE(frame.obstacles().size() == 1);
   CHECK(frame.obstacles()[0].position_m == Vec2(3, 4));
   CHECK(frame.rejected() == 1);
-  message.obstacle_count(17);
+  message.obstacle_count(msg::MAX_OBSTACLES + 1);
   frame.assign(message, kBegin);
   CHECK_FALSE(frame.is_usable());
   CHECK(frame.obstacles().empty());

@@ -132,6 +132,42 @@ TEST_CASE("the node publishes worlds even if no frame arrives") {
   CHECK(count >= 58);
 }
 
+TEST_CASE("the node publishes a list of obstacles with every world, also if it is empty") {
+  SimNetwork net(335, kBegin, {});
+  SimBus camera_bus(net), vision_bus(net), listener_bus(net);
+  std::vector<std::int64_t> worlds_ns;
+  std::vector<msg::ObstacleList> lists;
+  listener_bus.subscribe<msg::WorldState>(
+      topics::kWorld, [&](const msg::WorldState& world) { worlds_ns.push_back(world.valid_at_ns()); });
+  listener_bus.subscribe<msg::ObstacleList>(topics::kObstacles,
+                                            [&](const msg::ObstacleList& list) { lists.push_back(list); });
+  VisionNode node(vision_bus, scenario_of(1), 78);
+  net.run_until(after_s(0.5));
+  auto writer = camera_bus.advertise(topics::kDetections);
+  for (int k = 0; k < 30; ++k) {
+    msg::DetectionFrame frame = frame_message(0, net.now());
+    add_obstacle(frame, {1, 2});
+    writer.publish(frame, camera_bus.now());
+    net.run_until(net.now() + kFrame);
+  }
+  REQUIRE(lists.size() == worlds_ns.size());
+  REQUIRE(lists.size() > 50);
+  std::vector<std::int64_t> lists_ns;
+  for (const msg::ObstacleList& list : lists) {
+    CHECK(list.vision() == 0);
+    CHECK(list.header().sender() == static_cast<std::uint32_t>(Sender::kVision));
+    CHECK(list.header().incarnation() == 78);
+    CHECK(list.complete_within_m() == kCompleteEverywhere_m);
+    lists_ns.push_back(list.valid_at_ns());
+  }
+  std::sort(lists_ns.begin(), lists_ns.end());
+  std::sort(worlds_ns.begin(), worlds_ns.end());
+  CHECK(lists_ns == worlds_ns);
+  CHECK(lists.front().obstacles().empty());
+  REQUIRE(lists.back().obstacles().size() == 1);
+  CHECK(lists.back().obstacles()[0].y_m() == Approx(2));
+}
+
 TEST_CASE("a node with frames from its caller ignores the bus and calls its listener with every world") {
   SimNetwork net(341, kBegin, {});
   SimBus camera_bus(net), vision_bus(net);

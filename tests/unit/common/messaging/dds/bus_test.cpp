@@ -38,6 +38,7 @@ TEST_CASE("every message type arrives over DDS unchanged") {
   DdsBus to(test_settings("to"));
   check_round_trip(topics::kDetections, from, to, 1);
   check_round_trip(topics::kWorld, from, to, 2);
+  check_round_trip(topics::kObstacles, from, to, 12);
   check_round_trip(topics::kCommand, from, to, 3);
   check_round_trip(topics::kFeedback, from, to, 4);
   check_round_trip(topics::kRegistration, from, to, 5);

@@ -47,6 +47,56 @@ TEST_CASE("a robot's recent versions stay recent when older ones are evicted or 
   CHECK(first_recent(robot) == 7);
 }
 
+/// Gives a version content: it continues `base` and starts at `start_ns`.
+void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, std::int64_t start_ns) {
+  KnownVersion& known = robot.find_or_insert(number);
+  known.has_content = true;
+  known.version.version_number(number);
+  known.version.base(base);
+  known.version.start_ns(start_ns);
+  known.path = AuditPath(known.version);
+}
+
+TEST_CASE("what a robot executed between two versions is known if every base is") {
+  AuditedRobot robot;
+  for (const VersionNumber number : {3u, 5u, 6u, 9u})
+    add_content(robot, number, number == 9 ? 6 : number - 1, 0);
+  robot.find_or_insert(4);
+  CHECK(robot.continues(9, 9));
+  CHECK(robot.continues(6, 9));
+  CHECK(robot.continues(5, 9));
+  CHECK(robot.continues(4, 5));
+  CHECK_FALSE(robot.continues(3, 9));  // the content of version 4 is unknown
+  CHECK_FALSE(robot.continues(7, 9));  // 9 does not continue 7
+  CHECK_FALSE(robot.continues(9, 6));
+  CHECK_FALSE(robot.continues(3, 8));
+}
+
+TEST_CASE("executed versions are counted with what was received of them, also after they are forgotten") {
+  AuditedRobot robot;
+  robot.traceable_from_ns = 100;
+  for (VersionNumber number = 1; number <= 8; ++number) {
+    add_content(robot, number, number - 1, number == 1 ? 100 : 101);
+    KnownVersion& known = robot.find_or_insert(number);
+    known.was_executed = number != 2;
+    known.is_own_stop = number == 3;
+    known.is_proposed = number != 4;
+    known.granted_in = number == 5 ? 0 : 7;
+    known.sent_ns = number == 6 ? kNever : 50;
+    known.excluded_ns = 10;
+  }
+  const auto check = [&] {
+    CHECK(robot.executed_versions().all == 5);     // 4 to 8
+    CHECK(robot.executed_versions().traced == 2);  // 7 and 8
+  };
+  check();
+  robot.forget(11);
+  CHECK(robot.versions.empty());
+  check();
+  robot.reset();
+  check();
+}
+
 TEST_CASE("a version is found near its former index") {
   AuditedRobot robot = robot_with(10, 0);
   const std::size_t size = robot.versions.size();

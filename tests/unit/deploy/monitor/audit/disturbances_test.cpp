@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/audit/disturbances.hpp"
 
+#include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::disturbances_test {
@@ -8,105 +9,249 @@ namespace sidestep::disturbances_test {
 using namespace std::chrono_literals;
 
 constexpr Duration kPeriod = 10ms;
-constexpr double kContactDistance_m = 0.181;
-constexpr Time kPushTime{100s};
+constexpr Time kBegin{100s};
+constexpr DisturbanceSettings kSettings{0.181, 0.19, 600ms};
 
-using Positions = std::vector<std::optional<Vec2>>;
+using Robots = std::vector<std::optional<ObservedRobot>>;
+using Cause = std::optional<std::string_view>;
 
-Positions positions(double second_x_m) { return {Vec2(0, 0), Vec2(second_x_m, 0), Vec2(5, 5)}; }
+/// Robots 0 to 3 at rest in place, far apart.
+///
+///     0      1      2      3
+Robots at_rest() {
+  Robots robots;
+  for (int i = 0; i < 4; ++i) robots.push_back(ObservedRobot{Vec2(3 * i, 0), 0, 0, true});
+  return robots;
+}
 
-/// Three robots, the first of which an operator disturbs, and the ground truths that report it.
-struct Run {
-  explicit Run(bool has_position_checks, Duration duration = 0ms)
-      : disturbances(3, has_position_checks), end_time(kPushTime + duration) {
-    step(positions(3));
+struct Floor {
+  void run(Duration duration) {
+    for (Duration t{0}; t < duration; t += kPeriod) {
+      now += kPeriod;
+      disturbances.update(now, robots);
+    }
   }
-  void step(const Positions& positions_m) {
-    disturbances.disturb(0, end_time, now);
-    disturbances.update(now, positions_m, kContactDistance_m);
-    now += kPeriod;
+  void push(std::size_t robot, Duration duration = 0ms) {
+    disturbances.announce(robot, "push");
+    disturbances.disturb(robot, now + duration, now);
   }
-  void step_for(Duration duration, const Positions& positions_m) {
-    for (Duration t{0}; t < duration; t += kPeriod) step(positions_m);
+  Cause contact(std::optional<std::size_t> first, std::optional<std::size_t> second) {
+    return disturbances.on_contact(first, second, now);
   }
-  Disturbances disturbances;
-  Time end_time, now = kPushTime;
+
+  Robots robots = at_rest();
+  Disturbances disturbances{4, kSettings};
+  Time now = kBegin;
 };
 
-TEST_CASE("a robot counts as disturbed until it is observed in place a while after the disturbance") {
-  Run run(true, 500ms);
-  CHECK(run.disturbances.is_disturbed(0));
-  run.step_for(1400ms, positions(3));
-  run.disturbances.confirm_in_place(0);
-  CHECK(run.disturbances.is_disturbed(0));
-  run.step_for(200ms, positions(3));
-  CHECK(run.disturbances.is_disturbed(0));
-  run.disturbances.confirm_in_place(0);
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
-  run.step(positions(3));
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
-  run.end_time = run.now;
-  run.step(positions(3));
-  CHECK(run.disturbances.is_disturbed(0));
+TEST_CASE("only contacts of a disturbed robot are excused, and they carry the cause") {
+  Floor floor;
+  CHECK_FALSE(floor.contact(0, 1));
+  floor.push(0, 1s);
+  floor.run(500ms);
+  CHECK_FALSE(floor.contact(1, 2));
+  CHECK_FALSE(floor.contact(1, std::nullopt));
+  CHECK(floor.contact(0, 1) == Cause("push"));
+  CHECK(floor.contact(2, 0) == Cause("push"));
+  CHECK(floor.contact(std::nullopt, 0) == Cause("push"));
 }
 
-TEST_CASE("without position checks a robot counts as back in place after a timeout") {
-  Run run(false, 500ms);
-  run.step_for(1400ms, positions(3));
-  CHECK(run.disturbances.is_disturbed(0));
-  run.step_for(200ms, positions(3));
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
+TEST_CASE("the excuse of a pair ends when both robots have rested since the disturbance") {
+  Floor floor;
+  floor.push(0, 500ms);
+  floor.run(500ms);
+  CHECK(floor.disturbances.is_displaced(0));
+  floor.run(150ms);
+  CHECK_FALSE(floor.disturbances.is_displaced(0));
+  floor.run(150ms);
+  CHECK_FALSE(floor.contact(0, 1));
+  CHECK_FALSE(floor.contact(0, std::nullopt));
 }
 
-TEST_CASE("a disturbance that is reported to last for an hour is limited to a minute") {
-  Run run(false, 1h);
-  run.step_for(62s, positions(3));
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
+TEST_CASE("a contact with a robot that is still moving is excused until it has stopped") {
+  Floor floor;
+  floor.robots[1]->speed_mps = 1;
+  floor.push(0);
+  floor.run(300ms);
+  SECTION("a robot that was at rest") { CHECK_FALSE(floor.contact(0, 2)); }
+  SECTION("the moving robot") { CHECK(floor.contact(0, 1) == Cause("push")); }
+  SECTION("the moving robot after it has rested") {
+    floor.robots[1]->speed_mps = 0;
+    floor.run(150ms);
+    floor.robots[1]->speed_mps = 1;
+    floor.run(20ms);
+    CHECK_FALSE(floor.contact(0, 1));
+  }
+  SECTION("a moving robot that could have braked by now moves with knowledge of the disturbed one") {
+    floor.run(600ms);
+    CHECK_FALSE(floor.contact(0, 1));
+  }
 }
 
-TEST_CASE("setting the simulator's clock back does not prolong a disturbance beyond a minute") {
-  Run run(false);
-  run.now = kPushTime - 50s;
-  run.step_for(10s, positions(3));
-  CHECK(run.disturbances.is_disturbed(0));
-  run.now = kPushTime - 99s;
-  run.step_for(62s, positions(3));
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
+TEST_CASE("a disturbed robot that drives on is back when it is in place a while after the disturbance") {
+  Floor floor;
+  floor.robots[0]->speed_mps = 1;
+  floor.push(0);
+  floor.run(900ms);
+  CHECK(floor.disturbances.is_displaced(0));
+  floor.robots[0]->is_in_place = false;
+  floor.run(5s);
+  CHECK(floor.disturbances.is_displaced(0));
+  CHECK(floor.contact(0, 1) == Cause("push"));
+  floor.robots[0]->is_in_place = true;
+  floor.run(1100ms);
+  CHECK_FALSE(floor.disturbances.is_displaced(0));
 }
 
-TEST_CASE("a robot that a disturbed robot touches counts as disturbed while they touch") {
+TEST_CASE("no excuse lasts for ever") {
+  Floor floor;
+  const bool is_lifted = GENERATE(false, true);
+  CAPTURE(is_lifted);
+  if (is_lifted)
+    floor.robots[0].reset();
+  else
+    floor.robots[0]->is_in_place = false;
+  SECTION("of a robot that never returns to its place") { floor.push(0); }
+  SECTION("of a disturbance whose end is not known") {
+    floor.disturbances.disturb(0, Time::max(), floor.now);
+  }
+  floor.run(19s);
+  CHECK(floor.contact(0, 1));
+  floor.run(21s);
+  CHECK_FALSE(floor.contact(0, 1));
+  CHECK_FALSE(floor.contact(0, std::nullopt));
+}
+
+TEST_CASE("an excuse is limited to a minute and a bit, whatever end or clock is reported") {
+  Floor floor;
+  floor.push(0, 1h);
+  SECTION("an end in an hour") {}
+  SECTION("a clock that is set back") { floor.now -= 50s; }
+  floor.run(62s);
+  CHECK_FALSE(floor.contact(0, 1));
+}
+
+TEST_CASE("the excuse of a pair in conflict lasts until it is apart again") {
+  Floor floor;
+  floor.robots[1]->position_m = {0.185, 0};
+  floor.push(0);
+  floor.run(3s);
+  CHECK_FALSE(floor.contact(0, 2));
+  SECTION("too close for the margin") { CHECK(floor.contact(0, 1) == Cause("push")); }
+  SECTION("too close for the inflation of one of them") {
+    floor.robots[1]->position_m = {0.195, 0};
+    floor.robots[0]->inflation_m = 0.01;
+    floor.run(1s);
+    CHECK(floor.contact(0, 1) == Cause("push"));
+  }
+  SECTION("apart") {
+    floor.robots[1]->position_m = {0.195, 0};
+    floor.run(20ms);
+    CHECK_FALSE(floor.contact(0, 1));
+  }
+}
+
+TEST_CASE("a robot that a disturbed robot pushes is disturbed by the same cause while they touch") {
+  Floor floor;
+  floor.robots[0]->is_in_place = false;
   const bool part = GENERATE(false, true);
   CAPTURE(part);
-  Run run(true);
-  CHECK(run.disturbances.on_contact(0, 1));
-  // The second robot is repeatedly observed in place, the first one is not.
-  for (int i = 0; i < 500; ++i) {
-    run.step(positions(part ? 0.19 : 0.18));
-    run.disturbances.confirm_in_place(1);
-  }
-  CHECK(run.disturbances.is_disturbed(1) == !part);
-  CHECK(run.disturbances.on_contact(1, 2) == !part);
-  CHECK(run.disturbances.is_disturbed(2) == !part);
+  floor.push(0);
+  floor.run(100ms);
+  CHECK_FALSE(floor.contact(1, 2));
+  CHECK(floor.contact(0, 1) == Cause("push"));
+  floor.robots[1]->position_m = {part ? 0.4 : 0.18, 0};
+  floor.run(5s);
+  CHECK(floor.disturbances.is_displaced(1) == !part);
+  CHECK(floor.contact(2, 1) == (part ? Cause() : Cause("push")));
+  CHECK(floor.disturbances.is_displaced(2) == !part);
 }
 
 TEST_CASE("two robots in contact do not keep each other disturbed") {
-  Run run(true);
-  CHECK(run.disturbances.on_contact(1, 0));
-  for (int i = 0; i < 300; ++i) {
-    run.step(positions(0.18));
-    run.disturbances.confirm_in_place(0);
-    run.disturbances.confirm_in_place(1);
-  }
-  CHECK_FALSE(run.disturbances.is_disturbed(0));
-  CHECK_FALSE(run.disturbances.is_disturbed(1));
-  CHECK_FALSE(run.disturbances.on_contact(1, 2));
+  Floor floor;
+  floor.push(0);
+  CHECK(floor.contact(1, 0));
+  floor.robots[1]->position_m = {0.18, 0};
+  floor.run(1s);
+  CHECK_FALSE(floor.disturbances.is_displaced(0));
+  CHECK_FALSE(floor.disturbances.is_displaced(1));
+  CHECK_FALSE(floor.contact(1, 2));
 }
 
-TEST_CASE("an obstacle is never disturbed") {
-  Run run(true);
-  CHECK_FALSE(run.disturbances.on_contact(1, std::nullopt));
-  CHECK(run.disturbances.on_contact(0, std::nullopt));
-  CHECK(run.disturbances.on_contact(std::nullopt, 0));
+TEST_CASE("a cause is named by the message before or after the report, and unknown without one") {
+  Floor floor;
+  SECTION("no message") {
+    floor.disturbances.disturb(0, floor.now, floor.now);
+    CHECK(floor.contact(0, 1) == Cause(Disturbances::kUnknownCause));
+  }
+  SECTION("a message after the report") {
+    floor.disturbances.disturb(0, floor.now, floor.now);
+    floor.disturbances.announce(0, "slip");
+    CHECK(floor.contact(0, 1) == Cause("slip"));
+  }
+  SECTION("a message names one disturbance only") {
+    floor.push(0);
+    floor.run(1s);
+    floor.disturbances.disturb(0, floor.now, floor.now);
+    CHECK(floor.contact(0, 1) == Cause(Disturbances::kUnknownCause));
+  }
+  SECTION("a message alone excuses nothing") {
+    floor.disturbances.announce(0, "push");
+    CHECK_FALSE(floor.contact(0, 1));
+  }
+  CHECK_FALSE(floor.contact(2, 3));
+}
+
+TEST_CASE("a repeated report of one disturbance counts once") {
+  Floor floor;
+  const Time end = floor.now;
+  for (int i = 0; i < 100; ++i) {
+    floor.disturbances.disturb(0, end, floor.now);
+    floor.run(kPeriod);
+  }
+  CHECK_FALSE(floor.disturbances.is_displaced(0));
+  CHECK_FALSE(floor.contact(0, 1));
+}
+
+TEST_CASE("the excused time is the time in which a contact would have been excused, summed over pairs") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Floor floor;
+    floor.run(kPeriod);
+    int steps = 0, excused_steps = 0;
+    for (int step = 0; step < 1000; ++step) {
+      const std::size_t robot = rng.below(4);
+      if (rng.chance(0.01)) floor.push(robot, from_seconds(rng.uniform(0, 0.5)));
+      const Robots known = floor.robots;
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = i + 1; j < 4; ++j) {
+          if (!known[i] || !known[j]) continue;
+          Disturbances copy = floor.disturbances;
+          ++steps;
+          excused_steps += copy.on_contact(i, j, floor.now).has_value();
+        }
+      }
+      if (rng.chance(0.02)) floor.robots[robot] = at_rest()[robot];
+      if (rng.chance(0.01)) floor.robots[robot].reset();
+      if (floor.robots[robot] && rng.chance(0.05)) floor.robots[robot]->speed_mps = rng.uniform(0, 0.1);
+      if (floor.robots[robot] && rng.chance(0.05)) floor.robots[robot]->is_in_place = rng.chance(0.7);
+      floor.run(kPeriod);
+    }
+    CHECK(excused_steps > 0);
+    CHECK(excused_steps < steps);
+    CHECK(floor.disturbances.pair_s() == Approx(steps * to_seconds(kPeriod)));
+    CHECK(floor.disturbances.excused_pair_s() == Approx(excused_steps * to_seconds(kPeriod)));
+  }
+}
+
+TEST_CASE("without a disturbance nothing is excused at any time") {
+  Floor floor;
+  for (auto& robot : floor.robots) robot->is_in_place = false;
+  floor.run(10s);
+  CHECK_FALSE(floor.contact(0, 1));
+  CHECK(floor.disturbances.pair_s() > 50);
+  CHECK(floor.disturbances.excused_pair_s() == 0);
 }
 
 }  // namespace sidestep::disturbances_test

@@ -30,6 +30,21 @@ void History::push(RobotId pushed_robot, Time at) {
       if (robot.robot() == pushed_robot) robot.disturbance_end_ns(to_ns(at));
     }
   });
+  msg::Disturbance push;
+  push.robot(pushed_robot);
+  push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
+  const auto place = std::ranges::find_if(messages, [&](const auto& received) { return received.at >= at; });
+  messages.insert(place, {at, push});
+}
+
+void History::touch(RobotId first, std::optional<RobotId> second, Time at) {
+  each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time received_at) {
+    if (received_at < at) return;
+    msg::ContactPair& contact = truth.recent_contacts()[truth.contacts() % msg::MAX_CONTACTS];
+    contact.first(first);
+    contact.second(second.value_or(msg::NO_ROBOT));
+    truth.contacts(truth.contacts() + 1);
+  });
 }
 
 void History::each_mention(RobotId robot, VersionNumber number,
@@ -54,6 +69,7 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
   collect(topics::kCoordinator, 0);
   collect(topics::kLedger, 0);
   collect(topics::kTruth, 0);
+  collect(topics::kWorld, 0);
   for (const RobotSpec& robot : scenario.robots) {
     collect(topics::kVerdict, robot.id);
     collect(topics::kCommand, robot.id);
@@ -76,6 +92,8 @@ AuditTotals audit_of(const History& history, const AuditInput& input) {
     void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
     void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
     void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
+    void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
+    void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
   };
   for (const ReceivedMessage& received : history.messages)
     std::visit(Deliver{auditor, received.at}, received.message);

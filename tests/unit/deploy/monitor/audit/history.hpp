@@ -10,8 +10,9 @@
 
 namespace sidestep {
 
-using AuditedMessage = std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState,
-                                    msg::LedgerPage, msg::Command, msg::Feedback, msg::GroundTruth>;
+using AuditedMessage =
+    std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
+                 msg::Command, msg::Feedback, msg::GroundTruth, msg::WorldState, msg::Disturbance>;
 
 struct ReceivedMessage {
   Time at;
@@ -37,8 +38,10 @@ struct History {
       return message && is_removed(*message);
     });
   }
-  /// Ground truth from `at` on reports a disturbance of this robot that ended at `at`.
+  /// An operator announces a push of this robot at `at`, and ground truth from then on reports it.
   void push(RobotId robot, Time at);
+  /// Ground truth from `at` on reports one contact more; without a second robot: with an obstacle.
+  void touch(RobotId first, std::optional<RobotId> second, Time at);
   /// Visits every copy of the version in any message.
   void each_mention(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
   /// Visits every version in any message.

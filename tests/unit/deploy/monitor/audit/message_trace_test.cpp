@@ -2,6 +2,7 @@
 #include "deploy/monitor/audit/message_trace.hpp"
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "common/random/rng.hpp"
@@ -31,6 +32,43 @@ TEST_CASE("missed messages are counted by the gaps in message numbers") {
   CHECK_FALSE(trace.record(1, head_of(15, 0), now).is_next);
   CHECK_FALSE(trace.record(1, head_of(14, 0), now).is_newest);
   CHECK(trace.record(2, head_of(1, 0), now).is_newest);
+}
+
+TEST_CASE("messages before the first received one are neither received nor missed") {
+  MessageTrace trace(5ms);
+  const Time now = time_from_ns(1'000'000'000);
+  for (const std::uint64_t number : {10u, 12u, 9u, 8u}) (void)trace.record(1, head_of(number, 0), now);
+  CHECK(trace.distinct() == 2);
+  CHECK(trace.missed() == 1);
+}
+
+TEST_CASE("received and missed messages agree with sets of their numbers") {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    MessageTrace trace(5ms);
+    const Time now = time_from_ns(1'000'000'000);
+    const double loss = rng.uniform(0, 0.9);
+    std::vector<std::pair<double, std::uint64_t>> arrivals;
+    for (std::uint64_t number = 1 + rng.below(1000), left = 500; left > 0; ++number, --left) {
+      for (int copy = 0; copy < 2; ++copy) {
+        // Delayed by up to thirty messages.
+        if (copy == 0 ? !rng.chance(loss) : rng.chance(0.1))
+          arrivals.emplace_back(static_cast<double>(number) + rng.uniform(0, 30), number);
+      }
+    }
+    std::ranges::sort(arrivals);
+    if (arrivals.empty()) continue;
+    const std::uint64_t first = arrivals.front().second;
+    std::set<std::uint64_t> numbers;
+    for (const auto& [arrival, number] : arrivals) {
+      (void)trace.record(1, head_of(number, 0), now);
+      if (number >= first) numbers.insert(number);
+    }
+    CHECK(trace.received() == arrivals.size());
+    CHECK(trace.distinct() == numbers.size());
+    CHECK(trace.missed() == *numbers.rbegin() - first + 1 - numbers.size());
+  }
 }
 
 TEST_CASE("the sending time is bounded although the sender's clock has an unknown offset") {

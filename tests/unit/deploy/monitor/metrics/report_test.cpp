@@ -64,6 +64,8 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "invalid_messages",
                                          "firmware_violations",
                                          "conflicts",
+                                         "quarantined",
+                                         "displaced",
                                          "max_reference_error_m",
                                          "max_clock_offset_s",
                                          "clock_uncertainty_s",
@@ -187,16 +189,74 @@ TEST_CASE("audit violations fail a run and are included in its report") {
              ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is executed"));
 }
 
+/// The audit of a run of which everything was heard.
+AuditTotals covered() {
+  AuditTotals totals;
+  totals.received = 100;
+  totals.run_s = 5;
+  totals.reference = AuditReference::kGroundTruth;
+  totals.coverage = {1, 1, 1, 1, 1};
+  return totals;
+}
+
 TEST_CASE("excused contacts do not fail a run, other contacts do") {
   Report report = example();
   report.arrived = report.robots;
   report.abort_reason.clear();
   report.contacts = 3;
-  report.audit = AuditTotals();
+  report.audit = covered();
   report.audit->excused_contacts = 3;
   CHECK(report.failure_reason() == "");
   report.contacts = 4;
   CHECK(report.failure_reason() == "1 contacts");
+  report.audit->unidentified_contacts = 1;
+  CHECK(report.failure_reason() == "");
+  CHECK(report.verdict() == AuditVerdict::kNotJudged);
+}
+
+TEST_CASE("a run whose audit covered too little did neither pass nor fail") {
+  Report report = example();
+  report.arrived = report.robots;
+  report.audit = covered();
+  CHECK(report.verdict() == AuditVerdict::kPassed);
+  CHECK(nlohmann::json::parse(to_json(report))["passed"] == true);
+  CHECK_THAT(summary(report), ContainsSubstring("audit: passed (coverage 100.0 %)") && EndsWith("passed\n"));
+
+  report.audit->coverage.messages = 0.66;
+  CHECK(report.failure_reason().empty());
+  CHECK(report.verdict() == AuditVerdict::kNotJudged);
+  const auto json = nlohmann::json::parse(to_json(report));
+  CHECK(json["passed"] == false);
+  CHECK(json["failure"] == "not judged: 34.0 % of the messages were missed");
+  CHECK_THAT(summary(report), ContainsSubstring("audit: not judged: 34.0 % of the messages were missed") &&
+                                  EndsWith("\nnot judged: 34.0 % of the messages were missed\n"));
+
+  report.arrived = 1;
+  CHECK(report.verdict() == AuditVerdict::kFailed);
+  CHECK(nlohmann::json::parse(to_json(report))["failure"] == "1 of 2 arrived");
+  CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
+}
+
+TEST_CASE("a report states what the audit covered, by what reference, and what it excused why") {
+  Report report = example();
+  report.audit = covered();
+  report.audit->coverage = {0.99, 0.98, 0.97, 0.96, 1};
+  report.audit->excused_contacts = 4;
+  report.audit->excused = {{"push", 2, 5, 3}, {"slip", 7, std::nullopt, 1}};
+  report.audit->pair_s = 200;
+  report.audit->excused_pair_s = 3;
+  const auto audit = nlohmann::ordered_json::parse(to_json(report))["audit"];
+  CHECK(audit["verdict"] == "passed");
+  CHECK(audit["coverage"].dump() == R"({"share":0.96,"messages":0.99,"versions":0.98,"pairs":0.97,)"
+                                    R"("time":0.96,"reference":1.0,"minimum":0.95,"run_s":5.0})");
+  CHECK(audit["reference"] == "ground truth");
+  CHECK(audit["excused"].dump() == R"([{"cause":"push","robots":[2,5],"contacts":3},)"
+                                   R"({"cause":"slip","robots":[7],"contacts":1}])");
+  CHECK(audit["excused_time_share"] == 0.015);
+  CHECK_THAT(summary(report),
+             ContainsSubstring("4 contacts are excused by disturbances, which excuse 1.50 %") &&
+                 ContainsSubstring("3 of robot 2 and robot 5, cause: push") &&
+                 ContainsSubstring("1 of robot 7 and an obstacle, cause: slip"));
 }
 
 }  // namespace sidestep::report_test

@@ -58,6 +58,13 @@ msg::AgentStatus status(RobotId robot, std::uint64_t number, msg::AgentState age
   return message;
 }
 
+msg::RobotNotice missing_notice(RobotId robot) {
+  msg::RobotNotice notice;
+  notice.robot(robot);
+  notice.is_missing(true);
+  return notice;
+}
+
 msg::CoordinatorState state(std::uint64_t number, double at_s, msg::CoordinatorMode mode,
                             std::uint64_t incarnation = 1) {
   msg::CoordinatorState message;
@@ -248,12 +255,12 @@ TEST_CASE("the coordinator with the highest epoch counts, and the counters of al
   metrics.on_coordinator(of(1, 0, 1, 0.5, msg::CoordinatorMode::COORDINATOR_STANDBY));
   CHECK_FALSE(metrics.has_coordinator_state());
   auto registering = of(0, 100, 1, 1, kRegistering);
-  registering.missing({3, 7});
+  registering.notices({missing_notice(3), missing_notice(7)});
   metrics.on_coordinator(registering);
   CHECK(metrics.unregistered_robots() == std::vector<RobotId>{3, 7});
   metrics.on_coordinator(of(0, 100, 2, 2, kGranting));
   registering = of(1, 200, 2, 3, kRegistering);
-  registering.missing({7});
+  registering.notices({missing_notice(7)});
   metrics.on_coordinator(registering);
   CHECK(metrics.unregistered_robots() == std::vector<RobotId>{7});
   metrics.on_coordinator(of(0, 100, 3, 4, kGranting));  // not yet superseded
@@ -343,7 +350,7 @@ TEST_CASE("progress has one row per robot with its state and motion") {
   metrics.on_truth(truth(1, 1, {body(3, 0.25, 0, 0.5), body(7, 0, 1)}));
   metrics.on_status(status(3, 1, kDriving));
   auto missing = state(1, 1, kRegistering);
-  missing.missing({7});
+  missing.notices({missing_notice(7)});
   metrics.on_coordinator(missing);
   CHECK_FALSE(metrics.all_at_rest());
   CHECK(metrics.silent_agents() == std::vector<RobotId>{7});

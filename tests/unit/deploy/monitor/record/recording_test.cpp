@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <unistd.h>
@@ -36,8 +37,11 @@ void write(const std::string& path, const std::vector<char>& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Records the crossing for this long; returns the findings of the live auditor.
-AuditTotals record_run(const std::string& path, Duration duration) {
+/// Records the crossing for this long; returns the findings of the live auditor. `prepare` may change the
+/// system before it runs.
+AuditTotals record_run(
+    const std::string& path, Duration duration,
+    const std::function<void(SimSystem&)>& prepare = [](SimSystem&) {}) {
   const Scenario scenario = load_scenario(kScenario);
   RecordingHeader header = recording_header(scenario.name, kScenario);
   header.is_complete = true;
@@ -46,6 +50,7 @@ AuditTotals record_run(const std::string& path, Duration duration) {
   SimBus bus(system.network());
   bus.become_observer();
   record(bus, scenario, writer);
+  prepare(system);
   system.run_for(duration);
   writer.close();
   return system.auditor().totals();
@@ -60,6 +65,7 @@ AuditedPlayback play(const std::string& path) {
   PlaybackBus bus(path);
   const Scenario scenario = parse_scenario(bus.header().scenario_text, "crossing.yaml");
   Auditor auditor(scenario, {bus.header().is_complete, {}});
+  refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
   const PlaybackResult result = bus.play();
   return {auditor.totals(), result};
@@ -74,9 +80,24 @@ TEST_CASE("a recording plays back the messages of the run") {
   CHECK(again.result.messages > live.received);  // detection frames and agent status, too
   CHECK(again.audit.compared_pairs == live.compared_pairs);
   CHECK(again.audit.violations == 0);
+  CHECK(again.audit.refused == 0);
+  CHECK(again.audit.verdict() == AuditVerdict::kPassed);
   // Messages sent during the construction of the system are not recorded.
   CHECK(again.audit.received <= live.received);
   CHECK(again.audit.received + 20 > live.received);
+}
+
+TEST_CASE("the audit of a recording refuses messages of processes with other rules, and counts them") {
+  const TemporaryFile file;
+  record_run(file.path, 500ms, [](SimSystem& system) {
+    Scenario changed = load_scenario(kScenario);
+    changed.margin_m = 0.05;
+    system.use_scenario(twin_process(3), changed);
+    system.restart(twin_process(3));
+  });
+  const AuditedPlayback played = play(file.path);
+  CHECK(played.audit.refused > 10);
+  CHECK(played.audit.violations == 0);
 }
 
 /// The ends of all blocks. A file is 8 bytes of magic, then blocks of a size, a checksum and `size` bytes.

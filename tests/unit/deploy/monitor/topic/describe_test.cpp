@@ -83,7 +83,8 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   frame.robots().resize(1);
   msg::WorldState world;
   world.robots().resize(1);
-  world.obstacle_count(1);
+  msg::ObstacleList obstacles;
+  obstacles.obstacles().resize(1);
   msg::GroundTruth truth;
   truth.robots().resize(1);
   msg::Feedback feedback;
@@ -94,7 +95,8 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
   CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
   CHECK(keys(describe(frame)["obstacles"].at(0)) == idl_members(idl, "ObstacleDetection"));
-  CHECK(keys(describe(world)["obstacles"].at(0)) == idl_members(idl, "TrackedObstacle"));
+  CHECK(keys(describe(obstacles)) == idl_members(idl, "ObstacleList"));
+  CHECK(keys(describe(obstacles)["obstacles"].at(0)) == idl_members(idl, "TrackedObstacle"));
   CHECK(keys(describe(msg::Disturbance())) == idl_members(idl, "Disturbance"));
   CHECK(keys(describe(msg::NetworkFault())) == idl_members(idl, "NetworkFault"));
   CHECK(keys(describe(world)) == idl_members(idl, "WorldState"));

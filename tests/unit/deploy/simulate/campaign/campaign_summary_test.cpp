@@ -21,12 +21,16 @@ TEST_CASE("a trial result survives a round trip through a line of text") {
   result.robot_s = 1020.5;
   result.stationary = 2;
   result.robots = 17;
+  result.excused_by_cause = {{"switch off", 2}};
+  result.excused_pair_s = 0.25;
   const std::string line = to_line(result);
   CHECK(line.find('\n') == std::string::npos);
   const TrialResult back = parse_trial_result(line);
   CHECK(back.seed == result.seed);
   CHECK(back.failures == result.failures);
   CHECK(back.contacts == 3);
+  CHECK(back.excused_by_cause == result.excused_by_cause);
+  CHECK(back.excused_pair_s == 0.25);
   CHECK(back.robot_s == 1020.5);
   CHECK(to_line(back) == line);
 }
@@ -44,6 +48,11 @@ TEST_CASE("a summary does not depend on the order of the results") {
   }
   results[4].contacts = 2;
   results[7].excused_contacts = 3;
+  results[7].excused_by_cause = {{"push", 2}, {"slip", 1}};
+  results[9].excused_contacts = 1;
+  results[9].excused_by_cause = {{"push", 1}};
+  results[7].excused_pair_s = 12;
+  for (TrialResult& result : results) result.pair_s = 60;
   results[7].min_clearance_m = -0.002;
   results[4].failures = {"2 contacts"};
   for (const TrialResult& result : results) forwards.add(result);
@@ -55,7 +64,11 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.failed() == 1);
   CHECK_THAT(forwards.text(), ContainsSubstring("20 seeds, 1 failed") &&
                                   ContainsSubstring("largest share of denied proposals: seed 19 (0.19)"));
-  CHECK_THAT(forwards.text(), ContainsSubstring("3 excused contacts of robots that were pushed"));
+  CHECK(forwards.excused_by_cause() == std::map<std::string, std::uint64_t>{{"push", 3}, {"slip", 1}});
+  CHECK(forwards.excused_time_share() == Approx(0.01));
+  CHECK_THAT(forwards.text(),
+             ContainsSubstring("4 excused contacts, 3 of cause push, 1 of cause slip; contacts are excused "
+                               "in 1.00 % of the time of all pairs"));
   CHECK_THAT(forwards.text(), ContainsSubstring("smallest clearance, in metres: seed 7 (-0.002)"));
 }
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "common/geometry/circle.hpp"
+#include "idl/vision.hpp"
+
+namespace sidestep {
+
+/// Fills in a frame's obstacles, and up to which distance from the frame's robots they are complete. Of more
+/// obstacles than a frame holds, keeps those whose edges are nearest to a robot; it reorders them.
+/// Precondition: the frame's robots are filled in.
+void set_obstacles(std::span<Circle> detected, msg::DetectionFrame& frame);
+
+}  // namespace sidestep

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/geometry/vec2.hpp"
+#include "common/motion/version.hpp"
+
+namespace sidestep {
+
+/// Where vision saw a robot.
+struct RobotObservation {
+  RobotId robot = 0;
+  Time observed_at{};
+  Vec2 position_m{0, 0};
+  Vec2 velocity_mps{0, 0};
+  double position_variance_m2 = 0;  ///< per axis
+};
+
+}  // namespace sidestep

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "common/messaging/impairment.hpp"
+
+namespace sidestep {
+
+/// The message that impairs what arrives at a process from then on, without its header. `target`: the process
+/// id, or kEveryProcess (common/messaging/senders.hpp).
+[[nodiscard]] msg::NetworkFault encode(const LinkQuality& quality, std::uint32_t target, std::uint64_t seed);
+
+}  // namespace sidestep

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/config/yaml_map.hpp"
+#include "common/protocol/robot_disturbance.hpp"
+
+namespace sidestep {
+
+/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, clock, switch_off, switch_on,
+/// carry.
+[[nodiscard]] std::vector<std::string> disturbance_keys();
+
+/// Reads the disturbance of the robot under one of these keys. Throws ConfigError.
+[[nodiscard]] RobotDisturbance read_disturbance(YamlMap& map, const std::string& key,
+                                                const Scenario& scenario);
+/// Whether the disturbance lasts for RobotDisturbance::duration.
+[[nodiscard]] bool has_duration(const RobotDisturbance& disturbance);
+
+}  // namespace sidestep

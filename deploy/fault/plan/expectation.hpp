@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/motion/version.hpp"
+
+namespace sidestep {
+
+/// Why a robot is named as not in order: by the coordinator, or by its own agent (kClockOutOfBound).
+enum class NoticeKind { kMissing, kQuarantined, kDisplaced, kConflict, kClockOutOfBound };
+/// As in scenario files, e.g. "missing".
+[[nodiscard]] const char* name_of(NoticeKind kind);
+[[nodiscard]] std::optional<NoticeKind> notice_kind_named(const std::string& name);
+
+/// Some robots of a scenario.
+struct RobotSet {
+  std::vector<RobotId> ids;
+  bool is_all = false;
+
+  bool contains(RobotId robot) const;
+};
+/// E.g. "all robots" or "robot 3".
+[[nodiscard]] std::string to_text(const RobotSet& robots);
+
+/// Part of a run, in seconds since the first grant.
+struct TimeSpan {
+  double from_s = 0, to_s = 0;
+};
+
+/// None of these robots touches another robot or an obstacle; contacts with the excepted robots do not count.
+/// If these are all robots, none touches an opponent while it moves.
+struct ExpectNoContact {
+  RobotSet robots, except;
+};
+/// The audit covers enough of the run and finds no violation.
+struct ExpectNoViolations {};
+struct ExpectArrived {
+  RobotSet robots;
+  std::optional<double> by_s;  ///< nullopt: the end of the run
+};
+/// At the end of the run these robots have not arrived.
+struct ExpectNotArrived {
+  RobotSet robots;
+};
+/// Each robot comes to rest within the span, and stays at rest for a while.
+struct ExpectAtRest {
+  RobotSet robots;
+  TimeSpan span;
+  double for_s = 0;
+};
+/// Each robot moves within the span.
+struct ExpectMoving {
+  RobotSet robots;
+  TimeSpan span;
+};
+struct ExpectMinClearance {
+  double clearance_m = 0;
+};
+struct ExpectMaxSpeed {
+  RobotSet robots;
+  double speed_mps = 0;
+  double from_s = 0;
+  std::optional<double> to_s;  ///< nullopt: the end of the run
+};
+/// Within the span, another coordinator than before begins to grant in a higher epoch.
+struct ExpectTakeover {
+  TimeSpan span;
+};
+/// Each robot is named within the span.
+struct ExpectNamed {
+  RobotSet robots;
+  NoticeKind as = NoticeKind::kMissing;
+  TimeSpan span;
+};
+/// The report names a process that works by other rules.
+struct ExpectMismatch {
+  std::string process;
+};
+
+using ExpectationCheck = std::variant<ExpectNoContact, ExpectNoViolations, ExpectArrived, ExpectNotArrived,
+                                      ExpectAtRest, ExpectMoving, ExpectMinClearance, ExpectMaxSpeed,
+                                      ExpectTakeover, ExpectNamed, ExpectMismatch>;
+
+/// What a run of a test has to show.
+struct Expectation {
+  ExpectationCheck check;
+  int line = 0;  ///< of the test's file
+};
+
+/// One line without a verdict, e.g. "robot 3 at rest between 1 s and 1.5 s".
+[[nodiscard]] std::string describe(const Expectation& expectation);
+/// When the run has decided it at the latest; nullopt: at its end.
+[[nodiscard]] std::optional<double> deadline_s(const Expectation& expectation);
+
+}  // namespace sidestep

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "deploy/fault/plan/expectation.hpp"
+#include "deploy/fault/plan/planned_fault.hpp"
+
+namespace sidestep {
+
+/// A scenario with faults, and what its runs have to show. All names and times in it are valid.
+struct FaultTest {
+  std::string file;
+  Scenario scenario;
+  std::vector<PlannedFault> faults;       ///< in the file's order
+  std::vector<Expectation> expectations;  ///< at least one
+};
+
+/// Whether the test has a fault of this kind.
+template <typename Action>
+[[nodiscard]] bool has_fault(const FaultTest& test) {
+  return std::ranges::any_of(
+      test.faults, [](const PlannedFault& fault) { return std::holds_alternative<Action>(fault.action); });
+}
+
+/// Reads a scenario file with the keys `faults` and `expect` (deploy/scenarios/README.md). Throws
+/// ConfigError.
+[[nodiscard]] FaultTest load_fault_test(const std::string& path);
+/// The same from text.
+[[nodiscard]] FaultTest parse_fault_test(const std::string& text, const std::string& file);
+
+}  // namespace sidestep

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/messaging/bus.hpp"
+#include "deploy/fault/plan/run_history.hpp"
+
+namespace sidestep {
+
+/// Records what the messages of a run tell. Times count from the moment when it first hears that a
+/// coordinator grants, by the clock of its bus.
+class RunObserver {
+ public:
+  /// The observer must outlive the bus's last callback. The bus must refuse messages of processes with other
+  /// rules.
+  explicit RunObserver(Bus& bus);
+  RunObserver(const RunObserver&) = delete;
+  RunObserver& operator=(const RunObserver&) = delete;
+
+  /// When it first heard that a coordinator grants. Everything before is ignored, except for contacts.
+  std::optional<Time> begin() const { return begin_; }
+  /// A coordinator is known to grant, although this observer has not heard it.
+  void begin_at(Time now) { begin_ = begin_.value_or(now); }
+  /// The end is left to the caller.
+  const RunHistory& history() const { return history_; }
+
+ private:
+  void on_truth(const msg::GroundTruth& truth);
+  void on_coordinator(const msg::CoordinatorState& state);
+  void on_status(const msg::AgentStatus& status);
+  void add_contacts(const msg::GroundTruth& truth);
+  void add_notices(const msg::CoordinatorState& state, double at_s);
+  double now_s() const { return to_seconds(bus_.now() - *begin_); }
+
+  Bus& bus_;
+  std::optional<Time> begin_;
+  RunHistory history_;
+  std::uint64_t truth_number_ = 0;  // of the last ground truth
+  std::uint64_t contacts_ = 0;      // reported so far
+  std::uint64_t highest_epoch_ = 0;
+};
+
+}  // namespace sidestep

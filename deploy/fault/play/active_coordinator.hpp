@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "common/messaging/process_names.hpp"
+#include "deploy/fault/plan/planned_fault.hpp"
+#include "deploy/fault/plan/run_history.hpp"
+
+namespace sidestep {
+
+/// The name of a process: the same, or that of the coordinator that grants, for kActiveCoordinator. Throws
+/// std::runtime_error if none has granted.
+[[nodiscard]] inline std::string resolved(const std::string& process, const RunHistory& history) {
+  if (process != kActiveCoordinator) return process;
+  const auto number = history.granting_coordinator();
+  if (!number) throw std::runtime_error("no coordinator has granted");
+  return coordinator_process(*number);
+}
+
+}  // namespace sidestep

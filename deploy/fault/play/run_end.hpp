@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "deploy/fault/plan/run_history.hpp"
+#include "deploy/fault/plan/run_observer.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+
+namespace sidestep {
+
+/// What the report of a run says at its end, at the time `now`.
+[[nodiscard]] RunEnd run_end(const Report& report, const RunObserver& observer, Time now);
+
+}  // namespace sidestep

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "deploy/fault/plan/fault_test.hpp"
+#include "deploy/fault/plan/run_observer.hpp"
+#include "deploy/fault/play/absence_attestations.hpp"
+#include "deploy/fault/play/sim_link_faults.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+
+namespace sidestep {
+
+/// The effects of a test's faults on a system on SimBus; see FaultSchedule.
+class SimFaults {
+ public:
+  /// `bus` belongs to an observer of the system. All arguments must outlive this object.
+  SimFaults(const FaultTest& test, SimSystem& system, Bus& bus, const RunObserver& observer);
+
+  void begin(std::size_t fault);
+  void end(std::size_t fault);
+  /// When update() is due, apart from begun attestations.
+  Time next() const;
+  /// Restarts killed processes that the scenario restarts, and repeats attestations. Call it at least a few
+  /// times a second.
+  void update();
+  std::vector<FaultProblem> problems() const { return attestations_.problems(); }
+
+ private:
+  void apply(const KillFault& fault, const PlannedFault&);
+  void apply(const RestartFault& fault, const PlannedFault&);
+  void apply(const PauseFault& fault, const PlannedFault& planned);
+  void apply(const PartitionFault& fault, const PlannedFault&) { links_.begin(fault); }
+  void apply(const ImpairmentFault& fault, const PlannedFault&) { links_.begin(fault); }
+  void apply(const RobotDisturbance& fault, const PlannedFault&);
+  void apply(const TwinFault& fault, const PlannedFault&);
+  void apply(const AbsenceFault& fault, const PlannedFault&);
+  /// The process of this name, or the active coordinator. Throws std::runtime_error if it does not run.
+  std::string running(const std::string& process) const;
+
+  const FaultTest& test_;
+  SimSystem& system_;
+  const RunObserver& observer_;
+  SimLinkFaults links_;
+  Writer<msg::AbsenceAttestation> attestation_writer_;
+  AbsenceAttestations attestations_;
+  std::map<std::string, Time> restarts_;    // of killed processes that the scenario restarts
+  std::set<std::string> with_other_rules_;  // processes that last started with another scenario
+};
+
+}  // namespace sidestep

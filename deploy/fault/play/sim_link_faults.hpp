@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deploy/fault/plan/planned_fault.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+
+namespace sidestep {
+
+/// Partitions and impairments of a system on SimBus. Links that no fault concerns keep the scenario's
+/// network.
+class SimLinkFaults {
+ public:
+  /// Both arguments must outlive this object.
+  SimLinkFaults(SimSystem& system, const Scenario& scenario);
+
+  void begin(const PartitionFault& partition) { cut(partition, 1); }
+  void end(const PartitionFault& partition) { cut(partition, -1); }
+  /// Replaces the impairments of the fault's target, as over DDS.
+  void begin(const ImpairmentFault& fault) { impair(fault.target, fault.quality); }
+  void end(const ImpairmentFault& fault) { impair(fault.target, kUnimpairedLink); }
+  /// A process has died, and with it its impairment, as over DDS.
+  void end_impairment(const std::string& process) {
+    if (impairments_.contains(process)) impair(process, kUnimpairedLink);
+  }
+
+ private:
+  void cut(const PartitionFault& partition, int count);
+  void impair(const std::string& target, const LinkQuality& quality);
+  void update(const std::string& from, const std::string& to);
+
+  SimSystem& system_;
+  const NetworkSpec& network_;
+  std::vector<std::string> processes_;
+  std::map<std::pair<std::string, std::string>, int> cuts_;  // by sender and receiver
+  std::map<std::string, LinkQuality> impairments_;           // by receiver
+};
+
+}  // namespace sidestep

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "deploy/fault/plan/test_result.hpp"
+
+namespace sidestep {
+
+/// Runs a test on SimBus, in virtual time. The same seed gives the same outcome.
+[[nodiscard]] RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed);
+
+}  // namespace sidestep

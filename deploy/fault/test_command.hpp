@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/process/command_line.hpp"
+#include "deploy/simulate/seed_range.hpp"
+
+namespace sidestep {
+
+struct TestOptions {
+  std::vector<std::string> files;
+  SeedRange seeds;
+  std::string junit_file;     ///< empty: none
+  bool is_over_dds = false;   ///< instead of SimBus
+  std::string hosts_file;     ///< see LaunchOptions
+  std::optional<int> domain;  ///< nullopt: one that is free
+  std::string interface = "127.0.0.1";
+};
+
+/// Runs all tests, one after another, and prints each result with what failed and when. Returns 0 if all
+/// passed and kExitFailure if not. Throws ConfigError before the first run if a file is invalid.
+int run_tests(const TestOptions& options);
+
+/// Adds `sidestep test`. Parsing it sets `action`, which returns and throws as run_tests() does.
+void add_test_command(const CliCommand& root, std::function<int()>& action);
+
+}  // namespace sidestep

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/config/scenario.hpp"
+#include "deploy/launch/hosts/hosts_file.hpp"
+#include "deploy/launch/hosts/namespaces.hpp"
+#include "deploy/launch/hosts/placement.hpp"
+
+namespace sidestep {
+
+/// The hosts of one run, the processes on them, and the network between them if this process creates it. This
+/// thread is then in the network's bridge namespace during the lifetime of the object.
+class RunHosts {
+ public:
+  /// Throws as Placement and NamespaceNetwork.
+  RunHosts(const Hosts& hosts, const Scenario& scenario);
+  RunHosts(const RunHosts&) = delete;
+  RunHosts& operator=(const RunHosts&) = delete;
+
+  const Hosts& hosts() const { return hosts_; }
+  const Placement& placement() const { return placement_; }
+  /// Null unless this process created the network.
+  const NamespaceNetwork* network() const { return network_ ? &*network_ : nullptr; }
+  /// The name in `ip netns` of a namespace host.
+  std::string namespace_name(const HostSpec& host) const {
+    return network_ ? network_->full_name(host.target) : host.target;
+  }
+
+ private:
+  const Hosts hosts_;
+  Placement placement_;
+  std::optional<NamespaceNetwork> network_;
+  std::optional<ScopedNamespace> bridge_;
+};
+
+}  // namespace sidestep

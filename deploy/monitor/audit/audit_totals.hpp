@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/audit/coverage.hpp"
+
+namespace sidestep {
+
+/// kNotJudged: nothing wrong was found, but the audit covered too little to say that the run passed.
+enum class AuditVerdict : std::uint8_t { kPassed, kFailed, kNotJudged };
+
+/// The exit code of a run that was not judged.
+inline constexpr int kExitNotJudged = 3;
+/// 0 if passed.
+[[nodiscard]] int exit_code(AuditVerdict verdict);
+/// "passed", "failed" or "not judged".
+[[nodiscard]] const char* name_of(AuditVerdict verdict);
+
+/// What tells the auditor where robots are and which ones touch.
+enum class AuditReference : std::uint8_t { kNone, kVision, kGroundTruth, kVisionThenGroundTruth };
+/// E.g. "ground truth".
+[[nodiscard]] const char* name_of(AuditReference reference);
+
+/// The contacts of a pair of robots that one cause excuses; without a second robot: of a robot and an
+/// obstacle.
+struct ExcusedContacts {
+  std::string cause;
+  RobotId first = 0;
+  std::optional<RobotId> second;
+  std::uint64_t contacts = 0;
+};
+
+/// The findings of an audit so far.
+struct AuditTotals {
+  static constexpr std::size_t kMaxKept = 20;
+
+  std::uint64_t violations = 0;
+  std::array<std::uint64_t, kAuditRules> by_rule{};
+  std::vector<Violation> first;       ///< the first kMaxKept violations
+  std::uint64_t received = 0;         ///< messages
+  std::uint64_t missed = 0;           ///< messages, from gaps in their numbers
+  std::uint64_t invalid = 0;          ///< malformed messages, dropped
+  std::uint64_t refused = 0;          ///< messages of processes with other rules, see refuse_other_rules()
+  std::uint64_t compared_pairs = 0;   ///< pairs of versions whose clearance was checked
+  std::uint64_t undecided_pairs = 0;  ///< pairs closer than required whose possible excuse was not received
+  Coverage coverage;
+  bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
+  double run_s = 0;         ///< the time of the run in which silence counts, see Auditor::begin_run
+  AuditReference reference = AuditReference::kNone;
+  double max_position_error_m = 0;          ///< largest distance of an on-reference robot from its reference
+  std::uint64_t beyond_tracking_bound = 0;  ///< times that this distance exceeded the tracking bound
+  std::uint64_t excused_contacts = 0;       ///< contacts that a disturbance of a robot excuses
+  std::vector<ExcusedContacts> excused;     ///< the same by cause and pair
+  std::uint64_t unidentified_contacts = 0;  ///< contacts of which the reference did not name the robots
+  std::uint64_t excused_displacements = 0;  ///< position errors of disturbed robots
+  double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
+  double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused
+
+  double excused_time_share() const { return pair_s > 0 ? excused_pair_s / pair_s : 0; }
+  AuditVerdict verdict() const;
+};
+
+/// Why the audit covered too little, in one line; empty if it covered enough.
+[[nodiscard]] std::string shortfall(const AuditTotals& totals);
+/// The verdict and its reason: "passed (coverage 99.7 %)" or "not judged: 34.5 % of the messages were
+/// missed".
+[[nodiscard]] std::string verdict_line(const AuditTotals& totals);
+
+}  // namespace sidestep

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/audit/seen_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+constexpr double kErrorPerDeviation = 4;
+// Standard deviation of positions found in images, per axis.
+constexpr double kImageNoise_m = 0.001;
+constexpr double kMaxTimeDifference_s = 0.02;
+// A contact ends when the two are farther apart than this.
+constexpr double kEndOfContact_m = 0.001;
+constexpr int kMinObservations = 2;
+
+}  // namespace
+
+double position_error_m(const VisionSpec& vision) {
+  return kErrorPerDeviation * std::max(vision.position_noise_m, vision.images ? kImageNoise_m : 0);
+}
+
+SeenContacts::SeenContacts(const Scenario& scenario)
+    : radius_m_(scenario.radius_m),
+      obstacles_(scenario.obstacles),
+      position_error_m_(position_error_m(scenario.vision)),
+      acceleration_mps2_(std::max(scenario.limits.acceleration_mps2, scenario.limits.deceleration_mps2)),
+      guaranteed_m_(scenario.margin_m - 2 * scenario.tracking_bound_m),
+      guaranteed_to_obstacle_m_(scenario.margin_m - scenario.tracking_bound_m) {}
+
+double SeenContacts::robot_allowance_m(double time_difference_s) const {
+  const double extrapolation_m = acceleration_mps2_ / 2 * time_difference_s * time_difference_s;
+  return std::max(0.0, std::sqrt(2.0) * position_error_m_ + extrapolation_m - guaranteed_m_);
+}
+
+bool SeenContacts::observe(const Pair& pair, double distance_m, double contact_distance_m,
+                           double allowance_m) {
+  if (distance_m > contact_distance_m + kEndOfContact_m) {
+    if (!observations_.empty()) observations_.erase(pair);
+    return false;
+  }
+  if (distance_m >= contact_distance_m - allowance_m) return false;
+  return ++observations_[pair] == kMinObservations;
+}
+
+std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) {
+  std::vector<SeenContact> began;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Sight& a = sights[i];
+    for (std::size_t j = i + 1; j < sights.size(); ++j) {
+      const Sight& b = sights[j];
+      if (!a.is_new && !b.is_new) continue;
+      const double later_s =
+          (static_cast<double>(b.observed_at_ns) - static_cast<double>(a.observed_at_ns)) * 1e-9;
+      if (std::abs(later_s) > kMaxTimeDifference_s) continue;
+      // The earlier observation is extrapolated to the time of the later one.
+      const Vec2 moved_m = later_s > 0 ? Vec2(a.velocity_mps * later_s) : Vec2(b.velocity_mps * later_s);
+      const double distance_m = (a.position_m + moved_m - b.position_m).norm();
+      if (observe({i, j}, distance_m, 2 * radius_m_, robot_allowance_m(later_s)))
+        began.push_back({i, j, distance_m});
+    }
+    const double allowance_m = std::max(0.0, position_error_m_ - guaranteed_to_obstacle_m_);
+    for (std::size_t k = 0; a.is_new && k < obstacles_.size(); ++k) {
+      const double distance_m = (a.position_m - obstacles_[k].centre_m).norm();
+      if (observe({i, sights.size() + k}, distance_m, radius_m_ + obstacles_[k].radius_m, allowance_m))
+        began.push_back({i, std::nullopt, distance_m});
+    }
+  }
+  return began;
+}
+
+}  // namespace sidestep

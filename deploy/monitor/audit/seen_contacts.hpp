@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/geometry/vec2.hpp"
+
+namespace sidestep {
+
+/// The latest observation of one robot by vision.
+struct Sight {
+  std::int64_t observed_at_ns = std::numeric_limits<std::int64_t>::min();
+  Vec2 position_m{0, 0};
+  Vec2 velocity_mps{0, 0};
+  bool is_new = false;  ///< observed since the previous world state
+};
+
+/// A robot, and another robot or an obstacle, that vision shows in contact.
+struct SeenContact {
+  std::size_t first = 0;              ///< index in the roster
+  std::optional<std::size_t> second;  ///< nullopt: an obstacle
+  double distance_m = 0;              ///< between the centres
+};
+
+/// Finds contacts in what vision shows: robots at a distance below the sum of their radii. The protocol keeps
+/// robots apart by at least the margin minus both tracking bounds. If observation errors may exceed that, the
+/// threshold is lower by the excess, so that robots that keep the protocol are never taken to touch.
+class SeenContacts {
+ public:
+  explicit SeenContacts(const Scenario& scenario);
+
+  /// The robots in a new world state. Returns the contacts that began, each once it has been observed twice.
+  [[nodiscard]] std::vector<SeenContact> update(const std::vector<Sight>& sights);
+
+ private:
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle
+
+  /// Whether a contact begins.
+  bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m);
+  double robot_allowance_m(double time_difference_s) const;
+
+  double radius_m_;
+  std::vector<Circle> obstacles_;
+  double position_error_m_;
+  double acceleration_mps2_;
+  double guaranteed_m_, guaranteed_to_obstacle_m_;
+  std::map<Pair, int> observations_;  ///< of pairs in contact
+};
+
+/// Upper bound of the error of an observed position, per axis.
+[[nodiscard]] double position_error_m(const VisionSpec& vision);
+
+}  // namespace sidestep

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/displaced_robots.hpp"
+
+#include <limits>
+
+#include "tests/catch.hpp"
+#include "tests/unit/coordinator/floor.hpp"
+
+namespace sidestep::displaced_robots_test {
+
+constexpr double kMargin_m = 0.01;
+
+struct One {
+  Ledger ledger{floor_for_tests(), {1}};
+  Version a = rest_version(1, {0, 0});
+  DisplacedRobots displaced{kMargin_m};
+
+  One() { ledger.register_robot(1, {&a, 1}); }
+  void see(const Vec2& position, double at, double sigma_m = 0) {
+    displaced.observe({1, at_s(at), position, Vec2(0, 0), sigma_m * sigma_m}, ledger);
+  }
+};
+
+TEST_CASE("a robot is displaced beyond half the margin and the error of vision, and its inflation") {
+  One one;
+  one.see({0.0149, 0}, 1);
+  CHECK_FALSE(one.displaced.contains(1));
+  one.see({0.0151, 0}, 2);
+  CHECK(one.displaced.contains(1));
+
+  One uncertain;
+  uncertain.see({0.034, 0}, 1, 0.005);
+  CHECK_FALSE(uncertain.displaced.contains(1));
+  uncertain.see({0.036, 0}, 2, 0.005);
+  CHECK(uncertain.displaced.contains(1));
+
+  One inflated;
+  Version stop = rest_version(1, {0, 0}, 1000);
+  stop.inflation_m = 0.03;
+  REQUIRE(inflated.ledger.on_executing(stop, at_s(0.5), true) == FactOutcome::kApplied);
+  inflated.see({0.0449, 0}, 1);
+  CHECK_FALSE(inflated.displaced.contains(1));
+  inflated.see({0.0451, 0}, 2);
+  CHECK(inflated.displaced.contains(1));
+}
+
+TEST_CASE("a displaced robot is back after three observations in a row that agree with the ledger") {
+  One one;
+  one.see({1, 0}, 1);
+  one.see({0, 0}, 1.1);
+  one.see({0, 0}, 1.2);
+  one.see({1, 0}, 1.3);
+  one.see({0, 0}, 1.4);
+  one.see({0, 0}, 1.5);
+  REQUIRE(one.displaced.contains(1));
+  CHECK(one.displaced.last_observation(1)->observed_at == at_s(1.5));
+  one.see({0, 0}, 1.5);  // the same observation again
+  CHECK(one.displaced.contains(1));
+  one.see({0, 0}, 1.6);
+  CHECK_FALSE(one.displaced.contains(1));
+}
+
+TEST_CASE("the velocity of a robot is its mean over the last 15 cm, or 1.5 cm if it has not moved farther") {
+  One one;
+  const auto velocity = [&] { return one.displaced.last_observation(1)->velocity_mps; };
+  for (int i = 0; i <= 2; ++i) one.see({0.005 * i, 0}, 1 + 0.02 * i);
+  CHECK(velocity().isZero(0));
+  for (int i = 3; i <= 10; ++i) one.see({0.005 * i, 0}, 1 + 0.02 * i);
+  CHECK(velocity().x() == Approx(0.25));
+  for (int i = 1; i <= 20; ++i) one.see({0.05, 0.01 * i}, 1.2 + 0.02 * i);
+  CHECK(velocity().x() == Approx(0).margin(1e-12));
+  CHECK(velocity().y() == Approx(0.5));
+  CHECK_FALSE(one.displaced.last_observation(2));
+}
+
+TEST_CASE("an observation is compared with what the robot executed then, however late it arrives") {
+  One one;
+  const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
+  REQUIRE(one.ledger.grant(p).is_granted());
+  const Vec2 place_m = p.trajectory.state_at(at_s(1.2)).position_m;
+  SECTION("while both versions are possible") {
+    one.see(place_m, 1.2);
+    one.see({0, 0}, 1.21);
+    CHECK_FALSE(one.displaced.contains(1));
+  }
+  SECTION("when the robot has left the first one for certain") {
+    REQUIRE(one.ledger.on_executing(p, at_s(1.25), false) == FactOutcome::kApplied);
+    one.see({0, 0}, 1.24);
+    CHECK_FALSE(one.displaced.contains(1));
+    one.see({0, 0}, 1.27);
+    CHECK(one.displaced.contains(1));
+  }
+}
+
+TEST_CASE("an absent robot that is seen on the floor is displaced") {
+  One one;
+  one.ledger.on_lifted(1, at_s(1));
+  one.see({0, 0}, 0.99);  // captured before
+  CHECK_FALSE(one.displaced.contains(1));
+  one.see({0, 0}, 1.1);
+  CHECK(one.displaced.contains(1));
+}
+
+TEST_CASE("the distance from a robot's versions is the smallest over all that it may execute") {
+  const std::uint64_t seed = 11;
+  CAPTURE(seed);
+  Rng rng(seed);
+  for (int round = 0; round < 300; ++round) {
+    Ledger ledger(floor_for_tests(), {1});
+    Version last = rest_version(1, {0, 0});
+    ledger.register_robot(1, {&last, 1});
+    std::vector<Version> all{last};
+    double t = 1;
+    for (VersionNumber n = 1; n < 6; ++n, t += 0.05) {
+      const Version next = continued(last, n, t, {rng.uniform(-2, 2), rng.uniform(-2, 2)}, 0.04);
+      if (!ledger.grant(next).is_granted()) break;
+      all.push_back(next);
+      if (rng.chance(0.7)) last = next;
+    }
+    const double at = rng.uniform(1, 1.5);
+    const Vec2 seen(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3));
+    double expected = std::numeric_limits<double>::infinity();
+    for (const Version& version : all) {
+      if (version.trajectory.start() <= at_s(at) + Ledger::kMaxClockDifference)
+        expected = std::min(expected, (version.trajectory.state_at(at_s(at)).position_m - seen).norm());
+    }
+    const auto distance = ledger.distance_from_versions_m(1, seen, at_s(at));
+    REQUIRE(distance);
+    CHECK(*distance == Approx(expected).margin(1e-12));
+  }
+}
+
+}  // namespace sidestep::displaced_robots_test
