@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/robot_notices.hpp"
 #include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -26,12 +27,6 @@ struct AttestOptions {
   DdsSettings dds;
 };
 
-bool lists_as_missing(const msg::CoordinatorState& state, RobotId robot) {
-  return std::ranges::any_of(state.notices(), [=](const msg::RobotNotice& notice) {
-    return notice.robot() == robot && notice.is_missing();
-  });
-}
-
 /// Attests until no coordinator misses the robot any more.
 class Attestation {
  public:
@@ -50,7 +45,8 @@ class Attestation {
   void on_state(const msg::CoordinatorState& state) {
     if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
     has_coordinator_ = true;
-    if (lists_as_missing(state, robot_)) {
+    const std::vector<RobotId> missing = missing_robots(state);
+    if (std::ranges::count(missing, robot_) > 0) {
       was_missing_ = true;
     } else {
       if (was_missing_) accepted_epoch_ = state.epoch();

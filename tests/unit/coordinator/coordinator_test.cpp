@@ -5,6 +5,7 @@
 
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "common/messaging/robot_notices.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
@@ -42,14 +43,7 @@ struct Floor {
   }
 };
 
-std::vector<RobotId> missing(const Coordinator& coordinator) {
-  std::vector<RobotId> robots;
-  const msg::CoordinatorState state = coordinator.state();
-  for (const msg::RobotNotice& notice : state.notices()) {
-    if (notice.is_missing()) robots.push_back(notice.robot());
-  }
-  return robots;
-}
+std::vector<RobotId> missing(const Coordinator& coordinator) { return missing_robots(coordinator.state()); }
 
 TEST_CASE("nothing is granted until every robot of the roster has registered") {
   Floor floor;
