@@ -116,6 +116,34 @@ TEST_CASE("an agent plans only as long as the coordinator hears vision") {
   CHECK(d.plans(1.22));
 }
 
+TEST_CASE("a robot that vision has lost is not driven, although vision sees others") {
+  DrivenAgent d;
+  d.observe(0, 0.6, 0.61);
+  CHECK(d.plans(0.62));
+  for (const double at : {0.8, 0.95}) {
+    WorldObservations world = observation(0, at);
+    world.self.reset();
+    d.agent.on_world(world, at_s(at));
+    d.agent.on_obstacles(empty_list(at), at_s(at));
+    become_ready(d.agent, at, at);
+  }
+  CHECK_FALSE(d.plans(0.95));
+}
+
+TEST_CASE("a robot that is poorly localised waits until it is observed") {
+  const auto desired_mps2 = [](double position_error_rms_m) {
+    DrivenAgent d;
+    Feedback feedback = resting_at({0, 0}, 0.55);
+    feedback.uncertainty = {position_error_rms_m, 0.01};
+    d.agent.on_feedback(feedback);
+    d.observe(0, 0.6, 0.61);
+    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+    return plan ? plan->query.desired_mps2.norm() : 0;
+  };
+  CHECK(desired_mps2(0.0002) > 2);
+  CHECK(desired_mps2(0.002) == 0);
+}
+
 TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
   DrivenAgent d;
   d.observe_self(0, 0.6, 0.61);
