@@ -174,7 +174,7 @@ msg::Reason Coordinator::refusal_reason(const Proposal& proposal, const Record& 
 
 msg::Reason Coordinator::suspension_reason(RobotId robot) const {
   if (ledger_.is_quarantined(robot)) return msg::Reason::REASON_QUARANTINED;
-  // A robot that is absent may be seen in somebody's hands. It is granted a place to be put down.
+  // Vision may see an absent robot while it is carried. It may still be granted a place to be put down.
   const bool is_absent = ledger_.versions(robot).empty();
   return displaced_.contains(robot) && !is_absent ? msg::Reason::REASON_DISPLACED
                                                   : msg::Reason::REASON_GRANTED;

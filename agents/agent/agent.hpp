@@ -103,8 +103,6 @@ class Agent {
   /// Replaces the route planner if stationary robots or moving obstacles have changed.
   void update_route_planner(Time now);
   std::vector<Circle> temporary_obstacles(Time now);
-  /// Everything that moves outside the protocol.
-  std::span<const MovingObstacle> find_moving(Time now);
   std::vector<Circle> moving_obstacles(Time now);
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
@@ -135,7 +133,6 @@ class Agent {
   ObservedObstacles obstacles_;
   DisplacedObstacles displaced_;
   Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions
-  std::vector<MovingObstacle> moving_;  // obstacles_ and displaced_
   LastChoice last_choice_;
   Rng rng_;
   std::size_t goal_index_ = 0;

@@ -54,19 +54,12 @@ double Agent::planning_separation_m() const {
   return rules_.radius_m + rules_.margin_m + settings_.extra_clearance_m;
 }
 
-std::span<const MovingObstacle> Agent::find_moving(Time now) {
-  const auto observed = obstacles_.recent(now);
-  moving_.assign(observed.begin(), observed.end());
-  for (const UncontrolledBody& body : displaced_.recent(now)) moving_.push_back(body.reach);
-  return moving_;
-}
-
 std::vector<Circle> Agent::moving_obstacles(Time now) {
   const Vec2& position = estimate_.position_m;
   const double grid_m = settings_.moving_grid_m;
   std::vector<Circle> found;
-  for (const MovingObstacle& obstacle : find_moving(now)) {
-    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) continue;
+  const auto add = [&](const MovingObstacle& obstacle) {
+    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) return;
     const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
     const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
     // The inflated circle must not cover the goal.
@@ -74,7 +67,9 @@ std::vector<Circle> Agent::moving_obstacles(Time now) {
         (centre - goal().position_m).norm() - radius - planning_separation_m() - settings_.at_goal_m;
     const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
     found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
-  }
+  };
+  for (const MovingObstacle& obstacle : obstacles_.recent(now)) add(obstacle);
+  for (const UncontrolledBody& body : displaced_.recent(now)) add(body.reach);
   std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
   if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
   std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });

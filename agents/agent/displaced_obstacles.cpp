@@ -4,22 +4,16 @@
 #include <cmath>
 
 #include "common/messaging/observation_codec.hpp"
+#include "common/protocol/obstacle_bounds.hpp"
 
 namespace sidestep {
-namespace {
-
-// In each axis, an error of a normal distribution exceeds 4 sigma once in 16,000 cases.
-constexpr double kSigmas = 4;
-
-}  // namespace
-
 void DisplacedObstacles::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
   bodies_.clear();
   for (const msg::RobotNotice& notice : heartbeat.notices) {
     if (!is_uncontrolled(notice) || notice.robot() == self_) continue;
     const auto seen = decode(notice, now);
     if (!seen) continue;
-    const double error_m = kSigmas * std::sqrt(seen->position_variance_m2);
+    const double error_m = kObstacleSigmas * std::sqrt(seen->position_variance_m2);
     bodies_.push_back(
         {{seen->position_m, radius_m_ + error_m, seen->observed_at - max_clock_difference_, max_speed_mps_},
          seen->velocity_mps,

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "agents/agent/observed_obstacles.hpp"
 #include "agents/safety/uncontrolled_body.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 
@@ -14,7 +15,7 @@ namespace sidestep {
 class DisplacedObstacles {
  public:
   /// A displaced robot that vision has lost for longer is dropped: by then its reach covers half a floor.
-  static constexpr Duration kMaxObservationAge{1'000'000'000};
+  static constexpr Duration kMaxObservationAge = ObservedObstacles::kMaxObservationAge;
 
   /// `margin_m`: the safety margin. `max_speed_mps`: upper bound of a displaced robot's speed.
   /// `max_clock_difference`: upper bound of the difference between the cameras' clock and the robot's.

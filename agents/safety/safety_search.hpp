@@ -23,10 +23,10 @@ struct SearchQuery {
   Time start{};
   State at_start;
   Vec2 desired_mps2{0, 0};
-  Duration hold_time{};                      ///< how long the acceleration is held before the stop
-  double inflation_m = 0;                    ///< added to the robot's radius
-  std::span<const MovingObstacle> moving{};  ///< obstacles that the robot must be passively safe from
-  std::span<const UncontrolledBody> uncontrolled{};
+  Duration hold_time{};                              ///< how long the acceleration is held before the stop
+  double inflation_m = 0;                            ///< added to the robot's radius
+  std::span<const MovingObstacle> moving{};          ///< obstacles that the robot must be passively safe from
+  std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of, see may_follow()
   const Trajectory* stop =
       nullptr;  ///< what the robot follows otherwise; not null if `uncontrolled` is not empty
   std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored
