@@ -50,40 +50,16 @@ inline send(i, k) {
 #define MAY_LOWER_EPOCH false
 #endif
 
-/* Off its reference the robot executes a version that was not granted. */
-#ifdef REPLACE_BY_OLD_FACT
-#define MAY_REPLACE(set, i, f) IS_OWN_STOP(i, f)
+/* An agent adopts a version that it does not know, unless it holds one that continues it. */
+#ifdef AGENT_ADOPTS_LATE_FACT
+#define MAY_ADOPT(set, i, f) ((i) == 0 && (f) < NV && !HAS(set, f) && ((set) & OLDER(f)) == 0)
+#elif defined(QUARANTINE) && !defined(FORGED)
+#define MAY_ADOPT(set, i, f) \
+  ((i) == 0 && (f) == UNGRANTED && !HAS(set, UNGRANTED) && !IS_CONTINUATION(set, 3) && !IS_CONTINUATION(set, 4))
+#define IS_CONTINUATION(set, v) (HAS(set, v) && base_of[V(0, v)] >= UNGRANTED)
 #else
-#define MAY_REPLACE(set, i, f) (IS_OWN_STOP(i, f) && (set) < BIT(f))
+#define MAY_ADOPT(set, i, f) false
 #endif
-#define IS_INFORMATIVE(set, i, f) (HAS(set, f) || MAY_REPLACE(set, i, f))
-
-/* Updates a set of versions by the fact "executing f_ at t_". */
-inline forget(set, i) {
-  if
-#ifdef OWN_STOP
-  :: !HAS(set, f_) && MAY_REPLACE(set, i, f_) -> set = BIT(f_)
-#endif
-  :: HAS(set, f_) ->
-     set_ = set & ~OLDER(f_);
-     v_ = f_ + 1;
-     do
-     :: v_ <= LAST(i) ->
-        if
-#ifdef FORGET_ALL_NEWER
-        :: true -> set_ = set_ & ~BIT(v_)
-#else
-        :: starts[V(i, v_)] <= t_ -> set_ = set_ & ~BIT(v_)
-        :: else
-#endif
-        fi;
-        v_++
-     :: else -> break
-     od;
-     set = set_
-  :: else
-  fi
-}
 
 #ifdef NO_FENCE_FIRST
 #define ADDRESSES(i, k, o) (o) == (k) || !fenced[A(i, k)]
@@ -97,8 +73,20 @@ inline forget(set, i) {
 #define CHOOSE_FACT(i, k, o, e, f, t)                                                                      \
   ::d_step {                                                                                               \
     HAS(facts[F(i, o, e)], FACT(f, t)) &&                                                                  \
-        (!fenced[A(i, k)] || acknowledged[A(i, k)] < (e) || IS_INFORMATIVE(held[A(i, k)], i, f)) -> v_ = 0; f_ = f; t_ = t \
+        (!fenced[A(i, k)] || acknowledged[A(i, k)] < (e) || IS_INFORMATIVE(held[A(i, k)], i, f, t) || MAY_ADOPT(held[A(i, k)], i, f)) && IS_TRUE(f) -> v_ = 0; f_ = f; t_ = t \
   }
+#ifdef LIFT
+#define SET_OF(f) ((f) == LIFTED -> 0 : BIT(f))
+#define IS_IN_HAND(i, k, b) ((i) == 0 && (b) == 0 && told_lifted[(k) - 1])
+#else
+#define SET_OF(f) BIT(f)
+#define IS_IN_HAND(i, k, b) false
+#endif
+#ifdef FORGED /* only the coordinator receives the forged fact */
+#define IS_TRUE(f) ((f) != UNGRANTED)
+#else
+#define IS_TRUE(f) true
+#endif
 inline process_fact(i, k, e) {
   if
   :: e > acknowledged[A(i, k)] -> acknowledged[A(i, k)] = e
@@ -111,9 +99,18 @@ inline process_fact(i, k, e) {
   fi;
 #endif
   if
-  :: !fenced[A(i, k)] -> fenced[A(i, k)] = true; held[A(i, k)] = BIT(f_)
+  :: !fenced[A(i, k)] -> fenced[A(i, k)] = true; held[A(i, k)] = SET_OF(f_)
+#if defined(QUARANTINE) || defined(AGENT_ADOPTS_LATE_FACT)
+  :: fenced[A(i, k)] && MAY_ADOPT(held[A(i, k)], i, f_) -> held[A(i, k)] = BIT(f_)
+#endif
   :: else -> forget(held[A(i, k)], i)
   fi;
+#ifdef LIFT
+  if
+  :: f_ == LIFTED -> told_lifted[k - 1] = true
+  :: else
+  fi;
+#endif
   send(i, k)
 }
 
@@ -130,14 +127,14 @@ inline process_fact(i, k, e) {
     :: else -> number_ = 0                                                                                 \
     fi                                                                                                     \
   }
-#define CHOOSE_BASE(i, k, b) :: HAS(held[A(i, k)], b) && number_ > b && NUMBERED_AFTER(i, b) && starts[V(i, b)] < T -> base_ = b
+#define CHOOSE_BASE(i, k, b) :: (HAS(held[A(i, k)], b) || IS_IN_HAND(i, k, b)) && number_ > b && NUMBERED_AFTER(i, k, b) && starts[V(i, b)] < T -> base_ = b
 #define CHOOSE_START(i, s) :: s > now && s > starts[V(i, base_)] -> start_ = s
 #define CHOOSE_PLACES(u) :: u_ = u
 inline next_number(i, k) {
   number_ = FIRST_OF(i, k);
-#ifdef OWN_STOP
+#ifdef UNGRANTED
   if
-  :: i == 0 && held[A(i, k)] >= BIT(OWN_NUMBER) -> number_ = OWN_NUMBER + 1
+  :: i == 0 && k == 1 && held[A(i, k)] >= BIT(UNGRANTED) -> number_ = UNGRANTED + 1
   :: else
   fi;
 #endif
@@ -147,10 +144,11 @@ inline next_number(i, k) {
   od
 }
 /* A version numbered before the agent knows of the robot's own stop has a lower number than that stop. */
-#ifdef OWN_STOP
-#define NUMBERED_AFTER(i, b) (number_ <= LAST(i) && ((i) == 1 || (number_ != OWN_NUMBER && (b >= OWN_NUMBER || number_ < OWN_NUMBER))))
+#ifdef UNGRANTED
+#define NUMBERED_AFTER(i, k, b) \
+  (number_ <= LAST_OF(i, k) && ((i) == 1 || (k) == 2 || (number_ != UNGRANTED && (b >= UNGRANTED || number_ < UNGRANTED))))
 #else
-#define NUMBERED_AFTER(i, b) true
+#define NUMBERED_AFTER(i, k, b) true
 #endif
 inline propose(i, k) {
   printf("%d: agent %d of robot %d proposes %d on %d from %d on, places %d, epoch %d\n", now, k, i, number_, base_,

@@ -3,41 +3,23 @@
 #ifdef GRANT_BEFORE_ALL_REGISTERED
 #define IS_GRANTING(i, e) (registered[C(i, e)] != 0)
 #else
-#define IS_GRANTING(i, e) (registered[C(0, e)] != 0 && registered[C(1, e)] != 0)
+#define IS_GRANTING(i, e) ((registered[C(0, e)] != 0 || HAS_ATTESTATION(0, e)) && registered[C(1, e)] != 0)
 #endif
 
-inline update_ledger(i, e) {
-#ifdef OWN_STOP
-  if
-  :: IS_OWN_STOP(i, f_) && !HAS(ledger[C(i, e)], f_) && !is_reported ->
-     is_reported = true;
-     allow_conflicts(f_, e)
-  :: else
-  fi;
-#endif
-  forget(ledger[C(i, e)], i)
-}
-#ifdef OWN_STOP
-/* Allows the conflicts of version v of robot 0 with the versions of robot 1 in the ledger. */
-inline allow_conflicts(v, e) {
-  w_ = 0;
-  do
-  :: w_ <= LAST(1) ->
-     if
-     :: HAS(ledger[C(1, e)], w_) && (places[V(0, v)] & places[V(1, w_)]) != 0 -> allowed_conflicts[v] = allowed_conflicts[v] | BIT(w_)
-     :: else
-     fi;
-     w_++
-  :: else -> break
-  od
-}
-/* Where the base is in conflict already, its successor may be too. */
-#define IS_ESCAPE(i, j, v, w) ((places[V(i, v)] & places[V(j, w)] & ~places[V(i, base_of[V(i, v)])]) == 0)
+#ifdef QUARANTINE
+/* A fact under agent o that contradicts the ledger. */
+#define COORDINATOR_RECEIVES_CONTRADICTION(o, e) \
+  CHOICE(registered[C(0, e)] != 0 && base_of[V(0, UNGRANTED)] == UNGRANTED, EACH_T(CHOOSE_CONTRADICTION, o, e), \
+         printf("%d: coordinator %d receives: robot 0 executes %d at %d, obeys %d\n", now, e, UNGRANTED, t_, o); quarantine(o, e))
+#define CHOOSE_CONTRADICTION(o, e, t)                                                                      \
+  ::d_step {                                                                                               \
+    HAS(facts[F(0, o, 1)] | facts[F(0, o, 2)], FACT(UNGRANTED, t)) && CONTRADICTS(0, e, UNGRANTED, t) &&   \
+        (contradicted_at[(e) - 1] <= (t) || contradicted_under[(e) - 1] < (o)) -> v_ = 0; t_ = t           \
+  }
+#define CONTRADICTIONS(e) COORDINATOR_RECEIVES_CONTRADICTION(1, e) COORDINATOR_RECEIVES_CONTRADICTION(2, e)
 #else
-#define IS_ESCAPE(i, j, v, w) false
+#define CONTRADICTIONS(e)
 #endif
-#define IN_CONFLICT(i, j, v, w) ((places[V(j, w)] & places[V(i, v)]) != 0 && !IS_ESCAPE(i, j, v, w))
-
 inline decide(i, j, e) {
   conflict_ = false;
   w_ = LAST(j);
@@ -59,7 +41,13 @@ inline decide(i, j, e) {
 #endif
      ledger[C(i, e)] = ledger[C(i, e)] | BIT(v_);
      granted[i] = granted[i] | BIT(v_);
-#ifdef OWN_STOP
+#ifdef WITHOUT_OTHER
+     if
+     :: IS_QUARANTINED(j, e) || HAS_ATTESTATION(j, e) -> granted_without_other = granted_without_other | BIT(v_)
+     :: else
+     fi;
+#endif
+#ifdef UNGRANTED
      if
      :: i == 0 -> allow_conflicts(v_, e)
      :: else ->
@@ -80,12 +68,18 @@ inline decide(i, j, e) {
   fi
 }
 
+#ifdef QUARANTINE_GRANTS
+#define IS_UNSUSPENDED(i, e) true
+#else
+#define IS_UNSUSPENDED(i, e) !IS_QUARANTINED(i, e)
+#endif
 /* A denial changes nothing, so only grants are modelled. */
 #define COORDINATOR_RECEIVES_PROPOSAL(i, j, e) \
-  CHOICE(IS_GRANTING(i, e), EACH_V(CHOOSE_PROPOSAL, i, e), decide(i, j, e))
+  CHOICE(IS_GRANTING(i, e) && IS_UNSUSPENDED(i, e), EACH_V(CHOOSE_PROPOSAL, i, e), decide(i, j, e))
 #define CHOOSE_PROPOSAL(i, e, v)                                                                           \
   CHOOSE_V(starts[V(i, v)] != 0 && epoch_of[V(i, v)] == (e) && !HAS(granted[i], v) &&                      \
-               registered[C(i, e)] == MAKER(i, v) && HAS(ledger[C(i, e)], base_of[V(i, v)]), v)
+               registered[C(i, e)] == MAKER(i, v) && \
+               (HAS(ledger[C(i, e)], base_of[V(i, v)]) || (IS_ABSENT(i, e) && base_of[V(i, v)] == 0)), v)
 
 #define COORDINATOR_RECEIVES_FACT(i, e) \
   CHOICE(registered[C(i, e)] != 0, EACH_FACT(CHOOSE_LEDGER_FACT, i, e), \
@@ -93,14 +87,35 @@ inline decide(i, j, e) {
 #define CHOOSE_LEDGER_FACT(i, e, f, t)                                                                     \
   ::d_step {                                                                                               \
     HAS(facts[F(i, 1, 1)] | facts[F(i, 1, 2)] | facts[F(i, 2, 1)] | facts[F(i, 2, 2)], FACT(f, t)) &&      \
-        IS_INFORMATIVE(ledger[C(i, e)], i, f) -> v_ = 0; f_ = f; t_ = t                                                  \
+        (IS_INFORMATIVE(ledger[C(i, e)], i, f, t) || IS_NEW_LIFTING(i, e, f, t) || IS_CHECKED(i, e, f, t)) && !IS_LATE(i, e, t) && \
+        !(IS_QUARANTINED(i, e) && IS_UNGRANTED(i, f)) -> v_ = 0; f_ = f; t_ = t                                                  \
   }
+
+#ifdef LIFT
+#define IS_NEW_LIFTING(i, e, f, t) ((f) == LIFTED && lifted_before[(e) - 1] <= (t))
+#else
+#define IS_NEW_LIFTING(i, e, f, t) false
+#endif
+#ifdef CHECK_FACTS
+#define IS_CHECKED(i, e, f, t) (CONTRADICTS(i, e, f, t) && !IS_EVENT(i, f))
+#ifdef QUARANTINE
+#define IS_EVENT(i, f) IS_UNGRANTED(i, f)
+#else
+#define IS_EVENT(i, f) false
+#endif
+#else
+#define IS_CHECKED(i, e, f, t) false
+#endif
 
 #ifdef FORGET_BY_TIMEOUT
 #define COORDINATOR_TIMES_OUT(i, e)                                                                          \
   CHOICE(ledger[C(i, e)] != 0, EACH_V(CHOOSE_TIMEOUT, i, e), \
          printf("%d: coordinator %d times out %d of robot %d\n", now, e, v_, i); ledger[C(i, e)] = ledger[C(i, e)] & ~BIT(v_))
 #define CHOOSE_TIMEOUT(i, e, v) CHOOSE_V(HAS(ledger[C(i, e)], v) && starts[V(i, v)] <= now, v)
+#elif defined(LIFT_BY_SILENCE)
+#define COORDINATOR_TIMES_OUT(i, e) \
+  STEP(i == 0 && registered[C(i, e)] != 0 && ledger[C(i, e)] != 0, \
+       printf("%d: coordinator %d takes robot %d to be absent\n", now, e, i); ledger[C(i, e)] = 0)
 #else
 #define COORDINATOR_TIMES_OUT(i, e)
 #endif
@@ -110,10 +125,20 @@ inline decide(i, j, e) {
          register_versions(i, k, e))
 #define CHOOSE_REGISTRATION(i, k, e, set)                                                                  \
   CHOOSE_V(HAS(registrations[G(i, k, e)], set) &&                                                          \
-               (registered[C(i, e)] == 0 || ((set) & ~ledger[C(i, e)]) == 0), set)
+               (registered[C(i, e)] == 0 ||                                                                  \
+                (IS_QUARANTINED(i, e) -> ENDS_QUARANTINE(i, k, e, set) : ((set) & ~ledger[C(i, e)]) == 0)), set)
 inline register_versions(i, k, e) {
   if
-  :: registered[C(i, e)] == 0 -> ledger[C(i, e)] = v_
+  :: registered[C(i, e)] == 0 ->
+     ledger[C(i, e)] = v_
+#ifdef ATTEST
+     ; is_taken_as_absent = is_taken_as_absent && !(i == 0 && e == 2)
+#endif
+#ifdef QUARANTINE
+  :: registered[C(i, e)] != 0 && IS_QUARANTINED(i, e) ->
+     ledger[C(i, e)] = v_;
+     contradicted_at[e - 1] = 0; contradicted_under[e - 1] = 0
+#endif
   :: else
   fi;
   registered[C(i, e)] = k;
@@ -125,3 +150,24 @@ inline register_versions(i, k, e) {
   :: else
   fi
 }
+
+#ifdef ATTEST
+#ifdef ATTEST_ON_FLOOR
+#define IS_TRULY_ABSENT true
+#else
+#define IS_TRULY_ABSENT (EXECUTES_NOTHING(0) && !IS_UPCOMING(1) && !IS_UPCOMING(2) && !IS_UPCOMING(3) && !IS_UPCOMING(4))
+#define IS_UPCOMING(v) (starts[V(0, v)] > now && base_of[V(0, v)] == 0) /* a place that the robot may be put down at */
+#endif
+#ifdef ATTEST_REGISTERED
+#define AWAITS_REGISTRATION true
+#else
+#define AWAITS_REGISTRATION (registered[C(0, 2)] == 0)
+#endif
+#define ATTESTATIONS                                                                                       \
+  STEP(!is_attested && registered[C(0, 2)] == 0 && IS_TRULY_ABSENT, is_attested = true;                    \
+       printf("%d: an operator attests that robot 0 is absent\n", now))                                    \
+  STEP(is_attested && !is_taken_as_absent && AWAITS_REGISTRATION, is_taken_as_absent = true; ledger[C(0, 2)] = 0; \
+       printf("%d: coordinator 2 takes robot 0 to be absent\n", now))
+#else
+#define ATTESTATIONS
+#endif

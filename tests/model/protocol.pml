@@ -2,7 +2,9 @@
 /* The safety protocol; see README.md in this folder. One process makes one step at a time. The network is the set of
    all messages ever sent; any message may be received by its addressee at any time, repeatedly, or never. */
 #include "state.pml"
+#include "property.pml"
 #include "robots.pml"
+#include "ledger.pml"
 #include "agents.pml"
 #include "coordinators.pml"
 
@@ -47,9 +49,12 @@ init {
 end:
   do
   TICK
-  PUSHES
+  EVENTS
+  LIFTS
   ROBOT_STEPS(0) ROBOT_STEPS(1)
   AGENT_STEPS(0) AGENT_STEPS(1)
+  ATTESTATIONS
+  CONTRADICTIONS(1) CONTRADICTIONS(2)
   COORDINATOR_STEPS(0, 1, 1) COORDINATOR_STEPS(0, 1, 2)
   COORDINATOR_STEPS(1, 0, 1) COORDINATOR_STEPS(1, 0, 2)
   od

@@ -1,8 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 /* Robots and time. */
+#ifdef LIFT
+#define REPORTED_NOTHING LIFTED
+#define LIFTS \
+  STEP(lifting == 0, lifting = IN_HAND; printf("%d: robot 0 is lifted\n", now); LIFT_DROPS_PENDING report(0); check()) PLACES_UNGRANTED
+#ifdef LIFTED_KEEPS_PENDING
+#define LIFT_DROPS_PENDING
+#else
+#define LIFT_DROPS_PENDING pending[0] = 0;
+#endif
+#ifdef PLACE_UNGRANTED
+#define PLACES_UNGRANTED \
+  STEP(EXECUTES_NOTHING(0) && places[V(0, 0)] == 0, printf("%d: robot 0 is put down anywhere\n", now); places[V(0, 0)] = 1; check())
+#else
+#define PLACES_UNGRANTED
+#endif
+#else
+#define REPORTED_NOTHING 0
+#define LIFTS
+#endif
 inline report(i) {
-  facts[F(i, obeyed[i], obeyed_epoch[i])] = facts[F(i, obeyed[i], obeyed_epoch[i])] | BIT(FACT(executing[i], now))
+  facts[F(i, obeyed[i], obeyed_epoch[i])] = facts[F(i, obeyed[i], obeyed_epoch[i])] | BIT(FACT((EXECUTES_NOTHING(i) -> REPORTED_NOTHING : executing[i]), now))
 }
+
+#ifdef LIFTED_GOES_BACK
+#define MAY_GO_BACK(i) EXECUTES_NOTHING(i)
+#else
+#define MAY_GO_BACK(i) false
+#endif
 
 inline make_switches(i) {
   v_ = 1;
@@ -15,9 +40,15 @@ inline make_switches(i) {
 #ifdef NO_BASE_RULE
         :: true ->
 #else
-        :: base_of[V(i, v_)] == executing[i] && v_ > executing[i] ->
+        :: base_of[V(i, v_)] == REFERENCE(i) && (v_ > executing[i] || MAY_GO_BACK(i)) ->
 #endif
            executing[i] = v_;
+#ifdef LIFT
+           if
+           :: EXECUTES_NOTHING(i) -> lifting = PUT_DOWN; printf("        robot 0 is put down\n")
+           :: else
+           fi;
+#endif
            printf("        robot %d executes %d from %d on, places %d\n", i, v_, now, places[V(i, v_)])
         :: else
         fi
@@ -28,40 +59,28 @@ inline make_switches(i) {
   od
 }
 
-#ifdef OWN_STOP
-#define IS_CONFLICT_ALLOWED ((executing[0] == OWN_NUMBER && !is_reported) || HAS(allowed_conflicts[executing[0]], executing[1]))
-#define PUSHES CHOICE(executing[0] < OWN_NUMBER, EACH_U(PUSH), push())
-#define PUSH(u) :: v_ = u
-inline push() {
-  printf("%d: robot 0 is pushed to places %d\n", now, v_);
-  places[V(0, OWN_NUMBER)] = v_;
-  starts[V(0, OWN_NUMBER)] = now;
-  base_of[V(0, OWN_NUMBER)] = executing[0];
-  executing[0] = OWN_NUMBER;
+#ifdef UNGRANTED
+#define EVENTS                                                                                             \
+  CHOICE(executing[0] < UNGRANTED && base_of[V(0, UNGRANTED)] != UNGRANTED && !EXECUTES_NOTHING(0), EACH_U(EVENT), event())
+#define EVENT(u) :: v_ = u
+inline event() {
+  places[V(0, UNGRANTED)] = v_;
+  starts[V(0, UNGRANTED)] = now;
+  base_of[V(0, UNGRANTED)] = UNGRANTED;
+#ifdef FORGED
+  printf("%d: a fact is forged: robot 0 executes %d, places %d\n", now, UNGRANTED, v_);
+  facts[F(0, obeyed[0], obeyed_epoch[0])] = facts[F(0, obeyed[0], obeyed_epoch[0])] | BIT(FACT(UNGRANTED, now))
+#else
+  printf("%d: robot 0 executes %d, which was not granted, places %d\n", now, UNGRANTED, v_);
+  executing[0] = UNGRANTED;
   pending[0] = 0;
   report(0);
   check()
+#endif
 }
 #else
-#define IS_CONFLICT_ALLOWED false
-#define PUSHES
+#define EVENTS
 #endif
-
-inline check() {
-#ifndef WITNESS
-#define WITNESS true
-#endif
-  assert(!((places[V(0, executing[0])] & places[V(1, executing[1])]) != 0 && !IS_CONFLICT_ALLOWED && (WITNESS)))
-#ifdef GOAL_PASSING /* one robot uses a place that the other has left */
-#define GOAL executing[0] == 2 && places[V(0, 1)] == 1 && executing[1] == 1 && places[V(1, 1)] == 1
-#endif
-#ifdef GOAL_TAKEOVER /* one robot has moved under the first coordinator, the other moves under the second */
-#define GOAL executing[0] == 1 && epoch_of[V(0, 1)] == 1 && executing[1] == 1 && epoch_of[V(1, 1)] == 2
-#endif
-#ifdef GOAL
-  ; assert(!(GOAL))
-#endif
-}
 
 inline obey(i, k, e) {
   if
@@ -100,7 +119,13 @@ inline obey(i, k, e) {
          obey(i, k, e); pending[i] = pending[i] | BIT(w_); make_switches(i); report(i); check())
 #define CHOOSE_COMMAND(i, k, e, v)                                                                         \
   CHOOSE_V(HAS(commands[C(i, e)], v) && MAKER(i, v) == (k) && IN_TIME(i, v) && v != executing[i] &&        \
-               !HAS(pending[i], v) && (v > executing[i] || MAYBE_OLDER), v)
+               !HAS(pending[i], v) && (v > executing[i] || MAYBE_OLDER || MAY_GO_BACK(i)) &&                                      \
+               MAY_TAKE(i, v) && !IS_KEPT_IN_HAND(i, v), v)
+#ifdef LIFTED_TAKES_ANY
+#define MAY_TAKE(i, v) true
+#else
+#define MAY_TAKE(i, v) (!EXECUTES_NOTHING(i) || base_of[V(i, v)] == 0)
+#endif
 #ifdef NO_BASE_RULE
 #define MAYBE_OLDER true
 #else

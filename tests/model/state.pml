@@ -22,18 +22,69 @@
 #define PLACES 1 /* contested places: places that both robots may use */
 #endif
 
+#if defined(OWN_STOP) || defined(QUARANTINE)
+/* Robot 0 executes a version that was not granted, once: OWN_STOP, its own stop after a push; QUARANTINE, any other, or
+   a fact claims so (FORGED). Its first agent proposes up to AFTER versions afterwards. */
+#define UNGRANTED (N0 + 1)
 #ifdef OWN_STOP
-/* Robot 0 may be pushed off its reference once, and then executes a stop of its own. Its agent proposes up to OWN_STOP
-   versions after that. Requires M0 == 0. */
-#define OWN_NUMBER (N0 + 1)
-#define LAST(i) ((i) == 0 -> N0 + 1 + OWN_STOP : N1 + M1)
-#define IS_OWN_STOP(i, v) ((i) == 0 && (v) == OWN_NUMBER)
-byte allowed_conflicts[5]; /* by version of robot 0: versions of robot 1 in conflict with it because of the push */
+#define AFTER OWN_STOP
+#else
+#define AFTER QUARANTINE
+#endif
+#define BY_FIRST_AGENT(i) ((i) == 0 -> N0 + 1 + AFTER : N1)
+byte allowed_conflicts[5]; /* by version of robot 0: versions of robot 1 in conflict with it because of the event */
 bool is_reported;
 #else
-#define LAST(i) ((i) == 0 -> N0 + M0 : N1 + M1)
+#define BY_FIRST_AGENT(i) ((i) == 0 -> N0 : N1)
+#endif
+#define LAST(i) (BY_FIRST_AGENT(i) + ((i) == 0 -> M0 : M1))
+#ifdef OWN_STOP
+#define IS_OWN_STOP(i, v) ((i) == 0 && (v) == UNGRANTED)
+#else
 #define IS_OWN_STOP(i, v) false
 #endif
+
+#ifdef ATTEST
+/* An operator may attest to the second coordinator that robot 0 is absent: said, and accepted. Requires LIFT. */
+bool is_attested, is_taken_as_absent;
+#define HAS_ATTESTATION(i, e) ((i) == 0 && (e) == 2 && is_taken_as_absent)
+/* The operator requests a place for the robot only after its agent has registered. */
+#ifdef PLACE_UNREGISTERED
+#define IS_KEPT_IN_HAND(i, v) false
+#else
+#define IS_KEPT_IN_HAND(i, v) ((i) == 0 && is_attested && epoch_of[V(i, v)] == 1)
+#endif
+#else
+#define HAS_ATTESTATION(i, e) false
+#define IS_KEPT_IN_HAND(i, v) false
+#endif
+
+#ifdef QUARANTINE
+/* By coordinator: time of the latest fact that contradicts the ledger, plus 1, 0: not quarantined; and the latest agent
+   that the robot obeyed then. */
+byte contradicted_at[2], contradicted_under[2];
+#define IS_QUARANTINED(i, e) ((i) == 0 && contradicted_at[(e) - 1] != 0)
+#else
+#define IS_QUARANTINED(i, e) false
+#endif
+
+#ifdef LIFT
+/* Robot 0 may be lifted once. While it is in somebody's hand it executes nothing, and executing[0] is the highest
+   version that it has executed. */
+#define IN_HAND 1
+#define PUT_DOWN 2
+byte lifting;
+bool told_lifted[2];  /* agents of robot 0 */
+byte lifted_before[2]; /* by coordinator: facts of robot 0 about earlier times are late */
+#define EXECUTES_NOTHING(i) ((i) == 0 && lifting == IN_HAND)
+#define IS_ABSENT(i, e) ((i) == 0 && ledger[C(i, e)] == 0)
+#else
+#define EXECUTES_NOTHING(i) false
+#define IS_ABSENT(i, e) false
+#endif
+
+/* The version that the next one continues, and whose places are in use. */
+#define REFERENCE(i) (EXECUTES_NOTHING(i) -> 0 : executing[i])
 
 #define STEP(condition, body) :: d_step { (condition) -> body }
 /* A step that begins with a choice. The choice sets scratch variables; v_ is NONE if there is no option. */
@@ -52,11 +103,6 @@ bool is_reported;
 #define BIT(v) (1 << (v))
 #define HAS(set, v) (((set) >> (v)) & 1)
 #define FIRST_OF(i, k) ((k) == 1 -> 1 : 1 + BY_FIRST_AGENT(i))
-#ifdef OWN_STOP
-#define BY_FIRST_AGENT(i) ((i) == 0 -> LAST(0) : N1)
-#else
-#define BY_FIRST_AGENT(i) ((i) == 0 -> N0 : N1)
-#endif
 #define LAST_OF(i, k) ((k) == 1 -> BY_FIRST_AGENT(i) : LAST(i))
 #define MAKER(i, v) ((v) <= BY_FIRST_AGENT(i) -> 1 : 2)
 #define BY_FIRST(i) ((1 << (1 + BY_FIRST_AGENT(i))) - 1) /* version 0 and the first agent's versions */
@@ -64,6 +110,7 @@ bool is_reported;
 #define F(i, k, e) ((i) * 4 + ((k) - 1) * 2 + (e) - 1)
 #define G(i, k, e) F(i, k, e)
 #define EXISTS(i, k) (LAST_OF(i, k) >= FIRST_OF(i, k) || (k) == 1)
+#define LIFTED NV /* in facts: "off the floor, executing nothing" */
 #define FACT(v, t) ((v) * (T + 1) + (t))
 
 byte now;
@@ -89,6 +136,11 @@ byte fences[2];              /* bit 3 (agent - 1) + epoch */
 int facts[2 * 4];            /* by obeyed agent and epoch: a set of (executing, at) */
 int registrations[2 * 2 * 2]; /* by agent and epoch: a set of sets of versions */
 
+#if defined(GOAL_NEIGHBOUR) || defined(GOAL_ATTESTED)
+#define WITHOUT_OTHER
+byte granted_without_other; /* while the other robot was quarantined, or attested as absent */
+#endif
+
 /* Scratch variables within one step. These are not part of the state, so they are valid only until the next choice ... */
 hidden byte i_, v_, w_, f_, t_, u_, set_, conflict_;
 /* ... and these last over several choices; they are 0 between steps. */
@@ -100,7 +152,14 @@ byte number_, base_, start_;
 #define EACH_B(X, ...) X(__VA_ARGS__, 0) X(__VA_ARGS__, 1) X(__VA_ARGS__, 2) X(__VA_ARGS__, 3)
 #define EACH_FACT(X, ...) \
   EACH_T(X, __VA_ARGS__, 0) EACH_T(X, __VA_ARGS__, 1) EACH_T(X, __VA_ARGS__, 2) EACH_T(X, __VA_ARGS__, 3) \
-  EACH_T(X, __VA_ARGS__, 4)
+  EACH_T(X, __VA_ARGS__, 4) EACH_LIFTED(X, __VA_ARGS__)
+#ifdef LIFT
+#define EACH_LIFTED(X, ...) EACH_T(X, __VA_ARGS__, LIFTED)
+#define EACH_EMPTY_SET(X, ...) X(__VA_ARGS__, 0)
+#else
+#define EACH_LIFTED(X, ...)
+#define EACH_EMPTY_SET(X, ...)
+#endif
 #if PLACES == 1
 #define EACH_U(X) X(0) X(1)
 #else
@@ -123,4 +182,4 @@ byte number_, base_, start_;
   X(__VA_ARGS__, 16) X(__VA_ARGS__, 17) X(__VA_ARGS__, 18) X(__VA_ARGS__, 19) X(__VA_ARGS__, 20)        \
   X(__VA_ARGS__, 21) X(__VA_ARGS__, 22) X(__VA_ARGS__, 23) X(__VA_ARGS__, 24) X(__VA_ARGS__, 25)        \
   X(__VA_ARGS__, 26) X(__VA_ARGS__, 27) X(__VA_ARGS__, 28) X(__VA_ARGS__, 29) X(__VA_ARGS__, 30)        \
-  X(__VA_ARGS__, 31)
+  X(__VA_ARGS__, 31) EACH_EMPTY_SET(X, __VA_ARGS__)
