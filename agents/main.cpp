@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
+#include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
@@ -25,13 +25,7 @@ int main(int argc, char** argv) {
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
     auto node = std::make_shared<AgentNode>(bus, scenario, robot, incarnation,
                                             std::make_shared<PlanningScratch>(scenario));
-    // The process keeps running: if it exited, a supervisor would restart it, and the new instance would take
-    // the robot from the later agent.
-    node->on_superseded([robot](bool is_superseded) {
-      fmt::print(stderr, "agent-{}: {}\n", robot,
-                 is_superseded ? "superseded: a later agent drives this robot; this one stays silent"
-                               : "the robot obeys this agent after all");
-    });
+    log_events_of(*node);
     return node;
   };
   return run_process(argc, argv, program);

@@ -36,7 +36,7 @@ void Coordinator::begin_epoch(Epoch epoch) {
 std::optional<Verdict> Coordinator::on_registration(const Registration& registration) {
   if (!is_active()) return std::nullopt;
   if (!ledger_.has_robot(registration.robot)) {
-    ++invalid_;
+    drops_.count(DropReason::kUnknownRobot);
     return std::nullopt;
   }
   Verdict answer;
@@ -44,7 +44,10 @@ std::optional<Verdict> Coordinator::on_registration(const Registration& registra
   answer.epoch = epoch_;
   answer.request_sent_at = registration.sent_at;
   answer.reasons.fill(register_agent(registration));
-  if (answer.reasons.front() == msg::Reason::REASON_MALFORMED) ++invalid_;
+  if (const msg::Reason reason = answer.reasons.front(); reason != msg::Reason::REASON_GRANTED)
+    drops_.count(reason == msg::Reason::REASON_MALFORMED ? DropReason::kMalformedRegistration
+                                                         : DropReason::kRefusedRegistration,
+                 registration.robot);
   return answer;
 }
 
@@ -58,8 +61,9 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   const Incarnation agent = registration.incarnation;
   if (record.registered && agent == record.incarnation) return msg::Reason::REASON_GRANTED;
   if (record.registered && agent < record.incarnation) return msg::Reason::REASON_OLD_INCARNATION;
-  if (!record.registered || ledger_.is_quarantined(robot)) {
-    // The robot obeys the new agent, so it can execute no version that the registration does not list.
+  const bool is_quarantined = ledger_.is_quarantined(robot);
+  if (is_quarantined && !ends_quarantine(registration, record)) return msg::Reason::REASON_QUARANTINED;
+  if (!record.registered || is_quarantined) {
     ledger_.register_robot(robot, versions);
     if (!record.registered && !record.attested) --unregistered_count_;
     record.registered = true;
@@ -78,10 +82,17 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   return msg::Reason::REASON_GRANTED;
 }
 
+// A robot that obeys a new agent executes no version of an earlier one that the registration does not list.
+// But the registration may have been sent before the robot contradicted the ledger under that agent.
+bool Coordinator::ends_quarantine(const Registration& registration, const Record& record) const {
+  return registration.incarnation > record.contradicted_under ||
+         ledger_.lists_reported(registration.robot, registration.versions->versions());
+}
+
 bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
   if (!is_active()) return true;
   if (!ledger_.has_robot(feedback.robot) || !ends_at_rest(feedback.executing)) {
-    ++invalid_;
+    drops_.count(DropReason::kMalformedFeedback, feedback.robot);
     return true;
   }
   Record& record = record_of(feedback.robot);
@@ -93,8 +104,15 @@ bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
     ledger_.on_lifted(feedback.robot, feedback.valid_at, feedback.robot_incarnation);
     return true;
   }
-  return ledger_.on_executing(feedback.executing, feedback.valid_at, feedback.is_off_reference,
-                              feedback.robot_incarnation) != FactOutcome::kContradiction;
+  const bool was_quarantined = ledger_.is_quarantined(feedback.robot);
+  const FactOutcome outcome = ledger_.on_executing(feedback.executing, feedback.valid_at,
+                                                   feedback.is_off_reference, feedback.robot_incarnation);
+  if (outcome == FactOutcome::kStale) drops_.count(DropReason::kLateFact, feedback.robot);
+  if (outcome != FactOutcome::kContradiction) return true;
+  drops_.count(DropReason::kContradictoryFact, feedback.robot);
+  record.contradicted_under =
+      std::max(was_quarantined ? record.contradicted_under : Incarnation{0}, feedback.obeyed_incarnation);
+  return false;
 }
 
 void Coordinator::on_world(std::span<const RobotObservation> robots, Time valid_at, Time now) {
@@ -113,9 +131,17 @@ void Coordinator::find_silent(Time now) {
   for (const RobotId robot : ledger_.roster()) {
     Record& record = record_of(robot);
     const auto moves = [=](const Version& version) { return version.trajectory.end() > now; };
-    record.silent = record.registered && record.heard_at &&
-                    now - *record.heard_at > std::max(kMaxSilence, 2 * record.longest_gap) &&
-                    std::ranges::any_of(ledger_.versions(robot), moves);
+    const auto is_later = [=](const Version& version) {
+      return version.trajectory.start() > now + kMaxSilence;
+    };
+    const auto versions = ledger_.versions(robot);
+    const bool has_fallen_silent = record.heard_at &&
+                                   now - *record.heard_at > std::max(kMaxSilence, 2 * record.longest_gap) &&
+                                   std::ranges::any_of(versions, moves);
+    // The robot's clock has jumped ahead, and its own stop is dated by it. The ledger does not say where it
+    // is until then.
+    const bool is_ahead = !versions.empty() && std::ranges::all_of(versions, is_later);
+    record.silent = record.registered && (has_fallen_silent || is_ahead);
     silent_count_ += record.silent;
   }
 }
@@ -132,7 +158,7 @@ bool Coordinator::on_attestation(RobotId robot) {
 std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
   if (!is_active()) return std::nullopt;
   if (!ledger_.has_robot(proposal.robot)) {
-    ++invalid_;
+    drops_.count(DropReason::kUnknownRobot);
     return std::nullopt;
   }
   Record& record = record_of(proposal.robot);
@@ -142,7 +168,9 @@ std::optional<Verdict> Coordinator::on_proposal(const Proposal& proposal) {
   verdict.proposal_number = proposal.number;
   verdict.request_sent_at = proposal.sent_at;
   if (const auto refusal = refusal_reason(proposal, record); refusal != msg::Reason::REASON_GRANTED) {
-    if (refusal == msg::Reason::REASON_MALFORMED) ++invalid_;
+    drops_.count(refusal == msg::Reason::REASON_MALFORMED ? DropReason::kMalformedProposal
+                                                          : DropReason::kRefusedProposal,
+                 proposal.robot);
     verdict.reasons.fill(refusal);
     return verdict;
   }
@@ -215,7 +243,6 @@ msg::CoordinatorState Coordinator::state() const {
   state.proposals(proposals_);
   state.grants(grants_);
   state.denials(denials_);
-  state.invalid(invalid_);
   const auto conflicts = ledger_.conflicts();
   state.conflicts(static_cast<std::uint32_t>(conflicts.size()));
   if (!conflicts.empty()) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/protocol/drop_counters.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "coordinator/displaced_robots.hpp"
@@ -44,13 +45,16 @@ class Coordinator {
   const Ledger& ledger() const { return ledger_; }
   const DisplacedRobots& displaced() const { return displaced_; }
   /// A robot that should be in motion is silent if no fact has arrived for kMaxSilence, or for twice the
-  /// longest gap of late, so that a slow network does not silence robots.
+  /// longest gap of late, so that a slow network does not silence robots. So is one of which all versions
+  /// begin later than that.
   bool is_silent(RobotId robot) const { return records_[robot].silent; }
   static constexpr Duration kMaxSilence{50'000'000};
   /// Whether any robot is displaced or silent.
   bool has_uncontrolled_robots() const { return displaced_.any() || silent_count_ > 0; }
 
   msg::CoordinatorState state() const;
+  /// Messages that were not used, in all epochs.
+  const DropCounters& drops() const { return drops_; }
 
  private:
   static constexpr std::size_t kVerdictHistory = 8;
@@ -63,13 +67,16 @@ class Coordinator {
     std::optional<Time> heard_at;  // when the last fact arrived
     Duration longest_gap{0};       // between facts lately
     Incarnation incarnation = 0;
-    VersionNumber newest_number = 0;  // highest version number proposed so far
+    Incarnation contradicted_under = 0;  // latest agent that the robot obeyed when it contradicted the ledger
+    VersionNumber newest_number = 0;     // highest version number proposed so far
     std::array<Verdict, kVerdictHistory> verdicts;
     std::uint64_t verdict_count = 0;  // verdicts in this incarnation
   };
 
   Record& record_of(RobotId robot) { return records_[robot]; }
   msg::Reason register_agent(const Registration& registration);
+  /// Whether an agent's registration ends its robot's quarantine.
+  bool ends_quarantine(const Registration& registration, const Record& record) const;
   const Verdict* find_verdict(const Record& record, VersionNumber proposal_number) const;
   void decide(const Proposal& proposal, Record& record, Verdict& verdict);
   msg::Reason refusal_reason(const Proposal& proposal, const Record& record) const;
@@ -83,7 +90,8 @@ class Coordinator {
   Epoch epoch_;
   std::size_t unregistered_count_, silent_count_ = 0;
   std::vector<Record> records_;  // by robot
-  std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0, invalid_ = 0;
+  std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0;
+  DropCounters drops_;
 };
 
 }  // namespace sidestep

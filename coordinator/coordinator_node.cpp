@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
-#include <fmt/format.h>
-
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/protocol/reason_text.hpp"
 #include "coordinator/ledger_pages.hpp"
 
 namespace sidestep {
@@ -28,27 +27,45 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       self_(self),
       cycle_(scenario.cycle),
       failover_(self, is_standby, bus.now()),
-      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch()) {
+      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch()),
+      counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
+                [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
-      take(decode(message, id, bus_.now()));
+      take(decode(message, id, bus_.now()), DropReason::kMalformedFeedback, id);
     });
   }
-  bus_.subscribe(topics::kCoordinator,
-                 [this](const msg::CoordinatorState& message) { take(decode(message, bus_.now())); });
-  bus_.subscribe(topics::kRegistration,
-                 [this](const msg::Registration& message) { take(decode(message, bus_.now())); });
-  bus_.subscribe(topics::kProposal,
-                 [this](const msg::Proposal& message) { take(decode(message, bus_.now())); });
+  bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& message) {
+    take(decode(message, bus_.now()), DropReason::kMalformedCoordinatorState);
+  });
+  bus_.subscribe(topics::kRegistration, [this](const msg::Registration& message) {
+    take(decode(message, bus_.now()), DropReason::kMalformedRegistration);
+  });
+  bus_.subscribe(topics::kProposal, [this](const msg::Proposal& message) {
+    take(decode(message, bus_.now()), DropReason::kMalformedProposal);
+  });
   bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world(message); });
   bus_.subscribe(topics::kAttestation,
                  [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
   update_failover();
   publish_state_periodically();
   publish_ledger();
+}
+
+void CoordinatorNode::on_event(LogLevel min_level, OnLogEvent callback) {
+  events_.set_listener(min_level, std::move(callback));
+  report_role();
+}
+
+void CoordinatorNode::report_role() {
+  if (failover_.is_active())
+    events_.report(LogLevel::kInfo, {}, "begins epoch {}: {}", failover_.epoch(),
+                   describe(failover_.cause()));
+  else
+    events_.report(LogLevel::kInfo, {}, "stands by: {}", describe(failover_.cause()));
 }
 
 template <typename Message>
@@ -59,11 +76,19 @@ void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
 }
 
 template <typename Decoded>
-void CoordinatorNode::take(const std::optional<Decoded>& decoded) {
+void CoordinatorNode::take(const std::optional<Decoded>& decoded, DropReason reason,
+                           std::optional<RobotId> robot) {
   if (decoded)
     handle(*decoded);
   else
-    ++invalid_;
+    drops_.count(reason, robot);
+}
+
+void CoordinatorNode::count_drops(DropCounters& drops) const {
+  drops.add(drops_);
+  drops.add(coordinator_.drops());
+  drops.count(DropReason::kImplausibleEpoch, std::nullopt, failover_.invalid());
+  drops.count(DropReason::kFrequentEpoch, std::nullopt, failover_.too_frequent());
 }
 
 void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
@@ -72,36 +97,53 @@ void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
 }
 
 void CoordinatorNode::handle(const Registration& registration) {
-  observe_epoch(registration.robot, registration.epoch);
+  observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
   const bool was_granting = coordinator_.is_granting();
-  if (const auto verdict = coordinator_.on_registration(registration)) answer(*verdict);
+  if (const auto verdict = coordinator_.on_registration(registration)) {
+    answer(*verdict);
+    report_registration(registration, *verdict);
+  }
   if (coordinator_.is_granting() != was_granting) publish_state();
 }
 
+void CoordinatorNode::report_registration(const Registration& registration, const Verdict& verdict) const {
+  const RobotId robot = registration.robot;
+  if (verdict.reasons.front() == msg::Reason::REASON_GRANTED)
+    events_.report(LogLevel::kDebug, robot, "robot {} is registered by its agent of incarnation {}", robot,
+                   registration.incarnation);
+  else
+    events_.report(LogLevel::kDebug, robot,
+                   "the registration of robot {} by its agent of incarnation {} is refused: {}", robot,
+                   registration.incarnation, to_text(verdict.reasons.front()));
+}
+
 void CoordinatorNode::handle(const Feedback& feedback) {
-  observe_epoch(feedback.robot, feedback.obeyed_epoch);
+  observe_epoch(feedback.robot, feedback.obeyed_epoch, EpochHolder::kRobot);
   if (!feedback.is_absent()) heard_at_[feedback.robot] = bus_.now();
   const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
   if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
-  report(fmt::format("robot {} is quarantined: it executes version {}, which it was never granted",
-                     feedback.robot, feedback.executing.number));
+  events_.report(LogLevel::kWarning, feedback.robot,
+                 "robot {} executes version {}, which it was never granted", feedback.robot,
+                 feedback.executing.number);
   publish_state();
 }
 
 void CoordinatorNode::on_world(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
-  if (message.header().sender() != static_cast<std::uint32_t>(Sender::kVision) ||
-      valid_at > bus_.now() + kMaxVisionAhead) {
-    ++invalid_;
+  const bool is_from_vision = message.header().sender() == static_cast<std::uint32_t>(Sender::kVision);
+  if (!is_from_vision || valid_at > bus_.now() + kMaxVisionAhead) {
+    drops_.count(is_from_vision ? DropReason::kFutureWorld : DropReason::kMalformedWorld);
     return;
   }
   observations_.clear();
   for (const msg::TrackedRobot& robot : message.robots()) {
     const auto observation = decode(robot, bus_.now());
-    if (observation && observation->observed_at <= bus_.now() + Ledger::kMaxClockDifference)
-      observations_.push_back(*observation);
+    if (!observation)
+      drops_.count(DropReason::kMalformedObservation);
+    else if (observation->observed_at > bus_.now() + Ledger::kMaxClockDifference)
+      drops_.count(DropReason::kFutureObservation);
     else
-      ++invalid_;
+      observations_.push_back(*observation);
   }
   const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
   coordinator_.on_world(observations_, valid_at, bus_.now());
@@ -112,30 +154,35 @@ void CoordinatorNode::on_world(const msg::WorldState& message) {
 void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
   const RobotId robot = message.robot();
   if (message.header().sender() != static_cast<std::uint32_t>(Sender::kOperator)) {
-    ++invalid_;
+    drops_.count(DropReason::kMalformedAttestation);
     return;
   }
   if (!coordinator_.is_active()) return;
   const auto heard = heard_at_.find(robot);
   if (heard != heard_at_.end() && bus_.now() - heard->second < kSilence) {
-    report(fmt::format("robot {} reports that it is on the floor: its attested absence is ignored", robot));
+    events_.report(LogLevel::kWarning, robot,
+                   "robot {} reports that it is on the floor: its attested absence is ignored", robot);
+    drops_.count(DropReason::kRefusedAttestation, robot);
   } else if (coordinator_.on_attestation(robot)) {
-    report(fmt::format("an operator attests that robot {} is absent; valid in epoch {}", robot,
-                       coordinator_.epoch()));
+    events_.report(LogLevel::kWarning, robot,
+                   "an operator attests that robot {} is absent; valid in epoch {}", robot,
+                   coordinator_.epoch());
     publish_state();
   } else {
-    report(fmt::format("robot {} is not missing: its attested absence is ignored", robot));
+    events_.report(LogLevel::kWarning, robot, "robot {} is not missing: its attested absence is ignored",
+                   robot);
+    drops_.count(DropReason::kRefusedAttestation);
   }
 }
 
 void CoordinatorNode::handle(const Proposal& proposal) {
-  observe_epoch(proposal.robot, proposal.epoch);
+  observe_epoch(proposal.robot, proposal.epoch, EpochHolder::kAgent);
   if (const auto verdict = coordinator_.on_proposal(proposal)) answer(*verdict);
 }
 
-void CoordinatorNode::observe_epoch(RobotId robot, Epoch epoch) {
+void CoordinatorNode::observe_epoch(RobotId robot, Epoch epoch, EpochHolder holder) {
   if (!coordinator_.ledger().has_robot(robot)) return;
-  failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now());
+  failover_.on_obeyed_epoch(epoch, coordinator_.is_granting(), bus_.now(), robot, holder);
   apply_epoch();
 }
 
@@ -147,6 +194,8 @@ void CoordinatorNode::answer(const Verdict& verdict) {
 void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
+  changes_.reset();
+  report_role();
   publish_state();
 }
 
@@ -159,8 +208,9 @@ void CoordinatorNode::update_failover() {
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
-  state.invalid(state.invalid() + failover_.invalid() + invalid_);
+  encode(failover_.cause(), state);
   publish(state_writer_, state);
+  changes_.update(state, coordinator_.ledger().conflicts(), bus_.now());
 }
 
 void CoordinatorNode::publish_state_periodically() {

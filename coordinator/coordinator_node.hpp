@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"
+#include "coordinator/state_changes.hpp"
 
 namespace sidestep {
 
@@ -23,28 +24,30 @@ class CoordinatorNode {
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
-  /// Sets a callback for events that an operator should know of, in plain words.
-  void on_event(std::function<void(const std::string&)> callback) { on_event_ = std::move(callback); }
+  /// Sets a callback for events of at least a level. It is called at once with the reason of this
+  /// coordinator's role.
+  void on_event(LogLevel min_level, OnLogEvent callback);
 
   const Coordinator& coordinator() const { return coordinator_; }
+  void count_drops(DropCounters& drops) const;
 
  private:
   template <typename Message>
   void publish(Writer<Message>& writer, Message& message);
-  /// Handles a decoded message; counts it as invalid if decoding failed.
+  /// Handles a decoded message; counts it if decoding failed.
   template <typename Decoded>
-  void take(const std::optional<Decoded>& decoded);
+  void take(const std::optional<Decoded>& decoded, DropReason reason, std::optional<RobotId> robot = {});
   void handle(const CoordinatorHeartbeat& heartbeat);
   void handle(const Registration& registration);
   void handle(const Feedback& feedback);
   void handle(const Proposal& proposal);
   void on_world(const msg::WorldState& message);
   void on_attestation(const msg::AbsenceAttestation& message);
-  void report(const std::string& event) {
-    if (on_event_) on_event_(event);
-  }
-  /// Records the epoch that an agent or a robot obeys.
-  void observe_epoch(RobotId robot, Epoch epoch);
+  /// Reports in which epoch this coordinator is active, or that it stands by, and why.
+  void report_role();
+  void report_registration(const Registration& registration, const Verdict& verdict) const;
+  /// Records the epoch that a robot or its agent obeys.
+  void observe_epoch(RobotId robot, Epoch epoch, EpochHolder holder);
   void answer(const Verdict& verdict);
   /// Adopts the epoch of failover_, or stands by if failover_ does, and publishes the new state.
   void apply_epoch();
@@ -61,11 +64,13 @@ class CoordinatorNode {
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
-  std::function<void(const std::string&)> on_event_;
+  EventReporter events_;
+  StateChanges changes_{events_};
   std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
   std::vector<RobotObservation> observations_;  // of the last world state
   int standby_periods_ = 0;                     // heartbeat periods while standing by
-  std::uint64_t invalid_ = 0;                   // messages that decoding refused
+  DropCounters drops_;                          // messages that this node has not used
+  CounterPublisher counters_;
 };
 
 }  // namespace sidestep

@@ -77,6 +77,12 @@ bool Ledger::is_quarantined(RobotId robot) const {
   return has_robot(robot) && !entries_[index_of(robot)].quarantined.empty();
 }
 
+bool Ledger::lists_reported(RobotId robot, std::span<const Version> versions) const {
+  const Version& reported = entries_[index_of(robot)].quarantined.back();
+  return std::ranges::any_of(
+      versions, [&](const Version& v) { return v.number == reported.number && is_same(v, reported); });
+}
+
 void Ledger::Entry::quarantine(const Version& reported) {
   quarantined.assign(set.versions().begin(), set.versions().end());
   quarantined.push_back(reported);
@@ -88,12 +94,6 @@ bool Ledger::Entry::may_forget() {
   if (++agreeing < kFactsUntilReleased) return false;
   release();
   return true;
-}
-
-void Ledger::Entry::store_former(const VersionSet& before, Time left_at) {
-  for (const Version& version : before.versions()) {
-    if (!set.find(version.number)) former.add(version, left_at);
-  }
 }
 
 void Ledger::register_robot(RobotId robot, std::span<const Version> versions) {
@@ -157,14 +157,14 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
     }
     return FactOutcome::kApplied;
   }
-  const VersionSet before = entry.set;
+  const auto store_former = [&](const Version& version) { entry.former.add(version, at); };
   if (is_own_stop) {
+    std::ranges::for_each(versions, store_former);
     entry.set.clear();
     entry.set.add(executing);
   } else {
-    entry.set.forget(executing.number, at);
+    entry.set.forget(executing.number, at, store_former);
   }
-  entry.store_former(before, at);
   update_bounds(index_of(executing.robot));
   if (is_own_stop)
     find_conflicts(executing.robot);
@@ -177,9 +177,7 @@ void Ledger::on_lifted(RobotId robot, Time at, Incarnation life) {
   Entry& entry = entry_of(robot);
   entry.lifted_at = life == entry.lifted_life ? std::max(entry.lifted_at, at) : at;
   entry.lifted_life = life;
-  const VersionSet before = entry.set;
-  entry.set.forget_started(at);
-  entry.store_former(before, at);
+  entry.set.forget_started(at, [&](const Version& version) { entry.former.add(version, at); });
   if (!entry.quarantined.empty()) {
     const Version reported = entry.quarantined.back();
     entry.quarantined.clear();

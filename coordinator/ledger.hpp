@@ -52,9 +52,12 @@ class Ledger {
   /// The versions in the order in which they were added; those that the robot was never granted come last.
   std::span<const Version> versions(RobotId robot) const;
   bool is_quarantined(RobotId robot) const;
+  /// Whether the versions include what the quarantined robot has reported last. Precondition:
+  /// is_quarantined().
+  bool lists_reported(RobotId robot, std::span<const Version> versions) const;
 
-  /// Replaces, without checks, the robot's versions by those that it may execute: when an epoch begins, or a
-  /// new agent of a quarantined robot has fenced it. Precondition: the robot is on the roster.
+  /// Replaces, without checks, the robot's versions by those that it may execute: when an epoch begins, or
+  /// when a registration ends its quarantine. Precondition: the robot is on the roster.
   void register_robot(RobotId robot, std::span<const Version> versions);
 
   /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
@@ -100,8 +103,6 @@ class Ledger {
     void release() { quarantined.clear(); }
     /// Counts a fact that agrees with the set. Whether the robot is not quarantined, or no longer.
     bool may_forget();
-    /// Stores the versions that are no longer in the set.
-    void store_former(const VersionSet& before, Time left_at);
   };
   std::size_t index_of(RobotId robot) const;
   Entry& entry_of(RobotId robot) { return entries_[index_of(robot)]; }

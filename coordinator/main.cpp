@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/core.h>
 #include <optional>
 
+#include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -29,9 +29,7 @@ int main(int argc, char** argv) {
   program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const CoordinatorIdentity self{own_number(), static_cast<Incarnation>(to_ns(bus.now()))};
     auto node = std::make_shared<CoordinatorNode>(bus, scenario, self, is_standby);
-    node->on_event([name = program.participant()](const std::string& event) {
-      fmt::print(stderr, "{}: {}\n", name, event);
-    });
+    log_events_of(*node);
     return node;
   };
   return run_process(argc, argv, program);

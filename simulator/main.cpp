@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
+#include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -53,8 +54,10 @@ int main(int argc, char** argv) {
   program.process = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::Bus& bus,
                              const sidestep::Scenario& scenario) -> std::shared_ptr<void> {
-    return std::make_shared<sidestep::Nodes>(bus, scenario, options,
-                                             static_cast<sidestep::Incarnation>(sidestep::to_ns(bus.now())));
+    auto nodes = std::make_shared<sidestep::Nodes>(
+        bus, scenario, options, static_cast<sidestep::Incarnation>(sidestep::to_ns(bus.now())));
+    sidestep::log_events_of(nodes->simulator);
+    return nodes;
   };
   return sidestep::run_process(argc, argv, program);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -28,7 +29,9 @@ int run_service(int argc, char** argv) {
   program.process = [] { return static_cast<std::uint32_t>(Sender::kVision); };
   program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
     const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
-    return std::make_shared<VisionService>(bus, scenario, incarnation, options);
+    auto service = std::make_shared<VisionService>(bus, scenario, incarnation, options);
+    log_events_of(*service);
+    return service;
   };
   return run_process(argc, argv, program);
 }

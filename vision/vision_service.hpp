@@ -34,6 +34,9 @@ class VisionService {
   VisionService(const VisionService&) = delete;
   VisionService& operator=(const VisionService&) = delete;
 
+  /// Sets a callback for events of at least a level.
+  void on_event(LogLevel min_level, OnLogEvent callback) { node_.on_event(min_level, std::move(callback)); }
+
  private:
   VisionNode node_;
   std::optional<LeagueInput> league_;

@@ -21,7 +21,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       rules_(scratch_->rules),
       max_clock_difference_(from_seconds(2 * scenario.clock_bound_s)),
       cycle_(scenario.cycle),
-      tracking_bound_m_(scenario.tracking_bound_m),
+      drift_bound_m_(drift_bound_m(scenario.tracking_bound_m)),
       goal_tolerance_m_(scenario.goal_tolerance_m),
       negotiation_(robot, incarnation, scenario.cycle),
       neighbours_(robot),
@@ -42,7 +42,7 @@ bool Agent::on_feedback(const Feedback& feedback) {
 
 void Agent::update_estimate(const Feedback& feedback) {
   estimate_ = feedback.estimate;
-  max_dead_reckoning_m_ = max_dead_reckoning_m(feedback.uncertainty, tracking_bound_m_);
+  max_dead_reckoning_m_ = max_dead_reckoning_m(feedback.uncertainty, drift_bound_m_);
   neighbours_.set_horizon(estimate_.position_m, page_horizon_m());
   const VersionNumber stop = feedback.is_off_reference ? feedback.executing.number : 0;
   reference_losses_ += stop > last_own_stop_;
@@ -115,6 +115,19 @@ Command Agent::command(Time now) {
   return command;
 }
 
+AgentActivity Agent::activity(Time now) const {
+  return {negotiation_.is_fenced(),
+          negotiation_.is_superseded(),
+          negotiation_.incarnation(),
+          negotiation_.is_registered(),
+          negotiation_.epoch(),
+          wait_reason(now),
+          goal_index_,
+          arrived_,
+          recovery_.is_active(),
+          is_escaping_};
+}
+
 msg::AgentStatus Agent::status(Time now) const {
   msg::AgentStatus status;
   status.robot(robot_.id);
@@ -136,8 +149,18 @@ msg::AgentStatus Agent::status(Time now) const {
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);
   status.denials(n.counts().denials);
-  status.invalid(n.counts().invalid + neighbours_.invalid() + obstacles_.invalid() + invalid_);
   return status;
+}
+
+void Agent::count_drops(DropCounters& drops) const {
+  const Negotiation::Counts& counts = negotiation_.counts();
+  drops.count(DropReason::kUnproposedGrant, std::nullopt, counts.unproposed_grants);
+  drops.count(DropReason::kUnexpectedVerdict, std::nullopt, counts.unexpected_verdicts);
+  drops.count(DropReason::kLateFact, std::nullopt, counts.late_facts);
+  drops.count(DropReason::kOldEpoch, std::nullopt, counts.old_epochs);
+  drops.count(DropReason::kFutureObservation, std::nullopt, invalid_);
+  drops.count(DropReason::kFutureObstacles, std::nullopt, obstacles_.invalid());
+  neighbours_.count_drops(drops);
 }
 
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "agents/agent/agent_changes.hpp"
 #include "agents/agent/displaced_obstacles.hpp"
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
@@ -16,6 +17,7 @@
 #include "agents/navigation/route_planner.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "idl/monitor.hpp"
 
 namespace sidestep {
@@ -82,6 +84,10 @@ class Agent {
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
+  /// Why plan() returns nothing at this time, as far as it is not because of the robot's own versions.
+  WaitReason wait_reason(Time now) const;
+  AgentActivity activity(Time now) const;
+
   /// Whether the robot is off the floor, and a rest version may be proposed where it is to be put down.
   bool needs_rest_version(Time now) const;
   /// The proposal of that rest version. Precondition: needs_rest_version().
@@ -91,7 +97,8 @@ class Agent {
   /// version until its start.
   Command command(Time now);
 
-  /// Without the durations, which the caller measures, and the messages that it could not decode.
+  void count_drops(DropCounters& drops) const;
+  /// Without the durations, which the caller measures.
   msg::AgentStatus status(Time now) const;
 
  private:
@@ -126,7 +133,7 @@ class Agent {
   const FloorRules& rules_;
   const Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
   const Duration cycle_;
-  const double tracking_bound_m_;
+  const double drift_bound_m_;
   const double goal_tolerance_m_;
   Negotiation negotiation_;
   Neighbours neighbours_;
@@ -139,6 +146,7 @@ class Agent {
   std::optional<RoutePlanner> route_planner_;  // to the current goal
   std::vector<Circle> temporary_obstacles_;    // of route_planner_, in addition to the scenario's obstacles
   DeadlockRecovery recovery_;
+  bool is_escaping_ = false;  // the last search has found only an escape from a conflict
   bool arrived_ = false;
   State estimate_;                   // the robot's own
   double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed

@@ -43,10 +43,12 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       agent_(scenario, robot, incarnation, std::move(scratch), settings),
       clocks_(budget_of(scenario), scenario.margin_m),
       world_(robot),
+      changes_(events_, robot),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
-      status_writer_(bus.advertise(topics::kStatus)) {
+      status_writer_(bus.advertise(topics::kStatus)),
+      counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
   subscribe();
   const Time now = robot_now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + cycle_offset(scenario, robot) + cycle_;
@@ -66,20 +68,24 @@ void AgentNode::subscribe() {
 
 void AgentNode::on_feedback(const msg::Feedback& message) {
   const auto feedback = decode(message, robot_, robot_now());
-  if (!accept(feedback)) return;
+  if (!accept(feedback, DropReason::kMalformedFeedback)) return;
   measure_robot_clock(*feedback);
+  const Epoch last_epoch = agent_.epoch();
   const bool is_contradicted = agent_.on_feedback(*feedback);
+  changes_.on_feedback(*feedback);
+  if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), std::nullopt);
   register_if_due();
   if (is_contradicted) negotiate_if_time();
 }
 
 void AgentNode::on_verdict(const msg::Verdict& message) {
   const auto verdict = decode(message, robot_);
-  if (!accept(verdict)) return;
+  if (!accept(verdict, DropReason::kMalformedVerdict)) return;
   clocks_.on_epoch(agent_.epoch());
   clocks_.on_verdict(*verdict, bus_.now());
   const auto result = agent_.on_verdict(*verdict, robot_now());
   if (result.round_trip) negotiation_durations_.add(*result.round_trip);
+  if (result.round_trip && verdict->granted_version == 0) changes_.on_denial(*verdict);
   if (!result.command) return;
   commanded_ = true;
   publish_command(*result.command);
@@ -94,20 +100,22 @@ void AgentNode::on_world(const msg::WorldState& message) {
 
 void AgentNode::on_obstacles(const msg::ObstacleList& message) {
   const auto list = obstacles_.decode(message);
-  if (accept(list)) agent_.on_obstacles(*list, bus_.now() + clocks_.max_robot_offset(bus_.now()));
+  if (accept(list, DropReason::kMalformedObstacles))
+    agent_.on_obstacles(*list, bus_.now() + clocks_.max_robot_offset(bus_.now()));
 }
 
 void AgentNode::on_page(const msg::LedgerPage& message) {
   const auto page = ReceivedPage::decode(message, robot_now(), bus_.attachment(&message));
-  if (accept(page)) agent_.on_page(*page);
+  if (accept(page, DropReason::kMalformedLedgerPage)) agent_.on_page(*page);
 }
 
 void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   const auto heartbeat = decode(message, robot_now());
-  if (!accept(heartbeat)) return;
+  if (!accept(heartbeat, DropReason::kMalformedCoordinatorState)) return;
   const Epoch last_epoch = agent_.epoch();
   const bool could_propose = agent_.may_propose(robot_now());
   agent_.on_coordinator_state(*heartbeat, robot_now());
+  if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), heartbeat->sender);
   if (agent_.is_superseded()) return;
   // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
@@ -123,7 +131,7 @@ void AgentNode::on_disturbance(const msg::Disturbance& message) {
   if (position.allFinite())
     agent_.on_placement(position);
   else
-    ++invalid_;
+    drops_.count(DropReason::kMalformedPlacement);
 }
 
 void AgentNode::begin_cycle() {
@@ -133,8 +141,7 @@ void AgentNode::begin_cycle() {
   next_cycle_ = cycle_after(now);
   schedule_next_cycle();
   agent_.close_cycle(now);
-  if (std::exchange(was_superseded_, agent_.is_superseded()) != agent_.is_superseded() && on_superseded_)
-    on_superseded_(agent_.is_superseded());
+  report_changes();
   if (agent_.is_superseded()) return;
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
@@ -142,6 +149,18 @@ void AgentNode::begin_cycle() {
   if (measurement_wait_ > 0) --measurement_wait_;
   register_if_due();
   if (const auto start = agent_.start_to_propose(now, next_cycle_)) negotiate(*start);
+}
+
+double AgentNode::speed_limit_mps() const {
+  return std::min(max_speed_mps_, clocks_.max_speed_mps(bus_.now()));
+}
+
+void AgentNode::report_changes() {
+  AgentActivity activity = agent_.activity(robot_now());
+  const auto offset = clocks_.robot_coordinator_offset(bus_.now());
+  if (activity.waits_for == WaitReason::kNone && !clocks_.allows_motion(bus_.now()))
+    activity.waits_for = offset ? WaitReason::kClockOutOfBound : WaitReason::kClockNotMeasured;
+  changes_.update(activity, {speed_limit_mps(), max_speed_mps_, offset}, bus_.now());
 }
 
 Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_offset(); }
@@ -219,14 +238,21 @@ void AgentNode::publish_proposal(const Proposal& proposal) {
   clocks_.on_request_sent(time_from_ns(message.header().stamp_ns()));
 }
 
+void AgentNode::count_drops(DropCounters& drops) const {
+  drops.add(drops_);
+  agent_.count_drops(drops);
+  clocks_.count_drops(drops);
+  world_.count_drops(drops);
+}
+
 void AgentNode::publish_status() {
   bus_.at(bus_.now() + kStatusPeriod, [this] { publish_status(); });
   if (agent_.is_superseded()) return;
   auto status = agent_.status(robot_now());
   status.header().sender(robot_);
   status.header().incarnation(agent_.incarnation());
-  status.invalid(status.invalid() + invalid_ + world_.invalid());
   clocks_.fill(status, bus_.now());
+  status.clock_speed_limit_mps(speed_limit_mps());
   status.negotiation(encode(negotiation_durations_));
   status.plan(encode(plan_durations_));
   status.search(encode(search_durations_));

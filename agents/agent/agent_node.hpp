@@ -2,10 +2,13 @@
 #pragma once
 
 #include "agents/agent/agent.hpp"
+#include "agents/agent/agent_changes.hpp"
 #include "agents/agent/clock_monitor.hpp"
 #include "agents/agent/obstacle_view.hpp"
 #include "agents/agent/world_view.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
 #include "common/time/histogram.hpp"
 
 namespace sidestep {
@@ -21,11 +24,11 @@ class AgentNode {
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 
-  /// Sets a callback that is called when the robot obeys a later agent (true), and if it turns out that it
-  /// does not (false). In between the node is silent.
-  void on_superseded(std::function<void(bool is_superseded)> callback) {
-    on_superseded_ = std::move(callback);
+  /// Sets a callback for events of at least a level.
+  void on_event(LogLevel min_level, OnLogEvent callback) {
+    events_.set_listener(min_level, std::move(callback));
   }
+  void count_drops(DropCounters& drops) const;
 
  private:
   void subscribe();
@@ -38,8 +41,8 @@ class AgentNode {
   void on_disturbance(const msg::Disturbance& message);
   /// Whether a message could be decoded. Counts the others.
   template <typename Value>
-  bool accept(const std::optional<Value>& decoded) {
-    invalid_ += !decoded;
+  bool accept(const std::optional<Value>& decoded, DropReason reason) {
+    if (!decoded) drops_.count(reason);
     return decoded.has_value();
   }
   void begin_cycle();
@@ -49,6 +52,9 @@ class AgentNode {
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();
   void measure_robot_clock(const Feedback& feedback);
+  /// The speed that the clocks allow, at most the robot's limit.
+  double speed_limit_mps() const;
+  void report_changes();
   Time robot_now() const;
   /// The start of this robot's first cycle after a time.
   Time cycle_after(Time now) const;
@@ -70,18 +76,19 @@ class AgentNode {
   ClockMonitor clocks_;
   WorldView world_;
   ObstacleView obstacles_;
-  std::uint64_t invalid_ = 0;  // messages that could not be decoded
-  std::function<void(bool)> on_superseded_;
-  bool was_superseded_ = false;  // at the start of the last cycle
-  Time next_cycle_;              // by the robot's clock, like all times passed to the agent
-  bool commanded_ = false;       // a command has been published in this cycle
-  int registration_wait_ = 0;    // cycles until the next registration
-  int measurement_wait_ = 0;     // cycles until the next request for a clock measurement
+  DropCounters drops_;  // messages that could not be decoded
+  EventReporter events_;
+  AgentChanges changes_;
+  Time next_cycle_;            // by the robot's clock, like all times passed to the agent
+  bool commanded_ = false;     // a command has been published in this cycle
+  int registration_wait_ = 0;  // cycles until the next registration
+  int measurement_wait_ = 0;   // cycles until the next request for a clock measurement
   DurationHistogram negotiation_durations_, plan_durations_, search_durations_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;
   Writer<msg::Proposal> proposal_writer_;
   Writer<msg::AgentStatus> status_writer_;
+  CounterPublisher counters_;
 };
 
 }  // namespace sidestep

@@ -102,13 +102,19 @@ void Agent::update_route_planner(Time now) {
                          settings_.extra_clearance_m, goal().position_m);
 }
 
-std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
+WaitReason Agent::wait_reason(Time now) const {
   // A time far in the future means that a clock has been set.
   const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
-  const bool is_lost = !is_recent(last_fix_, settings_.max_fix_age) ||
-                       !is_recent(obstacles_.complete_at(), settings_.max_fix_age) ||
-                       !is_recent(watched_until_, settings_.max_watch_age);
-  if (!negotiation_.may_propose(now) || negotiation_.is_absent() || is_lost) return std::nullopt;
+  if (const WaitReason reason = negotiation_.wait_reason(now); reason != WaitReason::kNone) return reason;
+  if (negotiation_.is_absent()) return WaitReason::kNone;
+  if (!is_recent(last_fix_, settings_.max_fix_age)) return WaitReason::kNotSeen;
+  if (!is_recent(obstacles_.complete_at(), settings_.max_fix_age)) return WaitReason::kNoObstacleList;
+  if (!is_recent(watched_until_, settings_.max_watch_age)) return WaitReason::kNotWatched;
+  return WaitReason::kNone;
+}
+
+std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
+  if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
   const double inflation_m = inflation_from(base, start);
@@ -176,7 +182,7 @@ double Agent::inflation_from(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
   const bool was_observed_at_rest = last_fix_ > base.trajectory.end();
   // The robot may not have received the observation yet.
-  const bool agrees = (last_fix_m_ - estimate_.position_m).norm() <= tracking_bound_m_;
+  const bool agrees = (last_fix_m_ - estimate_.position_m).norm() <= drift_bound_m_;
   return is_at_rest && was_observed_at_rest && agrees ? 0 : base.inflation_m;
 }
 
@@ -197,7 +203,9 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   TrajectoryIndex& others = scratch_->others;
   neighbours_.collect(query.at_start.position_m, search_horizon_m(), others);
   SearchResult result = scratch_->safety_search.search(query, others, rng_);
-  if (result.count == 0) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
+  const bool is_blocked = result.count == 0;
+  if (is_blocked) result = search_escape(query, negotiation_.base_at(query.start), others, rules_);
+  is_escaping_ = is_blocked && result.count > 0;
   const bool is_waiting =
       plan.intent.velocity_duration_s > 0 &&
       plan.intent.velocity_mps.norm() < settings_.waiting_speed_fraction * rules_.limits.speed_mps;

@@ -68,7 +68,6 @@ void ClockMonitor::fill(msg::AgentStatus& status, Time now) const {
   const auto offset = robot_coordinator_offset(now);
   status.clock_offset_s(offset ? to_seconds(offset->middle()) : 0);
   status.clock_uncertainty_s(offset ? to_seconds(offset->uncertainty()) : -1);
-  status.invalid(status.invalid() + invalid_);
   const bool is_active = status.agent_state() == msg::AgentState::AGENT_DRIVING ||
                          status.agent_state() == msg::AgentState::AGENT_WAITING;
   if (is_active && is_beyond_bound(now)) status.agent_state(msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);

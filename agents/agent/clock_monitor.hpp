@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/motion/safety_budget.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "common/time/clock_offset.hpp"
@@ -51,6 +52,9 @@ class ClockMonitor {
   Duration max_robot_offset(Time now) const;
   /// Offset of the robot's clock from the coordinator's.
   std::optional<OffsetInterval> robot_coordinator_offset(Time now) const;
+  void count_drops(DropCounters& drops) const {
+    drops.count(DropReason::kImplausibleClock, std::nullopt, invalid_);
+  }
   /// Fills in the clock fields of a status, and its state if the clocks forbid motion.
   void fill(msg::AgentStatus& status, Time now) const;
 

@@ -49,7 +49,10 @@ void Negotiation::apply_fact(const Feedback& feedback) {
   const std::size_t before = held_.versions().size();
   const bool has_advanced = executing.number != executing_;
   if (feedback.is_absent()) {
-    if (at < latest_fact_) return;
+    if (at < latest_fact_) {
+      ++counts_.late_facts;
+      return;
+    }
     held_.forget_started(at);
     executing_ = 0;
   } else if (held_.forget(executing.number, at)) {
@@ -58,7 +61,10 @@ void Negotiation::apply_fact(const Feedback& feedback) {
   } else {
     // A later fact about an older version shows that an earlier fact was false: robots never go back.
     const auto is_older = [&](const Version& held) { return held.number < executing.number; };
-    if (!std::ranges::any_of(held_.versions(), is_older) && at <= latest_fact_) return;  // late
+    if (!std::ranges::any_of(held_.versions(), is_older) && at <= latest_fact_) {
+      ++counts_.late_facts;
+      return;
+    }
     latest_fact_ = std::max(latest_fact_, at);
     return rebase(executing);
   }
@@ -86,6 +92,7 @@ void Negotiation::finish_fencing(const Feedback& feedback) {
   held_.clear();
   if (!feedback.is_absent()) held_.add(feedback.executing);
   executing_ = feedback.executing.number;
+  latest_fact_ = feedback.valid_at;
   next_number_ = std::max({next_number_, feedback.obeyed_incarnation, executing_ + 1});
 }
 
@@ -120,6 +127,7 @@ void Negotiation::check_assumptions() {
 void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
   if (heartbeat.epoch == 0) return;  // a standby
   if (heartbeat.epoch < epoch_) {
+    ++counts_.old_epochs;
     // This coordinator does not know the highest epoch, and no other one is alive: a registration tells it
     // the epoch.
     if (now - last_heartbeat_at_ > kCoordinatorTimeout) registration_pending_ = true;
@@ -131,10 +139,16 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   granting_ = heartbeat.mode == msg::CoordinatorMode::COORDINATOR_GRANTING;
 }
 
-bool Negotiation::may_propose(Time now) const {
-  return fenced_ && !is_superseded() && robot_epoch_ == epoch_ && !registration_pending_ && granting_ &&
-         now - last_heartbeat_at_ < kCoordinatorTimeout && !held_.is_full() &&
-         silent_cycles_ <= lead() + kMaxSilentCycles;
+WaitReason Negotiation::wait_reason(Time now) const {
+  if (!fenced_) return WaitReason::kNotFenced;
+  if (is_superseded()) return WaitReason::kSuperseded;
+  if (epoch_ == 0 || now - last_heartbeat_at_ >= kCoordinatorTimeout) return WaitReason::kNoCoordinator;
+  if (robot_epoch_ != epoch_) return WaitReason::kEpochNotObeyed;
+  if (registration_pending_) return WaitReason::kNotRegistered;
+  if (!granting_) return missing_ ? WaitReason::kNotRegistered : WaitReason::kOthersNotRegistered;
+  if (silent_cycles_ > lead() + kMaxSilentCycles) return WaitReason::kRobotSilent;
+  if (held_.is_full()) return WaitReason::kTooManyVersions;
+  return WaitReason::kNone;
 }
 
 bool Negotiation::has_upcoming_version(Time now) const {
@@ -197,11 +211,18 @@ Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNum
 }
 
 Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time now) {
-  if (is_superseded() || verdict.epoch != epoch_) return {};
+  if (is_superseded() || verdict.epoch != epoch_) {
+    ++counts_.unexpected_verdicts;
+    return {};
+  }
   const auto sent = std::ranges::find_if(proposals_, [&](const SentProposal& a) {
     return !a.answered && a.number() == verdict.proposal_number;
   });
-  if (sent == proposals_.end()) return {};
+  if (sent == proposals_.end()) {
+    // The answer to a registration has no number.
+    counts_.unexpected_verdicts += verdict.proposal_number != 0;
+    return {};
+  }
   const bool was_open = std::exchange(sent->open, false);
   sent->answered = true;
   const Duration round_trip = now - sent->proposed_at;
@@ -216,7 +237,7 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
   const auto granted = std::find_if(sent->candidates.begin(), end,
                                     [&](const Version& v) { return v.number == verdict.granted_version; });
   if (granted == end) {
-    ++counts_.invalid;
+    ++counts_.unproposed_grants;
     return {};
   }
   ++counts_.grants;

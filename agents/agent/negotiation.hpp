@@ -6,6 +6,7 @@
 #include <span>
 
 #include "agents/agent/proposal_pacing.hpp"
+#include "agents/agent/wait_reason.hpp"
 #include "common/motion/version_set.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
@@ -28,7 +29,8 @@ class Negotiation {
     std::uint64_t cycles = 0;  ///< cycles for which the agent has proposed
     std::uint64_t missed = 0;  ///< cycles without a verdict in time
     std::uint64_t lost = 0;    ///< forwarded versions that the robot did not activate
-    std::uint64_t invalid = 0;
+    // Messages that were not used.
+    std::uint64_t unproposed_grants = 0, unexpected_verdicts = 0, late_facts = 0, old_epochs = 0;
   };
 
   Negotiation(RobotId robot, Incarnation incarnation, Duration cycle);
@@ -55,7 +57,14 @@ class Negotiation {
            (registration_pending_ || missing_);
   }
   /// Whether the coordinator may grant a proposal at this time.
-  bool may_propose(Time now) const;
+  bool may_propose(Time now) const { return wait_reason(now) == WaitReason::kNone; }
+  /// Why not, as far as the negotiation knows.
+  WaitReason wait_reason(Time now) const;
+  /// The coordinator has registered this agent in the epoch, as far as is known.
+  bool is_registered() const {
+    return fenced_ && epoch_ != 0 && robot_epoch_ == epoch_ && !registration_pending_ && !missing_ &&
+           last_heartbeat_at_ != Time{};
+  }
   /// Whether a version that starts after `now` is granted already, or awaits its verdict.
   bool has_upcoming_version(Time now) const;
   /// The start of a version that should be proposed again because the answer is overdue.

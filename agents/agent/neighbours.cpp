@@ -23,6 +23,11 @@ void Neighbours::set_horizon(const Vec2& centre, double horizon) {
   horizon_m_ = horizon;
 }
 
+void Neighbours::count_drops(DropCounters& drops) const {
+  drops.count(DropReason::kMalformedVersion, std::nullopt, invalid_);
+  drops.count(DropReason::kLatePage, std::nullopt, late_);
+}
+
 bool Neighbours::can_skip(const ReceivedPage& received) const {
   const std::uint32_t index = received.index();
   return index < kTrackedPages && (nonempty_pages_ >> index & 1) == 0 &&
@@ -36,7 +41,10 @@ void Neighbours::on_page(const ReceivedPage& received) {
   Page& page = pages_[index];
   const bool is_older =
       received.epoch() < page.epoch || (received.epoch() == page.epoch && received.number() <= page.number);
-  if (is_older) return;
+  if (is_older) {
+    ++late_;
+    return;
+  }
   page.epoch = received.epoch();
   page.number = received.number();
   store(received, page);

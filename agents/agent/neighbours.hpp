@@ -7,6 +7,7 @@
 
 #include "agents/agent/received_page.hpp"
 #include "agents/safety/trajectory_index.hpp"
+#include "common/protocol/drop_counters.hpp"
 
 namespace sidestep {
 
@@ -35,6 +36,7 @@ class Neighbours {
   std::span<const Vec2> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
+  void count_drops(DropCounters& drops) const;
 
  private:
   struct Page {
@@ -64,7 +66,7 @@ class Neighbours {
   std::vector<Stationary> stationary_;
   std::vector<Vec2> positions_;
   std::vector<const Version*> newest_;
-  std::uint64_t invalid_ = 0;
+  std::uint64_t invalid_ = 0, late_ = 0;
 };
 
 }  // namespace sidestep

@@ -20,7 +20,7 @@ PoseFix fix_from(const msg::TrackedRobot& message) {
 WorldObservations WorldView::decode(const msg::WorldState& message) {
   WorldObservations world;
   if (message.header().sender() != static_cast<std::uint32_t>(Sender::kVision)) {
-    ++invalid_;
+    ++foreign_;
     return world;
   }
   world.vision = message.header().incarnation();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/protocol/drop_counters.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "idl/vision.hpp"
 
@@ -27,14 +28,19 @@ class WorldView {
   /// Leaves out an invalid observation, and counts it.
   [[nodiscard]] WorldObservations decode(const msg::WorldState& message);
   std::uint64_t invalid() const { return invalid_; }
+  void count_drops(DropCounters& drops) const {
+    drops.count(DropReason::kMalformedWorld, std::nullopt, foreign_);
+    drops.count(DropReason::kMalformedObservation, std::nullopt, invalid_);
+  }
 
  private:
   /// The robot's entry, or nullptr.
   const msg::TrackedRobot* find_self(const msg::WorldState& message);
 
   RobotId robot_;
-  std::size_t index_ = 0;  // of the robot in the last world that contained it
-  std::uint64_t invalid_ = 0;
+  std::size_t index_ = 0;      // of the robot in the last world that contained it
+  std::uint64_t invalid_ = 0;  ///< observations of the robot
+  std::uint64_t foreign_ = 0;  ///< world states that are not from vision
 };
 
 }  // namespace sidestep

@@ -12,8 +12,8 @@ constexpr double kMinScaleDeviation = 1e-6;
 
 }  // namespace
 
-double max_dead_reckoning_m(const LocalisationUncertainty& uncertainty, double tracking_bound_m) {
-  const double max_deviation_m = tracking_bound_m / kStandardDeviations;
+double max_dead_reckoning_m(const LocalisationUncertainty& uncertainty, double drift_bound_m) {
+  const double max_deviation_m = drift_bound_m / kStandardDeviations;
   const double remaining_m2 =
       max_deviation_m * max_deviation_m - uncertainty.position_error_rms_m * uncertainty.position_error_rms_m;
   return remaining_m2 > 0

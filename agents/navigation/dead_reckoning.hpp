@@ -6,9 +6,7 @@
 namespace sidestep {
 
 /// How far a robot may drive without being observed before three standard deviations of its position error
-/// reach `tracking_bound_m`, the largest permitted distance from its reference. 0 means that the robot has to
-/// wait for an observation.
-[[nodiscard]] double max_dead_reckoning_m(const LocalisationUncertainty& uncertainty,
-                                          double tracking_bound_m);
+/// reach `drift_bound_m`. 0 means that the robot has to wait for an observation.
+[[nodiscard]] double max_dead_reckoning_m(const LocalisationUncertainty& uncertainty, double drift_bound_m);
 
 }  // namespace sidestep

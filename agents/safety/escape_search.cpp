@@ -61,6 +61,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
   const Surroundings surroundings = find_surroundings(query, base, others, rules);
   if (!surroundings.is_in_conflict) return result;
   const double min_separation_m = rules.radius_m + rules.margin_m + query.inflation_m;
+  const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
   const auto try_acceleration = [&](const Vec2& desired) {
     if (result.count == SearchResult::kMaxCandidates) return;
     const Vec2 acceleration = limit_acceleration(desired, query.at_start.velocity_mps,
@@ -73,9 +74,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;
     result.checks += static_cast<int>(surroundings.others.size());
-    if (!may_follow(trajectory, query.stop, query.uncontrolled, min_separation_m,
-                    rules.limits.deceleration_mps2))
-      return;
+    if (!uncontrolled.allow(trajectory, min_separation_m, rules.limits.deceleration_mps2)) return;
     if (!is_passively_safe_from_all(trajectory, query.moving, min_separation_m)) return;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) return;
     if (check_workspace_with_escape(candidate, base.trajectory, rules) != Validity::kValid) return;

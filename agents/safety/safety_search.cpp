@@ -83,13 +83,13 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   find_nearby(query, disc, others);
   find_moving(query, disc);
   compare(query, desired_bounds, max_deviation_m, result.checks);
+  const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
   while (const auto index = candidates_.take_nearest(settings_.spread_mps2)) {
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, candidates_.acceleration(*index), query.hold_time,
                              limits.deceleration_mps2);
     if (!is_allowed(trajectory, candidates_.is_certainly_clear(*index))) continue;
-    if (!may_follow(trajectory, query.stop, query.uncontrolled, min_separation_m, limits.deceleration_mps2))
-      continue;
+    if (!uncontrolled.allow(trajectory, min_separation_m, limits.deceleration_mps2)) continue;
     if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m)) continue;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) continue;
     candidates_.accept(*index);

@@ -26,7 +26,7 @@ struct SearchQuery {
   Duration hold_time{};                              ///< how long the acceleration is held before the stop
   double inflation_m = 0;                            ///< added to the robot's radius
   std::span<const MovingObstacle> moving{};          ///< obstacles that the robot must be passively safe from
-  std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of, see may_follow()
+  std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of
   const Trajectory* stop =
       nullptr;  ///< what the robot follows otherwise; not null if `uncontrolled` is not empty
   std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored

@@ -73,14 +73,21 @@ bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& 
 
 }  // namespace
 
-bool may_follow(const Trajectory& candidate, const Trajectory* stop, std::span<const UncontrolledBody> bodies,
-                double min_separation_m, double deceleration_mps2) {
-  return std::ranges::all_of(bodies, [&](const UncontrolledBody& body) {
-    if (!rests_well(candidate.rest_position_m(), stop->rest_position_m(), body)) return false;
-    return is_passively_safe(candidate, body.reach, min_separation_m) ||
-           (!avoids(*stop, candidate.start(), body) &&
-            avoids_by_driving_on(candidate, body, deceleration_mps2));
-  });
+UncontrolledBodies::UncontrolledBodies(std::span<const UncontrolledBody> bodies, const Trajectory* stop,
+                                       Time start)
+    : bodies_(bodies), stop_(stop) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) hits_stop_[i] = !avoids(*stop_, start, bodies_[i]);
+}
+
+bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separation_m,
+                               double deceleration_mps2) const {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const UncontrolledBody& body = bodies_[i];
+    if (!rests_well(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
+    if (is_passively_safe(candidate, body.reach, min_separation_m)) continue;
+    if (!hits_stop_[i] || !avoids_by_driving_on(candidate, body, deceleration_mps2)) return false;
+  }
+  return true;
 }
 
 }  // namespace sidestep

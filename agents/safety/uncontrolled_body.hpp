@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bitset>
 #include <span>
 
 #include "agents/safety/moving_obstacle.hpp"
+#include "common/motion/version.hpp"
 
 namespace sidestep {
 
@@ -26,13 +28,26 @@ struct UncontrolledBody {
 /// on and then rests.
 [[nodiscard]] bool avoids(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
 
-/// Whether a robot that otherwise follows `stop` may follow `candidate`. The candidate must
-/// - rest beside the body's path, or farther out than the stop, by as much as it rests nearer to the body,
-/// and
-/// - be at rest before the body could reach the robot (passive safety), or, if the body would hit the robot
-///   where it stops, lead out of its way if the robot then drives on for up to 0.4 s.
-[[nodiscard]] bool may_follow(const Trajectory& candidate, const Trajectory* stop,
-                              std::span<const UncontrolledBody> bodies, double min_separation_m,
-                              double deceleration_mps2);
+/// Which candidates a robot may follow that otherwise follows `stop`. What follows from the stop alone is
+/// decided once, in the constructor.
+class UncontrolledBodies {
+ public:
+  /// All candidates begin at `start`. `stop` is not null if there are bodies, of which there is at most one
+  /// per robot. Both must outlive this object.
+  UncontrolledBodies(std::span<const UncontrolledBody> bodies, const Trajectory* stop, Time start);
+
+  /// Whether the candidate, with respect to every body,
+  /// - rests beside the body's path, or farther out than the stop, by as much as it rests nearer to the body,
+  /// and
+  /// - is at rest before the body could reach the robot (passive safety), or, if the body would hit the robot
+  ///   where it stops, leads out of its way if the robot then drives on for up to 0.4 s.
+  [[nodiscard]] bool allow(const Trajectory& candidate, double min_separation_m,
+                           double deceleration_mps2) const;
+
+ private:
+  std::span<const UncontrolledBody> bodies_;
+  const Trajectory* stop_;
+  std::bitset<kMaxRobots> hits_stop_;  ///< by body: it would hit the robot that stops
+};
 
 }  // namespace sidestep

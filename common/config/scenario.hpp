@@ -28,9 +28,10 @@ struct RobotSpec {
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;   ///< visited in order; at least one
-  Duration clock_offset{0};  ///< robot's clock - host's clock
-  bool is_absent = false;    ///< not on the floor at the start; start_m is then the robot's own estimate
+  std::vector<Goal> goals;     ///< visited in order; at least one
+  Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
+  double clock_drift_ppm = 0;  ///< by which the robot's clock gains on the host's
+  bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate
 };
 
 /// A moving obstacle outside the protocol: an opponent or a person.
@@ -57,15 +58,16 @@ struct ImageSpec {
 /// The cameras form a grid above the field and see overlapping rectangles of it.
 struct VisionSpec {
   double rate_hz = 60;
-  int columns = 2;                   ///< cameras along the length
-  int rows = 1;                      ///< cameras along the width
-  double overlap_m = 0.5;            ///< how far a camera's view extends beyond its grid cell
-  double position_noise_m = 0.0005;  ///< standard deviation per axis
-  double heading_noise_rad = 0.005;  ///< standard deviation
-  Duration delay{10'000'000};        ///< from capture to publication
-  double miss_probability = 0;       ///< probability that a visible robot is not in a frame
-  double ghost_probability = 0;      ///< probability of a false detection in a frame
-  std::optional<ImageSpec> images;   ///< nullopt: the simulator publishes detections with the noise above
+  int columns = 2;                        ///< cameras along the length
+  int rows = 1;                           ///< cameras along the width
+  double overlap_m = 0.5;                 ///< how far a camera's view extends beyond its grid cell
+  double position_noise_m = 0.0005;       ///< standard deviation per axis
+  double heading_noise_rad = 0.005;       ///< standard deviation
+  Duration delay{10'000'000};             ///< from capture to publication
+  double miss_probability = 0;            ///< probability that a visible robot is not in a frame
+  double ghost_probability = 0;           ///< probability of a false detection of a robot in a frame
+  double ghost_obstacle_probability = 0;  ///< the same for a false obstacle
+  std::optional<ImageSpec> images;  ///< nullopt: the simulator publishes detections with the noise above
 };
 
 struct OdometrySpec {
@@ -102,7 +104,7 @@ struct Scenario {
   std::optional<BallSpec> ball;
   MotionLimits limits;
   double radius_m = 0.09;
-  double margin_m = 0.01;  ///< at least budget_of().required_margin_m()
+  double margin_m = 0.014;  ///< at least budget_of().required_margin_m()
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   double clock_bound_s = SafetyBudget{}.clock_bound_s;
   Duration cycle{16'666'667};

@@ -115,6 +115,7 @@ void read_vision(YamlMap& map, VisionSpec& vision) {
     inner.read_ms("delay_ms", {0, 1000}, vision.delay);
     inner.read("miss_probability", kProbability, vision.miss_probability);
     inner.read("ghost_probability", kProbability, vision.ghost_probability);
+    inner.read("ghost_obstacle_probability", kProbability, vision.ghost_obstacle_probability);
     read_images(inner, vision.images);
   });
 }

@@ -8,6 +8,7 @@
 
 #include "common/messaging/attachment.hpp"
 #include "common/messaging/topics.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
@@ -68,6 +69,14 @@ class Bus {
     on_refused_ = std::move(on_refused);
   }
 
+  /// Counts something that this process has dropped, other than for a reason that its node counts.
+  void count_drop(DropReason reason) { drops_.count(reason); }
+  /// Adds what this bus, or its process outside the node, has dropped.
+  void count_drops(DropCounters& drops) const {
+    drops.add(drops_);
+    add_drops(drops);
+  }
+
   /// `robot` selects the channel of a topic with one channel per robot (TopicInfo::per_robot); other topics
   /// ignore it.
   template <typename Message>
@@ -99,16 +108,20 @@ class Bus {
   virtual std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) = 0;
   virtual void make_reader(const TopicInfo& topic, const std::string& channel,
                            std::function<void(const void*)> callback) = 0;
+  /// Adds what the bus itself has dropped.
+  virtual void add_drops(DropCounters& drops) const { (void)drops; }
 
  private:
-  bool has_same_rules(const TopicInfo& topic, const msg::Header& header) const {
+  bool has_same_rules(const TopicInfo& topic, const msg::Header& header) {
     if (!on_refused_ || !topic.is_checked || header.rules() == rules_) return true;
+    count_drop(DropReason::kOtherRules);
     on_refused_(topic, header);
     return false;
   }
 
   std::uint64_t rules_ = 0;
   std::function<void(const TopicInfo&, const msg::Header&)> on_refused_;
+  DropCounters drops_;
 };
 
 }  // namespace sidestep

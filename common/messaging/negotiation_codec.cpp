@@ -88,12 +88,27 @@ std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message,
       message.header().sender() == static_cast<std::uint32_t>(Sender::kCoordinator) + message.coordinator() &&
       is_plausible(message, now) &&
       is_enumerator(message.coordinator_mode(), msg::CoordinatorMode::COORDINATOR_GRANTING) &&
-      sidestep::is_plausible(time_from_ns(message.watched_until_ns()), now) &&
+      decode_role_cause(message) && sidestep::is_plausible(time_from_ns(message.watched_until_ns()), now) &&
       std::ranges::all_of(message.notices(), [=](const auto& notice) { return is_checked(notice, now); });
   if (!is_valid) return std::nullopt;
   return CoordinatorHeartbeat{
       message.header().sender(),  message.header().incarnation(),           message.epoch(),
       message.coordinator_mode(), time_from_ns(message.watched_until_ns()), message.notices()};
+}
+
+std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message) {
+  if (!is_enumerator(message.role_reason(), msg::RoleReason::ROLE_SHARED_EPOCH) ||
+      message.role_peer() >= kMaxRobots || message.role_silence_ns() < 0)
+    return std::nullopt;
+  return RoleCause{message.role_reason(), message.role_peer(), Duration{message.role_silence_ns()},
+                   message.role_learned_epoch()};
+}
+
+void encode(const RoleCause& cause, msg::CoordinatorState& message) {
+  message.role_reason(cause.reason);
+  message.role_peer(cause.peer);
+  message.role_silence_ns(cause.silence.count());
+  message.role_learned_epoch(cause.learned);
 }
 
 msg::Proposal encode(const Proposal& proposal) {

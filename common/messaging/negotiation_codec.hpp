@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/role_cause.hpp"
 
 namespace sidestep {
 
@@ -20,9 +21,15 @@ namespace sidestep {
 /// reasons are known.
 [[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
 /// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator of that
-/// number, or if its epoch, its mode, a time or the place of a displaced robot is implausible.
-/// Precondition: the message outlives the result.
+/// number, or if its epoch, its mode, the reason of its role, a time or the place of a displaced robot is
+/// implausible. Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
+
+/// Decodes the untrusted reason of a coordinator's role. Returns nullopt if it is unknown or refers to no
+/// possible process.
+[[nodiscard]] std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message);
+/// Writes it into a coordinator's state.
+void encode(const RoleCause& cause, msg::CoordinatorState& message);
 
 /// Without the header's message_number and stamp_ns, which Writer::publish() sets.
 msg::Proposal encode(const Proposal& proposal);

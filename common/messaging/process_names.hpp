@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/messaging/senders.hpp"
@@ -27,5 +29,9 @@ inline std::string process_name(std::uint32_t id) {
     return coordinator_process(static_cast<int>(id - static_cast<std::uint32_t>(Sender::kCoordinator)));
   return "process " + std::to_string(id);
 }
+
+/// The id of the process with such a name, also of "coordinator 0"; nullopt if it is no agent, coordinator,
+/// vision or simulator.
+[[nodiscard]] std::optional<std::uint32_t> process_id(const std::string& name);
 
 }  // namespace sidestep

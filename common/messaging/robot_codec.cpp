@@ -85,8 +85,7 @@ std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time
   feedback.heading_rad = message.heading_rad();
   feedback.tracking_error_m = message.tracking_error_m();
   feedback.uncertainty = uncertainty;
-  feedback.counts = {message.activated(), message.refused_late(), message.refused_base(),
-                     message.refused_fenced(), message.refused_malformed()};
+  feedback.activated = message.activated();
   return feedback;
 }
 
@@ -127,11 +126,7 @@ msg::Feedback encode(const Feedback& feedback) {
   message.tracking_error_m(feedback.tracking_error_m);
   message.position_error_rms_m(feedback.uncertainty.position_error_rms_m);
   message.odometry_scale_stddev(feedback.uncertainty.odometry_scale_stddev);
-  message.activated(feedback.counts.activated);
-  message.refused_late(feedback.counts.refused_late);
-  message.refused_base(feedback.counts.refused_base);
-  message.refused_fenced(feedback.counts.refused_fenced);
-  message.refused_malformed(feedback.counts.refused_malformed);
+  message.activated(feedback.activated);
   return message;
 }
 

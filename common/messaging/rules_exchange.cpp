@@ -21,7 +21,6 @@ RulesExchange::RulesExchange(Bus& bus, std::uint32_t process, const SharedRules&
 }
 
 void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header) {
-  ++refused_;
   // The simulator speaks for its robots with their numbers.
   const bool is_simulator = std::string_view(topic.writer) == "simulator";
   report(is_simulator ? static_cast<std::uint32_t>(Sender::kSimulator) : header.sender(), header.rules(), {});
@@ -31,6 +30,7 @@ void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header
 void RulesExchange::on_rules(const msg::SharedRules& message) {
   const auto others =
       SharedRules::parse({reinterpret_cast<const char*>(message.text().data()), message.text().size()});
+  if (!others) bus_.count_drop(DropReason::kMalformedRules);
   if (!others || others->fingerprint() == rules_.fingerprint()) return;
   report(message.process(), others->fingerprint(), rules_.differences(*others));
   publish_if_due();

@@ -31,9 +31,6 @@ class RulesExchange {
   RulesExchange(const RulesExchange&) = delete;
   RulesExchange& operator=(const RulesExchange&) = delete;
 
-  /// Number of messages refused so far.
-  std::uint64_t refused() const { return refused_; }
-
  private:
   using Fingerprint = SharedRules::Fingerprint;
   void on_refused(const TopicInfo& topic, const msg::Header& header);
@@ -49,7 +46,6 @@ class RulesExchange {
   std::optional<Time> published_at_;
   /// By process and fingerprint: whether the differences have been reported.
   std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;
-  std::uint64_t refused_ = 0;
 };
 
 /// "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".

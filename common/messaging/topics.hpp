@@ -119,6 +119,10 @@ inline constexpr Topic<msg::AbsenceAttestation> kAttestation{
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", "agent", Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
+/// What each process has refused, dropped or received too late.
+inline constexpr Topic<msg::Counters> kCounters{
+    {"counters", "any process", Qos::kState, false, true,
+     message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
 inline constexpr Topic<msg::Disturbance> kDisturbance{
     {"disturbance", "fault", Qos::kEvent, false, false,
      message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};

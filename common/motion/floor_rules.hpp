@@ -15,7 +15,7 @@ struct FloorRules {
   std::vector<Circle> obstacles;
   MotionLimits limits;
   double radius_m = 0.09;
-  double margin_m = 0.01;
+  double margin_m = 0.014;
 
   /// The minimum distance between the centres of two robots without inflation.
   double min_separation_m() const { return 2 * radius_m + margin_m; }

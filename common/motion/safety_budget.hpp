@@ -6,9 +6,13 @@
 
 namespace sidestep {
 
+/// The part of the tracking bound that drift may use up until the next observation. A robot that is farther
+/// from its reference must return within 25 ms; the rest of the bound is for the time until it has.
+constexpr double drift_bound_m(double tracking_bound_m) { return 0.6 * tracking_bound_m; }
+
 /// The errors that the margin between two robots has to cover; derived in coordinator/PROTOCOL.md.
 struct SafetyBudget {
-  double tracking_bound_m = 0.003;  ///< maximum distance of a robot from its reference
+  double tracking_bound_m = 0.005;  ///< maximum distance of a robot from its reference
   double clock_bound_s = 0.0005;    ///< maximum offset of a robot's clock from the coordinator's
   double speed_mps = 2;             ///< maximum speed of a robot
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 #include "common/motion/version.hpp"
 
@@ -22,14 +23,47 @@ class VersionSet {
   /// The fact "executing f at time t": removes all versions older than f, and all newer ones that start at or
   /// before t, because the firmware can no longer switch to them. False, without effect, if f is not in the
   /// set: the fact is late or false.
-  bool forget(VersionNumber executing, Time at);
+  bool forget(VersionNumber executing, Time at) {
+    return forget(executing, at, [](const Version&) {});
+  }
+  /// The same; calls back with every version before it is removed.
+  template <typename Callback>
+  bool forget(VersionNumber executing, Time at, Callback on_removal) {
+    if (!find(executing)) return false;
+    remove_if(
+        [executing, at](const Version& version) {
+          return version.number < executing ||
+                 (version.number > executing && version.trajectory.start() <= at);
+        },
+        on_removal);
+    return true;
+  }
   /// The fact "executing nothing at time t": removes all versions that start at or before t.
-  void forget_started(Time at);
+  void forget_started(Time at) {
+    forget_started(at, [](const Version&) {});
+  }
+  /// The same; calls back with every version before it is removed.
+  template <typename Callback>
+  void forget_started(Time at, Callback on_removal) {
+    remove_if([at](const Version& version) { return version.trajectory.start() <= at; }, on_removal);
+  }
   void clear() { count_ = 0; }
 
   std::span<const Version> versions() const { return {versions_.data(), count_}; }
 
  private:
+  template <typename Predicate, typename Callback>
+  void remove_if(Predicate is_removed, Callback on_removal) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (is_removed(versions_[i]))
+        on_removal(std::as_const(versions_[i]));
+      else if (kept++ != i)
+        versions_[kept - 1] = versions_[i];
+    }
+    count_ = kept;
+  }
+
   std::array<Version, kCapacity> versions_;
   std::size_t count_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "common/log/log.hpp"
 #include "common/messaging/impairment.hpp"
 #include "common/messaging/senders.hpp"
 
@@ -23,12 +24,13 @@ std::string describe(const LinkQuality& quality) {
 
 }  // namespace
 
-void apply_network_faults(DdsBus& bus, std::uint32_t target, const std::string& name) {
-  bus.subscribe(topics::kNetworkFault, std::function([&bus, target, name](const msg::NetworkFault& fault) {
+void apply_network_faults(DdsBus& bus, std::uint32_t target) {
+  bus.subscribe(topics::kNetworkFault, std::function([&bus, target](const msg::NetworkFault& fault) {
                   if (fault.target() != target && fault.target() != kEveryProcess) return;
                   const auto quality = link_quality_from(fault);
-                  fmt::print(stderr, "{}: network fault: {}\n", name,
-                             quality ? describe(*quality) : "invalid, ignored");
+                  log(LogLevel::kWarning,
+                      "network fault: " + (quality ? describe(*quality) : "invalid, ignored"));
+                  if (!quality) bus.count_drop(DropReason::kMalformedNetworkFault);
                   // A seed per process, so that the losses are independent.
                   if (quality) bus.impair(*quality, fault.seed() ^ (target * 0x9e3779b97f4a7c15ULL));
                 }));

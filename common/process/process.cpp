@@ -6,12 +6,34 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/log/log.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/log_option.hpp"
 #include "common/process/network_faults.hpp"
 #include "common/process/stop_signals.hpp"
 
 namespace sidestep {
+namespace {
+
+/// Calls `work` and returns its exit code, or the exit code of the exception that it throws, after reporting
+/// that.
+int run_reporting(const std::function<int()>& work, const std::function<void(const std::string&)>& report) {
+  try {
+    return work();
+  } catch (const ConfigError& error) {
+    report(error.what());
+    return kExitUsage;
+  } catch (const std::invalid_argument& error) {
+    report(error.what());
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    report(error.what());
+    return kExitFailure;
+  }
+}
+
+}  // namespace
 
 void add_dds_options(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99").check(in_range(0, 99)).show_default();
@@ -20,19 +42,8 @@ void add_dds_options(const CliCommand& app, DdsSettings& settings) {
 }
 
 int run_guarded(const std::string& name, const std::function<int()>& work) {
-  const auto report = [&name](const std::exception& error, int exit_code) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return exit_code;
-  };
-  try {
-    return work();
-  } catch (const ConfigError& error) {
-    return report(error, kExitUsage);
-  } catch (const std::invalid_argument& error) {
-    return report(error, kExitUsage);
-  } catch (const std::exception& error) {
-    return report(error, kExitFailure);
-  }
+  return run_reporting(work,
+                       [&](const std::string& problem) { fmt::print(stderr, "{}: {}\n", name, problem); });
 }
 
 int run_process(int argc, char** argv, const Program& program) {
@@ -41,28 +52,32 @@ int run_process(int argc, char** argv, const Program& program) {
   app.add_version("Fast DDS " + fast_dds_version());
   std::string scenario_file;
   DdsSettings dds;
+  LogLevel log_level = LogLevel::kInfo;
   app.add_option("--scenario", scenario_file, "scenario file").required();
   add_dds_options(app, dds);
+  add_log_option(app, log_level);
   app.add_flag("--faults", dds.faults, "accept `sidestep fault network`; for tests");
   if (program.add_options) program.add_options(app);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
 
-  return run_guarded(program.name, [&] {
+  dds.participant = program.participant ? program.participant() : program.name;
+  set_up_log(dds.participant, log_level);
+  const auto work = [&] {
     const Scenario scenario = load_scenario(scenario_file);
-    dds.participant = program.participant ? program.participant() : program.name;
     DdsBus bus(dds);
     const StopSignals stop_signals([&bus] { bus.stop(); });
-    const RulesExchange rules(bus, program.process(), SharedRules(scenario), [&](const RulesMismatch& m) {
-      fmt::print(stderr, "{}: {}\n", dds.participant, describe(m));
-    });
+    const RulesExchange rules(
+        bus, program.process(), SharedRules(scenario),
+        [](const RulesMismatch& mismatch) { log(LogLevel::kWarning, describe(mismatch)); });
     const std::shared_ptr<void> nodes = program.start(bus, scenario);
-    if (dds.faults) apply_network_faults(bus, program.process(), dds.participant);
-    fmt::print(stderr, "{}: Fast DDS {}, domain {}, listening on {}\n", dds.participant, fast_dds_version(),
-               dds.domain, bus.locators());
-    fmt::print(stderr, "{}: {}\n", dds.participant, budget_line(budget_of(scenario), scenario.margin_m));
+    if (dds.faults) apply_network_faults(bus, program.process());
+    log(LogLevel::kInfo, fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(),
+                                     dds.domain, bus.locators()));
+    log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
     bus.run();
     return 0;
-  });
+  };
+  return run_reporting(work, [](const std::string& problem) { log(LogLevel::kError, problem); });
 }
 
 }  // namespace sidestep

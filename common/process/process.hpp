@@ -17,11 +17,12 @@ namespace sidestep {
 
 /// The parts of a program that differ from the others; run_process() provides the rest.
 struct Program {
-  std::string name;         ///< e.g. sidestep-agent; prefix of every message
+  std::string name;         ///< e.g. sidestep-agent
   std::string description;  ///< one sentence for --help
   /// Adds the program's own options to --scenario, --domain and --interface. May be empty.
   std::function<void(const CliCommand&)> add_options;
-  /// The name of the DDS participant, e.g. agent-3; called after the options are parsed. Empty: `name`.
+  /// The name of the DDS participant and of the process in its log, e.g. agent-3; called after the options
+  /// are parsed. Empty: `name`.
   std::function<std::string()> participant;
   /// The process id (common/messaging/senders.hpp); called after the options are parsed.
   std::function<std::uint32_t()> process;
@@ -31,7 +32,8 @@ struct Program {
 };
 
 /// The main function of a process on DDS: parses the options, loads the scenario, starts the program and runs
-/// until SIGINT or SIGTERM. Returns the exit code and prints errors on stderr as "NAME: message".
+/// until SIGINT or SIGTERM. Returns the exit code. The log of the process is on stderr, in the name of the
+/// participant.
 int run_process(int argc, char** argv, const Program& program);
 
 /// Adds --domain and --interface.

@@ -14,10 +14,11 @@ struct RobotDisturbance {
   msg::DisturbanceKind kind = msg::DisturbanceKind::DISTURBANCE_PUSH;
   Vec2 push_mps{0, 0};       ///< change of velocity
   double grip = 1;           ///< while slipping
-  Vec2 place_m{0, 0};        ///< where it is put down, or carried to
+  Vec2 place_m{0, 0};        ///< where it is put down, or carried to; or how far beside its place it is seen
   double heading_rad = 0;    ///< of the blocked wheel (body frame), or with which it is put down
   Duration clock_offset{0};  ///< of the robot's clock, ahead of the host's
-  Duration duration{0};      ///< of slipping, blocking or carrying
+  Duration duration{0};      ///< of slipping, blocking, carrying or being seen wrongly
+  RobotId other_robot = 0;   ///< with which cameras confuse it
 };
 
 }  // namespace sidestep

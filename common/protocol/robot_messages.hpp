@@ -31,15 +31,6 @@ struct LocalisationUncertainty {
   double odometry_scale_stddev = 0;  ///< standard deviation of its odometry's relative error
 };
 
-/// Versions and commands that a robot's firmware has received, by outcome.
-struct FirmwareCounts {
-  std::uint64_t activated = 0;
-  std::uint64_t refused_late = 0;
-  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
-  std::uint64_t refused_fenced = 0;
-  std::uint64_t refused_malformed = 0;
-};
-
 /// Facts from a robot: at `valid_at` it executed `executing`. See Feedback in idl/robot.idl. All times are by
 /// the robot's clock, except CommandEcho::sent_at.
 struct Feedback {
@@ -62,7 +53,7 @@ struct Feedback {
   double heading_rad = 0;
   double tracking_error_m = 0;
   LocalisationUncertainty uncertainty{};
-  FirmwareCounts counts{};
+  std::uint64_t activated = 0;  ///< versions switched to since the firmware's last restart
 
   /// The robot is off the floor and executes nothing.
   bool is_absent() const { return is_lifted && executing.number == 0; }

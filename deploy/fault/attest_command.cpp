@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/robot_notices.hpp"
@@ -12,79 +13,65 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/fault/attestation_exchange.hpp"
 #include "deploy/fault/operator_messages.hpp"
 
 namespace sidestep {
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr Duration kTimeout = 5s;  ///< longer than the period of participant announcements
-constexpr Duration kRepeat = 200ms;
 
 struct AttestOptions {
   RobotId robot = 0;
   DdsSettings dds;
 };
 
-/// Attests until no coordinator misses the robot any more.
+/// Attests until the active coordinator does not wait for the robot.
 class Attestation {
  public:
   Attestation(DdsBus& bus, RobotId robot)
-      : bus_(bus), robot_(robot), writer_(bus.advertise(topics::kAttestation)) {
+      : bus_(bus), exchange_(robot, bus.now()), writer_(bus.advertise(topics::kAttestation)) {
     bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) { on_state(state); });
-    repeat();
   }
 
-  /// The epoch for which the absence is attested; nullopt: no coordinator has accepted it.
-  std::optional<std::uint64_t> accepted_epoch() const { return accepted_epoch_; }
-  bool was_missing() const { return was_missing_; }
-  bool has_coordinator() const { return has_coordinator_; }
+  const AttestationExchange& exchange() const { return exchange_; }
+  /// Of the last state heard from an active coordinator; nullopt: none.
+  std::optional<Epoch> epoch() const { return epoch_; }
 
  private:
   void on_state(const msg::CoordinatorState& state) {
     if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
-    has_coordinator_ = true;
-    const std::vector<RobotId> missing = missing_robots(state);
-    if (std::ranges::count(missing, robot_) > 0) {
-      was_missing_ = true;
-    } else {
-      if (was_missing_) accepted_epoch_ = state.epoch();
-      bus_.stop();
-    }
+    epoch_ = state.epoch();
+    const bool is_missing = std::ranges::count(missing_robots(state), exchange_.robot()) > 0;
+    if (exchange_.update(is_missing, bus_.now())) send();
+    if (!is_missing) bus_.stop();
   }
 
-  void repeat() {
-    bus_.at(bus_.now() + kRepeat, [this] { repeat(); });
-    if (!was_missing_) return;
+  void send() {
     msg::AbsenceAttestation attestation;
-    attestation.robot(robot_);
+    attestation.robot(exchange_.robot());
     attestation.header(operator_header());
     writer_.publish(attestation, bus_.now());
   }
 
   DdsBus& bus_;
-  RobotId robot_;
+  AttestationExchange exchange_;
   Writer<msg::AbsenceAttestation> writer_;
-  bool has_coordinator_ = false, was_missing_ = false;
-  std::optional<std::uint64_t> accepted_epoch_;
+  std::optional<Epoch> epoch_;
 };
 
 int attest(const AttestOptions& options) {
   DdsBus bus(options.dds);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const Attestation attestation(bus, options.robot);
-  bus.run_until(bus.now() + kTimeout);
-  if (const auto epoch = attestation.accepted_epoch()) {
-    fmt::print("robot {} counts as absent in epoch {}, until it registers\n", options.robot, *epoch);
+  bus.run_until(bus.now() + AttestationExchange::kTimeout);
+  const AttestationExchange& exchange = attestation.exchange();
+  if (exchange.state() == AttestationExchange::State::kAccepted) {
+    fmt::print("robot {} counts as absent in epoch {}, until it registers\n", options.robot,
+               *attestation.epoch());
     return 0;
   }
-  fmt::print(
-      stderr, "sidestep: {}\n",
-      !attestation.has_coordinator() ? "no active coordinator on this domain and interface"
-      : attestation.was_missing()
-          ? fmt::format("the coordinator still waits for robot {}: it hears facts of it", options.robot)
-          : fmt::format("robot {} is not missing: the coordinator does not wait for it", options.robot));
+  const std::string reason =
+      attestation.epoch() ? exchange.reason() : "no active coordinator on this domain and interface";
+  fmt::print(stderr, "sidestep: could not attest the absence of robot {}: {}\n", options.robot, reason);
   return kExitFailure;
 }
 

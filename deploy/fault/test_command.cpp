@@ -11,6 +11,7 @@
 #include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/process/log_option.hpp"
 #include "deploy/fault/plan/fault_test.hpp"
 #include "deploy/fault/plan/junit.hpp"
 #include "deploy/fault/play/launched_test_run.hpp"
@@ -28,8 +29,10 @@ TestResult run_test(const FaultTest& test, std::uint64_t seed, const TestOptions
   const auto begin = steady_clock::now();
   TestResult result;
   try {
-    result = judged(test, options.is_over_dds ? run_over_dds(test, {options.hosts_file, dds, seed})
-                                              : run_on_sim_bus(test, seed));
+    result = judged(test, options.is_over_dds
+                              ? run_over_dds(test, {options.hosts_file, dds, seed,
+                                                    options.log_level.value_or(LogLevel::kInfo)})
+                              : run_on_sim_bus(test, seed, options.log_level.value_or(LogLevel::kOff)));
   } catch (const ConfigError&) {
     throw;  // the hosts file is invalid
   } catch (const std::exception& error) {
@@ -112,6 +115,12 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
   command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/launch/README.md")
       .needs(dds)
       .excludes(interface);
+  command
+      .add_option(
+          "--log-level", [options](const std::string& name) { options->log_level = log_level_from(name); },
+          "least severe messages of processes in the log; on SimBus the log is on stderr")
+      .check(log_level_names())
+      .show_default("info over DDS, else off");
   command.on_parsed([options, has_seeds = seeds, &action] {
     if (!has_seeds.is_given()) options->seeds.last = options->seeds.first;
     action = [options] { return run_tests(*options); };

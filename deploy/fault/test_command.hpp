@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/log/log_level.hpp"
 #include "common/process/command_line.hpp"
 #include "deploy/simulate/seed_range.hpp"
 
@@ -20,6 +21,7 @@ struct TestOptions {
   std::string hosts_file;     ///< see LaunchOptions
   std::optional<int> domain;  ///< nullopt: one that is free
   std::string interface = "127.0.0.1";
+  std::optional<LogLevel> log_level;  ///< nullopt: info over DDS, off on SimBus
 };
 
 /// Runs all tests, one after another, and prints each result with what failed and when. Returns 0 if all

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "common/log/log.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
@@ -42,13 +43,14 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
              [this](const RulesMismatch& mismatch) {
                metrics_.on_mismatch(mismatch);
-               print(describe(mismatch));
+               print(describe(mismatch), LogLevel::kWarning);
              }),
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);
   auditor_.on_violation([this](const Violation& violation) {
-    if (printed_violations_++ < AuditTotals::kMaxKept) print("audit: " + to_line(violation));
+    if (printed_violations_++ < AuditTotals::kMaxKept)
+      print("audit: " + to_line(violation), LogLevel::kError);
   });
   listen(bus_, scenario, auditor_);
   if (!options.recording_file.empty()) {
@@ -76,12 +78,13 @@ Report Launcher::run() {
     start_due_agents();
     bus_.run_until(next_poll());
     for (const ChildEvent& event : group_.poll(0ms)) handle(event);
+    print_new_epochs();
     if (!options_.is_quiet) display_.update(metrics_, bus_.now());
   }
   if (recording_) recording_->close();
   Report report = metrics_.report();
   for (const std::string& name : group_.terminate(kTerminationTimeout))
-    print(name + " did not stop in time and was killed");
+    print(name + " did not stop in time and was killed", LogLevel::kWarning);
   report.program = "run";
   report.seed = options_.seed;
   report.abort_reason = abort_reason_;
@@ -92,9 +95,18 @@ Report Launcher::run() {
   return report;
 }
 
-void Launcher::print(const std::string& line) {
-  group_.log(line);
+void Launcher::print(const std::string& line, LogLevel level) {
+  if (level >= options_.log_level) group_.log(log_line(options_.dds.participant, level, line));
   if (!options_.is_quiet) display_.print(line);
+}
+
+void Launcher::print_new_epochs() {
+  const std::vector<EpochRecord>& epochs = metrics_.epochs();
+  for (; printed_epochs_ < epochs.size(); ++printed_epochs_) {
+    const EpochRecord& epoch = epochs[printed_epochs_];
+    print(fmt::format("{} begins epoch {}: {}", epoch.coordinator, epoch.epoch, epoch.reason),
+          LogLevel::kInfo);
+  }
 }
 
 Time Launcher::next_poll() {
@@ -106,6 +118,8 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
                      const std::vector<std::string>& arguments) {
   ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, is_restarted};
   if (options_.faults) process.arguments.push_back("--faults");
+  process.arguments.push_back("--log-level");
+  process.arguments.emplace_back(to_text(options_.log_level));
   start(process, placement_.host_of(name));
   last_start_ = bus_.now();
 }
@@ -163,7 +177,8 @@ void Launcher::handle(const ChildEvent& event) {
   const Time now = bus_.now();
   metrics_.on_death(event.name, event.reason, now, event.will_restart);
   print(fmt::format("{} (pid {}) died: {}{}", event.name, event.pid, event.reason,
-                    event.will_restart ? "; it will be restarted" : ""));
+                    event.will_restart ? "; it will be restarted" : ""),
+        LogLevel::kWarning);
   const auto lines = group_.last_lines(event.name);
   for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
     if (!options_.is_quiet) display_.print("  " + lines[i]);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "deploy/launch/hosts/namespaces.hpp"
@@ -60,8 +61,9 @@ class Launcher {
   void start_twin(RobotId robot, const std::string& name);
 
  private:
-  /// Prints a line and writes it to the log.
-  void print(const std::string& line);
+  /// Prints a line, and writes it to the log if its level is high enough.
+  void print(const std::string& line, LogLevel level = LogLevel::kInfo);
+  void print_new_epochs();
   void start(const std::string& name, const std::string& program, bool is_restarted,
              const std::vector<std::string>& arguments = {});
   void start(const ProcessSpec& process, const HostSpec& host);
@@ -91,6 +93,7 @@ class Launcher {
   RunMetrics metrics_;
   Auditor auditor_;
   std::uint64_t printed_violations_ = 0;
+  std::size_t printed_epochs_ = 0;
   std::optional<RecordingWriter> recording_;
   ProgressDisplay display_;
   std::atomic<bool> is_interrupted_{false};

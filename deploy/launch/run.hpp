@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
 
 namespace sidestep {
@@ -22,6 +23,7 @@ struct RunOptions {
   std::optional<double> seconds;                  ///< overrides the scenario's time limit
   bool faults = false;                            ///< processes accept `sidestep fault network`
   std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
+  LogLevel log_level = LogLevel::kInfo;           ///< of all processes
   bool is_quiet = false;                          ///< prints nothing; the log contains everything
 };
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/process/command_line.hpp"
+#include "common/process/log_option.hpp"
 #include "common/process/process.hpp"
 #include "deploy/launch/run.hpp"
 
@@ -23,6 +24,7 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .show_default();
   command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
   add_dds_options(command, options->dds);
+  add_log_option(command, options->log_level);
   command.add_flag("--faults", options->faults,
                    "let all processes accept `sidestep fault network`; for tests");
   command.add_option("--simulator", options->simulator_options,

@@ -15,6 +15,7 @@
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/run_picture.hpp"
+#include "deploy/simulate/system/sim_log.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -102,19 +103,22 @@ int finish(const SimulateOptions& options, Report& report, const RunPicture& pic
 
 }  // namespace
 
-int simulate_trial(const SimulateOptions& options) {
+int simulate_trial(const SimulateOptions& options, bool has_faults) {
   const auto begin = steady_clock::now();
   std::optional<Scenario> scenario;
   if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
-  const Trial trial = sample_trial(options.seed, duration, scenario);
+  const Trial trial = sample_trial(options.seed, duration, scenario, has_faults);
   fmt::print("commit {}\n{}\n", kBuildCommit, scene_summary(trial.scenario));
   for (const std::string& line : to_lines(trial.plan)) fmt::print("  {}\n", line);
   RunPicture picture(trial.scenario);
   Report report;
   std::optional<SimRecorder> recorder;
   TrialHooks hooks;
-  hooks.on_start = [&](SimSystem& system) { recorder.emplace(system.network(), trial.scenario, options); };
+  hooks.on_start = [&](SimSystem& system) {
+    log_events_of(system, options.log_level);
+    recorder.emplace(system.network(), trial.scenario, options);
+  };
   hooks.on_truth = [&](const msg::GroundTruth& truth) {
     if (!options.picture_file.empty()) picture.add(truth);
   };
@@ -131,6 +135,7 @@ int simulate(const SimulateOptions& options) {
                options.scenario_file);
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
+  log_events_of(system, options.log_level);
   RunPicture picture(scenario);
   if (!options.picture_file.empty())
     system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "common/log/log_level.hpp"
+
 namespace sidestep {
 
 struct SimulateOptions {
@@ -13,16 +15,17 @@ struct SimulateOptions {
   std::string picture_file;    ///< SVG of the robots' paths; empty: none
   std::string recording_file;  ///< records all messages except images; empty: none
   std::uint64_t seed = 1;
-  std::optional<double> seconds;  ///< overrides the scenario's time limit
+  LogLevel log_level = LogLevel::kWarning;  ///< of the simulated processes, on stderr
+  std::optional<double> seconds;            ///< overrides the scenario's time limit
 };
 
 /// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the
 /// exit code as run() does. Throws ConfigError, and std::runtime_error when a file cannot be written.
 int simulate(const SimulateOptions& options);
 
-/// Runs the trial of one seed of a campaign (deploy/simulate/campaign), prints its scene and faults, and
-/// writes the report. Without a scenario file the scene is random, too. Returns and throws as simulate()
-/// does.
-int simulate_trial(const SimulateOptions& options);
+/// Runs the trial of one seed of a campaign (deploy/simulate/campaign), with or without its faults, prints
+/// its scene and faults, and writes the report. Without a scenario file the scene is random, too. Returns and
+/// throws as simulate() does.
+int simulate_trial(const SimulateOptions& options, bool has_faults);
 
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/process/command_line.hpp"
+#include "common/process/log_option.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
 #include "deploy/simulate/seed_range.hpp"
 #include "deploy/simulate/simulate.hpp"
@@ -28,6 +29,7 @@ void read_seeds(const std::string& text, CampaignOptions& campaign) {
 int run_seeds(Options& options) {
   options.campaign.scenario_file = options.run.scenario_file;
   options.campaign.report_file = options.run.report_file;
+  options.campaign.has_faults = options.faults != "none";
   if (options.run.seconds) options.campaign.duration = from_seconds(*options.run.seconds);
   return run_campaign(options.campaign);
 }
@@ -40,9 +42,9 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   CampaignOptions& campaign = options->campaign;
   const CliCommand command = root.add_subcommand(
       "simulate", "Runs a scenario in one process and virtual time; the same seed gives the same run");
-  const Option scenario = command.add_option(
-      "SCENARIO", run.scenario_file,
-      "scenario file, see deploy/scenarios/README.md [with --faults random: a random scene]");
+  const Option scenario =
+      command.add_option("SCENARIO", run.scenario_file,
+                         "scenario file, see deploy/scenarios/README.md [with --faults: a random scene]");
   command.add_option("--report", run.report_file,
                      "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
   const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
@@ -52,14 +54,15 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
       command.add_option("--seed", run.seed, "random seed").check(non_negative()).show_default();
   command
       .add_option("--seconds", run.seconds,
-                  "time limit [the scenario's]; with --faults random: duration of a run [60]")
+                  "time limit [the scenario's]; with --faults: duration of a run [60]")
       .check(positive());
   const Option faults =
       command
           .add_option("--faults", options->faults,
                       "random: the seed determines random faults: network loss, delays, duplicates and "
-                      "partitions, pauses and kills of processes, clock offsets, and disturbances of robots")
-          .check(one_of({"random"}));
+                      "partitions, pauses and kills of processes, wrong clocks, and disturbances of robots; "
+                      "none: a run of the same kind without faults")
+          .check(one_of({"random", "none"}));
   const Option seeds =
       command
           .add_option(
@@ -76,12 +79,14 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
       .add_option("--results", campaign.results_file,
                   "file with one result per seed; an interrupted campaign resumes from it")
       .needs(seeds);
+  const Option log_level = add_log_option(command, run.log_level);
+  seeds.excludes(log_level);
   command.on_parsed([=, &action] {
     const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
     if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
     action = [=] {
       if (has_seeds) return run_seeds(*options);
-      return has_faults ? simulate_trial(options->run) : simulate(options->run);
+      return has_faults ? simulate_trial(options->run, options->faults != "none") : simulate(options->run);
     };
   });
 }

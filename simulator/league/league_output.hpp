@@ -25,6 +25,7 @@ class LeagueOutput {
   void send_geometry();
 
   Bus& bus_;
+  const EventReporter& events_;
   LeagueFrames frames_;
   league::MulticastSender sender_;
   std::uint64_t next_report_ = 1;

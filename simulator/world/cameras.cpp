@@ -10,6 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kMinRadius_m = 0.001;
+constexpr double kMaxGhostRadius_m = 0.2;
 // Slightly below pi, so that no heading wraps.
 constexpr double kMaxGhostHeading_rad = 3.14159265358979;
 
@@ -48,17 +49,9 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
   frame.camera(static_cast<std::uint32_t>(camera));
   frame.captured_at_ns(to_ns(now));
   frame.robots().clear();
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    if (!robots[i].is_on_floor() || !view.sees(robots[i].position_m()) || rng_.chance(spec_.miss_probability))
-      continue;
-    msg::RobotDetection seen;
-    seen.robot(ids_[i]);
-    seen.x_m(robots[i].position_m().x() + spec_.position_noise_m * rng_.normal());
-    seen.y_m(robots[i].position_m().y() + spec_.position_noise_m * rng_.normal());
-    seen.heading_rad(wrapped_rad(robots[i].heading_rad() + spec_.heading_noise_rad * rng_.normal()));
-    seen.confidence(confidence(rng_));
-    frame.robots().push_back(seen);
-  }
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    detect_robot(i, robots[i], objects.sight_errors.empty() ? SightError() : objects.sight_errors[i], view,
+                 frame);
   if (rng_.chance(spec_.ghost_probability) && frame.robots().size() < topics::kDetections.type.max_elements) {
     add_ghost(view, frame);
   }
@@ -74,6 +67,21 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
   detect_opponents(view, objects.opponents, frame);
 }
 
+void Cameras::detect_robot(std::size_t robot, const Body& body, const SightError& error,
+                           const CameraView& view, msg::DetectionFrame& frame) {
+  if (!body.is_on_floor()) return;
+  SightError::Pose pose = error.frozen.value_or(SightError::Pose{body.position_m(), body.heading_rad()});
+  pose.position_m += error.offset_m;
+  if (!view.sees(pose.position_m) || rng_.chance(spec_.miss_probability)) return;
+  msg::RobotDetection seen;
+  seen.robot(ids_[error.shown_as.value_or(robot)]);
+  seen.x_m(pose.position_m.x() + spec_.position_noise_m * rng_.normal());
+  seen.y_m(pose.position_m.y() + spec_.position_noise_m * rng_.normal());
+  seen.heading_rad(wrapped_rad(pose.heading_rad + spec_.heading_noise_rad * rng_.normal()));
+  seen.confidence(confidence(rng_));
+  frame.robots().push_back(seen);
+}
+
 void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> opponents,
                                msg::DetectionFrame& frame) {
   seen_opponents_.clear();
@@ -83,6 +91,11 @@ void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> o
     const double y = opponent.centre_m.y() + spec_.position_noise_m * rng_.normal();
     const double radius = opponent.radius_m + spec_.position_noise_m * rng_.normal();
     seen_opponents_.push_back({{x, y}, std::max(kMinRadius_m, radius)});
+  }
+  if (spec_.ghost_obstacle_probability > 0 && rng_.chance(spec_.ghost_obstacle_probability)) {
+    const double x = rng_.uniform(view.low_m.x(), view.high_m.x());
+    const double y = rng_.uniform(view.low_m.y(), view.high_m.y());
+    seen_opponents_.push_back({{x, y}, rng_.uniform(kMinRadius_m, kMaxGhostRadius_m)});
   }
   set_obstacles(seen_opponents_, frame);
 }

@@ -9,6 +9,7 @@
 #include "common/random/rng.hpp"
 #include "idl/vision.hpp"
 #include "simulator/world/body.hpp"
+#include "simulator/world/sight_error.hpp"
 
 namespace sidestep {
 
@@ -26,6 +27,7 @@ struct VisibleObjects {
   std::span<const Body> robots;  ///< in the scenario's order
   const Vec2* ball_m = nullptr;
   std::span<const Circle> opponents{};
+  std::span<const SightError> sight_errors{};  ///< of the robots; empty: none
 };
 
 /// The cameras over the field. They capture in turn, each once per period, and detect robots, ball and
@@ -43,6 +45,8 @@ class Cameras {
   std::span<const CameraView> views() const { return views_; }
 
  private:
+  void detect_robot(std::size_t robot, const Body& body, const SightError& error, const CameraView& view,
+                    msg::DetectionFrame& frame);
   void detect_opponents(const CameraView& view, std::span<const Circle> opponents,
                         msg::DetectionFrame& frame);
   void add_ghost(const CameraView& view, msg::DetectionFrame& frame);

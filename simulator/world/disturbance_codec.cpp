@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMaxPush_mps = 10;
 constexpr double kMaxAngle_rad = 100;
+constexpr double kMaxSightError_m = 10;
 constexpr Duration kMaxDuration = std::chrono::hours(1);
 
 // False for NaN.
@@ -35,6 +36,12 @@ bool is_valid(const RobotDisturbance& disturbance, const Field& field, double ro
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
       return has_valid_duration(disturbance) && disturbance.duration > Duration{0} &&
              disturbance.place_m.allFinite() && field.contains(disturbance.place_m, robot_radius_m);
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
+      return has_valid_duration(disturbance) && is_within(disturbance.place_m.x(), kMaxSightError_m) &&
+             is_within(disturbance.place_m.y(), kMaxSightError_m);
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
+      return has_valid_duration(disturbance);
     case msg::DisturbanceKind::DISTURBANCE_LIFT:
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
@@ -55,7 +62,8 @@ std::optional<RobotDisturbance> decode(const msg::Disturbance& message, const Fi
                                      {message.x_m(), message.y_m()},
                                      message.heading_rad(),
                                      Duration{message.clock_offset_ns()},
-                                     Duration{message.duration_ns()}};
+                                     Duration{message.duration_ns()},
+                                     message.other_robot()};
   return is_valid(disturbance, field, robot_radius_m) ? std::optional(disturbance) : std::nullopt;
 }
 
@@ -71,6 +79,7 @@ msg::Disturbance encode(const RobotDisturbance& disturbance) {
   message.heading_rad(disturbance.heading_rad);
   message.clock_offset_ns(disturbance.clock_offset.count());
   message.duration_ns(disturbance.duration.count());
+  message.other_robot(disturbance.other_robot);
   return message;
 }
 

@@ -157,8 +157,9 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   if (is_rebooting_ && may_stop) restart(now);
 
   State reference = executing_.trajectory.state_at(now);
-  if (must_stop(estimator_.position_m() - reference.position_m, now) && may_stop) {
-    start_own_stop(now);
+  const auto reason = must_stop(estimator_.position_m() - reference.position_m, now);
+  if (reason && may_stop) {
+    start_own_stop(*reason, now);
     reference = executing_.trajectory.at_start();
   }
 
@@ -193,28 +194,31 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
 
 // The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
 // because no camera sees it.
-bool Firmware::is_beyond_bound(const Vec2& error_m) const {
-  const double half = 0.5 * settings_.tracking_bound_m;
-  if (error_m.squaredNorm() < half * half) return false;
-  const double allowed = settings_.tracking_bound_m + executing_.inflation_m;
-  return error_m.norm() + std::min(2 * estimator_.position_error_rms_m(), half) > allowed;
+bool Firmware::is_beyond(double bound_m, const Vec2& error_m) const {
+  const double half_m = 0.5 * bound_m;
+  if (error_m.squaredNorm() < half_m * half_m) return false;
+  return error_m.norm() + std::min(2 * estimator_.position_error_rms_m(), half_m) >
+         bound_m + executing_.inflation_m;
 }
 
 // A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
 // the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
-// control cannot correct in time.
-bool Firmware::must_stop(const Vec2& error_m, Time now) {
-  if (!is_beyond_bound(error_m)) {
-    out_of_bound_since_ = Time::max();
-    return false;
+// control cannot correct in time, or that the margin does not cover.
+std::optional<OwnStopReason> Firmware::must_stop(const Vec2& error_m, Time now) {
+  if (!is_beyond(drift_bound_m(settings_.tracking_bound_m), error_m)) {
+    drifted_since_ = Time::max();
+    return std::nullopt;
   }
-  out_of_bound_since_ = std::min(out_of_bound_since_, now);
-  return now - out_of_bound_since_ >= kMaxRecovery || estimator_.jump_m() > 0 ||
-         error_m.norm() > 2 * settings_.tracking_bound_m + executing_.inflation_m;
+  drifted_since_ = std::min(drifted_since_, now);
+  if (is_beyond(settings_.tracking_bound_m, error_m)) return OwnStopReason::kOffReference;
+  if (estimator_.jump_m() > 0) return OwnStopReason::kDisplaced;
+  if (now - drifted_since_ >= kMaxRecovery) return OwnStopReason::kDrifted;
+  return std::nullopt;
 }
 
-void Firmware::start_own_stop(Time now) {
-  out_of_bound_since_ = Time::max();
+void Firmware::start_own_stop(OwnStopReason reason, Time now) {
+  own_stop_reason_ = reason;
+  drifted_since_ = Time::max();
   Version stop;
   stop.robot = robot_;
   stop.incarnation = obeyed_;
@@ -250,6 +254,7 @@ void Firmware::put_down(double heading_rad, Time now) {
 void Firmware::switch_on(Time now) {
   estimator_ = PoseEstimator(estimator_.position_m(), estimator_.heading_rad(), now, settings_.estimator);
   last_actuation_ = modelled_ = {};
+  pending_count_ = 0;
   is_rebooting_ = !is_lifted_;
 }
 
@@ -262,8 +267,10 @@ void Firmware::restart(Time now) {
   again.highest_executed_ = highest_executed_;
   again.executing_ = executing_;
   again.last_fact_ = last_fact_;
+  again.counts_ = counts_;
+  again.counts_.activated = 0;
   *this = again;
-  start_own_stop(now);
+  start_own_stop(OwnStopReason::kRestart, now);
 }
 
 Feedback Firmware::feedback(Time now) {
@@ -286,7 +293,7 @@ Feedback Firmware::feedback(Time now) {
   facts.heading_rad = wrapped_rad(estimator_.heading_rad());
   facts.tracking_error_m = (position - reference).norm();
   facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
-  facts.counts = counts_;
+  facts.activated = counts_.activated;
   return facts;
 }
 

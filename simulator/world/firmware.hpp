@@ -25,13 +25,44 @@ struct FirmwareSettings {
   double deceleration_mps2 = MotionLimits{}.deceleration_mps2;  ///< D, for stops that the firmware generates
 };
 
+/// Versions and commands that a robot's firmware has received, by outcome.
+struct FirmwareCounts {
+  std::uint64_t activated = 0;  ///< since the last restart
+  std::uint64_t refused_late = 0;
+  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
+  std::uint64_t refused_fenced = 0;
+  std::uint64_t refused_malformed = 0;
+};
+
+/// Why firmware has made a stop of its own.
+enum class OwnStopReason : std::uint8_t {
+  kOffReference,  ///< beyond the tracking bound
+  kDrifted,       ///< beyond the drift bound for kMaxRecovery
+  kDisplaced,     ///< displaced without its wheels measuring it
+  kRestart,       ///< the firmware has restarted
+};
+
+constexpr const char* to_text(OwnStopReason reason) {
+  switch (reason) {
+    case OwnStopReason::kOffReference:
+      return "it is farther from its reference than the tracking bound";
+    case OwnStopReason::kDrifted:
+      return "it has drifted and not returned to its reference in time";
+    case OwnStopReason::kDisplaced:
+      return "it was displaced without its wheels measuring it";
+    case OwnStopReason::kRestart:
+      return "its firmware has restarted";
+  }
+  return "?";
+}
+
 /// The firmware of a robot (coordinator/PROTOCOL.md, "Roles"). It executes one whole version and
 /// holds a few pending ones. It switches to a version only at that version's start time, and only from its
 /// base. Without commands it follows the executed version to its end and remains at rest there. Initially it
 /// executes version 0, at rest at its start position.
 ///
-/// The firmware makes a stop of its own when it may be farther from its reference than the tracking bound and
-/// either does not recover within kMaxRecovery, or is twice as far, or was displaced without its wheels
+/// The firmware makes a stop of its own when it may be farther from its reference than the tracking bound, or
+/// than drift_bound_m() and either does not return within kMaxRecovery or was displaced without its wheels
 /// measuring it. The stop is a version that brakes at D from the estimated position and velocity; the
 /// firmware executes it at once. A lifted robot executes nothing (version 0 again) and accepts only a granted
 /// rest version on base 0.
@@ -73,7 +104,8 @@ class Firmware {
   /// its own and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest
   /// number seen.
   void reboot() { is_rebooting_ = true; }
-  /// As reboot(), after a time without power: the robot takes itself to be at rest.
+  /// As reboot(), after a time without power: the robot takes itself to be at rest, and has forgotten its
+  /// pending versions.
   void switch_on(Time now);
 
   /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls.
@@ -82,7 +114,11 @@ class Firmware {
   const Version& executing() const { return executing_; }
   /// Whether it executes a stop of its own.
   bool is_off_reference() const { return is_off_reference_; }
+  /// Why it has made the last one.
+  OwnStopReason own_stop_reason() const { return own_stop_reason_; }
   bool is_lifted() const { return is_lifted_; }
+  /// Its own estimate.
+  Vec2 position_m() const { return estimator_.position_m(); }
   Incarnation obeyed_incarnation() const { return obeyed_; }
   Epoch obeyed_epoch() const { return obeyed_epoch_; }
   const FirmwareCounts& counts() const { return counts_; }
@@ -99,9 +135,9 @@ class Firmware {
   bool holds(VersionNumber number) const;
   const Trajectory& planned(Time t) const;
   bool may_take(const Version& version) const;
-  bool is_beyond_bound(const Vec2& error_m) const;
-  bool must_stop(const Vec2& error_m, Time now);
-  void start_own_stop(Time now);
+  bool is_beyond(double bound_m, const Vec2& error_m) const;
+  std::optional<OwnStopReason> must_stop(const Vec2& error_m, Time now);
+  void start_own_stop(OwnStopReason reason, Time now);
   void restart(Time now);
 
   RobotId robot_;
@@ -111,10 +147,11 @@ class Firmware {
   Version executing_;
   VersionNumber highest_executed_ = 0;
   bool is_off_reference_ = false;
+  OwnStopReason own_stop_reason_ = OwnStopReason::kOffReference;
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   Time last_fact_ = Time::min();
-  Time out_of_bound_since_ = Time::max();  ///< Time::max(): within the tracking bound
+  Time drifted_since_ = Time::max();  ///< Time::max(): within the drift bound
   std::optional<Feedback::CommandEcho> last_command_;
   std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
   int pending_count_ = 0;

@@ -8,6 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxInflation_m = 1;
+constexpr double kDurationResolution_s = 1e-9;
 
 }  // namespace
 
@@ -55,11 +56,14 @@ void FirmwareMonitor::switched(const Version& to) {
 
 bool FirmwareMonitor::is_own_stop(const Trajectory& stop) const {
   const Vec2& velocity = stop.at_start().velocity_mps;
-  if (stop.phases().empty()) return velocity.norm() < 1e-9;
+  const double braking_s = velocity.norm() / deceleration_mps2_;
+  if (stop.phases().empty()) return braking_s <= kDurationResolution_s;
   if (stop.phases().size() > 1) return false;
   const Vec2& braking = stop.phases()[0].acceleration_mps2;
+  // A duration is a whole number of nanoseconds.
+  const double tolerance = 1e-3 + kDurationResolution_s / braking_s;
   return std::abs(cross(velocity, braking)) <= 1e-9 * velocity.norm() && velocity.dot(braking) < 0 &&
-         std::abs(braking.norm() - deceleration_mps2_) <= 1e-3 * deceleration_mps2_ &&
+         std::abs(braking.norm() - deceleration_mps2_) <= tolerance * deceleration_mps2_ &&
          stop.residual_speed_mps() < 1e-6;
 }
 
@@ -71,10 +75,11 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   check_rule(to.trajectory.start() > last_fact_ && to.trajectory.start() > executing_.trajectory.start());
   check_rule(is_own_stop(to.trajectory));
   check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
-  // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the bound.
+  // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
   const State reference = executing_.trajectory.state_at(to.trajectory.start());
   const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
-  check_rule(expects_reboot_stop_ || error_m >= 0.5 * tracking_bound_m_ + executing_.inflation_m);
+  check_rule(expects_reboot_stop_ ||
+             error_m >= 0.5 * drift_bound_m(tracking_bound_m_) + executing_.inflation_m);
   expects_reboot_stop_ = false;
   executing_ = to;
   highest_executed_ = to.number;

@@ -100,7 +100,10 @@ void Opponents::check_pair(Pair& pair, const Body& body) {
   const double robot_speed = std::max(0.0, -body.velocity_mps().dot(normal));
   const double closing = (routes_[pair.opponent].velocity_mps - body.velocity_mps()).dot(normal);
   ++totals_.crashes;
-  if (body.velocity_mps().norm() > kAtRest_mps) ++totals_.crashes_while_moving;
+  if (body.velocity_mps().norm() > kAtRest_mps) {
+    auto& recent = totals_.recent_moving_crashes;
+    recent[totals_.crashes_while_moving++ % recent.size()] = pair.robot;
+  }
   totals_.max_crash_speed_mps = std::max(totals_.max_crash_speed_mps, closing);
   totals_.max_robot_crash_speed_mps = std::max(totals_.max_robot_crash_speed_mps, robot_speed);
 }

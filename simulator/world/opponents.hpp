@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "idl/monitor.hpp"
 #include "simulator/world/body.hpp"
 
 namespace sidestep {
@@ -13,8 +15,10 @@ namespace sidestep {
 struct CrashTotals {
   std::uint64_t crashes = 0;               ///< number of times that a robot and an opponent began to touch
   std::uint64_t crashes_while_moving = 0;  ///< those in which the robot was not at rest
-  double max_crash_speed_mps = 0;          ///< largest closing speed along the line of centres at a crash
-  double max_robot_crash_speed_mps = 0;    ///< largest contribution of the robot to the closing speed
+  /// Index of the robot of crash while moving k, at k modulo the size.
+  std::array<std::uint32_t, msg::MAX_CONTACTS> recent_moving_crashes{};
+  double max_crash_speed_mps = 0;        ///< largest closing speed along the line of centres at a crash
+  double max_robot_crash_speed_mps = 0;  ///< largest contribution of the robot to the closing speed
 };
 
 /// Opponents move on the floor without negotiating. Each follows its route at constant speed, back and forth,

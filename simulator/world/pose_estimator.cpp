@@ -8,6 +8,8 @@
 namespace sidestep {
 namespace {
 
+// By the robot's clock, which may drift, periods differ a little.
+constexpr Duration kMaxPeriodError = kPhysicsStep / 1000;
 constexpr double kVelocityGain = 0.08;  // of a velocity measurement relative to the motor model
 constexpr double kHeadingGain = 0.05;   // of a heading fix
 constexpr double kStartDeviation_m = 0.0005;
@@ -16,6 +18,8 @@ constexpr double kScaleDriftPerSqrtSecond = 2e-5;
 constexpr double kExtraFixNoise_m =
     0.0005;  // for the correlation that vision's filter introduces between fixes
 constexpr double kOutlierDeviations = 4;
+// No odometry has a larger relative error than this many standard deviations.
+constexpr double kMaxScaleDeviations = 5;
 // By chance, a sum of two or three innovations exceeds this many standard deviations once in a thousand
 // robot-hours.
 constexpr double kJumpDeviations = 5;
@@ -41,7 +45,7 @@ PoseEstimator::PoseEstimator(const Vec2& position_m, double heading_rad, Time no
 void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
                             double angular_acceleration_radps2) {
   constexpr double dt = kPhysicsStepSeconds;
-  if (now - time_ != kPhysicsStep) count_ = 0;
+  if (std::chrono::abs(now - time_ - kPhysicsStep) > kMaxPeriodError) count_ = 0;
   time_ = now;
   odometry_m_ += odometry.velocity_mps * dt;
   turned_rad_ += odometry.angular_radps * dt;
@@ -81,6 +85,8 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   Vec2 innovation = position_m - predicted;
   jump_m_ = 0;
   const double expected = 0.5 * (covariance_(0, 0) + covariance_(1, 1)) + fix_variance;
+  // What displaces the robot, or misleads vision, tells nothing about the odometry's scale.
+  if (innovation.squaredNorm() > kOutlierDeviations * kOutlierDeviations * expected) decorrelate_scale();
   if (detect_displacement({innovation, expected})) {
     jump_m_ = innovation.norm();
     covariance_.topLeftCorner<2, 2>() += jump_m_ * jump_m_ * Eigen::Matrix2d::Identity();
@@ -98,9 +104,20 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   anchor_odometry_m_ = odometry;
   anchor_m_ = predicted + correction.head<2>();
   scale_ += correction.z();
+  if (std::abs(scale_) > kMaxScaleDeviations * settings_.scale_error) {
+    // Wheels that roll while the robot is displaced look like such an error.
+    scale_ = 0;
+    covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
+    decorrelate_scale();
+  }
   heading_anchor_rad_ = wrapped_rad(heading_anchor_rad_ +
                                     kHeadingGain * wrapped_rad(heading_rad - heading_anchor_rad_ - turned));
   return true;
+}
+
+void PoseEstimator::decorrelate_scale() {
+  covariance_.topRightCorner<2, 1>().setZero();
+  covariance_.bottomLeftCorner<1, 2>().setZero();
 }
 
 Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& moved_m) const {

@@ -75,6 +75,7 @@ class PoseEstimator {
     double variance_m2 = 0;  ///< expected, per axis
   };
   bool detect_displacement(const Innovation& latest);
+  void decorrelate_scale();
   Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
 
   std::vector<Sample> history_;  ///< ring buffer with one sample per control period

@@ -37,7 +37,9 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       radio_rng_(Rng(seed + 2).bits()),
       detections_(bus.advertise(topics::kDetections)),
       truth_(bus.advertise(topics::kTruth)),
-      truth_due_(bus.now()) {
+      truth_due_(bus.now()),
+      counters_(bus, static_cast<std::uint32_t>(Sender::kSimulator), incarnation,
+                [this](DropCounters& drops) { count_drops(drops); }) {
   const Time begin = bus.now();
   const std::size_t count = world_.robot_count();
   for (std::size_t i = 0; i < count; ++i) {
@@ -78,11 +80,15 @@ void SimulatorNode::advance(Time now) {
     capture_frame(now);
   }
   world_.advance(now);
+  changes_.update();
   publish_pending_feedback(now);
 }
 
 void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
-  if (radio_rng_.chance(command_loss_)) return;
+  if (radio_rng_.chance(command_loss_)) {
+    drops_.count(DropReason::kCommandLost, world_.id(robot));
+    return;
+  }
   const Time now = clock();
   advance(now);
   if (const auto command = decode(message, world_.id(robot), world_.robot_time(robot, now)))
@@ -99,11 +105,20 @@ void SimulatorNode::on_disturbance(const msg::Disturbance& message) {
   const auto robot = robot_index_.find(message.robot());
   const auto disturbance = decode(message, field_, radius_m_);
   if (robot == robot_index_.end() || !disturbance || !world_.disturb(robot->second, *disturbance, now)) {
-    ++disturbances_refused_;
+    drops_.count(DropReason::kRefusedDisturbance,
+                 robot == robot_index_.end() ? std::nullopt : std::optional(robot->first));
+    changes_.on_refused_disturbance(message.robot());
     return;
   }
+  changes_.on_disturbance(*disturbance);
   publish_pending_feedback(now);
   watch_start(robot->second, now);
+}
+
+void SimulatorNode::count_drops(DropCounters& drops) const {
+  drops.add(drops_);
+  world_.count_drops(drops);
+  for (const auto& source : drop_sources_) source(drops);
 }
 
 void SimulatorNode::watch_start(std::size_t robot, Time now) {
@@ -154,7 +169,8 @@ void SimulatorNode::capture_frame(Time now) {
   if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
   const Time captured_at = world_.time();
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
-  cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs()}, slot->message);
+  cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs(), world_.sight_errors()},
+                   slot->message);
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kFrameExpiry < now) return;
   if (capture_listener_) capture_listener_(slot->message.camera(), captured_at);

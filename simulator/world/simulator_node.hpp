@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/cameras.hpp"
 #include "simulator/world/world.hpp"
+#include "simulator/world/world_changes.hpp"
 
 namespace sidestep {
 
@@ -23,6 +26,18 @@ class SimulatorNode {
   SimulatorNode(const SimulatorNode&) = delete;
   SimulatorNode& operator=(const SimulatorNode&) = delete;
 
+  /// Sets a callback for events of at least a level.
+  void on_event(LogLevel min_level, OnLogEvent callback) {
+    events_.set_listener(min_level, std::move(callback));
+  }
+  /// For the outputs of this node.
+  const EventReporter& events() const { return events_; }
+  /// An output of this node adds what it has dropped.
+  void add_drop_source(std::function<void(DropCounters&)> source) {
+    drop_sources_.push_back(std::move(source));
+  }
+  void count_drops(DropCounters& drops) const;
+
   const World& world() const { return world_; }
   const Cameras& cameras() const { return cameras_; }
   /// Sets a callback for the moment at which a camera captures a frame; the world is then in the captured
@@ -34,8 +49,6 @@ class SimulatorNode {
   void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
     detection_listener_ = std::move(listener);
   }
-  /// Number of disturbances that were invalid or that the robot's state did not allow.
-  std::uint64_t disturbances_refused() const { return disturbances_refused_; }
 
  private:
   struct PendingFrame {
@@ -66,9 +79,12 @@ class SimulatorNode {
   Incarnation incarnation_;
   Time clock_;
   World world_;
+  EventReporter events_;
+  WorldChanges changes_{events_, world_};
   Cameras cameras_;
   Rng radio_rng_;
-  std::uint64_t disturbances_refused_ = 0;
+  DropCounters drops_;  // lost commands and refused disturbances
+  std::vector<std::function<void(DropCounters&)>> drop_sources_;
 
   std::unordered_map<RobotId, std::size_t> robot_index_;
   std::vector<Writer<msg::Feedback>> feedback_;
@@ -81,6 +97,7 @@ class SimulatorNode {
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;
   Time truth_due_;
+  CounterPublisher counters_;
 };
 
 }  // namespace sidestep

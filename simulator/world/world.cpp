@@ -2,9 +2,13 @@
 #include "simulator/world/world.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sidestep {
 namespace {
+
+// Slower wheels have less noise, in proportion to their speed.
+constexpr double kFullNoiseSpeed_mps = 0.1;
 
 FirmwareSettings firmware_settings(const Scenario& scenario) {
   FirmwareSettings settings;
@@ -32,17 +36,21 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
       obstacles_(scenario.obstacles),
       radius_m_(scenario.radius_m),
       velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
+      clock_bound_(from_seconds(scenario.clock_bound_s)),
+      tracking_bound_m_(scenario.tracking_bound_m),
       time_(begin),
       contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps),
       opponents_(scenario.opponents, scenario.radius_m, BodySettings{}.speed_mps) {
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
   bodies_.reserve(scenario.robots.size());
+  sight_errors_.resize(scenario.robots.size());
   robots_.reserve(scenario.robots.size());
   pending_feedback_.reserve(scenario.robots.size());
   for (const RobotSpec& spec : scenario.robots) {
     bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
-    const Time clock = begin + spec.clock_offset;
+    const ClockError clock_error{spec.clock_offset, spec.clock_drift_ppm, begin};
+    const Time clock = clock_error.reading(begin);
     Firmware firmware(spec.id, spec.start_m, spec.start_heading_rad, clock, settings);
     const FirmwareMonitor monitor(firmware.executing(), settings.tracking_bound_m,
                                   settings.deceleration_mps2);
@@ -56,7 +64,7 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
                        {},
                        spec.start_m,
                        spec.start_heading_rad,
-                       spec.clock_offset,
+                       clock_error,
                        clock});
     if (spec.is_absent) lift(robots_.size() - 1, begin);
   }
@@ -93,13 +101,13 @@ void World::step() {
 // true.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  return robot.clock = std::max(robot.clock, now + robot.clock_offset);
+  return robot.clock = std::max(robot.clock, robot.clock_error.reading(now));
 }
 
 Time World::next_start(std::size_t index) const {
   const Time start = robots_[index].firmware.next_start();
   return !robots_[index].is_powered || start == Time::max() ? Time::max()
-                                                            : start - robots_[index].clock_offset;
+                                                            : robots_[index].clock_error.true_time(start);
 }
 
 Odometry World::measure(std::size_t index) {
@@ -110,10 +118,13 @@ Odometry World::measure(std::size_t index) {
   const double angular = (body.heading_rad() - robot.last_heading_rad) / kPhysicsStepSeconds;
   robot.last_position_m = rolled_position;
   robot.last_heading_rad = body.heading_rad();
-  const double x_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
-  const double y_noise = velocity_noise_mps_ * approximately_normal(robot.noise);
+  // Wheels that stand still give no pulses.
+  const double wheel_speed_mps = velocity.norm() + radius_m_ * std::abs(angular);
+  const double noise_mps = velocity_noise_mps_ * std::min(1.0, wheel_speed_mps / kFullNoiseSpeed_mps);
+  const double x_noise = noise_mps * approximately_normal(robot.noise);
+  const double y_noise = noise_mps * approximately_normal(robot.noise);
   // The wheels are at the rim, where this angular noise equals the velocity noise.
-  const double angular_noise = velocity_noise_mps_ / radius_m_ * approximately_normal(robot.noise);
+  const double angular_noise = noise_mps / radius_m_ * approximately_normal(robot.noise);
   return {robot.odometry_scale * velocity + Vec2(x_noise, y_noise),
           robot.odometry_scale * angular + angular_noise};
 }
@@ -173,10 +184,20 @@ std::uint64_t World::firmware_violations() const {
   return sum;
 }
 
+void World::count_drops(DropCounters& drops) const {
+  for (const Robot& robot : robots_) {
+    const FirmwareCounts& counts = robot.firmware.counts();
+    drops.count(DropReason::kMalformedCommand, robot.id, counts.refused_malformed);
+    drops.count(DropReason::kFencedCommand, robot.id, counts.refused_fenced);
+    drops.count(DropReason::kLateVersion, robot.id, counts.refused_late);
+    drops.count(DropReason::kWrongBase, robot.id, counts.refused_base);
+  }
+}
+
 double World::reference_error_m(std::size_t index) const {
   const Robot& robot = robots_[index];
   if (robot.firmware.is_lifted()) return 0;
-  const Time now = std::max(robot.clock, time_ + robot.clock_offset);
+  const Time now = std::max(robot.clock, robot.clock_error.reading(time_));
   const State reference = robot.firmware.executing().trajectory.state_at(now);
   return (bodies_[index].position_m() - reference.position_m).norm();
 }
@@ -196,6 +217,8 @@ void World::fill(msg::GroundTruth& truth) const {
   const CrashTotals& crashes = opponents_.totals();
   truth.crashes(crashes.crashes);
   truth.crashes_while_moving(crashes.crashes_while_moving);
+  for (std::size_t i = 0; i < std::min<std::size_t>(crashes.crashes_while_moving, msg::MAX_CONTACTS); ++i)
+    truth.recent_moving_crashes()[i] = robots_[crashes.recent_moving_crashes[i]].id;
   truth.max_crash_speed_mps(crashes.max_crash_speed_mps);
   truth.max_robot_crash_speed_mps(crashes.max_robot_crash_speed_mps);
   const Vec2 ball = ball_ ? ball_->state().position_m : Vec2(0, 0);

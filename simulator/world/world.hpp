@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "common/protocol/robot_disturbance.hpp"
 #include "common/random/rng.hpp"
+#include "common/time/clock_error.hpp"
 #include "idl/monitor.hpp"
 #include "simulator/world/ball.hpp"
 #include "simulator/world/body.hpp"
@@ -16,12 +18,13 @@
 #include "simulator/world/firmware.hpp"
 #include "simulator/world/firmware_monitor.hpp"
 #include "simulator/world/opponents.hpp"
+#include "simulator/world/sight_error.hpp"
 
 namespace sidestep {
 
 /// The simulated floor: all bodies with their firmware, the ball, the obstacles and the opponents, in steps
 /// of kPhysicsStep. Robots are addressed by their index in the scenario. Times are by the host's clock; each
-/// robot's own clock is ahead of it by an offset that only a disturbance changes.
+/// robot has a clock of its own.
 class World {
  public:
   World(const Scenario& scenario, Time begin, std::uint64_t seed);
@@ -59,10 +62,14 @@ class World {
   /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.
   Time next_start(std::size_t robot) const;
   std::span<const Body> bodies() const { return bodies_; }
+  /// How cameras see the robots wrongly.
+  std::span<const SightError> sight_errors() const { return sight_errors_; }
   const std::optional<Ball>& ball() const { return ball_; }
   const ContactTotals& contacts() const { return contacts_.totals(); }
   const Opponents& opponents() const { return opponents_; }
   std::uint64_t firmware_violations() const;
+  /// What the robots have refused.
+  void count_drops(DropCounters& drops) const;
   /// Distance of a body from the version that it executes, by the robot's clock; 0 off the floor.
   double reference_error_m(std::size_t robot) const;
 
@@ -79,8 +86,8 @@ class World {
     Actuation actuation;
     Vec2 last_position_m;  ///< without slip, for the odometry
     double last_heading_rad;
-    Duration clock_offset;  ///< of the robot's clock, ahead of the host's
-    Time clock;             ///< the latest reading; the clock never goes back
+    ClockError clock_error;  ///< of the robot's clock, relative to the host's
+    Time clock;              ///< the latest reading; the clock never goes back
     VersionNumber last_own_stop = 0;
     std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later
     bool has_pending_feedback = false;
@@ -105,6 +112,15 @@ class World {
   void lift(std::size_t robot, Time now);
   void switch_off(std::size_t robot, Time now);
   void switch_on(std::size_t robot, Time now);
+  void set_clock(std::size_t robot, Duration offset, Time now);
+  void see_beside(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  bool see_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  void see_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  void end(const ActiveDisturbance& disturbance);
+  /// Whether cameras have misled the robot, and it has not had a fix since that tells it where it is.
+  bool is_still_misled(const ActiveDisturbance& disturbance) const;
+  /// Whether it may take the body off its reference.
+  bool affects_body(const ActiveDisturbance& disturbance) const;
   void carry(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void switch_versions(std::size_t robot, Time now);
   void request_feedback(std::size_t robot);
@@ -114,8 +130,11 @@ class World {
   std::vector<Circle> obstacles_;
   double radius_m_;
   double velocity_noise_mps_;
+  Duration clock_bound_;
+  double tracking_bound_m_;
   Time time_;
   std::vector<Body> bodies_;
+  std::vector<SightError> sight_errors_;
   std::vector<Robot> robots_;
   std::optional<Ball> ball_;
   Contacts contacts_;

@@ -49,8 +49,7 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       record_disturbance(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_CLOCK:
-      robot_time(index, now);
-      robot.clock_offset = disturbance.clock_offset;
+      set_clock(index, disturbance.clock_offset, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
       if (!robot.is_powered) return false;
@@ -63,6 +62,14 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
       if (!body.is_on_floor()) return false;
       carry(index, disturbance, now);
+      return true;
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
+      see_beside(index, disturbance, now);
+      return true;
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
+      return see_as(index, disturbance, now);
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
+      see_frozen(index, disturbance, now);
       return true;
   }
   return false;
@@ -88,14 +95,11 @@ void World::switch_off(std::size_t index, Time now) {
   robots_[index].is_powered = false;
   robots_[index].actuation = {};
   bodies_[index].set_powered(false);
-  // The body is off its reference until it has power again.
-  start_disturbance({index, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, Time::max(), Vec2(0, 0), 0});
   record_disturbance(index, now);
 }
 
 void World::switch_on(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  cancel_disturbances(index, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF);
   robot.is_powered = true;
   bodies_[index].set_powered(true);
   // What the wheels did without power is not known.
@@ -107,11 +111,53 @@ void World::switch_on(std::size_t index, Time now) {
   request_feedback(index);
 }
 
+// A jump beyond the bound displaces a reference that moves, or that is about to.
+void World::set_clock(std::size_t index, Duration offset, Time now) {
+  Robot& robot = robots_[index];
+  const Time before = robot_time(index, now);
+  switch_versions(index, before);
+  robot.clock_error = {offset, robot.clock_error.drift_ppm, now};
+  const bool moves = robot.firmware.executing().trajectory.end() > before;
+  if (robot.is_powered && (moves || robot.firmware.next_start() != Time::max()) &&
+      std::chrono::abs(robot.clock_error.reading(now) - before) > clock_bound_)
+    record_disturbance(index, now);
+}
+
 void World::carry(std::size_t index, const RobotDisturbance& disturbance, Time now) {
   const Vec2 path_m = disturbance.place_m - bodies_[index].position_m();
   bodies_[index].carry(Vec2(path_m / to_seconds(disturbance.duration)));
   start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
   record_disturbance(index, now);
+}
+
+void World::see_beside(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  sight_errors_[index].offset_m = disturbance.place_m;
+  start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
+}
+
+bool World::see_as(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  const auto other = std::ranges::find(robots_, disturbance.other_robot, &Robot::id);
+  if (other == robots_.end()) return false;
+  const auto other_index = static_cast<std::size_t>(other - robots_.begin());
+  if (other_index == index || sight_errors_[index].shown_as || sight_errors_[other_index].shown_as)
+    return false;
+  sight_errors_[index].shown_as = other_index;
+  sight_errors_[other_index].shown_as = index;
+  for (const std::size_t confused : {index, other_index})
+    start_disturbance({confused, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
+  return true;
+}
+
+void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  sight_errors_[index].frozen = {bodies_[index].position_m(), bodies_[index].heading_rad()};
+  start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
+}
+
+// A robot follows what cameras show. Within the tracking bound that is part of its tracking error.
+bool World::affects_body(const ActiveDisturbance& disturbance) const {
+  if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return false;
+  return disturbance.kind != msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||
+         disturbance.place_m.norm() > tracking_bound_m_;
 }
 
 void World::record_disturbance(std::size_t index, Time at) {
@@ -122,8 +168,7 @@ void World::record_disturbance(std::size_t index, Time at) {
 std::optional<Time> World::disturbance_end(std::size_t index) const {
   std::optional<Time> last = robots_[index].last_disturbance;
   for (const ActiveDisturbance& active : active_disturbances_) {
-    if (active.robot == index && active.kind != msg::DisturbanceKind::DISTURBANCE_PLACE)
-      last = std::max(last.value_or(active.end), active.end);
+    if (active.robot == index && affects_body(active)) last = std::max(last.value_or(active.end), active.end);
   }
   return last;
 }
@@ -140,19 +185,47 @@ void World::cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind) {
 }
 
 void World::end_disturbances() {
-  std::erase_if(active_disturbances_, [this](const ActiveDisturbance& active) {
+  std::erase_if(active_disturbances_, [this](ActiveDisturbance& active) {
     if (active.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return try_put_down(active);
     if (active.end > time_) return false;
-    record_disturbance(active.robot, active.end);
-    Body& body = bodies_[active.robot];
-    if (active.kind == msg::DisturbanceKind::DISTURBANCE_SLIP)
-      body.set_grip(1);
-    else if (active.kind == msg::DisturbanceKind::DISTURBANCE_CARRY)
-      body.carry(std::nullopt);
-    else
-      body.set_blocked(std::nullopt);
-    return true;
+    if (affects_body(active)) record_disturbance(active.robot, active.end);
+    end(active);
+    if (!is_still_misled(active)) return true;
+    active.end = time_ + kPhysicsStep;
+    return false;
   });
+}
+
+bool World::is_still_misled(const ActiveDisturbance& disturbance) const {
+  const Robot& robot = robots_[disturbance.robot];
+  const Body& body = bodies_[disturbance.robot];
+  const bool has_misled = disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||
+                          disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_AS ||
+                          disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN;
+  return has_misled && affects_body(disturbance) && robot.is_powered && body.is_on_floor() &&
+         (robot.firmware.position_m() - body.position_m()).norm() > tracking_bound_m_;
+}
+
+void World::end(const ActiveDisturbance& disturbance) {
+  Body& body = bodies_[disturbance.robot];
+  SightError& sight_error = sight_errors_[disturbance.robot];
+  switch (disturbance.kind) {
+    case msg::DisturbanceKind::DISTURBANCE_SLIP:
+      return body.set_grip(1);
+    case msg::DisturbanceKind::DISTURBANCE_BLOCK:
+      return body.set_blocked(std::nullopt);
+    case msg::DisturbanceKind::DISTURBANCE_CARRY:
+      return body.carry(std::nullopt);
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
+      sight_error.offset_m = Vec2(0, 0);
+      return;
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
+      return sight_error.shown_as.reset();
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
+      return sight_error.frozen.reset();
+    default:
+      return;
+  }
 }
 
 bool World::try_put_down(const ActiveDisturbance& request) {

@@ -73,6 +73,7 @@ class LaunchedRun {
   std::string output() const;
 
   DdsBus& bus() { return *bus_; }
+  const DdsBus& bus() const { return *bus_; }
   const msg::GroundTruth& truth() const { return truth_; }
   double speed_mps(RobotId robot) const;
   double max_speed_mps() const;

@@ -70,6 +70,7 @@ TEST_CASE("a process with cameras that pauses until it is forgotten is found aga
   check_sound(run, end);
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
+  CHECK(run.report()["counters"].dump().find("forgotten_peer") != std::string::npos);
 }
 
 TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arrive") {

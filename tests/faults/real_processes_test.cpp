@@ -18,6 +18,24 @@ TEST_CASE("robots as processes cross the field over DDS and arrive without conta
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
 }
 
+TEST_CASE("with --log-level debug, the log of a run names each registration, with time, level and process") {
+  LaunchedRun run(shipped_scenario("crossing"), {"--log-level", "debug"});
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  for (int robot = 0; robot < 8; ++robot) {
+    CAPTURE(robot);
+    CHECK(run.logged("debug   sidestep-coordinator: robot " + std::to_string(robot) +
+                     " is registered by its agent"));
+    CHECK(run.logged("info    agent-" + std::to_string(robot) + ": arrived at goal 0, the last one"));
+  }
+  CHECK(run.logged("info    sidestep-run: all processes are running"));
+  const auto report = run.report();
+  require_no_violations(report);
+  REQUIRE(report["epochs"].size() == 1);
+  CHECK(report["epochs"][0]["coordinator"] == "coordinator");
+  CHECK(report["epochs"][0]["reason"] == "started");
+}
+
 TEST_CASE("robots detected in camera images cross the field and arrive without contact") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   CHECK(run.wait_for_end() == "exit code 0");
@@ -77,7 +95,7 @@ TEST_CASE("robots wait for one that is silent when an epoch begins, until an ope
   });
   INFO(run.output());
   CHECK(command({"robot", "absent", "7"}) == "exit code 1");
-  CHECK(run.printed("robot 7 is not missing"));
+  CHECK(run.printed("robot 7: the coordinator does not wait for the robot"));
   REQUIRE(command({"fault", "switch-off", "7"}) == "exit code 0");
   REQUIRE(command({"fault", "lift", "7"}) == "exit code 0");
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
@@ -174,6 +192,11 @@ TEST_CASE(
   CHECK(run.wait_until([&] {
     return run.logged("agent-0: refuses coordinator 1, which works by other rules: robots.blue is 0-6");
   }));
+  // The counters of every process reach an observer within a second.
+  std::vector<std::string> echo{"topic", "echo", "counters", "--count", "25"};
+  for (const std::string& argument : run.dds_arguments()) echo.push_back(argument);
+  CHECK(run.command(echo) == "exit code 0");
+  CHECK(run.printed("\"other_rules\""));
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
   CHECK(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
   CHECK(run.wait_for_end() == "exit code 1");

@@ -2,14 +2,12 @@
 // What processes that die leave behind in the others.
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <signal.h>
-#include <sstream>
-#include <unistd.h>
 
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
+#include "tests/faults/process_usage.hpp"
 #include "tests/sanitized.hpp"
 
 using namespace sidestep;
@@ -18,28 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Usage {
-  double memory_mb = 0;  ///< resident
-  double cpu_s = 0;      ///< since the process's start
-};
-
-Usage usage_of(pid_t pid) {
-  const std::string folder = "/proc/" + std::to_string(pid);
-  std::ifstream stat(folder + "/stat");
-  std::string line;
-  std::getline(stat, line);
-  std::istringstream fields(line.substr(line.rfind(')') + 2));
-  std::string ignored;
-  for (int i = 0; i < 11; ++i) fields >> ignored;
-  double user = 0, system = 0;
-  fields >> user >> system;
-  std::ifstream statm(folder + "/statm");
-  double pages = 0;
-  statm >> pages >> pages;
-  return {pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6,
-          (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK))};
-}
-
 /// Memory of each process of the run, and its share of a core during some seconds.
 struct Load {
   double memory_mb = 0;
@@ -47,17 +23,15 @@ struct Load {
 };
 
 std::map<std::string, Load> measure(LaunchedRun& run, const std::string& except, Duration duration) {
-  std::map<std::string, Usage> before;
+  std::map<std::string, ProcessUsage> before = usage_of(run);
+  before.erase(except);
   const Time begin = run.bus().now();
-  for (const auto& [name, pid] : run.children()) {
-    if (name != except) before[name] = usage_of(pid);
-  }
-  before["launcher"] = usage_of(run.pid());
   REQUIRE(run.wait_until([&] { return run.bus().now() >= begin + duration; }));
   const double seconds = to_seconds(run.bus().now() - begin);
+  const std::map<std::string, ProcessUsage> after = usage_of(run);
   std::map<std::string, Load> result;
   for (const auto& [name, usage] : before) {
-    const Usage now = usage_of(name == "launcher" ? run.pid() : run.pid_of(name));
+    const ProcessUsage& now = after.at(name);
     result[name] = {now.memory_mb, 100 * (now.cpu_s - usage.cpu_s) / seconds};
   }
   return result;

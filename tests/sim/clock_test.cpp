@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "common/config/scenario_loader.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
@@ -19,10 +25,17 @@ Scenario circle_scenario(int robots, int coordinators = 1) {
 struct Statuses {
   SimBus bus;
   std::map<RobotId, msg::AgentStatus> latest;
+  std::map<std::uint32_t, std::uint64_t> implausible_clocks;
 
   explicit Statuses(SimNetwork& network) : bus(network) {
     bus.subscribe(topics::kStatus,
                   std::function([this](const msg::AgentStatus& s) { latest[s.robot()] = s; }));
+    bus.subscribe(topics::kCounters, [this](const msg::Counters& message) {
+      for (const msg::Counter& counter : message.counts()) {
+        if (counter.reason() == static_cast<std::uint16_t>(DropReason::kImplausibleClock))
+          implausible_clocks[message.process()] = counter.times();
+      }
+    });
   }
 };
 
@@ -42,7 +55,7 @@ TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
     CAPTURE(robot);
     CHECK(std::abs(status.clock_offset_s()) <= status.clock_uncertainty_s());
     CHECK(status.clock_uncertainty_s() < 0.002);
-    CHECK(status.invalid() <= 10);
+    CHECK(statuses.implausible_clocks[robot] <= 10);
   }
 }
 
@@ -109,30 +122,83 @@ TEST_CASE(
   CHECK(floor.violations() == 0);
 }
 
-TEST_CASE(
-    "on a slow network, which hides large offsets, robots drive so slowly that the budget still holds") {
-  double slowest_s = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    CAPTURE(seed);
-    Scenario scenario = circle_scenario(8);
-    scenario.network.delay_min = scenario.network.delay_max = std::chrono::milliseconds(10);
-    IdealFloor floor(scenario, seed);
-    Rng rng(seed);
-    // Any two clocks are up to 8 ms apart, and some are.
-    for (const RobotSpec& robot : scenario.robots) {
-      const double offset_s = robot.id < 2 ? 0.004 - 0.008 * robot.id : rng.uniform(-0.004, 0.004);
-      floor.robots.set_clock_offset(robot.id, from_seconds(offset_s));
-    }
-    Statuses statuses(floor.network);
-    const Time begin = floor.network.now();
-    REQUIRE(floor.run_until_arrived(150) >= 2 * scenario.tracking_bound_m);
-    REQUIRE(floor.arrived() == 8);
-    REQUIRE(floor.violations() == 0);
-    for (const auto& [robot, status] : statuses.latest)
-      REQUIRE(status.agent_state() != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
-    slowest_s = std::max(slowest_s, to_seconds(floor.network.now() - begin));
+/// What runs with one delay have shown.
+struct SlowRuns {
+  double max_offset_s = 0;     ///< between a robot's clock and the coordinator's that an interval permitted
+  double min_clearance_m = 1;  ///< between two references, each at its own robot's time
+  double max_makespan_s = 0;
+};
+
+/// Every second robot's clock is 0.8 times the delay ahead of the others', which round trips cannot show.
+void drive_on_slow_network(Duration delay, std::uint64_t seed, SlowRuns& runs) {
+  CAPTURE(seed);
+  Scenario scenario = circle_scenario(16);
+  scenario.network.delay_min = scenario.network.delay_max = delay;
+  IdealFloor floor(scenario, seed);
+  const double max_offset_s = 0.4 * to_seconds(delay);
+  for (const RobotSpec& robot : scenario.robots)
+    floor.robots.set_clock_offset(robot.id, from_seconds((robot.id % 2 ? 1 : -1) * max_offset_s));
+  Statuses statuses(floor.network);
+  const Time begin = floor.network.now();
+  const double clearance_m = floor.run_until_arrived(300);
+  REQUIRE(clearance_m >= 2 * scenario.tracking_bound_m);
+  REQUIRE(floor.arrived() == 16);
+  REQUIRE(floor.violations() == 0);
+  for (const auto& [robot, status] : statuses.latest) {
+    REQUIRE(status.agent_state() != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
+    const double offset_s = std::abs(status.clock_offset_s()) + status.clock_uncertainty_s();
+    runs.max_offset_s = std::max(runs.max_offset_s, offset_s);
   }
-  WARN("with round trips of 20 ms all robots have arrived after " << slowest_s << " s");
+  runs.min_clearance_m = std::min(runs.min_clearance_m, clearance_m);
+  runs.max_makespan_s = std::max(runs.max_makespan_s, to_seconds(floor.network.now() - begin));
+}
+
+TEST_CASE("on slow networks, which hide large offsets, robots drive so slowly that the budget still holds") {
+  constexpr int kSeeds = 10;
+  std::string table = fmt::format("{:>8} {:>9} {:>12} {:>13} {:>11}\n", "delay ms", "apart ms", "possible ms",
+                                  "clearance mm", "makespan s");
+  std::vector<SlowRuns> rows;
+  for (const double delay_ms : {0.5, 1.0, 2.0, 5.0, 10.0}) {
+    CAPTURE(delay_ms);
+    SlowRuns runs;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+      drive_on_slow_network(from_seconds(delay_ms / 1e3), seed, runs);
+    table += fmt::format("{:8.1f} {:9.1f} {:12.2f} {:13.2f} {:11.1f}\n", delay_ms, 0.8 * delay_ms,
+                         1e3 * runs.max_offset_s, 1e3 * runs.min_clearance_m, runs.max_makespan_s);
+    rows.push_back(runs);
+  }
+  const Scenario scenario = circle_scenario(16);
+  WARN("clocks are 'apart', offsets up to 'possible' cannot be excluded\n"
+       << table << "budget: at least " << 2e3 * scenario.tracking_bound_m << " mm, " << kSeeds
+       << " seeds for each delay");
+  // Otherwise nothing would depend on the delay.
+  CHECK(rows.back().max_makespan_s > 10 * rows.front().max_makespan_s);
+}
+
+TEST_CASE(
+    "a clock that jumps while its robot drives breaks no rule, and the robot drives again once it is set") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    SimSystem system(circle_scenario(8), seed);
+    const double size_s = 0.001 * std::pow(3000, rng.uniform());
+    const Duration at = from_seconds(rng.uniform(0.5, 2.5));
+    const Duration error = from_seconds(rng.chance(0.5) ? size_s : -size_s);
+    CAPTURE(to_seconds(at), to_seconds(error));
+    msg::Disturbance clock;
+    clock.robot(3);
+    clock.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_CLOCK);
+    clock.clock_offset_ns(error.count());
+    system.run_for(at);
+    system.disturb(clock);
+    system.run_for(std::chrono::seconds(4));
+    clock.clock_offset_ns(0);
+    system.disturb(clock);
+    CHECK(system.run_until_arrived(system.now() + std::chrono::seconds(20)));
+    const Report report = system.metrics().report();
+    CHECK(report.audit->violations == 0);
+    CHECK(report.unexcused_contacts() == 0);
+  }
 }
 
 TEST_CASE("a robot measures the clocks again after a long wait, before it moves on") {

@@ -8,6 +8,7 @@
 
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "simulator/world/body.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::displaced_test {

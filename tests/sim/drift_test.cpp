@@ -13,8 +13,10 @@ TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on t
   std::uint64_t own_stops = 0;
   double max_position_error_m = 0;
   Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml");
-  scenario.network.delay_max = 100ms;
-  scenario.network.loss = 0.25;
+  // Messages are quick: on a slow network the clocks would allow less speed than dead reckoning does.
+  scenario.vision.rate_hz = 10;
+  scenario.vision.delay = 100ms;
+  scenario.odometry.scale_error = 0.01;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     CAPTURE(seed);
     SimSystem system(scenario, seed);
@@ -33,7 +35,7 @@ TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on t
     const Report report = system.metrics().report();
     REQUIRE(report.contacts == 0);
     REQUIRE(report.audit->violations == 0);
-    REQUIRE(report.grants > 300);
+    REQUIRE(report.grants > 2000);
     max_position_error_m = std::max(max_position_error_m, report.audit->max_position_error_m);
   }
   WARN("at most " << max_position_error_m * 1e3 << " mm from their references");

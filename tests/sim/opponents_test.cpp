@@ -6,29 +6,9 @@
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/position_sampler.hpp"
 
 namespace sidestep::opponents_test {
-
-/// Samples positions on the floor with a minimum distance from each other.
-struct PositionSampler {
-  Rng& rng;
-  const Field& field;
-  std::vector<Vec2> taken;
-
-  Vec2 sample_any() {
-    const double x = field.length_m / 2 - 0.3, y = field.width_m / 2 - 0.3;
-    return {rng.uniform(-x, x), rng.uniform(-y, y)};
-  }
-  Vec2 sample(double min_distance_m) {
-    for (;;) {
-      const Vec2 place = sample_any();
-      const auto is_near = [&](const Vec2& other) { return (other - place).norm() < min_distance_m; };
-      if (std::ranges::any_of(taken, is_near)) continue;
-      taken.push_back(place);
-      return place;
-    }
-  }
-};
 
 /// A few robots, and opponents on random routes with speeds up to the bound.
 Scenario random_scene(std::uint64_t seed) {
@@ -36,7 +16,7 @@ Scenario random_scene(std::uint64_t seed) {
   Scenario scenario;
   scenario.name = "opponents";
   scenario.field = {6, 5};
-  PositionSampler starts{rng, scenario.field, {}}, goals{rng, scenario.field, {}};
+  test::PositionSampler starts{rng, scenario.field, {}}, goals{rng, scenario.field, {}};
   const std::uint64_t robots = 3 + rng.below(6), opponents = 1 + rng.below(5);
   for (std::uint64_t i = 0; i < robots; ++i) {
     RobotSpec robot;
@@ -142,7 +122,7 @@ TEST_CASE("among more opponents than a list holds, robots drive, and none is mov
   scenario.field = {20, 20};
   scenario.vision.rows = 2;
   scenario.max_opponent_speed_mps = 0.5;
-  PositionSampler places{rng, scenario.field, {}};
+  test::PositionSampler places{rng, scenario.field, {}};
   for (std::size_t i = 0; i < 6; ++i) {
     const Vec2 start = places.sample(1), goal = places.sample_any();
     scenario.robots.push_back(robot_with_goal(i, start, goal));

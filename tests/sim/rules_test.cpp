@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <functional>
-
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/process_names.hpp"
+#include "deploy/simulate/campaign/other_rules.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -60,26 +59,8 @@ TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and 
   }
 }
 
-struct OtherRule {
-  std::string key;
-  std::function<void(Scenario&)> change;
-};
-
 TEST_CASE("a standby with other rules is named within a second, and never takes over") {
-  const auto other =
-      GENERATE(OtherRule{"robots.yellow", [](Scenario& s) { s.robots.pop_back(); }},
-               OtherRule{"robots.blue", [](Scenario& s) { s.robots.erase(s.robots.begin()); }},
-               OtherRule{"radius_m", [](Scenario& s) { s.radius_m = 0.08; }},
-               OtherRule{"margin_m", [](Scenario& s) { s.margin_m = 0.02; }},
-               OtherRule{"tracking_bound_m", [](Scenario& s) { s.tracking_bound_m = 0.002; }},
-               OtherRule{"clock_bound_s", [](Scenario& s) { s.clock_bound_s = 0.0001; }},
-               OtherRule{"limits.speed_mps", [](Scenario& s) { s.limits.speed_mps = 1.9; }},
-               OtherRule{"limits.acceleration_mps2", [](Scenario& s) { s.limits.acceleration_mps2 = 2; }},
-               OtherRule{"limits.deceleration_mps2", [](Scenario& s) { s.limits.deceleration_mps2 = 6; }},
-               OtherRule{"field.length_m", [](Scenario& s) { s.field.length_m += 1; }},
-               OtherRule{"field.width_m", [](Scenario& s) { s.field.width_m += 1; }},
-               OtherRule{"max_opponent_speed_mps", [](Scenario& s) { s.max_opponent_speed_mps = 1; }},
-               OtherRule{"obstacles", [](Scenario& s) { s.obstacles.pop_back(); }});
+  const OtherRule& other = other_rules().at(GENERATE(range(std::size_t{0}, other_rules().size())));
   CAPTURE(other.key);
   Scenario scenario = crossing();
   scenario.coordinators = 2;

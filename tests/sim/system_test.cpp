@@ -162,4 +162,39 @@ TEST_CASE("robots stop without vision, and continue when it is back") {
   run.require_safe();
 }
 
+TEST_CASE("the report lists the epochs with their reasons, and the processes report why they begin") {
+  Scenario scenario = shipped("crossing");
+  scenario.coordinators = 2;
+  MonitoredSystem run(scenario, 1);
+  std::vector<std::string> events;
+  run.system.on_event(LogLevel::kInfo, [&](const std::string& process, const LogEvent& event) {
+    events.push_back(process + ": " + event.text);
+  });
+  const auto reported = [&](const std::string& text) {
+    return std::ranges::any_of(
+        events, [&](const std::string& event) { return event.find(text) != std::string::npos; });
+  };
+  run.run_until_speed(0);
+  run.system.kill("coordinator");
+  CHECK(run.system.run_until_arrived(run.system.begin() + std::chrono::seconds(60)));
+  run.require_safe();
+  const Report report = run.system.metrics().report();
+  REQUIRE(report.epochs.size() == 2);
+  CHECK(report.epochs[0].coordinator == "coordinator");
+  CHECK_THAT(report.epochs[0].reason, ContainsSubstring("no coordinator was active for 1"));
+  CHECK(report.epochs[0].at_s.value_or(0) < 0);
+  CHECK(report.epochs[1].coordinator == "coordinator 1");
+  CHECK(report.epochs[1].epoch > report.epochs[0].epoch);
+  CHECK_THAT(report.epochs[1].reason, ContainsSubstring("no heartbeat of coordinator 0 for 1"));
+  CHECK(report.epochs[1].at_s.value_or(0) > 0.3);
+  CHECK_THAT(summary(report), ContainsSubstring("coordinator 1 began epoch"));
+  const auto json = nlohmann::json::parse(to_json(report));
+  CHECK(json["epochs"][1]["reason"] == report.epochs[1].reason);
+  const std::string second = std::to_string(report.epochs[1].epoch);
+  CHECK(reported("coordinator 1: begins epoch " + second + ": no heartbeat of coordinator 0 for 1"));
+  CHECK(reported("agent 0: epoch " + second + " of coordinator 1"));
+  CHECK(reported("agent 0: registered in epoch " + second));
+  CHECK(reported("agent 0: arrived at goal 0, the last one"));
+}
+
 }  // namespace sidestep::system_test

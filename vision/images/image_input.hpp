@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Feeds a vision node with detections from images on the bus, and reports rejected images on stderr.
+/// Feeds a vision node with detections from images on the bus, and reports rejected images.
 /// Precondition: the bus makes no callbacks after this object's destruction.
 class ImageInput {
  public:

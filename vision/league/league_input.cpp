@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "common/log/log.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -24,8 +26,9 @@ LeagueInput::LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddr
       handle(datagram, sender);
     });
   });
-  fmt::print(stderr, "sidestep-vision: receiving league packets from {} on interface {}\n", address.endpoint,
-             address.interface);
+  log(LogLevel::kInfo,
+      fmt::format("receiving league packets from {} on interface {}", address.endpoint, address.interface));
+  node_.add_drop_source([this](DropCounters& drops) { source_.count_drops(drops); });
   bus.at(bus.now() + kSilenceTimeout, [this] { report_silence(); });
 }
 
@@ -39,15 +42,15 @@ void LeagueInput::handle(std::span<const std::byte> datagram, const league::Endp
 
 void LeagueInput::report_silence() {
   if (source_.counts().packets > 0) return;
-  fmt::print(stderr, "sidestep-vision: no packet received from {} on interface {} so far\n",
-             address_.endpoint, address_.interface);
+  log(LogLevel::kWarning, fmt::format("no packet received from {} on interface {} so far", address_.endpoint,
+                                      address_.interface));
 }
 
 void LeagueInput::report_rejection(const league::Endpoint& sender) {
   if (source_.rejected() < next_report_) return;
   next_report_ *= 10;
-  fmt::print(stderr, "sidestep-vision: {} packet(s) rejected so far; latest, from {}: {}\n",
-             source_.rejected(), to_text(sender), describe(source_.error()));
+  log(LogLevel::kWarning, fmt::format("{} packet(s) rejected so far; latest, from {}: {}", source_.rejected(),
+                                      to_text(sender), describe(source_.error())));
 }
 
 void LeagueInput::report_field() {
@@ -57,14 +60,14 @@ void LeagueInput::report_field() {
       std::abs(sender_field.width_m - field_.width_m) <= kFieldTolerance_m) {
     return;
   }
-  fmt::print(stderr,
-             "sidestep-vision: the sender's field is {:g} x {:g} m, the scenario's is {:g} x {:g} m\n",
-             sender_field.length_m, sender_field.width_m, field_.length_m, field_.width_m);
+  log(LogLevel::kWarning,
+      fmt::format("the sender's field is {:g} x {:g} m, the scenario's is {:g} x {:g} m",
+                  sender_field.length_m, sender_field.width_m, field_.length_m, field_.width_m));
 }
 
 void LeagueInput::report_clock_jump(const league::Endpoint& sender) {
   reported_jumps_ = source_.clock_jumps();
-  fmt::print(stderr, "sidestep-vision: the clock of the sender {} has been set\n", to_text(sender));
+  log(LogLevel::kWarning, fmt::format("the clock of the sender {} has been set", to_text(sender)));
 }
 
 }  // namespace sidestep

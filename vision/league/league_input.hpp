@@ -15,7 +15,7 @@ struct LeagueAddress {
   std::string interface = league::kLeagueInterface;
 };
 
-/// Feeds a vision node with detections from the league's multicast, and reports problems on stderr.
+/// Feeds a vision node with detections from the league's multicast, and logs problems.
 /// Precondition: the bus makes no callbacks after this object's destruction. Throws as MulticastReceiver and
 /// LeagueSource do.
 class LeagueInput {

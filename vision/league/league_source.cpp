@@ -27,6 +27,13 @@ std::uint64_t LeagueSource::rejected() const {
   return std::accumulate(counts_.rejected.begin(), counts_.rejected.end(), std::uint64_t{0});
 }
 
+void LeagueSource::count_drops(DropCounters& drops) const {
+  drops.count(DropReason::kMalformedLeaguePacket, std::nullopt, rejected());
+  drops.count(DropReason::kRepeatedLeagueFrame, std::nullopt, counts_.duplicates);
+  drops.count(DropReason::kUndatedLeagueFrame, std::nullopt, counts_.unsynchronised);
+  drops.count(DropReason::kUnusedLeagueDetection, std::nullopt, counts_.dropped);
+}
+
 std::uint64_t LeagueSource::clock_jumps() const {
   std::uint64_t sum = 0;
   for (const Sender& sender : senders_) sum += sender.clock.jumps();

@@ -11,6 +11,7 @@
 #include "common/geometry/circle.hpp"
 #include "common/league/multicast.hpp"
 #include "common/league/vision_packet.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "idl/vision.hpp"
 #include "vision/league/sender_clock.hpp"
 
@@ -42,6 +43,7 @@ class LeagueSource {
                                                   const league::Endpoint& sender, Time now);
 
   const Counts& counts() const { return counts_; }
+  void count_drops(DropCounters& drops) const;
   /// Number of packets rejected so far, for any reason.
   std::uint64_t rejected() const;
   /// Why the latest packet was rejected; kNone when it was not.

@@ -44,7 +44,7 @@ bool is_timely(std::int64_t captured_at_ns, Time now) {
 void Frame::clear(const msg::DetectionFrame& message) {
   camera_ = message.camera();
   captured_at_ = time_from_ns(message.captured_at_ns());
-  is_usable_ = false;
+  problem_ = FrameProblem::kNone;
   robot_count_ = ball_count_ = obstacle_count_ = 0;
   obstacles_complete_within_m_ = 0;
   rejected_ = 0;
@@ -52,13 +52,15 @@ void Frame::clear(const msg::DetectionFrame& message) {
 
 void Frame::assign(const msg::DetectionFrame& message, Time now) {
   clear(message);
-  if (!is_timely(message.captured_at_ns(), now) || message.ball_count() > msg::MAX_DETECTED_BALLS ||
-      message.obstacle_count() > msg::MAX_OBSTACLES ||
-      !is_completeness(message.obstacles_complete_within_m()) || message.robots().size() > kMaxRobots) {
+  if (!is_timely(message.captured_at_ns(), now))
+    problem_ = FrameProblem::kTime;
+  else if (message.ball_count() > msg::MAX_DETECTED_BALLS || message.obstacle_count() > msg::MAX_OBSTACLES ||
+           !is_completeness(message.obstacles_complete_within_m()) || message.robots().size() > kMaxRobots)
+    problem_ = FrameProblem::kMalformed;
+  if (!is_usable()) {
     rejected_ = std::max<std::uint64_t>(1, message.robots().size());
     return;
   }
-  is_usable_ = true;
   obstacles_complete_within_m_ = message.obstacles_complete_within_m();
   for (const auto& d : message.robots()) {
     if (is_valid(d)) {

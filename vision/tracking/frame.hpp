@@ -27,6 +27,13 @@ struct ObstacleObservation {
 /// ahead, because cameras' clocks differ.
 [[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now);
 
+/// Why a frame cannot be used.
+enum class FrameProblem : std::uint8_t {
+  kNone,
+  kTime,       ///< the capture time is not timely
+  kMalformed,  ///< a count or the obstacles' completeness is out of range
+};
+
 /// The valid content of a DetectionFrame: every number has been checked.
 class Frame {
  public:
@@ -34,7 +41,8 @@ class Frame {
   Time captured_at() const { return captured_at_; }
   /// False when the capture time, a count or the obstacles' completeness was invalid; the frame then holds no
   /// detections.
-  bool is_usable() const { return is_usable_; }
+  bool is_usable() const { return problem_ == FrameProblem::kNone; }
+  FrameProblem problem() const { return problem_; }
   std::span<const RobotPoseObservation> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
@@ -52,7 +60,7 @@ class Frame {
 
   std::uint32_t camera_ = 0;
   Time captured_at_{};
-  bool is_usable_ = false;
+  FrameProblem problem_ = FrameProblem::kMalformed;
   std::size_t robot_count_ = 0;
   std::size_t ball_count_ = 0;
   std::size_t obstacle_count_ = 0;

@@ -80,8 +80,9 @@ void ObstacleTracker::find_pairs(const Frame& frame) {
       if (x_of(*o) > centre.x() + gate) break;
       const Vec2& position_m = observations[*o].position_m;
       if ((position_m - centre).norm() > gate) continue;
-      pairs_.push_back({predicted_distance_m(tracks_[t], frame.captured_at(), position_m),
-                        static_cast<std::uint16_t>(t), *o});
+      const double distance_m = predicted_distance_m(tracks_[t], frame.captured_at(), position_m);
+      const double radius_change_m = observations[*o].radius_m - tracks_[t].radius_m;
+      pairs_.push_back({std::hypot(distance_m, radius_change_m), static_cast<std::uint16_t>(t), *o});
     }
   }
 }
@@ -122,7 +123,9 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   } else {
     track.filter.correct(innovation, variance);
   }
-  track.radius_m += kRadiusGain * (observation.radius_m - track.radius_m);
+  // The track may have followed a smaller obstacle that is at the same place.
+  track.radius_m =
+      std::max(observation.radius_m, track.radius_m + kRadiusGain * (observation.radius_m - track.radius_m));
   track.observed_at = at;
   if (++track.hits >= settings_.confirm_hits && track.number == 0) track.number = ++last_number_;
 }

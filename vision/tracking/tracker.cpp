@@ -94,13 +94,16 @@ Tracker::Tracker(const TrackerSettings& settings, std::span<const RobotId> roste
 }
 
 void Tracker::update(const Frame& frame) {
-  rejected_ += frame.rejected();
-  if (!frame.is_usable()) return;
+  if (!frame.is_usable()) {
+    ++(frame.problem() == FrameProblem::kTime ? untimely_frames_ : malformed_frames_);
+    return;
+  }
+  malformed_ += frame.rejected();
   bool is_new = frame.robots().empty() && frame.balls().empty();
   for (const RobotPoseObservation& robot : frame.robots()) {
     const std::uint16_t index = index_of_[robot.robot];
     if (index == kNotInRoster) {
-      ++rejected_;
+      ++unknown_;
       continue;
     }
     const Observation observation{frame.captured_at(), frame.camera(), robot.position_m, robot.heading_rad};
@@ -113,13 +116,22 @@ void Tracker::update(const Frame& frame) {
   frames_ += is_new ? 1 : 0;
 }
 
+void Tracker::count_drops(DropCounters& drops) const {
+  drops.count(DropReason::kUntimelyFrame, std::nullopt, untimely_frames_);
+  drops.count(DropReason::kMalformedFrame, std::nullopt, malformed_frames_);
+  drops.count(DropReason::kMalformedDetection, std::nullopt, malformed_);
+  drops.count(DropReason::kUnknownRobot, std::nullopt, unknown_);
+  drops.count(DropReason::kTooManyObstacles, std::nullopt, obstacles_.rejected());
+  drops.count(DropReason::kFalseDetection, std::nullopt, ball_.rejected());
+  for (std::size_t i = 0; i < robots_.size(); ++i)
+    drops.count(DropReason::kFalseDetection, roster_[i], robots_[i].rejected());
+}
+
 void Tracker::world_at(Time t, msg::WorldState& world) const {
-  std::uint64_t rejected = rejected_ + ball_.rejected() + obstacles_.rejected();
   std::size_t count = 0;
   world.robots().resize(roster_.size());
   for (std::size_t i = 0; i < roster_.size(); ++i) {
     const TrackState& state = robots_[i].state();
-    rejected += robots_[i].rejected();
     if (const auto estimate = estimate_at(state, t, settings_.robot)) {
       msg::TrackedRobot& robot = world.robots()[count++];
       robot.robot(roster_[i]);
@@ -129,7 +141,6 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
   world.robots().resize(count);
   world.valid_at_ns(to_ns(t));
   world.frames(frames_);
-  world.rejected(rejected);
   const bool is_tracked = estimate_at(ball_.state(), t, settings_.ball).has_value();
   world.ball(is_tracked ? tracked_ball(ball_at(t, world)) : msg::TrackedBall());
 }

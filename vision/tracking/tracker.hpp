@@ -8,6 +8,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/motion/rolling_ball.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "idl/vision.hpp"
 #include "vision/tracking/frame.hpp"
 #include "vision/tracking/obstacle_tracker.hpp"
@@ -39,9 +40,11 @@ class Tracker {
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Fills in valid_at_ns, the counters, and the ball and robots extrapolated from their last observations to
-  /// this time; ascending by number. An unobserved ball bounces off everything known on the floor. Allocates
-  /// when the message has held fewer robots so far.
+  /// Detections that were not used.
+  void count_drops(DropCounters& drops) const;
+  /// Fills in valid_at_ns, the number of frames, and the ball and robots extrapolated from their last
+  /// observations to this time; ascending by number. An unobserved ball bounces off everything known on the
+  /// floor. Allocates when the message has held fewer robots so far.
   void world_at(Time t, msg::WorldState& world) const;
   /// Fills in everything but the header, for the time and the robots of a world: obstacles at their last
   /// observations. Allocates when the message has held fewer obstacles so far.
@@ -59,7 +62,8 @@ class Tracker {
   Track ball_;
   ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;
-  std::uint64_t rejected_ = 0;
+  // Detections that were not used, except by tracks.
+  std::uint64_t malformed_ = 0, unknown_ = 0, untimely_frames_ = 0, malformed_frames_ = 0;
 };
 
 }  // namespace sidestep

@@ -10,7 +10,9 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
       next_(bus.now() + period_),
       tracker_(tracker_settings(scenario), roster_of(scenario)),
       world_writer_(bus.advertise(topics::kWorld)),
-      obstacle_writer_(bus.advertise(topics::kObstacles)) {
+      obstacle_writer_(bus.advertise(topics::kObstacles)),
+      counters_(bus, static_cast<std::uint32_t>(Sender::kVision), incarnation,
+                [this](DropCounters& drops) { count_drops(drops); }) {
   world_.vision(0);
   world_.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world_.header().incarnation(incarnation);
@@ -27,7 +29,13 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
 
 void VisionNode::add_frame(const msg::DetectionFrame& message) {
   frame_.assign(message, bus_.now());
+  changes_.on_frame(frame_, bus_.now());
   tracker_.update(frame_);
+}
+
+void VisionNode::count_drops(DropCounters& drops) const {
+  for (const auto& source : drop_sources_) source(drops);
+  tracker_.count_drops(drops);
 }
 
 void VisionNode::publish() {
@@ -36,6 +44,7 @@ void VisionNode::publish() {
   tracker_.obstacles_at(world_, obstacles_);
   world_writer_.publish(world_, now);
   obstacle_writer_.publish(obstacles_, now);
+  changes_.update(world_, now);
   if (listener_) listener_(world_);
   next_ += period_;
   if (next_ < now) next_ = now + period_;

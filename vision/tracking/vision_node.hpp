@@ -2,10 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
 #include "vision/tracking/tracker.hpp"
+#include "vision/tracking/vision_changes.hpp"
 
 namespace sidestep {
 
@@ -26,6 +30,17 @@ class VisionNode {
   const msg::WorldState& world() const { return world_; }
   /// Processes a frame that has just arrived.
   void add_frame(const msg::DetectionFrame& message);
+  /// Sets a callback for events of at least a level.
+  void on_event(LogLevel min_level, OnLogEvent callback) {
+    events_.set_listener(min_level, std::move(callback));
+  }
+  /// For the sources of this node's frames.
+  const EventReporter& events() const { return events_; }
+  /// A source of this node's frames adds what it has dropped.
+  void add_drop_source(std::function<void(DropCounters&)> source) {
+    drop_sources_.push_back(std::move(source));
+  }
+  void count_drops(DropCounters& drops) const;
   /// The listener is called with every published world.
   void set_listener(std::function<void(const msg::WorldState&)> listener) { listener_ = std::move(listener); }
 
@@ -42,6 +57,10 @@ class VisionNode {
   Writer<msg::WorldState> world_writer_;
   Writer<msg::ObstacleList> obstacle_writer_;
   std::function<void(const msg::WorldState&)> listener_;
+  EventReporter events_;
+  VisionChanges changes_{events_};
+  std::vector<std::function<void(DropCounters&)>> drop_sources_;
+  CounterPublisher counters_;
 };
 
 }  // namespace sidestep

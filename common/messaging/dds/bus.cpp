@@ -58,11 +58,15 @@ void DdsBus::impair(const LinkQuality& quality, std::uint64_t seed) {
   impl_->session->participant.impair(quality, seed);
 }
 
-std::uint64_t DdsBus::refused() const {
-  std::uint64_t sum = 0;
-  for (const auto& reader : impl_->readers) sum += reader->refused();
-  for (const auto& reader : impl_->image_readers) sum += reader->reader().refused();
-  return sum;
+void DdsBus::add_drops(DropCounters& drops) const {
+  std::uint64_t unreadable = 0;
+  for (const auto& reader : impl_->readers) unreadable += reader->refused();
+  for (const auto& reader : impl_->image_readers) unreadable += reader->reader().refused();
+  drops.count(DropReason::kUnreadable, std::nullopt, unreadable);
+  const TransportCounts& transport = impl_->session->participant.counts();
+  drops.count(DropReason::kInjectedLoss, std::nullopt, transport.impaired);
+  drops.count(DropReason::kQueueFull, std::nullopt, transport.overflowed);
+  drops.count(DropReason::kForgottenPeer, std::nullopt, transport.forgotten);
 }
 
 std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std::string& channel) {

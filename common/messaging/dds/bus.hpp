@@ -50,8 +50,6 @@ class DdsBus : public Bus {
   /// The addresses on which this participant listens for messages, for the log; empty before the first
   /// subscription.
   std::string locators() const;
-  /// Messages dropped so far because their payload was not of the topic's type.
-  std::uint64_t refused() const;
 
   /// From now on impairs all arriving messages except an operator's. Precondition: DdsSettings::faults.
   void impair(const LinkQuality& quality, std::uint64_t seed);
@@ -60,6 +58,7 @@ class DdsBus : public Bus {
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
   void make_reader(const TopicInfo& topic, const std::string& channel,
                    std::function<void(const void*)> callback) override;
+  void add_drops(DropCounters& drops) const override;
 
  private:
   struct Impl;

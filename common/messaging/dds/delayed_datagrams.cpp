@@ -9,7 +9,7 @@ namespace sidestep {
 namespace rtps = fast_dds::rtps;
 using SteadyClock = std::chrono::steady_clock;
 
-DelayedDatagrams::DelayedDatagrams() : thread_([this] { run(); }) {}
+DelayedDatagrams::DelayedDatagrams(TransportCounts& counts) : counts_(counts), thread_([this] { run(); }) {}
 
 DelayedDatagrams::~DelayedDatagrams() {
   {
@@ -26,7 +26,11 @@ void DelayedDatagrams::add(Duration delay, fast_dds::transport::TransportReceive
   constexpr std::size_t kMaxQueued = 1 << 16;
   {
     const std::lock_guard lock(mutex_);
-    if (queue_.size() >= kMaxQueued || closed_.count(local.port)) return;
+    if (closed_.count(local.port)) return;
+    if (queue_.size() >= kMaxQueued) {
+      ++counts_.overflowed;
+      return;
+    }
     queue_.push_back(
         {SteadyClock::now() + delay, order_++, &receiver, {datagram.begin(), datagram.end()}, local, remote});
     std::push_heap(queue_.begin(), queue_.end());

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/messaging/dds/transport_counts.hpp"
 #include "common/time/time.hpp"
 #include "fast_dds/chained_transport.hpp"
 
@@ -18,12 +19,13 @@ namespace sidestep {
 /// Holds delayed datagrams. Its own thread passes each one on when the delay is over.
 class DelayedDatagrams {
  public:
-  DelayedDatagrams();
+  /// `counts` must outlive this object.
+  explicit DelayedDatagrams(TransportCounts& counts);
   ~DelayedDatagrams();
   DelayedDatagrams(const DelayedDatagrams&) = delete;
   DelayedDatagrams& operator=(const DelayedDatagrams&) = delete;
 
-  /// The datagram is lost if too many wait.
+  /// The datagram is lost, and counted, if too many wait.
   void add(Duration delay, fast_dds::transport::TransportReceiverInterface& receiver,
            std::span<const std::uint8_t> datagram, const fast_dds::rtps::Locator_t& local,
            const fast_dds::rtps::Locator_t& remote);
@@ -46,7 +48,8 @@ class DelayedDatagrams {
 
   void run();
 
-  std::mutex mutex_;  ///< guards all other members but the thread
+  TransportCounts& counts_;
+  std::mutex mutex_;  ///< guards the members below but the thread
   std::condition_variable changed_;
   std::vector<Delayed> queue_;  ///< heap
   std::set<std::uint32_t> closed_;

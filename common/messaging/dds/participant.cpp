@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/log/log.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "fast_dds_version.hpp"
 
@@ -60,6 +61,7 @@ void check(const DdsSettings& settings) {
 
 DomainParticipantQos participant_qos(const DdsSettings& settings,
                                      const std::shared_ptr<Impairment>& impairment,
+                                     const std::shared_ptr<TransportCounts>& counts,
                                      std::uint32_t shared_memory_bytes) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
@@ -73,7 +75,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
     memory->segment_size(shared_memory_bytes);
     qos.transport().user_transports.push_back(memory);
   }
-  qos.transport().user_transports.push_back(udp_transport(udp, impairment));
+  qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts));
   if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
@@ -110,8 +112,8 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantLis
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   fast_dds::disable_intraprocess_delivery();
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<DomainId_t>(settings.domain), participant_qos(settings, impairment_, shared_memory_bytes),
-      listener, StatusMask::none());
+      static_cast<DomainId_t>(settings.domain),
+      participant_qos(settings, impairment_, counts_, shared_memory_bytes), listener, StatusMask::none());
   if (participant_ == nullptr) {
     throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}",
                                          settings.domain, settings.interface));
@@ -217,6 +219,6 @@ std::string dds_policy_name(QosPolicyId_t policy) {
 
 std::string fast_dds_version() { return kFastDdsVersion; }
 
-void log_dds(const std::string& message) { fmt::print(stderr, "dds: {}\n", message); }
+void log_dds(const std::string& message) { log(LogLevel::kWarning, "dds: " + message); }
 
 }  // namespace sidestep

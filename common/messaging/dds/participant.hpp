@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
 #include "fast_dds/library.hpp"
 
@@ -39,10 +40,12 @@ class DdsParticipant {
   void delete_reader(fast_dds::dds::DataReader* reader);
   /// As DdsBus::impair().
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
+  const TransportCounts& counts() const { return *counts_; }
 
  private:
   fast_dds::dds::Topic* topic(const std::string& channel, const fast_dds::dds::TypeSupport& type);
 
+  std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
   fast_dds::dds::DomainParticipant* participant_ = nullptr;
   fast_dds::dds::Publisher* publisher_ = nullptr;

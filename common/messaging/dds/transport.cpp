@@ -40,19 +40,23 @@ bool is_operator(const ParticipantId& id) {
 
 struct UdpDescriptor : transport::ChainingTransportDescriptor {
   UdpDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> udp,
-                std::shared_ptr<Impairment> impairment_of_process)
-      : ChainingTransportDescriptor(std::move(udp)), impairment(std::move(impairment_of_process)) {}
+                std::shared_ptr<Impairment> impairment_of_process,
+                std::shared_ptr<TransportCounts> counts_of_process)
+      : ChainingTransportDescriptor(std::move(udp)),
+        impairment(std::move(impairment_of_process)),
+        counts(std::move(counts_of_process)) {}
 
   transport::TransportInterface* create_transport() const override;
 
   std::shared_ptr<Impairment> impairment;
+  std::shared_ptr<TransportCounts> counts;
 };
 
 class UdpTransport : public fast_dds::ChainedTransport {
  public:
   explicit UdpTransport(const UdpDescriptor& descriptor)
       : ChainedTransport(descriptor), descriptor_(descriptor) {
-    if (descriptor_.impairment) delayed_.emplace();
+    if (descriptor_.impairment) delayed_.emplace(*descriptor_.counts);
   }
 
   transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
@@ -84,7 +88,9 @@ class UdpTransport : public fast_dds::ChainedTransport {
  private:
   bool accept(const ParticipantId& sender) {
     const std::lock_guard lock(state_);
-    return presence_.accept(sender, EventLoop::now());
+    const bool is_accepted = presence_.accept(sender, EventLoop::now());
+    descriptor_.counts->forgotten += !is_accepted;
+    return is_accepted;
   }
 
   /// One at a time, so that nothing of a participant is processed while Fast DDS forgets it.
@@ -98,6 +104,8 @@ class UdpTransport : public fast_dds::ChainedTransport {
       }
     } else if (!notices && early_.size() < kMaxEarly) {
       early_.push_back({sender, {datagram.begin(), datagram.end()}, local, remote});
+    } else if (!notices) {
+      ++descriptor_.counts->overflowed;
     }
     for (const ParticipantId& id : to_forget(sender, notices)) {
       const Datagram departure = departure_of(id);
@@ -131,6 +139,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
                   const rtps::Locator_t& remote) {
     if (!descriptor_.impairment || is_operator(sender)) return pass_on(next, datagram, local, remote);
     const MessageCopies copies = descriptor_.impairment->receive(sender);
+    descriptor_.counts->impaired += copies.count == 0;
     for (std::size_t i = 0; i < copies.count; ++i) {
       if (copies.delays[i] <= Duration::zero())
         pass_on(next, datagram, local, remote);
@@ -168,8 +177,9 @@ transport::TransportInterface* UdpDescriptor::create_transport() const { return 
 }  // namespace
 
 std::shared_ptr<transport::TransportDescriptorInterface> udp_transport(
-    std::shared_ptr<transport::UDPv4TransportDescriptor> udp, std::shared_ptr<Impairment> impairment) {
-  return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment));
+    std::shared_ptr<transport::UDPv4TransportDescriptor> udp, std::shared_ptr<Impairment> impairment,
+    std::shared_ptr<TransportCounts> counts) {
+  return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment), std::move(counts));
 }
 
 rtps::GuidPrefix_t operator_prefix() {

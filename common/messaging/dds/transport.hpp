@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
 #include "fast_dds/library.hpp"
 
@@ -11,12 +12,12 @@ namespace sidestep {
 /// A UDP transport that announces presence, and makes Fast DDS forget participants that have become silent
 /// (see Presence).
 ///
-/// With an impairment it also loses, duplicates, delays and so reorders arriving datagrams. Discovery is
-/// exempt, because otherwise processes would not find each other for seconds. An operator's messages are
-/// exempt, because otherwise a fault could not be ended.
+/// `counts` counts what it drops. With an impairment it also loses, duplicates, delays and so reorders
+/// arriving datagrams. Discovery is exempt, because otherwise processes would not find each other for
+/// seconds. An operator's messages are exempt, because otherwise a fault could not be ended.
 std::shared_ptr<fast_dds::transport::TransportDescriptorInterface> udp_transport(
     std::shared_ptr<fast_dds::transport::UDPv4TransportDescriptor> udp,
-    std::shared_ptr<Impairment> impairment);
+    std::shared_ptr<Impairment> impairment, std::shared_ptr<TransportCounts> counts);
 
 /// GUID prefix that marks this process as an operator's; unique to the process.
 fast_dds::rtps::GuidPrefix_t operator_prefix();

@@ -23,7 +23,7 @@ SimBus::SimBus(SimNetwork& network) : SimBus(network, {network.new_process()}) {
 
 SimBus::SimBus(SimNetwork& network, const SimProcessSpec& spec)
     : network_(network),
-      clock_offset_(spec.clock_offset),
+      clock_(spec.clock),
       instance_(&network.instances_.emplace_back()),
       timers_(&network.subscriptions_.emplace_back(SimSubscription{instance_, nullptr})) {
   instance_->process = spec.process;
@@ -36,10 +36,10 @@ SimBus::~SimBus() {
   }
 }
 
-Time SimBus::now() const { return network_.now() + clock_offset_; }
+Time SimBus::now() const { return clock_.reading(network_.now()); }
 
 void SimBus::at(Time when, std::function<void()> callback) {
-  network_.events_.push(std::max(when - clock_offset_, network_.now()),
+  network_.events_.push(std::max(clock_.true_time(when), network_.now()),
                         {timers_, network_.timers_.add(std::move(callback)), true, false});
 }
 
@@ -50,6 +50,8 @@ MessageAttachment* SimBus::attachment(const void* message) {
 }
 
 void SimBus::become_observer() { instance_->is_observer = true; }
+
+void SimBus::hide_from_observers() { network_.hidden_.insert(instance_->process); }
 
 void SimBus::pause(Time until, std::size_t max_queued) {
   instance_->paused_until = until;
@@ -65,6 +67,11 @@ SimNetwork::Channel& SimBus::channel_named(const std::string& name) {
 
 std::unique_ptr<RawWriter> SimBus::make_writer(const TopicInfo& topic, const std::string& channel) {
   return std::make_unique<SimNetwork::Writer>(network_, instance_->process, topic, channel_named(channel));
+}
+
+void SimBus::add_drops(DropCounters& drops) const {
+  drops.count(DropReason::kInjectedLoss, std::nullopt, instance_->lost);
+  drops.count(DropReason::kQueueFull, std::nullopt, instance_->overflowed);
 }
 
 void SimBus::make_reader(const TopicInfo&, const std::string& channel,

@@ -7,13 +7,14 @@
 
 #include "common/messaging/bus.hpp"
 #include "common/messaging/sim/network.hpp"
+#include "common/time/clock_error.hpp"
 
 namespace sidestep {
 
 /// Identity and clock of a simulated process.
 struct SimProcessSpec {
-  ProcessId process = 0;     ///< identifies its links
-  Duration clock_offset{0};  ///< process's clock - network's time
+  ProcessId process = 0;  ///< identifies its links
+  ClockError clock{};     ///< the network's time is the true one
 };
 
 /// One instance of a simulated process, and its access to a SimNetwork. Destroying it simulates kill -9: its
@@ -35,6 +36,9 @@ class SimBus : public Bus {
   /// From now on, receives all messages without delay or loss. For audit and metrics, which are not part of
   /// the system.
   void become_observer();
+  /// From now on, observers receive nothing that this process sends. For hostile senders: audit and metrics
+  /// judge what the others say.
+  void hide_from_observers();
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
   /// queued. Further ones are lost, as when a socket buffer is full. At the end, all queued messages and
   /// timers are delivered at the same time.
@@ -44,12 +48,13 @@ class SimBus : public Bus {
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
   void make_reader(const TopicInfo& topic, const std::string& channel,
                    std::function<void(const void*)> callback) override;
+  void add_drops(DropCounters& drops) const override;
 
  private:
   SimNetwork::Channel& channel_named(const std::string& name);
 
   SimNetwork& network_;
-  Duration clock_offset_;
+  ClockError clock_;
   SimProcessInstance* instance_;  // owned by the network, which keeps it after the bus is destroyed
   SimSubscription* timers_;
 };

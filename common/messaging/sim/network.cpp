@@ -56,6 +56,7 @@ void SimNetwork::release(std::uint32_t sent) {
 void SimNetwork::postpone(const Event& event) {
   SimProcessInstance& instance = *event.subscription->instance;
   if (event.is_droppable && instance.queued++ >= instance.max_queued) {
+    ++instance.overflowed;
     drop(event);
     return;
   }
@@ -70,16 +71,20 @@ Duration SimNetwork::sample_delay() {
 void SimNetwork::send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message) {
   if (channel.subscriptions.empty()) return;
   const std::uint32_t copy = sent_.add({topic.type.copy(message), 1});
+  const bool is_hidden = !hidden_.empty() && hidden_.contains(from);
   for (SimSubscription* reader : channel.subscriptions) {
     const ProcessId to = reader->instance->process;
     if (reader->instance->is_observer) {
-      deliver(*reader, now_, copy, false);
+      if (!is_hidden) deliver(*reader, now_, copy, false);
     } else if (topic.qos == Qos::kEvent) {
       send_event(from, *reader, copy);
     } else if (links_.any() && links_.find(from, to)) {
       const MessageCopies copies = links_.send(from, to, rng_);
       for (std::size_t i = 0; i < copies.count; ++i) deliver(*reader, now_ + copies.delays[i], copy, true);
-    } else if (!rng_.chance(spec_.loss)) {
+      reader->instance->lost += copies.count == 0;
+    } else if (rng_.chance(spec_.loss)) {
+      ++reader->instance->lost;
+    } else {
       deliver(*reader, now_ + sample_delay(), copy, true);
       if (rng_.chance(spec_.duplicate)) deliver(*reader, now_ + sample_delay(), copy, true);
     }

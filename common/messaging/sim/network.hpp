@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct SimProcessInstance {
   bool is_observer = false;
   Time paused_until = Time::min();
   std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
+  std::uint64_t lost = 0;                  ///< messages to it that the network has lost
+  std::uint64_t overflowed = 0;            ///< messages to it that found its queue full
 };
 
 /// One subscription of one process instance. The instance's timers refer to one without a callback.
@@ -92,6 +95,7 @@ class SimNetwork {
   NetworkSpec spec_;
   SimLinks links_;
   ProcessId next_process_ = 0;
+  std::set<ProcessId> hidden_;  ///< from observers
   EventQueue<Event> events_;
   Pool<std::function<void()>> timers_;
   Pool<SentMessage> sent_;

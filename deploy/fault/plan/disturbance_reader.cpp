@@ -17,7 +17,7 @@ struct DisturbanceKey {
   const char* key;
   Kind kind;
 };
-constexpr std::array<DisturbanceKey, 10> kDisturbanceKeys{{{"push", Kind::DISTURBANCE_PUSH},
+constexpr std::array<DisturbanceKey, 13> kDisturbanceKeys{{{"push", Kind::DISTURBANCE_PUSH},
                                                            {"slip", Kind::DISTURBANCE_SLIP},
                                                            {"block", Kind::DISTURBANCE_BLOCK},
                                                            {"lift", Kind::DISTURBANCE_LIFT},
@@ -26,10 +26,14 @@ constexpr std::array<DisturbanceKey, 10> kDisturbanceKeys{{{"push", Kind::DISTUR
                                                            {"clock", Kind::DISTURBANCE_CLOCK},
                                                            {"switch_off", Kind::DISTURBANCE_SWITCH_OFF},
                                                            {"switch_on", Kind::DISTURBANCE_SWITCH_ON},
-                                                           {"carry", Kind::DISTURBANCE_CARRY}}};
+                                                           {"carry", Kind::DISTURBANCE_CARRY},
+                                                           {"seen_beside", Kind::DISTURBANCE_SEEN_BESIDE},
+                                                           {"seen_as", Kind::DISTURBANCE_SEEN_AS},
+                                                           {"seen_frozen", Kind::DISTURBANCE_SEEN_FROZEN}}};
 
 // As the options of `sidestep fault`, or narrower where the simulator takes less.
 constexpr Range kPush_mps{-10, 10};
+constexpr Range kSightError_m{-10, 10};
 constexpr Range kHeading_rad{-2 * std::numbers::pi, 2 * std::numbers::pi};
 constexpr Range kOffset_ms{-1e6, 1e6};
 constexpr Range kPlace_m{-1000, 1000};
@@ -60,7 +64,8 @@ std::vector<std::string> disturbance_keys() {
 
 bool has_duration(const RobotDisturbance& disturbance) {
   return disturbance.kind == Kind::DISTURBANCE_SLIP || disturbance.kind == Kind::DISTURBANCE_BLOCK ||
-         disturbance.kind == Kind::DISTURBANCE_CARRY;
+         disturbance.kind == Kind::DISTURBANCE_CARRY || disturbance.kind == Kind::DISTURBANCE_SEEN_BESIDE ||
+         disturbance.kind == Kind::DISTURBANCE_SEEN_AS || disturbance.kind == Kind::DISTURBANCE_SEEN_FROZEN;
 }
 
 RobotDisturbance read_disturbance(YamlMap& map, const std::string& key, const Scenario& scenario) {
@@ -91,6 +96,14 @@ RobotDisturbance read_disturbance(YamlMap& map, const std::string& key, const Sc
       break;
     case Kind::DISTURBANCE_CARRY:
       read_place(map, "to_m", disturbance, scenario);
+      break;
+    case Kind::DISTURBANCE_SEEN_BESIDE:
+      require(map, "by_m");
+      map.read("by_m", kSightError_m, disturbance.place_m);
+      break;
+    case Kind::DISTURBANCE_SEEN_AS:
+      require(map, "other");
+      disturbance.other_robot = robot_from(map, "other", scenario);
       break;
     default:
       break;

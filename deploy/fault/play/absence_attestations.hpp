@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "deploy/fault/attestation_exchange.hpp"
 #include "deploy/fault/plan/run_observer.hpp"
 #include "deploy/fault/plan/test_result.hpp"
 #include "idl/negotiation.hpp"
@@ -19,24 +20,18 @@ class AbsenceAttestations {
   AbsenceAttestations(const RunObserver& observer, Publish publish)
       : observer_(observer), publish_(std::move(publish)) {}
 
-  void begin(RobotId robot, Time now) { pending_.push_back({robot, now, now, false}); }
+  void begin(RobotId robot, Time now) { pending_.emplace_back(robot, now); }
   /// Call it at least a few times a second.
   void update(Time now);
   /// Attestations that were not accepted, including those that are still pending.
   std::vector<FaultProblem> problems() const;
 
  private:
-  struct Pending {
-    RobotId robot;
-    Time begun, due;
-    bool was_missing;
-  };
-  /// Why it is not accepted.
-  FaultProblem problem_of(const Pending& pending) const;
+  FaultProblem problem_of(const AttestationExchange& exchange) const;
 
   const RunObserver& observer_;
   Publish publish_;
-  std::vector<Pending> pending_;
+  std::vector<AttestationExchange> pending_;
   std::vector<FaultProblem> problems_;
 };
 

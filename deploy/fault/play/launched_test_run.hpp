@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "deploy/fault/plan/test_result.hpp"
 
@@ -13,6 +14,7 @@ struct LaunchOptions {
   std::string hosts_file;  ///< empty: this machine, or namespaces if the test has partitions
   DdsSettings dds;
   std::uint64_t seed = 1;  ///< of the simulator's noise
+  LogLevel log_level = LogLevel::kInfo;
 };
 
 /// Runs a test over DDS, with one process for each part of the system. No process outlives the call. Writes

@@ -9,6 +9,7 @@
 #include "deploy/fault/plan/test_end.hpp"
 #include "deploy/fault/play/run_end.hpp"
 #include "deploy/fault/play/sim_faults.hpp"
+#include "deploy/simulate/system/sim_log.hpp"
 
 namespace sidestep {
 namespace {
@@ -46,8 +47,9 @@ void play(const FaultTest& test, SimSystem& system, SimFaults& faults, FaultSche
 
 }  // namespace
 
-RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed) {
+RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed, LogLevel log_level) {
   SimSystem system(test.scenario, seed);
+  if (log_level != LogLevel::kOff) log_events_of(system, log_level);
   ObserverBus observer_bus(system, test.scenario);
   RunObserver observer(observer_bus.bus);
   SimFaults faults(test, system, observer_bus.bus, observer);

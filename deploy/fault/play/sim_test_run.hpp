@@ -3,11 +3,14 @@
 
 #include <cstdint>
 
+#include "common/log/log_level.hpp"
 #include "deploy/fault/plan/test_result.hpp"
 
 namespace sidestep {
 
-/// Runs a test on SimBus, in virtual time. The same seed gives the same outcome.
-[[nodiscard]] RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed);
+/// Runs a test on SimBus, in virtual time. The same seed gives the same outcome. `log_level`: of the
+/// simulated processes' log, on stderr.
+[[nodiscard]] RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed,
+                                        LogLevel log_level = LogLevel::kOff);
 
 }  // namespace sidestep

@@ -55,7 +55,7 @@ struct AuditTotals {
   double run_s = 0;         ///< the time of the run in which silence counts, see Auditor::begin_run
   AuditReference reference = AuditReference::kNone;
   double max_position_error_m = 0;          ///< largest distance of an on-reference robot from its reference
-  std::uint64_t beyond_tracking_bound = 0;  ///< times that this distance exceeded the tracking bound
+  std::uint64_t excused_crashes = 0;        ///< crashes of moving robots that a disturbance excuses
   std::uint64_t excused_contacts = 0;       ///< contacts that a disturbance of a robot excuses
   std::vector<ExcusedContacts> excused;     ///< the same by cause and pair
   std::uint64_t unidentified_contacts = 0;  ///< contacts of which the reference did not name the robots

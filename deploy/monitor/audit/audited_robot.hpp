@@ -118,7 +118,8 @@ class AuditedRobot {
     bool is_lifted = false;
   };
   std::optional<Fact> fact;
-  std::int64_t beyond_bound_since_ns = kNever;  ///< all facts since then report an error beyond the bound
+  /// All facts since then report an error beyond the drift bound, and beyond the tracking bound.
+  std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
 
   /// The latest registration.
   struct Registered {
@@ -131,6 +132,10 @@ class AuditedRobot {
   };
   std::optional<Registered> registered;
   EpochMemory registered_in;
+  /// Of the robot's clock, by its last fact. Exact only if the auditor receives everything at once.
+  std::int64_t clock_ahead_ns = 0;
+  /// An operator has attested its absence: epochs up to this one may have begun without its registration.
+  Epoch attested_until = 0;
 
   /// Executed versions, and those of them that are traced. Only versions that an agent made and that were
   /// granted during the audit count.

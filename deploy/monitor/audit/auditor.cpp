@@ -181,6 +181,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     known->registered_in.add(epoch);
   }
   robot->registered_in.add(epoch);
+  robot->attested_until = std::min(robot->attested_until, epoch);
   if (!robot->registered || epoch >= robot->registered->epoch) robot->registered = std::move(registered);
 }
 

@@ -83,6 +83,7 @@ class Auditor {
   struct Observation {
     std::int64_t at_ns = kNever;
     double x = 0, y = 0;
+    double reference_error_m = 0;  ///< by ground truth
   };
   /// A displacement that vision shows.
   struct SeenDisplacement {
@@ -158,6 +159,8 @@ class Auditor {
                            std::int64_t at_ns);
   /// `reported`: number of contacts in the previous ground truth.
   void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
+  /// `reported`: number of crashes of moving robots in the previous ground truth.
+  void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported);
   /// Whether a contact is excused; it is then counted. nullopt: an obstacle.
   bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at);
   void record_positions(const msg::GroundTruth& truth);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of the run the auditor covered, and its totals.
 #include <algorithm>
+#include <limits>
 
 #include "deploy/monitor/audit/auditor.hpp"
 
@@ -35,10 +36,13 @@ void Auditor::hear_fact(const AuditedRobot& robot, VersionNumber executing, cons
 
 void Auditor::on_attestation(const msg::AbsenceAttestation& attestation, Time now) {
   now_ = now;
-  if (const auto index = roster_index(attestation.robot()))
-    facts_time_.expect_silence(*index);
-  else
+  const auto index = roster_index(attestation.robot());
+  if (!index) {
     ++totals_.invalid;
+    return;
+  }
+  facts_time_.expect_silence(*index);
+  robots_[*index].attested_until = std::numeric_limits<Epoch>::max();
 }
 
 bool Auditor::has_ground_truth() const {

@@ -19,8 +19,9 @@ constexpr double kReportingTolerance_m = 0.0005;
 // Versions that begin this long after a robot's first fact were granted after that fact, and after an auditor
 // that joined a run had found all senders.
 constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
-// A robot may take 25 ms to return to its reference, plus a millisecond until its next check.
-constexpr std::int64_t kRecoveryTimeout_ns = 26'000'000;
+// Robots check themselves every millisecond. Beyond the drift bound they may take 25 ms to return.
+constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
+constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
 
 bool is_sane(const msg::Feedback& feedback) {
   return std::isfinite(feedback.x_m()) && std::isfinite(feedback.y_m()) && std::isfinite(feedback.vx_mps()) &&
@@ -100,11 +101,14 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
     check_tracking(*robot, executing, feedback, reception);
     check_obeyed_epochs(*robot, executing, feedback, reception);
     if (executing.is_own_stop && !executing.was_executed) check_own_stop(*robot, executing);
-    KnownVersion* base = robot->find(executing.version.base());
-    if (base && base->was_executed && robot->fact && robot->fact->executing == base->number)
-      base->executed_until_ns = std::max(base->executed_until_ns, executing.path.start_ns());
+    // The times of a clock that is out of bound prove nothing, also after it has been set.
+    if (is_clock_sound(feedback, reception)) {
+      KnownVersion* base = robot->find(executing.version.base());
+      if (base && base->was_executed && robot->fact && robot->fact->executing == base->number)
+        base->executed_until_ns = std::max(base->executed_until_ns, executing.path.start_ns());
+      executing.executed_until_ns = std::max(executing.executed_until_ns, feedback.valid_at_ns());
+    }
     executing.was_executed = true;
-    executing.executed_until_ns = std::max(executing.executed_until_ns, feedback.valid_at_ns());
   }
   exclude(*robot, fact, reception, to_ns(now_));
   has_sound_clock_[index_of(*robot)] = is_clock_sound(feedback, reception);
@@ -170,22 +174,29 @@ void Auditor::check_sent(AuditedRobot& robot, KnownVersion& executing) {
 
 void Auditor::check_tracking(AuditedRobot& robot, const KnownVersion& executing,
                              const msg::Feedback& feedback, const Reception& reception) {
-  const std::int64_t since_ns = std::exchange(robot.beyond_bound_since_ns, kNever);
+  const std::int64_t drifted_since_ns = std::exchange(robot.drifted_since_ns, kNever);
+  const std::int64_t beyond_since_ns = std::exchange(robot.beyond_bound_since_ns, kNever);
   // Setting a robot's clock displaces its reference at once.
   if (!has_sound_clock_[index_of(robot)] || !is_clock_sound(feedback, reception)) return;
   if (feedback.is_off_reference() || feedback.is_lifted() || !robot.fact || robot.fact->is_off_reference)
     return;
-  const double beyond_m = feedback.tracking_error_m() - tracking_bound_m_ - executing.version.inflation_m() -
-                          kReportingTolerance_m;
-  if (!(beyond_m > 0)) return;
-  // If facts were missed, the robot may have recovered in between.
-  robot.beyond_bound_since_ns = reception.is_next && since_ns != kNever ? since_ns : feedback.valid_at_ns();
-  if (feedback.valid_at_ns() - robot.beyond_bound_since_ns <= kRecoveryTimeout_ns) return;
-  const double lasted_s = static_cast<double>(feedback.valid_at_ns() - robot.beyond_bound_since_ns) * 1e-9;
-  report(
-      AuditRule::kTracking, robot.id, &executing, 0,
-      fmt::format("{:.6f} m off its reference by its own estimate, for at least {:.3f} s; {:.6f} m allowed",
-                  feedback.tracking_error_m(), lasted_s, tracking_bound_m_));
+  const double error_m =
+      feedback.tracking_error_m() - executing.version.inflation_m() - kReportingTolerance_m;
+  const auto check = [&](double bound_m, std::int64_t since_ns, std::int64_t timeout_ns) {
+    if (!(error_m > bound_m)) return kNever;
+    // If facts were missed, the robot may have recovered in between.
+    const std::int64_t first_ns = reception.is_next && since_ns != kNever ? since_ns : feedback.valid_at_ns();
+    const std::int64_t lasted_ns = feedback.valid_at_ns() - first_ns;
+    if (lasted_ns > timeout_ns) {
+      report(AuditRule::kTracking, robot.id, &executing, 0,
+             fmt::format(
+                 "{:.6f} m off its reference by its own estimate, for at least {:.3f} s; {:.6f} m allowed",
+                 feedback.tracking_error_m(), static_cast<double>(lasted_ns) * 1e-9, bound_m));
+    }
+    return first_ns;
+  };
+  robot.drifted_since_ns = check(drift_bound_m(tracking_bound_m_), drifted_since_ns, kRecoveryTimeout_ns);
+  robot.beyond_bound_since_ns = check(tracking_bound_m_, beyond_since_ns, kCheckPeriod_ns);
 }
 
 void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop) {
@@ -215,7 +226,7 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
   }
   for (auto& [epoch, record] : epochs_) {
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
-    if (record.first_grant_ns >= reception.earliest_ns) continue;
+    if (record.first_grant_ns >= reception.earliest_ns || epoch <= robot.attested_until) continue;
     record.is_reported = true;
     report(AuditRule::kAllRegistered, robot.id, nullptr, epoch,
            fmt::format("still obeys epoch {}, so it cannot have registered before the first grant",

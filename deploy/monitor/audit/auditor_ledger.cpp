@@ -112,7 +112,9 @@ void Auditor::check_granting_epoch(const AuditedRobot& robot, const KnownVersion
     record.granter = verdict.header().sender();
     record.granter_life = life;
     for (const AuditedRobot& other : robots_) {
-      if (!input_.is_complete || other.registered_in.may_have_held(verdict.epoch())) continue;
+      if (!input_.is_complete || other.registered_in.may_have_held(verdict.epoch()) ||
+          verdict.epoch() <= other.attested_until)
+        continue;
       record.is_reported = true;
       report(
           AuditRule::kAllRegistered, other.id, nullptr, verdict.epoch(),

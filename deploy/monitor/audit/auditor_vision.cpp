@@ -29,7 +29,7 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   now_ = now;
   const auto index = roster_index(disturbance.robot());
   const msg::DisturbanceKind kind = disturbance.disturbance_kind();
-  if (!index || !is_enumerator(kind, msg::DisturbanceKind::DISTURBANCE_CARRY)) {
+  if (!index || !is_enumerator(kind, msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN)) {
     ++totals_.invalid;
     return;
   }
@@ -37,6 +37,10 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   const auto cause = cause_of(kind);
   if (!cause) return;
   disturbances_.announce(*index, *cause);
+  const auto other = kind == msg::DisturbanceKind::DISTURBANCE_SEEN_AS
+                         ? roster_index(disturbance.other_robot())
+                         : std::nullopt;
+  if (other) disturbances_.announce(*other, *cause);
   if (has_ground_truth()) return;
   const auto duration_ns = std::clamp<std::int64_t>(disturbance.duration_ns(), 0, kMaxDisturbance_ns);
   disturbances_.disturb(*index, now + Duration{duration_ns}, now);
@@ -100,7 +104,7 @@ void Auditor::check_sights(const msg::WorldState& world) {
     const AuditedRobot& robot = robots_[*index];
     const Sight& sight = sights_[*index];
     if (sight.is_new)
-      observations_[*index] = {sight.observed_at_ns, sight.position_m.x(), sight.position_m.y()};
+      observations_[*index] = {sight.observed_at_ns, sight.position_m.x(), sight.position_m.y(), 0};
     const KnownVersion* const executed =
         robot.fact ? executed_at(robot, robot.fact->executing, sight.observed_at_ns) : nullptr;
     double error_m = INFINITY;

@@ -32,15 +32,22 @@ std::optional<std::string_view> cause_of(msg::DisturbanceKind kind) {
       return "place";
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
       return "reboot";
+    case msg::DisturbanceKind::DISTURBANCE_CLOCK:
+      return Disturbances::kClockCause;
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
       return "switch off";
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_ON:
       return "switch on";
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
       return "carry";
-    default:
-      return std::nullopt;
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
+      return "seen beside";
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
+      return "seen as";
+    case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
+      return "seen frozen";
   }
+  return std::nullopt;
 }
 
 Disturbances::Disturbances(std::size_t robots, const DisturbanceSettings& settings)
@@ -106,15 +113,20 @@ void Disturbances::update(Time now, const std::vector<std::optional<ObservedRobo
   add_pair_time(now);
   now_ = now;
   robots_ = robots;
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    std::optional<Time>& rests_since = states_[i].rests_since;
-    if (!robots_[i] || !(robots_[i]->speed_mps < kRestSpeed_mps))
-      rests_since.reset();
-    else
-      rests_since = std::min(rests_since.value_or(now), now);
-  }
+  for (std::size_t i = 0; i < states_.size(); ++i) update_rest(i);
   update_pushes();
   for (std::size_t i = 0; i < states_.size(); ++i) update_displacement(i);
+}
+
+void Disturbances::update_rest(std::size_t robot) {
+  State& state = states_[robot];
+  const bool rests = robots_[robot] && robots_[robot]->speed_mps < kRestSpeed_mps;
+  if (rests)
+    state.rests_since = std::min(state.rests_since.value_or(*now_), *now_);
+  else
+    state.rests_since.reset();
+  state.rests_where_left =
+      rests && !robots_[robot]->is_in_place && (state.rests_where_left || is_displaced(robot));
 }
 
 void Disturbances::update_pushes() {
@@ -137,7 +149,9 @@ void Disturbances::update_displacement(std::size_t robot) {
   const Duration elapsed = *now_ - displacement->end;
   if (elapsed < Duration{0}) return;
   if (!displacement->back_at) {
-    const bool is_settled = has_rested(robot, displacement->end) || elapsed >= kSettlingTime;
+    // A robot whose clock has jumped is in place by its own clock, but not where others expect it.
+    const bool may_drive = displacement->cause != kClockCause && elapsed >= kSettlingTime;
+    const bool is_settled = has_rested(robot, displacement->end) || may_drive;
     const bool is_back = is_settled && robots_[robot] && robots_[robot]->is_in_place;
     if (!is_back && elapsed < kMaxDisplacement) return;
     displacement->back_at = now_;

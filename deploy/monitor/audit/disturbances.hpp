@@ -35,6 +35,7 @@ struct DisturbanceSettings {
 class Disturbances {
  public:
   static constexpr std::string_view kUnknownCause = "unknown";
+  static constexpr std::string_view kClockCause = "clock";
 
   Disturbances(std::size_t robots, const DisturbanceSettings& settings);
 
@@ -51,6 +52,9 @@ class Disturbances {
 
   /// Whether the robot was disturbed and is not back in place.
   bool is_displaced(std::size_t robot) const;
+  /// Whether the robot rests, out of place, where a disturbance has left it. Without observations that it can
+  /// use it never learns that, however long ago it was.
+  bool rests_where_left(std::size_t robot) const { return states_[robot].rests_where_left; }
   /// Whether the robot was ever disturbed.
   bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
   /// Sum over all pairs of robots on the floor of the observed time, and of the part of it in which a contact
@@ -69,6 +73,7 @@ class Disturbances {
     std::optional<Time> reported_end;  ///< as last reported
     std::optional<std::string_view> announced;
     std::optional<Time> rests_since;
+    bool rests_where_left = false;
     std::optional<Displacement> displacement;
   };
   struct Push {
@@ -79,6 +84,7 @@ class Disturbances {
   std::optional<std::string_view> excuse(std::optional<std::size_t> first,
                                          std::optional<std::size_t> second) const;
   void add_pair_time(Time now);
+  void update_rest(std::size_t robot);
   void update_pushes();
   void update_displacement(std::size_t robot);
   bool has_rested(std::size_t robot, Time since) const;
@@ -92,7 +98,7 @@ class Disturbances {
   double pair_s_ = 0, excused_pair_s_ = 0;
 };
 
-/// The name of a cause of contacts; nullopt if this kind does not move a body.
+/// The name of a cause of contacts; nullopt for an unknown kind.
 [[nodiscard]] std::optional<std::string_view> cause_of(msg::DisturbanceKind kind);
 
 }  // namespace sidestep

@@ -69,6 +69,7 @@ Json audit_json(const AuditTotals& audit) {
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
   json["excused_contacts"] = audit.excused_contacts;
+  json["excused_crashes"] = audit.excused_crashes;
   json["excused"] = excused_json(audit);
   json["excused_time_share"] = rounded(audit.excused_time_share());
   json["excused_displacements"] = audit.excused_displacements;
@@ -76,7 +77,6 @@ Json audit_json(const AuditTotals& audit) {
   json["compared_pairs"] = audit.compared_pairs;
   json["undecided_pairs"] = audit.undecided_pairs;
   json["max_position_error_m"] = rounded(audit.max_position_error_m);
-  json["beyond_tracking_bound"] = audit.beyond_tracking_bound;
   return json;
 }
 
@@ -114,11 +114,38 @@ std::string to_text(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
 
+/// What only faulty, foreign or hostile processes cause, in one line; empty: nothing.
+std::string unusual_text(const Report& report) {
+  std::string text;
+  for (const auto& [process, counts] : report.counters) {
+    for (const auto& [reason, count] : counts) {
+      if (info_of(reason).is_unusual)
+        text += fmt::format("{}{} {} by {}", text.empty() ? "" : ", ", count, info_of(reason).name, process);
+    }
+  }
+  return text.empty() ? text : "refused: " + text + "\n";
+}
+
+/// The epochs after the first one.
+std::string epochs_text(const std::vector<EpochRecord>& epochs) {
+  std::string text;
+  for (std::size_t i = 1; i < epochs.size() && i <= kShown; ++i)
+    text += fmt::format("{} began epoch {} at {}: {}\n", epochs[i].coordinator, epochs[i].epoch,
+                        to_text(epochs[i].at_s, "s"), epochs[i].reason);
+  if (epochs.size() > kShown + 1) text += fmt::format("{} more epochs\n", epochs.size() - kShown - 1);
+  return text;
+}
+
 }  // namespace
 
 std::uint64_t Report::unexcused_contacts() const {
   const std::uint64_t excluded = audit ? audit->excused_contacts + audit->unidentified_contacts : 0;
   return contacts > excluded ? contacts - excluded : 0;
+}
+
+std::uint64_t Report::unexcused_crashes() const {
+  const std::uint64_t excused = audit ? audit->excused_crashes : 0;
+  return crashes_while_moving > excused ? crashes_while_moving - excused : 0;
 }
 
 AuditVerdict Report::verdict() const {
@@ -131,7 +158,8 @@ std::string Report::failure_reason() const {
   const auto add = [&reason](const std::string& part) { reason += (reason.empty() ? "" : ", ") + part; };
   if (!abort_reason.empty()) add(abort_reason);
   if (const auto unexcused = unexcused_contacts(); unexcused > 0) add(fmt::format("{} contacts", unexcused));
-  if (crashes_while_moving > 0) add(fmt::format("{} crashes of moving robots", crashes_while_moving));
+  if (const auto crashes_moving = unexcused_crashes(); crashes_moving > 0)
+    add(fmt::format("{} crashes of moving robots", crashes_moving));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {
     add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
@@ -171,7 +199,6 @@ std::string to_json(const Report& r) {
   json["missed_cycles"] = r.missed_cycles;
   json["route_changes"] = r.route_changes;
   json["route_changes_per_s"] = rounded(r.route_changes_per_s);
-  json["invalid_messages"] = r.invalid_messages;
   json["firmware_violations"] = r.firmware_violations;
   json["conflicts"] = r.conflicts;
   json["quarantined"] = r.quarantined;
@@ -188,11 +215,22 @@ std::string to_json(const Report& r) {
                               {"at_s", rounded(death.at_s)},
                               {"restarted", death.restarted}});
   }
+  json["epochs"] = Json::array();
+  for (const EpochRecord& epoch : r.epochs) {
+    json["epochs"].push_back({{"coordinator", epoch.coordinator},
+                              {"epoch", epoch.epoch},
+                              {"at_s", rounded(epoch.at_s)},
+                              {"reason", epoch.reason}});
+  }
   json["mismatches"] = Json::object();
   for (const auto& [process, differences] : r.mismatches) {
     Json& rules = json["mismatches"][process] = Json::object();
     for (const RuleDifference& rule : differences)
       rules[rule.key] = {{"run", rule.own}, {"process", rule.others}};
+  }
+  json["counters"] = Json::object();
+  for (const auto& [process, counts] : r.counters) {
+    for (const auto& [reason, count] : counts) json["counters"][process][info_of(reason).name] = count;
   }
   json["audit"] = r.audit ? audit_json(*r.audit) : Json(nullptr);
   Json& wall = json["wall_clock"];
@@ -251,6 +289,8 @@ std::string summary(const Report& r) {
     text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
                         death.restarted ? ", restarted" : "");
   }
+  text += unusual_text(r);
+  text += epochs_text(r.epochs);
   switch (r.verdict()) {
     case AuditVerdict::kPassed:
       return text + "passed\n";

@@ -10,6 +10,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/config/shared_rules.hpp"
+#include "common/protocol/drop_reasons.hpp"
 #include "common/time/histogram.hpp"
 #include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/monitor/metrics/process_use.hpp"
@@ -22,6 +23,15 @@ struct Death {
   std::string reason;
   double at_s = 0;  ///< since the first grant; zero before it
   bool restarted = false;
+};
+
+/// An epoch that a coordinator began.
+struct EpochRecord {
+  std::string coordinator;  ///< e.g. "coordinator 1"
+  Epoch epoch = 0;
+  Time begun_at{};             ///< by the coordinator's clock
+  std::optional<double> at_s;  ///< since the first grant, may be negative; none: nothing was granted
+  std::string reason;
 };
 
 /// The outcome of a run.
@@ -51,7 +61,6 @@ struct Report {
   std::uint64_t missed_cycles = 0;
   std::uint64_t route_changes = 0;            ///< times that an agent changed its route
   std::optional<double> route_changes_per_s;  ///< per agent and second of planning
-  std::uint64_t invalid_messages = 0;
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>>
       conflicts;                  ///< pairs that a cause outside the protocol brought into conflict
@@ -67,8 +76,11 @@ struct Report {
   DurationHistogram plan;
   DurationHistogram search;
   std::vector<Death> deaths;
+  std::vector<EpochRecord> epochs;  ///< in the order of their first heartbeats
   /// Processes that work by other rules, and what differs; empty differences: not known.
   std::map<std::string, std::vector<RuleDifference>> mismatches;
+  /// What processes have dropped, by process and reason; only counts above zero.
+  std::map<std::string, std::map<DropReason, std::uint64_t>> counters;
   std::optional<AuditTotals> audit;  ///< none: the run was not audited
   double duration_s = 0;             ///< wall clock
   std::optional<double> startup_s;   ///< until all processes ran and the coordinator granted
@@ -78,6 +90,8 @@ struct Report {
   /// Contacts, except for those that a disturbance excuses, and those of which the audit does not know the
   /// robots.
   std::uint64_t unexcused_contacts() const;
+  /// Crashes of moving robots, except for those that a disturbance excuses.
+  std::uint64_t unexcused_crashes() const;
   /// Why the run failed, in one line. Empty if it did not fail: it was not aborted, no robot touched anything
   /// without excuse, none moved in a crash, no rule was broken, and all robots arrived if they had to.
   [[nodiscard]] std::string failure_reason() const;

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/messaging/drop_codec.hpp"
 #include "common/messaging/enumerator.hpp"
+#include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/robot_notices.hpp"
 #include "deploy/monitor/time_range.hpp"
@@ -17,6 +19,8 @@ namespace {
 constexpr double kAtRest_mps = 0.02;
 /// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
 constexpr std::size_t kMaxLives = 1000;
+/// The same, of one process, whose counters are kept.
+constexpr std::size_t kMaxCounterLives = 32;
 /// An incarnation is assumed dead after this many statuses of other incarnations without one of its own.
 constexpr int kSilentAfter = 5;
 
@@ -154,13 +158,14 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
     ++dropped_messages_;
     return;
   }
-  CoordinatorLife& last = coordinators_[life];
-  if (state.header().message_number() <= last.message_number) {
+  std::uint64_t& last = coordinators_[life];
+  if (state.header().message_number() <= last) {
     ++dropped_messages_;
     return;
   }
-  last = {state.header().message_number(), state.invalid()};
+  last = state.header().message_number();
   if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
+  record_epoch(state);
   if (active_ && state.epoch() < active_->epoch()) return;
   active_ = state;
   for (const msg::RobotNotice& notice : state.notices()) {
@@ -173,6 +178,42 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
   if (!granting_since_ && state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
     granting_since_ = time_from_ns(state.header().stamp_ns());
   }
+}
+
+bool RunMetrics::has_process(std::uint32_t process) {
+  return find(process) || is_coordinator(process) || process == static_cast<std::uint32_t>(Sender::kVision) ||
+         process == static_cast<std::uint32_t>(Sender::kSimulator);
+}
+
+void RunMetrics::on_counters(const msg::Counters& message) {
+  const auto counts = decode(message);
+  if (!counts || !has_process(message.process())) {
+    ++dropped_messages_;
+    return;
+  }
+  std::vector<CounterLife>& lives = counters_[message.process()];
+  auto life = std::ranges::find(lives, message.header().incarnation(), &CounterLife::incarnation);
+  if (life == lives.end() && lives.size() < kMaxCounterLives)
+    life = lives.insert(lives.end(), {message.header().incarnation(), 0, {}});
+  if (life == lives.end() || message.header().message_number() <= life->message_number) {
+    ++dropped_messages_;
+    return;
+  }
+  life->message_number = message.header().message_number();
+  life->counts.fill(0);
+  for (const DropCount& one : *counts) life->counts[static_cast<std::size_t>(one.reason)] += one.count;
+}
+
+void RunMetrics::record_epoch(const msg::CoordinatorState& state) {
+  const auto cause = decode_role_cause(state);
+  if (!cause || state.coordinator() >= kMaxCoordinators || epochs_.size() >= kMaxEpochs) return;
+  const std::string coordinator = coordinator_process(static_cast<int>(state.coordinator()));
+  const auto is_same = [&](const EpochRecord& known) {
+    return known.epoch == state.epoch() && known.coordinator == coordinator;
+  };
+  if (std::ranges::any_of(epochs_, is_same)) return;
+  epochs_.push_back(
+      {coordinator, state.epoch(), time_from_ns(state.header().stamp_ns()), {}, describe(*cause)});
 }
 
 void RunMetrics::on_death(const std::string& process, const std::string& reason, Time at, bool restarted) {
@@ -227,6 +268,9 @@ void listen(Bus& bus, RunMetrics& metrics) {
                                   [&metrics](const auto& status) { metrics.on_status(status); });
   bus.subscribe<msg::CoordinatorState>(topics::kCoordinator,
                                        [&metrics](const auto& state) { metrics.on_coordinator(state); });
+  bus.subscribe<msg::Counters>(topics::kCounters,
+                               [&metrics](const auto& counters) { metrics.on_counters(counters); });
+  metrics.set_bus(bus);
 }
 
 }  // namespace sidestep

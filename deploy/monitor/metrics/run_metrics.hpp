@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/rules_exchange.hpp"
+#include "common/protocol/drop_reasons.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "idl/monitor.hpp"
@@ -42,12 +44,16 @@ class RunMetrics {
   void on_truth(const msg::GroundTruth& truth);
   void on_status(const msg::AgentStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
+  void on_counters(const msg::Counters& counters);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
   /// A process works by other rules, so its messages are refused.
   void on_mismatch(const RulesMismatch& mismatch);
 
   /// Includes the auditor's findings in reports; the auditor must outlive the last report.
   void set_auditor(const Auditor& auditor) { auditor_ = &auditor; }
+
+  /// Includes what the monitor's own bus has dropped in reports; the bus must outlive the last report.
+  void set_bus(const Bus& bus) { bus_ = &bus; }
 
   bool all_arrived() const;
   int arrived() const;
@@ -61,6 +67,9 @@ class RunMetrics {
   std::uint32_t conflicts() const { return active_ ? active_->conflicts() : 0; }
   /// The robots that the coordinator names at present, in words: "robot 3 displaced, robot 5 quarantined".
   std::string named_robots() const;
+  /// The epochs that coordinators began; of more than kMaxEpochs, the first ones. Their at_s is not set.
+  const std::vector<EpochRecord>& epochs() const { return epochs_; }
+  static constexpr std::size_t kMaxEpochs = 200;
   /// Robots whose registrations are missing, as last reported by the coordinator.
   std::vector<RobotId> unregistered_robots() const;
   /// When a coordinator first reported that it grants.
@@ -92,24 +101,32 @@ class RunMetrics {
   };
 
   RobotRecord* find(RobotId robot);
+  void record_epoch(const msg::CoordinatorState& state);
   bool has_arrived(const RobotRecord& robot) const;
   double distance_to_go_m(const RobotRecord& robot) const;
   void add_ground_truth(Report& report) const;
   void add_arrivals(Report& report) const;
   void add_agents(Report& report) const;
   void add_clocks(Report& report) const;
+  void add_counters(Report& report) const;
+  /// Whether the scenario has a process with this id.
+  bool has_process(std::uint32_t process);
 
   const Scenario& scenario_;
   const Auditor* auditor_ = nullptr;
+  const Bus* bus_ = nullptr;
   std::vector<RobotRecord> robots_;           ///< ascending by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
-  struct CoordinatorLife {
+  std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>
+      coordinators_;  ///< the last message number, by number and incarnation
+  /// The last counters of one incarnation of a process.
+  struct CounterLife {
+    Incarnation incarnation = 0;
     std::uint64_t message_number = 0;
-    std::uint64_t invalid = 0;
+    std::array<std::uint64_t, kDropReasonCount> counts{};
   };
-  std::map<std::pair<std::uint32_t, Incarnation>, CoordinatorLife>
-      coordinators_;                             ///< by number and incarnation
-  std::optional<msg::CoordinatorState> active_;  ///< the latest state of the highest epoch
+  std::map<std::uint32_t, std::vector<CounterLife>> counters_;  ///< by process of the scenario
+  std::optional<msg::CoordinatorState> active_;                 ///< the latest state of the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::set<RobotId> quarantined_, displaced_;  ///< named at any time
   std::optional<Time> granting_since_;
@@ -117,6 +134,7 @@ class RunMetrics {
   double max_reference_error_m_ = 0;
   std::uint64_t dropped_messages_ = 0;
   std::vector<Death> deaths_;
+  std::vector<EpochRecord> epochs_;
   std::map<std::string, std::vector<RuleDifference>> mismatches_;  ///< by process
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/messaging/histogram_codec.hpp"
+#include "common/messaging/process_names.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
 
 namespace sidestep {
@@ -93,7 +94,6 @@ void RunMetrics::add_agents(Report& report) const {
     report.cycles += sum(robot.lives, &msg::AgentStatus::cycles);
     report.missed_cycles += sum(robot.lives, &msg::AgentStatus::missed_cycles);
     report.route_changes += sum(robot.lives, &msg::AgentStatus::route_changes);
-    report.invalid_messages += sum(robot.lives, &msg::AgentStatus::invalid);
     report.negotiation.merge(sum(robot.lives, &msg::AgentStatus::negotiation));
     report.plan.merge(sum(robot.lives, &msg::AgentStatus::plan));
     report.search.merge(sum(robot.lives, &msg::AgentStatus::search));
@@ -115,6 +115,21 @@ void RunMetrics::add_clocks(Report& report) const {
   }
 }
 
+void RunMetrics::add_counters(Report& report) const {
+  const auto add = [&](const std::string& process, std::size_t reason, std::uint64_t count) {
+    if (count > 0) report.counters[process][static_cast<DropReason>(reason)] += count;
+  };
+  for (const auto& [process, lives] : counters_) {
+    for (const CounterLife& life : lives) {
+      for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process_name(process), i, life.counts[i]);
+    }
+  }
+  DropCounters own;
+  own.count(DropReason::kUnusedByMonitor, std::nullopt, dropped_messages_);
+  if (bus_) bus_->count_drops(own);
+  for (const DropCount& one : own.counts()) add("monitor", static_cast<std::size_t>(one.reason), one.count);
+}
+
 Report RunMetrics::report() const {
   Report report;
   report.scenario = scenario_.name;
@@ -123,8 +138,12 @@ Report RunMetrics::report() const {
   add_arrivals(report);
   add_agents(report);
   add_clocks(report);
-  for (const auto& [life, last] : coordinators_) report.invalid_messages += last.invalid;
+  add_counters(report);
   report.deaths = deaths_;
+  report.epochs = epochs_;
+  for (EpochRecord& epoch : report.epochs) {
+    if (granting_since_) epoch.at_s = to_seconds(epoch.begun_at - *granting_since_);
+  }
   report.mismatches = mismatches_;
   report.conflicts = conflicts_;
   report.quarantined = quarantined_;

@@ -160,6 +160,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kNetworkFault);
   subscribe(topics::kTruth);
   subscribe(topics::kRules);
+  subscribe(topics::kCounters);
 }
 
 PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {

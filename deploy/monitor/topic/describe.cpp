@@ -8,6 +8,9 @@
 #include <string>
 
 #include "common/messaging/histogram_codec.hpp"
+#include "common/protocol/disturbance_text.hpp"
+#include "common/protocol/drop_reasons.hpp"
+#include "common/protocol/reason_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -21,17 +24,13 @@ Json word(Enum value, const char* const (&words)[kCount]) {
   return number < kCount ? Json(words[number]) : Json("unknown " + std::to_string(number));
 }
 
-constexpr const char* kReasons[] = {
-    "granted",         "not evaluated", "malformed",    "wrong epoch",    "not all registered",
-    "old incarnation", "old version",   "base unknown", "not continuous", "beyond limits",
-    "not at rest",     "outside field", "obstacle",     "conflict",       "ledger full",
-    "absent",          "quarantined",   "displaced"};
 constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
+constexpr const char* kRoleReasons[] = {"started",        "no coordinator",       "heartbeats lost",
+                                        "returned",       "epoch of coordinator", "epoch of agent",
+                                        "epoch of robot", "shared epoch"};
 constexpr const char* kAgentStates[] = {"fencing", "registering",        "waiting", "driving",
                                         "arrived", "clock out of bound", "absent"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
-constexpr const char* kDisturbances[] = {"push",   "slip",  "block",      "lift",      "place",
-                                         "reboot", "clock", "switch off", "switch on", "carry"};
 
 template <typename Range, typename Describe>
 Json list(const Range& range, std::size_t count, Describe describe_one) {
@@ -168,7 +167,6 @@ Json describe(const msg::WorldState& m) {
           {"header", header(m.header())},
           {"valid_at_ns", m.valid_at_ns()},
           {"frames", m.frames()},
-          {"rejected", m.rejected()},
           {"ball", ball},
           {"robots", list(m.robots(), robot)}};
 }
@@ -222,11 +220,7 @@ Json describe(const msg::Feedback& m) {
           {"tracking_error_m", m.tracking_error_m()},
           {"position_error_rms_m", m.position_error_rms_m()},
           {"odometry_scale_stddev", m.odometry_scale_stddev()},
-          {"activated", m.activated()},
-          {"refused_late", m.refused_late()},
-          {"refused_base", m.refused_base()},
-          {"refused_fenced", m.refused_fenced()},
-          {"refused_malformed", m.refused_malformed()}};
+          {"activated", m.activated()}};
 }
 
 Json describe(const msg::Registration& m) {
@@ -247,7 +241,7 @@ Json describe(const msg::Proposal& m) {
 }
 
 Json describe(const msg::Verdict& m) {
-  const auto reason = [](msg::Reason r) { return word(r, kReasons); };
+  const auto reason = [](msg::Reason r) { return word(r, kReasonTexts); };
   const auto robot = [](std::uint32_t id) { return Json(id); };
   return {{"robot", m.robot()},
           {"header", header(m.header())},
@@ -276,10 +270,13 @@ Json describe(const msg::CoordinatorState& m) {
           {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"coordinator_mode", word(m.coordinator_mode(), kCoordinatorModes)},
+          {"role_reason", word(m.role_reason(), kRoleReasons)},
+          {"role_peer", m.role_peer()},
+          {"role_silence_ns", m.role_silence_ns()},
+          {"role_learned_epoch", m.role_learned_epoch()},
           {"proposals", m.proposals()},
           {"grants", m.grants()},
           {"denials", m.denials()},
-          {"invalid", m.invalid()},
           {"conflicts", m.conflicts()},
           {"conflict_first", m.conflict_first()},
           {"conflict_second", m.conflict_second()},
@@ -305,14 +302,25 @@ Json describe(const msg::AgentStatus& m) {
           {"proposals", m.proposals()},
           {"grants", m.grants()},
           {"denials", m.denials()},
-          {"invalid", m.invalid()},
           {"clock_offset_s", m.clock_offset_s()},
           {"clock_uncertainty_s", m.clock_uncertainty_s()},
+          {"clock_speed_limit_mps", m.clock_speed_limit_mps()},
           {"reference_losses", m.reference_losses()},
           {"route_changes", m.route_changes()},
           {"negotiation", quantiles(m.negotiation())},
           {"plan", quantiles(m.plan())},
           {"search", quantiles(m.search())}};
+}
+
+Json describe(const msg::Counters& m) {
+  const auto counter = [](const msg::Counter& c) -> Json {
+    const bool is_known = c.reason() < kDropReasonCount;
+    return {{"reason",
+             is_known ? Json(kDropReasons[c.reason()].name) : Json("unknown " + std::to_string(c.reason()))},
+            {"robot", c.robot()},
+            {"times", c.times()}};
+  };
+  return {{"process", m.process()}, {"header", header(m.header())}, {"counts", list(m.counts(), counter)}};
 }
 
 Json describe(const msg::GroundTruth& m) {
@@ -339,6 +347,7 @@ Json describe(const msg::GroundTruth& m) {
           {"firmware_violations", m.firmware_violations()},
           {"crashes", m.crashes()},
           {"crashes_while_moving", m.crashes_while_moving()},
+          {"recent_moving_crashes", m.recent_moving_crashes()},
           {"max_crash_speed_mps", m.max_crash_speed_mps()},
           {"max_robot_crash_speed_mps", m.max_robot_crash_speed_mps()},
           {"ball_x_m", m.ball_x_m()},
@@ -349,7 +358,8 @@ Json describe(const msg::GroundTruth& m) {
 Json describe(const msg::Disturbance& m) {
   return {{"robot", m.robot()},
           {"header", header(m.header())},
-          {"disturbance_kind", word(m.disturbance_kind(), kDisturbances)},
+          {"disturbance_kind", word(m.disturbance_kind(), kDisturbanceTexts)},
+          {"other_robot", m.other_robot()},
           {"vx_mps", m.vx_mps()},
           {"vy_mps", m.vy_mps()},
           {"grip", m.grip()},

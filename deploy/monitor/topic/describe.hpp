@@ -27,6 +27,7 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::CoordinatorState& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AbsenceAttestation& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AgentStatus& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Counters& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Disturbance& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::NetworkFault& m);

@@ -79,7 +79,7 @@ int echo_topic(const TopicOptions& options) {
       echo.subscribe(topics::kCoordinator, channel) || echo.subscribe(topics::kStatus, channel) ||
       echo.subscribe(topics::kTruth, channel) || echo.subscribe(topics::kDisturbance, channel) ||
       echo.subscribe(topics::kNetworkFault, channel) || echo.subscribe(topics::kAttestation, channel) ||
-      echo.subscribe(topics::kRules, channel);
+      echo.subscribe(topics::kRules, channel) || echo.subscribe(topics::kCounters, channel);
   if (!is_known) {
     fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known_topics());
     return kExitFailure;

@@ -61,15 +61,16 @@ class CampaignProgress {
 };
 
 std::string replay_command(const CampaignOptions& options, std::uint64_t seed) {
-  return fmt::format("sidestep simulate {}{}--faults random --seconds {:g} --seed {}", options.scenario_file,
-                     options.scenario_file.empty() ? "" : " ", to_seconds(options.duration), seed);
+  return fmt::format("sidestep simulate {}{}--faults {} --seconds {:g} --seed {}", options.scenario_file,
+                     options.scenario_file.empty() ? "" : " ", options.has_faults ? "random" : "none",
+                     to_seconds(options.duration), seed);
 }
 
 void print_failure(const CampaignOptions& options, const std::optional<Scenario>& scenario,
                    const TrialResult& result) {
   fmt::print("seed {} failed at commit {}\n", result.seed, kBuildCommit);
   for (const std::string& failure : result.failures) fmt::print("  {}\n", failure);
-  const Trial trial = sample_trial(result.seed, options.duration, scenario);
+  const Trial trial = sample_trial(result.seed, options.duration, scenario, options.has_faults);
   fmt::print("  scene: {}\n", scene_summary(trial.scenario));
   for (const std::string& line : to_lines(trial.plan)) fmt::print("    {}\n", line);
   fmt::print("  repeat with: {}\n", replay_command(options, result.seed));
@@ -81,10 +82,11 @@ std::vector<std::uint64_t> remaining_seeds(const CampaignOptions& options,
                                            std::optional<ResultsFile>& results, CampaignSummary& summary) {
   std::set<std::uint64_t> done;
   if (!options.results_file.empty()) {
-    results.emplace(options.results_file,
-                    fmt::format("{} of {:g} s at commit {}",
-                                options.scenario_file.empty() ? "random scenes" : options.scenario_file,
-                                to_seconds(options.duration), kBuildCommit));
+    results.emplace(
+        options.results_file,
+        fmt::format("{} of {:g} s, {} faults, at commit {}",
+                    options.scenario_file.empty() ? "random scenes" : options.scenario_file,
+                    to_seconds(options.duration), options.has_faults ? "random" : "no", kBuildCommit));
     for (const TrialResult& result : results->found()) {
       if (result.seed < options.first_seed || result.seed > options.last_seed) continue;
       if (done.insert(result.seed).second) summary.add(result);
@@ -114,7 +116,9 @@ int run_campaign(const CampaignOptions& options) {
   CampaignProgress progress(options.last_seed - options.first_seed + 1, summary.robot_hours());
   WorkerPool pool(
       options.jobs > 0 ? options.jobs : cores,
-      [&](std::uint64_t seed) { return to_line(run_trial(sample_trial(seed, options.duration, scenario))); },
+      [&](std::uint64_t seed) {
+        return to_line(run_trial(sample_trial(seed, options.duration, scenario, options.has_faults)));
+      },
       [&](std::uint64_t seed, const std::string& line, const std::string& death_reason) {
         TrialResult result;
         result.seed = seed;

@@ -14,6 +14,7 @@ struct CampaignOptions {
   std::string results_file;   ///< an interrupted campaign resumes from this file; empty: none
   std::uint64_t first_seed = 1, last_seed = 1;
   Duration duration = std::chrono::seconds(60);  ///< virtual time per seed
+  bool has_faults = true;                        ///< false: a control run, in which contacts have no excuse
   int jobs = 0;                                  ///< number of worker processes; 0: number of cores
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -65,6 +66,14 @@ std::map<std::string, std::uint64_t> CampaignSummary::excused_by_cause() const {
   return total;
 }
 
+std::map<std::string, std::uint64_t> CampaignSummary::trials_by_fault() const {
+  std::map<std::string, std::uint64_t> total;
+  for (const auto& [seed, result] : results_) {
+    for (const std::string& kind : result.fault_kinds) ++total[kind];
+  }
+  return total;
+}
+
 double CampaignSummary::excused_time_share() const {
   double pair_s = 0, excused_pair_s = 0;
   for (const auto& [seed, result] : results_) {
@@ -106,6 +115,10 @@ std::string CampaignSummary::text() const {
     text += fmt::format(", {} of cause {}", excused, cause);
   text += fmt::format("; contacts are excused in {:.2f} % of the time of all pairs\n",
                       100 * excused_time_share());
+  std::vector<std::string> kinds;
+  for (const auto& [kind, trials] : trials_by_fault()) kinds.push_back(fmt::format("{} {}", kind, trials));
+  text += fmt::format("trials with each kind of fault: {}\n",
+                      kinds.empty() ? "none" : fmt::format("{}", fmt::join(kinds, ", ")));
   text += fmt::format("with 95 % confidence at most {:.3g} contacts per robot-hour under these faults\n",
                       upper_bound_95(contacts(), hours));
   text += fmt::format("{} proposals, {:.2f} % denied; {:.0f} robot-seconds per second and core\n",
@@ -136,6 +149,7 @@ std::string CampaignSummary::json() const {
   json["contacts"] = contacts();
   json["excused_contacts"] = sum(&TrialResult::excused_contacts);
   json["excused_by_cause"] = excused_by_cause();
+  json["trials_by_fault"] = trials_by_fault();
   json["excused_time_share"] = excused_time_share();
   json["audit_violations"] = sum(&TrialResult::audit_violations);
   json["firmware_violations"] = sum(&TrialResult::firmware_violations);

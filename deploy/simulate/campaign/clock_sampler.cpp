@@ -2,10 +2,14 @@
 #include "deploy/simulate/campaign/clock_sampler.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace sidestep {
 namespace {
+
+// Any two clocks drift apart by less than the 200 ppm that agents assume.
+constexpr double kMaxDrift_ppm = 90;
 
 Duration sample_within(double bound_s, Rng& rng) { return from_seconds(rng.uniform(-bound_s, bound_s)); }
 
@@ -14,45 +18,102 @@ Duration sample_large_offset(Rng& rng) {
   return from_seconds(rng.chance(0.5) ? size_s : -size_s);
 }
 
-/// An agent's own clock may have any offset. Vision's clock needs to be only roughly right.
-Duration sample_process_offset(const std::string& process, double half_bound_s, Rng& rng) {
-  if (process == "vision") return sample_within(0.005, rng);
-  if (process.starts_with("coordinator") || process == "simulator") return sample_within(half_bound_s, rng);
-  const double u = rng.uniform();
-  return sample_within(u < 0.6 ? half_bound_s : u < 0.8 ? 0.02 : 5, rng);
-}
+class ClockSampler {
+ public:
+  ClockSampler(Scenario& scenario, FaultPlan& plan, Duration duration, Rng& rng)
+      : scenario_(scenario),
+        plan_(plan),
+        duration_(duration),
+        // The robot and the coordinator each get half of the bound.
+        half_bound_s_(0.499 * scenario.clock_bound_s),
+        rng_(rng) {}
+
+  void sample() {
+    const bool is_out_of_bound = rng_.chance(0.1);
+    if (!is_out_of_bound && rng_.chance(0.4)) return;
+    has_drift_ = rng_.chance(0.25);
+    for (const ProcessNames& host : plan_.hosts) {
+      for (const std::string& process : host) plan_.clocks[process] = sample_process(process);
+    }
+    // The simulator's host only carries the robots, which have their own clocks.
+    for (RobotSpec& robot : scenario_.robots) {
+      const ClockError clock = sample_within_bound();
+      robot.clock_offset = clock.offset - plan_.clocks["simulator"].offset;
+      robot.clock_drift_ppm = clock.drift_ppm;
+    }
+    if (is_out_of_bound) take_out_of_bound();
+    if (has_drift_ && rng_.chance(0.4)) repeat_for_robots([&](RobotSpec& robot) { drift_away(robot); });
+  }
+
+ private:
+  /// Within half of the bound, at the start and at the end.
+  ClockError sample_within_bound() {
+    const Duration first = sample_within(half_bound_s_, rng_);
+    if (!has_drift_) return {first};
+    const Duration last = sample_within(half_bound_s_, rng_);
+    return {first, 1e6 * to_seconds(last - first) / to_seconds(duration_)};
+  }
+  /// An agent's own clock may have any offset. Vision's clock needs to be only roughly right.
+  ClockError sample_process(const std::string& process) {
+    if (process.starts_with("coordinator")) return sample_within_bound();
+    if (process == "simulator") return {sample_within(half_bound_s_, rng_)};
+    ClockError clock;
+    const double u = rng_.uniform();
+    clock.offset = process == "vision" ? sample_within(0.005, rng_)
+                                       : sample_within(u < 0.6   ? half_bound_s_
+                                                       : u < 0.8 ? 0.02
+                                                                 : 5,
+                                                       rng_);
+    if (has_drift_) clock.drift_ppm = rng_.uniform(-kMaxDrift_ppm, kMaxDrift_ppm);
+    return clock;
+  }
+  template <typename Do>
+  void repeat_for_robots(Do change) {
+    for (std::uint64_t left = 1 + rng_.below(3); left > 0; --left) {
+      RobotSpec& robot = scenario_.robots[rng_.below(scenario_.robots.size())];
+      if (!plan_.ends.contains(robot.id)) change(robot);
+    }
+  }
+  void take_out_of_bound() {
+    if (rng_.chance(0.2)) {
+      const Duration error = sample_large_offset(rng_);
+      for (auto& [process, clock] : plan_.clocks) {
+        if (process.starts_with("coordinator")) clock.offset += error;
+      }
+      for (const RobotSpec& robot : scenario_.robots) plan_.ends[robot.id] = RobotEnd::kClockOutOfBound;
+      return;
+    }
+    repeat_for_robots([&](RobotSpec& robot) {
+      robot.clock_offset += sample_large_offset(rng_);
+      plan_.ends[robot.id] = RobotEnd::kClockOutOfBound;
+    });
+  }
+  /// The robot's clock leaves the bound during the run.
+  void drift_away(RobotSpec& robot) {
+    const double drift_ppm = rng_.uniform(0.5, 1) * kMaxDrift_ppm;
+    robot.clock_drift_ppm = rng_.chance(0.5) ? drift_ppm : -drift_ppm;
+    plan_.ends[robot.id] = end_of_clock(from_seconds(1e-6 * drift_ppm * to_seconds(duration_)), scenario_);
+  }
+
+  Scenario& scenario_;
+  FaultPlan& plan_;
+  Duration duration_;
+  double half_bound_s_;
+  Rng& rng_;
+  bool has_drift_ = false;
+};
 
 }  // namespace
 
-void sample_clocks(Scenario& scenario, FaultPlan& plan, Rng& rng) {
-  const bool is_out_of_bound = rng.chance(0.1);
-  if (!is_out_of_bound && rng.chance(0.4)) return;
-  // The robot and the coordinator each get half of the bound.
-  const double half_bound_s = 0.499 * scenario.clock_bound_s;
-  for (const ProcessNames& host : plan.hosts) {
-    for (const std::string& process : host)
-      plan.clocks[process] = sample_process_offset(process, half_bound_s, rng);
-  }
-  // The simulator's host only carries the robots, which have their own clocks.
-  for (RobotSpec& robot : scenario.robots)
-    robot.clock_offset = sample_within(half_bound_s, rng) - plan.clocks["simulator"];
-  if (!is_out_of_bound) return;
+RobotEnd end_of_clock(Duration error, const Scenario& scenario) {
+  // Without faults, the interval of a measured offset is narrower than this.
+  constexpr Duration kMaxInterval = std::chrono::milliseconds(3);
+  const bool is_detected = std::chrono::abs(error) > from_seconds(2 * scenario.clock_bound_s) + kMaxInterval;
+  return is_detected ? RobotEnd::kClockLeftBound : RobotEnd::kClockBeyondBound;
+}
 
-  if (rng.chance(0.2)) {
-    const Duration error = sample_large_offset(rng);
-    for (auto& [process, offset] : plan.clocks) {
-      if (process.starts_with("coordinator")) offset += error;
-    }
-    for (const RobotSpec& robot : scenario.robots) plan.robots_out_of_clock_bound.push_back(robot.id);
-    return;
-  }
-  for (std::uint64_t left = 1 + rng.below(3); left > 0; --left) {
-    RobotSpec& robot = scenario.robots[rng.below(scenario.robots.size())];
-    if (std::ranges::find(plan.robots_out_of_clock_bound, robot.id) != plan.robots_out_of_clock_bound.end())
-      continue;
-    robot.clock_offset += sample_large_offset(rng);
-    plan.robots_out_of_clock_bound.push_back(robot.id);
-  }
+void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, Rng& rng) {
+  ClockSampler(scenario, plan, duration, rng).sample();
 }
 
 }  // namespace sidestep

@@ -9,6 +9,7 @@
 
 #include "common/messaging/sim/links.hpp"
 #include "common/protocol/robot_disturbance.hpp"
+#include "common/time/clock_error.hpp"
 
 namespace sidestep {
 
@@ -38,21 +39,70 @@ struct Start {
   std::string process;
 };
 
-using Fault = std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance>;
+/// Somebody carries a robot to a place, by hand and at a speed.
+struct Carry {
+  RobotId robot = 0;
+  Vec2 place_m{0, 0};
+  double speed_mps = 1;
+};
+/// The operator puts a lifted robot down. Each place is requested for a while, one after another and again
+/// from the first, until one is granted. Without a request that persists, an agent that is dead at the time
+/// would never learn of it.
+struct Place {
+  RobotId robot = 0;
+  std::vector<Vec2> places_m;
+  double heading_rad = 0;
+};
+/// The operator takes a robot without power off the floor for good, and attests its absence whenever the
+/// coordinator waits for it.
+struct TakeAway {
+  RobotId robot = 0;
+};
+
+/// Starts a process again with a scenario in which one rule differs.
+struct StartWithOtherRule {
+  std::string process;
+  std::size_t rule = 0;  ///< of other_rules()
+};
+/// Starts such a process again with the right scenario.
+struct StartWithOwnRules {
+  std::string process;
+};
+/// A hostile process sends a false message about a robot.
+struct SendForgery {
+  RobotId victim = 0;
+  std::size_t forgery = 0;  ///< of forgeries()
+};
+
+using Fault = std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place,
+                           TakeAway, StartWithOtherRule, StartWithOwnRules, SendForgery>;
 
 struct TimedFault {
   Duration at{0};  ///< since the start of the run
   Fault fault;
 };
 
-/// All faults of one run. None occurs or persists after `healed_at`.
+/// In which state a robot is at the end of a run that was not put right for it.
+enum class RobotEnd {
+  kClockOutOfBound,   ///< its clock was out of bound all the time, so it must not move
+  kClockLeftBound,    ///< its clock is so far out of bound that its agent must report it
+  kClockBeyondBound,  ///< its clock has left the bound by less
+  kLifted,            ///< it is off the floor
+  kTakenAway,         ///< it is off the floor and has no power
+};
+
+/// All faults of one run. None occurs or persists after `healed_at`, except that robots in `ends` remain as
+/// they are.
 struct FaultPlan {
-  std::vector<ProcessNames> hosts;                 ///< messages within a host are fast and never lost
-  std::map<std::string, Duration> clocks;          ///< offsets from true time, by process
-  std::vector<RobotId> robots_out_of_clock_bound;  ///< robots that must not move because of their clocks
-  std::vector<TimedFault> faults;                  ///< sorted by time
+  std::vector<ProcessNames> hosts;           ///< messages within a host are fast and never lost
+  std::map<std::string, ClockError> clocks;  ///< by process
+  std::map<RobotId, RobotEnd> ends;          ///< of robots that need not drive at the end; the others must
+  std::vector<TimedFault> faults;            ///< sorted by time
   Duration healed_at{0};
 };
+
+/// The robots that end in a state; ascending.
+[[nodiscard]] std::vector<RobotId> robots_with(const FaultPlan& plan, RobotEnd end);
 
 /// A description with one line per host, clock and fault.
 std::vector<std::string> to_lines(const FaultPlan& plan);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "deploy/simulate/campaign/other_rules.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
@@ -17,7 +18,14 @@ LinkQuality between_hosts() {
 
 }  // namespace
 
-FaultPlayer::FaultPlayer(SimSystem& system, const FaultPlan& plan) : system_(system), plan_(plan) {
+FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const FaultPlan& plan)
+    : system_(system), scenario_(scenario), plan_(plan), operator_(system) {
+  for (const TimedFault& timed : plan.faults) {
+    const auto* const send = std::get_if<SendForgery>(&timed.fault);
+    const auto is_of = [send](const auto& forger) { return forger->victim() == send->victim; };
+    if (send && std::ranges::none_of(forgers_, is_of))
+      forgers_.push_back(std::make_unique<Forger>(system.network(), scenario, send->victim));
+  }
   for (const ProcessNames& from_host : plan.hosts) {
     for (const ProcessNames& to_host : plan.hosts) {
       for (const std::string& from : from_host) {
@@ -67,15 +75,39 @@ void FaultPlayer::operator()(const RobotDisturbance& disturbance) {
   system_.disturb(message);
 }
 
-void FaultPlayer::end_partitions(Duration until) {
-  const auto earlier = [](const End& a, const End& b) { return a.at < b.at; };
-  while (!ends_.empty()) {
-    const auto first = std::ranges::min_element(ends_, earlier);
-    if (first->at > until) return;
-    const End end = *first;
-    ends_.erase(first);
-    system_.run_until(system_.begin() + end.at);
-    for_each_link(end.partition.from, end.partition.to, [](Link& link) { --link.cuts; });
+void FaultPlayer::start_with(const Scenario& scenario, const std::string& process) {
+  system_.kill(process);
+  system_.use_scenario(process, scenario);
+  system_.restart(process);
+}
+
+void FaultPlayer::operator()(const StartWithOtherRule& start) {
+  Scenario other = scenario_;
+  other_rules()[start.rule].change(other);
+  start_with(other, start.process);
+}
+
+void FaultPlayer::operator()(const SendForgery& send) {
+  for (const auto& forger : forgers_) {
+    if (forger->victim() != send.victim) continue;
+    forgeries()[send.forgery].change(*forger);
+    forger->send();
+  }
+}
+
+void FaultPlayer::advance(Duration until) {
+  for (;;) {
+    Duration next = until;
+    for (const End& end : ends_) next = std::min(next, end.at);
+    if (const auto due = operator_.due()) next = std::min(next, *due - system_.begin());
+    system_.run_until(system_.begin() + next);
+    std::erase_if(ends_, [&](const End& end) {
+      if (end.at > next) return false;
+      for_each_link(end.partition.from, end.partition.to, [](Link& link) { --link.cuts; });
+      return true;
+    });
+    operator_.update();
+    if (next >= until) return;
   }
 }
 
@@ -94,17 +126,14 @@ void FaultPlayer::heal() {
 void FaultPlayer::run_until(Duration after_begin) {
   while (next_ < plan_.faults.size() && plan_.faults[next_].at <= after_begin) {
     const TimedFault& timed = plan_.faults[next_++];
-    end_partitions(timed.at);
-    system_.run_until(system_.begin() + timed.at);
+    advance(timed.at);
     std::visit(*this, timed.fault);
   }
   if (!is_healed_ && plan_.healed_at <= after_begin) {
-    end_partitions(plan_.healed_at);
-    system_.run_until(system_.begin() + plan_.healed_at);
+    advance(plan_.healed_at);
     heal();
   }
-  end_partitions(after_begin);
-  system_.run_until(system_.begin() + after_begin);
+  advance(after_begin);
 }
 
 }  // namespace sidestep

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "deploy/simulate/campaign/fault_plan.hpp"
+#include "deploy/simulate/campaign/floor_operator.hpp"
+#include "deploy/simulate/campaign/forger.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -13,8 +16,8 @@ namespace sidestep {
 /// Runs a system and applies the faults of a plan.
 class FaultPlayer {
  public:
-  /// Both arguments must outlive the player. Links start with the quality of healthy hosts.
-  FaultPlayer(SimSystem& system, const FaultPlan& plan);
+  /// All arguments must outlive the player. Links start with the quality of healthy hosts.
+  FaultPlayer(SimSystem& system, const Scenario& scenario, const FaultPlan& plan);
 
   /// Runs until this time after the start, and applies all faults until then.
   void run_until(Duration after_begin);
@@ -25,6 +28,12 @@ class FaultPlayer {
   void operator()(const Kill& kill) { system_.kill(kill.process); }
   void operator()(const Start& start) { system_.restart(start.process); }
   void operator()(const RobotDisturbance& disturbance);
+  void operator()(const Carry& carry) { operator_.carry(carry, system_.begin() + plan_.healed_at); }
+  void operator()(const Place& place) { operator_.place(place); }
+  void operator()(const TakeAway& take) { operator_.take_away(take.robot); }
+  void operator()(const StartWithOtherRule& start);
+  void operator()(const StartWithOwnRules& start) { start_with(scenario_, start.process); }
+  void operator()(const SendForgery& send);
 
  private:
   struct Link {
@@ -40,11 +49,16 @@ class FaultPlayer {
   template <typename Do>
   void for_each_link(const ProcessNames& from, const ProcessNames& to, Do change);
   void set(const Link& link);
+  void start_with(const Scenario& scenario, const std::string& process);
   void heal();
-  void end_partitions(Duration until);
+  /// Runs the system, ends partitions and lets the operator act.
+  void advance(Duration until);
 
   SimSystem& system_;
+  const Scenario& scenario_;
   const FaultPlan& plan_;
+  FloorOperator operator_;
+  std::vector<std::unique_ptr<Forger>> forgers_;  // one per victim
   std::size_t next_ = 0;
   bool is_healed_ = false;
   std::map<std::string, std::map<std::string, Link>> links_;  // by sender, then receiver

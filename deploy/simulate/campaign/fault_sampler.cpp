@@ -2,9 +2,11 @@
 #include "deploy/simulate/campaign/fault_sampler.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 #include <span>
 
+#include "deploy/simulate/campaign/forger.hpp"
+#include "deploy/simulate/campaign/other_rules.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -12,18 +14,13 @@ namespace {
 
 constexpr double kMaxDelay_s = 0.15;
 constexpr double kMaxLoss = 0.3;
-// A fault begins at least this long before the end of all faults.
-constexpr Duration kMinFaultDuration = std::chrono::milliseconds(1);
 constexpr Duration kMinTwinLifetime = std::chrono::milliseconds(50);
 
 class FaultSampler {
  public:
-  FaultSampler(const Scenario& scenario, ProcessNames processes, Duration duration, Duration fault_free_end,
-               Rng& rng)
-      : scenario_(scenario), processes_(std::move(processes)), rng_(rng) {
-    plan_.healed_at = std::max(Duration{0}, duration - fault_free_end);
-    // Faults cluster in time, because simultaneous faults have effects that single ones do not have.
-    for (std::uint64_t left = 1 + rng_.below(5); left > 0; --left) burst_times_s_.push_back(random_time_s());
+  FaultSampler(const Scenario& scenario, ProcessNames processes, const FaultTimes& times, Rng& rng)
+      : scenario_(scenario), processes_(std::move(processes)), times_(times), rng_(rng) {
+    plan_.healed_at = times.healed_at();
   }
 
   FaultPlan sample() {
@@ -33,8 +30,8 @@ class FaultSampler {
     if (rng_.chance(0.55)) repeat(6, [&] { sample_partition(); });
     if (rng_.chance(0.6)) repeat(8, [&] { sample_pause(); });
     if (rng_.chance(0.65)) repeat(8, [&] { sample_kill(); });
-    if (rng_.chance(0.12)) repeat(8, [&] { sample_disturbance(); });
-    std::ranges::stable_sort(plan_.faults, {}, &TimedFault::at);
+    if (rng_.chance(0.1)) repeat(2, [&] { sample_other_rules(); });
+    if (rng_.chance(0.1)) sample_forgeries();
     return std::move(plan_);
   }
 
@@ -43,17 +40,9 @@ class FaultSampler {
   void repeat(std::uint64_t max_count, Do sample_one) {
     for (std::uint64_t left = 1 + rng_.below(max_count); left > 0; --left) sample_one();
   }
-  double log_uniform(double low, double high) { return low * std::pow(high / low, rng_.uniform()); }
-  double random_time_s() { return rng_.uniform(0, to_seconds(plan_.healed_at)); }
-  double time_near_burst_s() {
-    const double burst_s = pick(burst_times_s_);
-    return burst_s + 0.4 * rng_.normal();
-  }
-  Duration time() {
-    const double time_s = rng_.chance(0.35) ? random_time_s() : time_near_burst_s();
-    return std::clamp(from_seconds(time_s), Duration{0},
-                      std::max(Duration{0}, plan_.healed_at - kMinFaultDuration));
-  }
+  double log_uniform(double low, double high) { return sample_log_uniform(low, high, rng_); }
+  Duration time() { return times_.sample(rng_); }
+  Duration until_healed(Duration at, double desired_s) const { return times_.until_healed(at, desired_s); }
   template <typename Item>
   const Item& pick(const std::vector<Item>& from) {
     return from[rng_.below(from.size())];
@@ -61,10 +50,6 @@ class FaultSampler {
   void add(Duration at, Fault fault) {
     if (at < plan_.healed_at) plan_.faults.push_back({at, std::move(fault)});
   }
-  Duration until_healed(Duration at, double desired_s) {
-    return std::min(from_seconds(desired_s), plan_.healed_at - at);
-  }
-
   std::string random_agent() { return agent_process(pick(scenario_.robots).id); }
   /// Processes with more influence are chosen more often.
   std::string random_victim() {
@@ -167,23 +152,33 @@ class FaultSampler {
     add(at, Kill{victim});
     // Every killed process is restarted, because no later coordinator would grant without all agents.
     const double dead_s = rng_.chance(0.3) ? 0 : log_uniform(0.01, 4);
-    add(std::max(at + Duration{1}, at + until_healed(at, dead_s) - Duration{1}), Start{victim});
+    add(times_.after(at, dead_s), Start{victim});
   }
 
-  void sample_disturbance() {
-    static constexpr msg::DisturbanceKind kKinds[] = {
-        msg::DisturbanceKind::DISTURBANCE_PUSH, msg::DisturbanceKind::DISTURBANCE_SLIP,
-        msg::DisturbanceKind::DISTURBANCE_BLOCK, msg::DisturbanceKind::DISTURBANCE_REBOOT};
-    RobotDisturbance disturbance;
-    disturbance.robot = pick(scenario_.robots).id;
-    disturbance.kind = kKinds[rng_.below(std::size(kKinds))];
+  /// A process works by other rules for a while. A standby may do so for good if there is another
+  /// coordinator.
+  void sample_other_rules() {
+    const double u = rng_.uniform();
+    const std::string victim = u < 0.4   ? coordinator_process(scenario_.coordinators - 1)
+                               : u < 0.8 ? random_agent()
+                                         : "vision";
+    if (!with_other_rules_.insert(victim).second) return;
+    std::size_t rule = rng_.below(other_rules().size());
+    // An agent needs its own robot.
+    while (victim.starts_with("agent") && other_rules()[rule].changes_roster)
+      rule = rng_.below(other_rules().size());
     const Duration at = time();
-    const double push_angle_rad = rng_.uniform(-3.14, 3.14);
-    disturbance.push_mps = rotated(Vec2(log_uniform(0.05, 2), 0), push_angle_rad);
-    disturbance.grip = rng_.uniform(0.05, 0.9);
-    disturbance.heading_rad = rng_.uniform(-3.14, 3.14);
-    disturbance.duration = until_healed(at, log_uniform(0.05, 3));
-    add(at, disturbance);
+    add(at, StartWithOtherRule{victim, rule});
+    const bool is_for_good = scenario_.coordinators > 1 && u < 0.15;
+    if (!is_for_good) add(times_.after(at, log_uniform(0.2, 8)), StartWithOwnRules{victim});
+  }
+  void sample_forgeries() {
+    const RobotId victim = pick(scenario_.robots).id;
+    repeat(12, [&] {
+      const std::size_t forgery = rng_.below(forgeries().size());
+      const Duration at = time();
+      if (!forgeries()[forgery].is_plausible_fact) add(at, SendForgery{victim, forgery});
+    });
   }
 
   /// Runs two agents for one robot at the same time, until one of them dies.
@@ -210,16 +205,17 @@ class FaultSampler {
 
   const Scenario& scenario_;
   ProcessNames processes_;
+  const FaultTimes& times_;
   Rng& rng_;
   FaultPlan plan_;
-  std::vector<double> burst_times_s_;
+  std::set<std::string> with_other_rules_;
 };
 
 }  // namespace
 
-FaultPlan sample_faults(const Scenario& scenario, const ProcessNames& processes, Duration duration,
-                        Duration fault_free_end, Rng& rng) {
-  return FaultSampler(scenario, processes, duration, fault_free_end, rng).sample();
+FaultPlan sample_faults(const Scenario& scenario, const ProcessNames& processes, const FaultTimes& times,
+                        Rng& rng) {
+  return FaultSampler(scenario, processes, times, rng).sample();
 }
 
 }  // namespace sidestep

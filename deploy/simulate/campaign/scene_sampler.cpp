@@ -7,61 +7,12 @@
 #include <numbers>
 
 #include "common/config/scenario_check.hpp"
+#include "deploy/simulate/campaign/position_sampler.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr std::size_t kGoals = 150;
-constexpr int kMaxAttempts = 200;
-
-/// Samples positions clear of walls, of obstacles and, on request, of other positions.
-class PositionSampler {
- public:
-  PositionSampler(const Scenario& scenario, Rng& rng) : scenario_(scenario), rng_(rng) {}
-
-  bool is_free(const Vec2& p) const {
-    const double clearance_m = scenario_.radius_m + scenario_.margin_m + 0.01;
-    return scenario_.field.contains(p, clearance_m) &&
-           std::ranges::none_of(scenario_.obstacles, [&](const Circle& o) {
-             return (p - o.centre_m).norm() < o.radius_m + clearance_m;
-           });
-  }
-  bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const {
-    const double separation_m = 2 * scenario_.radius_m + scenario_.margin_m + 0.01;
-    return std::ranges::none_of(others, [&](const Vec2& other) { return (p - other).norm() < separation_m; });
-  }
-  /// Within the central `share` of the field if a free position is found there, else anywhere.
-  Vec2 sample(double share = 1) {
-    for (int i = 0;; ++i) {
-      const double part = i < kMaxAttempts ? share / 2 : 0.5;
-      // y first: the order of arguments would be unspecified.
-      const double y = rng_.uniform(-part, part) * scenario_.field.width_m;
-      const double x = rng_.uniform(-part, part) * scenario_.field.length_m;
-      const Vec2 p(x, y);
-      if (is_free(p)) return p;
-    }
-  }
-  Vec2 sample_apart(const std::vector<Vec2>& others) {
-    for (;;) {
-      const Vec2 p = sample();
-      if (is_apart(p, others)) return p;
-    }
-  }
-  /// A free position near the desired one and clear of the others.
-  Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others) {
-    for (int i = 0; i < kMaxAttempts; ++i) {
-      const double spread = 0.005 * i;
-      const double y = rng_.uniform(-spread, spread), x = rng_.uniform(-spread, spread);
-      const Vec2 p = desired + Vec2(x, y);
-      if (is_free(p) && is_apart(p, others)) return p;
-    }
-    return sample_apart(others);
-  }
-
- private:
-  const Scenario& scenario_;
-  Rng& rng_;
-};
 
 void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
   const double area_m2 = static_cast<double>(robots) * 0.5 * std::pow(6, rng.uniform());
@@ -138,14 +89,38 @@ Scenario sample_scene(Rng& rng) {
   return scenario;
 }
 
+void sample_opponents(Scenario& scenario, Rng& rng) {
+  if (!rng.chance(0.12)) return;
+  // On a small floor, quick opponents could be anywhere before a robot has stopped, and no robot would drive.
+  scenario.max_opponent_speed_mps = std::min(1.5, 0.25 * scenario.field.width_m);
+  PositionSampler positions(scenario, rng);
+  std::vector<Vec2> starts;
+  for (const RobotSpec& robot : scenario.robots) starts.push_back(robot.start_m);
+  for (std::uint64_t left = 1 + rng.below(3); left > 0; --left) {
+    OpponentSpec opponent;
+    // The distance that starts keep from each other is that of two robots.
+    opponent.radius_m = rng.uniform(0.4, 1) * scenario.radius_m;
+    opponent.speed_mps = rng.chance(0.3) ? scenario.max_opponent_speed_mps
+                                         : rng.uniform(0.1, 1) * scenario.max_opponent_speed_mps;
+    opponent.path_m.push_back(positions.sample_apart(starts));
+    starts.push_back(opponent.path_m.front());
+    for (std::uint64_t points = 1 + rng.below(3); points > 0; --points)
+      opponent.path_m.push_back(positions.sample());
+    scenario.opponents.push_back(opponent);
+  }
+}
+
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} coordinators; at most {:.2f} m/s; command loss "
+      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} opponents, {} coordinators; at most {:.2f} m/s; "
+      "command loss "
       "{:.1f} %, "
-      "vision delay {:.1f} ms, missed detections {:.1f} %",
+      "vision delay {:.1f} ms, missed detections {:.1f} %, ghosts {:.1f} % robots and {:.1f} % obstacles",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
-      scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
-      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.miss_probability);
+      scenario.opponents.size(), scenario.coordinators, scenario.limits.speed_mps,
+      100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
+      100 * scenario.vision.miss_probability, 100 * scenario.vision.ghost_probability,
+      100 * scenario.vision.ghost_obstacle_probability);
 }
 
 }  // namespace sidestep

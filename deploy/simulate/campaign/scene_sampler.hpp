@@ -15,4 +15,7 @@ Scenario sample_scene(Rng& rng);
 /// A description in one line.
 std::string scene_summary(const Scenario& scenario);
 
+/// Adds opponents that cross the floor among the robots to some scenes.
+void sample_opponents(Scenario& scenario, Rng& rng);
+
 }  // namespace sidestep

@@ -8,6 +8,7 @@
 
 #include "deploy/simulate/campaign/clock_sampler.hpp"
 #include "deploy/simulate/campaign/distance_meter.hpp"
+#include "deploy/simulate/campaign/disturbance_sampler.hpp"
 #include "deploy/simulate/campaign/fault_player.hpp"
 #include "deploy/simulate/campaign/fault_sampler.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
@@ -18,6 +19,9 @@ namespace {
 constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // This long after the last fault, all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
+// With more ghosts, some are always taken for obstacles that come nearer, and robots on a small floor stay
+// put.
+constexpr double kMaxGhostObstacles = 0.02;
 constexpr double kStationaryDistance_m = 0.05;
 
 std::string list(const std::vector<RobotId>& robots) { return fmt::format("{}", fmt::join(robots, ", ")); }
@@ -27,21 +31,24 @@ struct UnexpectedStates {
   std::vector<RobotId> not_driving;
   std::vector<RobotId> undetected_clock;  ///< the clock is out of bound, but the agent does not report it
   std::vector<RobotId> driven;            ///< the clock is out of bound, but versions were granted
+  std::vector<RobotId> not_absent;        ///< off the floor, but the agent does not report it
 };
 
 UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan& plan) {
   UnexpectedStates unexpected;
   for (const RobotProgress& row : system.metrics().progress()) {
-    const bool is_driving = row.agent_state == msg::AgentState::AGENT_DRIVING ||
-                            row.agent_state == msg::AgentState::AGENT_ARRIVED;
-    if (std::ranges::find(plan.robots_out_of_clock_bound, row.robot) ==
-        plan.robots_out_of_clock_bound.end()) {
+    const auto end = plan.ends.find(row.robot);
+    if (end == plan.ends.end()) {
+      const bool is_driving = row.agent_state == msg::AgentState::AGENT_DRIVING ||
+                              row.agent_state == msg::AgentState::AGENT_ARRIVED;
       if (!is_driving) unexpected.not_driving.push_back(row.robot);
-      continue;
+    } else if (end->second == RobotEnd::kClockOutOfBound || end->second == RobotEnd::kClockLeftBound) {
+      if (row.agent_state != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
+        unexpected.undetected_clock.push_back(row.robot);
+      if (end->second == RobotEnd::kClockOutOfBound && row.grants > 0) unexpected.driven.push_back(row.robot);
+    } else if (end->second == RobotEnd::kLifted && row.agent_state != msg::AgentState::AGENT_ABSENT) {
+      unexpected.not_absent.push_back(row.robot);
     }
-    if (row.agent_state != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
-      unexpected.undetected_clock.push_back(row.robot);
-    if (row.grants > 0) unexpected.driven.push_back(row.robot);
   }
   return unexpected;
 }
@@ -49,9 +56,10 @@ UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan
 /// Whether every robot out of the clock bound is so far out that no version may have been granted to it.
 bool is_detection_certain(const Trial& trial) {
   const auto is_large = [](Duration offset) { return std::chrono::abs(offset) > kCertainlyDetectedOffset; };
-  return std::ranges::all_of(trial.plan.robots_out_of_clock_bound, [&](RobotId robot) {
+  return std::ranges::all_of(robots_with(trial.plan, RobotEnd::kClockOutOfBound), [&](RobotId robot) {
     const auto coordinator = trial.plan.clocks.find("coordinator");
-    const Duration reference = coordinator == trial.plan.clocks.end() ? Duration{0} : coordinator->second;
+    const Duration reference =
+        coordinator == trial.plan.clocks.end() ? Duration{0} : coordinator->second.offset;
     return is_large(find_robot(trial.scenario, robot)->clock_offset - reference);
   });
 }
@@ -85,7 +93,7 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
   if (report.audit->verdict() == AuditVerdict::kNotJudged)
     fail("the audit did not judge the run: " + shortfall(*report.audit));
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
-  const std::vector<RobotId>& out_of_bound = trial.plan.robots_out_of_clock_bound;
+  const std::vector<RobotId> out_of_bound = robots_with(trial.plan, RobotEnd::kClockOutOfBound);
   const bool may_move = static_cast<int>(out_of_bound.size()) < result.robots;
   if (may_move && report.grants == 0) fail("no coordinator ever granted");
   const UnexpectedStates unexpected = find_unexpected_states(system, trial.plan);
@@ -97,25 +105,42 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
     fail(fmt::format("the agents of robots {} do not detect that their clocks are out of bound",
                      list(unexpected.undetected_clock)));
   }
+  if (!unexpected.not_absent.empty()) {
+    fail(fmt::format("the agents of robots {} do not report that these are off the floor",
+                     list(unexpected.not_absent)));
+  }
   if (!unexpected.driven.empty() && is_detection_certain(trial)) {
     fail(
         fmt::format("robots {} were driven although their clocks are out of bound", list(unexpected.driven)));
   }
   // Robots that must not move may stand at the goals of others.
-  if (out_of_bound.empty() && result.stationary == result.robots && !system.metrics().all_arrived())
+  const bool may_block = std::ranges::any_of(trial.plan.ends, [](const auto& entry) {
+    return entry.second != RobotEnd::kLifted && entry.second != RobotEnd::kTakenAway;
+  });
+  if (!may_block && result.stationary == result.robots && !system.metrics().all_arrived())
     fail("stuck: no robot moves, long after the last fault");
 }
 
 }  // namespace
 
-Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario) {
+Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario,
+                   bool has_faults) {
   Rng rng(seed);
-  Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork();
+  Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork(), disturbance_rng = rng.fork(),
+      opponent_rng = rng.fork();
   Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
-  const Duration fault_free_end = std::min(kFaultFreeEnd, duration / 2);
-  trial.plan = sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), duration,
-                             fault_free_end, fault_rng);
-  sample_clocks(trial.scenario, trial.plan, clock_rng);
+  if (!scenario) sample_opponents(trial.scenario, opponent_rng);
+  const FaultTimes times(duration - std::min(kFaultFreeEnd, duration / 2), fault_rng);
+  FaultPlan& plan = trial.plan;
+  plan.healed_at = times.healed_at();
+  if (!has_faults) return trial;
+  plan = sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), times, fault_rng);
+  sample_clocks(trial.scenario, plan, duration, clock_rng);
+  if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);
+  if (disturbance_rng.chance(0.08))
+    trial.scenario.vision.ghost_obstacle_probability = disturbance_rng.uniform(0, kMaxGhostObstacles);
+  sample_disturbances(trial.scenario, times, plan, disturbance_rng);
+  std::ranges::stable_sort(plan.faults, {}, &TimedFault::at);
   return trial;
 }
 
@@ -124,6 +149,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   TrialResult result;
   result.seed = trial.seed;
   result.robots = static_cast<int>(trial.scenario.robots.size());
+  result.fault_kinds = trial.fault_kinds();
   result.robot_s = result.robots * to_seconds(trial.duration);
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
@@ -132,7 +158,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
     if (hooks.on_truth) hooks.on_truth(truth);
   });
   if (hooks.on_start) hooks.on_start(system);
-  FaultPlayer(system, trial.plan).run_until(trial.duration);
+  FaultPlayer(system, trial.scenario, trial.plan).run_until(trial.duration);
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);

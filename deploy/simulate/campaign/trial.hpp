@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "deploy/monitor/metrics/report.hpp"
+#include "deploy/simulate/campaign/fault_kinds.hpp"
 #include "deploy/simulate/campaign/fault_plan.hpp"
 #include "deploy/simulate/campaign/trial_result.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
@@ -19,11 +22,14 @@ struct Trial {
   Scenario scenario;
   FaultPlan plan;
   Duration duration{0};
+
+  std::set<std::string> fault_kinds() const { return sidestep::fault_kinds(scenario, plan); }
 };
 
-/// Samples everything that the seed determines. Without a scenario the scene is sampled, too.
+/// Samples everything that the seed determines. Without a scenario the scene is sampled, too; without faults
+/// nothing else.
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
-                                 const std::optional<Scenario>& scenario);
+                                 const std::optional<Scenario>& scenario, bool has_faults = true);
 
 /// Callbacks for a closer look at one trial; each may be empty.
 struct TrialHooks {

@@ -10,6 +10,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(const TrialResult& r) {
   return {{"seed", r.seed},
           {"failures", r.failures},
+          {"fault_kinds", r.fault_kinds},
           {"contacts", r.contacts},
           {"excused_contacts", r.excused_contacts},
           {"excused_by_cause", r.excused_by_cause},
@@ -36,6 +37,7 @@ TrialResult parse_trial_result(const std::string& line) {
   TrialResult r;
   json.at("seed").get_to(r.seed);
   json.at("failures").get_to(r.failures);
+  json.at("fault_kinds").get_to(r.fault_kinds);
   json.at("contacts").get_to(r.contacts);
   json.at("excused_contacts").get_to(r.excused_contacts);
   json.at("excused_by_cause").get_to(r.excused_by_cause);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace sidestep {
 struct TrialResult {
   std::uint64_t seed = 0;
   std::vector<std::string> failures;
+  std::set<std::string> fault_kinds;                      ///< that were sampled
   std::uint64_t contacts = 0;                             ///< excluding excused ones
   std::uint64_t excused_contacts = 0;                     ///< that a disturbance of a robot excuses
   std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same by cause

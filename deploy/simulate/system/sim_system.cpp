@@ -25,6 +25,7 @@ struct SimulatorProcess {
       : node(bus, scenario, incarnation, seed) {
     if (scenario.vision.images) images.emplace(bus, scenario, node, incarnation, seed);
   }
+  void on_event(LogLevel min_level, OnLogEvent callback) { node.on_event(min_level, std::move(callback)); }
   SimulatorNode node;
   std::optional<ImageOutput> images;
 };
@@ -35,6 +36,7 @@ struct VisionProcess {
       : node(bus, scenario, incarnation, scenario.vision.images ? FrameSource::kCaller : FrameSource::kBus) {
     if (scenario.vision.images) images.emplace(bus, image_reader(scenario, {}), node);
   }
+  void on_event(LogLevel min_level, OnLogEvent callback) { node.on_event(min_level, std::move(callback)); }
   VisionNode node;
   std::optional<ImageInput> images;
 };
@@ -43,27 +45,36 @@ struct VisionProcess {
 
 /// The id of a process that is not an agent.
 std::uint32_t id_of(const std::string& name, const Scenario& scenario) {
-  if (name == "simulator") return static_cast<std::uint32_t>(Sender::kSimulator);
-  if (name == "vision") return static_cast<std::uint32_t>(Sender::kVision);
-  for (int number = 0; number < scenario.coordinators; ++number) {
-    const auto id = static_cast<std::uint32_t>(Sender::kCoordinator) + static_cast<std::uint32_t>(number);
-    if (name == process_name(id)) return id;
-  }
-  throw std::invalid_argument("the system has no process \"" + name + "\"");
+  const auto id = process_id(name);
+  if (!id || std::ranges::count(SimSystem::process_names(scenario), name) == 0)
+    throw std::invalid_argument("the system has no process \"" + name + "\"");
+  return *id;
 }
 
 /// Members are destroyed in reverse order: the node before its bus, so the bus never calls a destroyed node.
 struct SimSystem::Process {
   Process(SimNetwork& network, const SimProcessSpec& spec, std::uint32_t id, const SharedRules& shared)
-      : bus(network, spec), rules(bus, id, shared, [](const RulesMismatch&) {}) {}
+      : bus(network, spec), rules(bus, id, shared, [this](const RulesMismatch& mismatch) {
+          if (on_event) on_event({LogLevel::kWarning, {}, describe(mismatch)});
+        }) {}
+  template <typename Node>
+  void run(std::shared_ptr<Node> new_node) {
+    listen = [&target = *new_node](LogLevel min_level, OnLogEvent callback) {
+      target.on_event(min_level, std::move(callback));
+    };
+    node = std::move(new_node);
+  }
+
   SimBus bus;
+  OnLogEvent on_event;
   RulesExchange rules;
   std::shared_ptr<void> node;
+  std::function<void(LogLevel, OnLogEvent)> listen;  // sets the callback for the node's events
 };
 
 std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
 
-SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks)
+SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks)
     : scenario_(scenario),
       seed_(seed),
       rng_(seed),
@@ -88,6 +99,9 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
                                             [this](const auto& status) { metrics_.on_status(status); });
   observer_bus_.subscribe<msg::CoordinatorState>(
       topics::kCoordinator, [this](const auto& state) { metrics_.on_coordinator(state); });
+  observer_bus_.subscribe<msg::Counters>(topics::kCounters,
+                                         [this](const auto& counters) { metrics_.on_counters(counters); });
+  metrics_.set_bus(observer_bus_);
   for (const RobotSpec& robot : scenario_.robots)
     robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
   for (const std::string& process : process_names(scenario_)) start(process);
@@ -107,7 +121,8 @@ SimProcessSpec SimSystem::spec_of(const std::string& process) {
   const ProcessId id = known != ids_.end() ? known->second : network_.new_process();
   ids_[process] = id;
   const auto clock = clocks_.find(process);
-  return {id, clock != clocks_.end() ? clock->second : Duration{0}};
+  return clock == clocks_.end() ? SimProcessSpec{id}
+                                : SimProcessSpec{id, {clock->second.offset, clock->second.drift_ppm, begin_}};
 }
 
 void SimSystem::start(const std::string& name) {
@@ -123,16 +138,30 @@ void SimSystem::start(const std::string& name) {
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
   if (agent != robot_of_.end()) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
-    process->node = std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch);
+    process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
   } else if (name == "simulator") {
-    process->node = std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_);
+    process->run(std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_));
   } else if (name == "vision") {
-    process->node = std::make_shared<VisionProcess>(bus, scenario, incarnation);
+    process->run(std::make_shared<VisionProcess>(bus, scenario, incarnation));
   } else {
     const CoordinatorIdentity self{id - static_cast<std::uint32_t>(Sender::kCoordinator), incarnation};
-    process->node = std::make_shared<CoordinatorNode>(bus, scenario, self, scenario.coordinators > 1);
+    process->run(std::make_shared<CoordinatorNode>(bus, scenario, self, scenario.coordinators > 1));
   }
   processes_[name] = std::move(process);
+  observe(name);
+}
+
+void SimSystem::observe(const std::string& name) {
+  if (!on_event_) return;
+  Process& process = *processes_.at(name);
+  process.on_event = [this, name](const LogEvent& event) { on_event_(name, event); };
+  process.listen(min_level_, process.on_event);
+}
+
+void SimSystem::on_event(LogLevel min_level, OnProcessEvent callback) {
+  min_level_ = min_level;
+  on_event_ = std::move(callback);
+  for (const auto& [name, process] : processes_) observe(name);
 }
 
 void SimSystem::kill(const std::string& process) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/messaging/sim/bus.hpp"
@@ -28,9 +29,9 @@ std::string twin_process(RobotId robot);
 /// seed give the same run, bit for bit.
 class SimSystem {
  public:
-  /// Starts all processes at virtual time 1000 s. `clocks` holds the offsets of processes' clocks ahead of
-  /// virtual time; they apply to all incarnations.
-  SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, Duration> clocks = {});
+  /// Starts all processes at virtual time 1000 s. `clocks` holds the errors of processes' clocks; they apply
+  /// to all incarnations.
+  SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {});
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
   SimSystem& operator=(const SimSystem&) = delete;
@@ -66,6 +67,9 @@ class SimSystem {
   /// Calls back with every ground truth, after the metrics have received it.
   void on_truth(std::function<void(const msg::GroundTruth&)> callback) { on_truth_ = std::move(callback); }
   const RunMetrics& metrics() const { return metrics_; }
+  using OnProcessEvent = std::function<void(const std::string& process, const LogEvent&)>;
+  /// Calls back with the events of all processes, of at least a level.
+  void on_event(LogLevel min_level, OnProcessEvent callback);
   /// Receives every message, even those that are lost; the metrics' report includes its findings.
   Auditor& auditor() { return auditor_; }
 
@@ -73,11 +77,12 @@ class SimSystem {
   struct Process;
   SimProcessSpec spec_of(const std::string& process);
   void start(const std::string& process);
+  void observe(const std::string& process);
 
   const Scenario scenario_;
   std::uint64_t seed_;
   Rng rng_;
-  std::map<std::string, Duration> clocks_;
+  std::map<std::string, ClockError> clocks_;
   std::map<std::string, Scenario> scenarios_;  // of processes that use another one
   Time begin_;
   std::shared_ptr<PlanningScratch> scratch_;  // shared by all agents
@@ -93,6 +98,8 @@ class SimSystem {
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
   std::function<void(const msg::GroundTruth&)> on_truth_;
+  LogLevel min_level_ = LogLevel::kOff;
+  OnProcessEvent on_event_;
 };
 
 }  // namespace sidestep

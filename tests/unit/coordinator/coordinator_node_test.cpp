@@ -7,6 +7,8 @@
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
+#include "tests/log_events.hpp"
 #include "tests/unit/coordinator/floor.hpp"
 
 namespace sidestep::coordinator_node_test {
@@ -75,7 +77,7 @@ TEST_CASE("a coordinator answers registrations and proposals on the robot's chan
   floor.send(topics::kProposal, floor.proposal());
   REQUIRE(floor.verdicts.size() == 1);
   CHECK(floor.verdicts[0].granted_version() == 10);
-  CHECK(floor.state.invalid() == 0);
+  CHECK(drops_of(floor.node).total() == 0);
 }
 
 TEST_CASE("messages that cannot be decoded are counted, get no answer and change nothing") {
@@ -114,13 +116,18 @@ TEST_CASE("messages that cannot be decoded are counted, get no answer and change
     other.epoch(Epoch{1} << 61);
     floor.send(topics::kCoordinator, other);
   }
+  SECTION("a heartbeat with an unknown reason of its role") {
+    other.epoch(epoch + 1);
+    other.role_reason(static_cast<msg::RoleReason>(99));
+    floor.send(topics::kCoordinator, other);
+  }
   SECTION("a heartbeat with an unknown mode") {
     other.epoch(epoch + 1);
     other.coordinator_mode(static_cast<msg::CoordinatorMode>(99));
     floor.send(topics::kCoordinator, other);
   }
   floor.run();
-  CHECK(floor.state.invalid() == 1);
+  CHECK(drops_of(floor.node).total() == 1);
   CHECK(floor.verdicts.empty());
   CHECK(floor.node.coordinator().epoch() == epoch);
   CHECK(floor.node.coordinator().is_granting());
@@ -146,7 +153,7 @@ TEST_CASE("malformed candidates and registrations are answered and counted") {
   floor.run();
   REQUIRE(floor.verdicts.size() == 1);
   CHECK(floor.verdicts[0].reasons()[0] == msg::Reason::REASON_MALFORMED);
-  CHECK(floor.state.invalid() == 1);
+  CHECK(drops_of(floor.node).total() == 1);
 }
 
 TEST_CASE("an agent that obeys an implausible epoch is counted and does not change the coordinator's") {
@@ -156,16 +163,13 @@ TEST_CASE("an agent that obeys an implausible epoch is counted and does not chan
   auto feedback = fact(floor.a, 1000);
   feedback.obeyed_epoch(Epoch{1} << 61);
   floor.send(topics::kFeedback, feedback);
-  CHECK(floor.state.invalid() == 1);
+  CHECK(drops_of(floor.node).total() == 1);
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
 struct Attested : Floor {
-  std::vector<std::string> events;
-  Attested() {
-    node.on_event([this](const std::string& event) { events.push_back(event); });
-    send(topics::kRegistration, registration_of(b, node.coordinator().epoch()));
-  }
+  LogEvents events{node};
+  Attested() { send(topics::kRegistration, registration_of(b, node.coordinator().epoch())); }
   void attest(RobotId robot, Sender sender = Sender::kOperator) {
     msg::AbsenceAttestation message;
     message.robot(robot);
@@ -178,8 +182,7 @@ TEST_CASE("an operator attests that a silent robot is absent, and the coordinato
   Attested floor;
   floor.attest(1);
   CHECK(floor.node.coordinator().is_granting());
-  REQUIRE(floor.events.size() == 1);
-  CHECK_THAT(floor.events[0], ContainsSubstring("an operator attests that robot 1 is absent"));
+  CHECK(floor.events.count("an operator attests that robot 1 is absent") == 1);
   CHECK(floor.state.absent() == 1);
   CHECK(floor.state.notices().empty());
 }
@@ -190,16 +193,64 @@ TEST_CASE(
   SECTION("it was heard") {
     floor.send(topics::kFeedback, fact(floor.a, 1000));
     floor.attest(1);
-    REQUIRE(floor.events.size() == 1);
-    CHECK_THAT(floor.events[0], ContainsSubstring("robot 1 reports that it is on the floor"));
+    CHECK(floor.events.count("robot 1 reports that it is on the floor") == 1);
   }
   SECTION("another robot has registered") { floor.attest(2); }
   SECTION("no such robot") { floor.attest(77); }
   SECTION("the sender is no operator") {
     floor.attest(1, Sender::kVision);
-    CHECK(floor.state.invalid() == 1);
+    CHECK(drops_of(floor.node).total() == 1);
   }
   CHECK_FALSE(floor.node.coordinator().is_granting());
+}
+
+TEST_CASE("a coordinator reports its role, each registration, and that it grants") {
+  Floor floor;
+  const LogEvents events(floor.node);
+  CHECK(events.count("begins epoch " + std::to_string(floor.node.coordinator().epoch()) + ": started") == 1);
+  floor.register_both();
+  CAPTURE(events.text());
+  CHECK(events.count("robot 1 is registered by its agent of incarnation") == 1);
+  CHECK(events.count("robot 2 is registered by its agent of incarnation") == 1);
+  CHECK(events.count("grants in epoch") == 1);
+  CHECK(events.all()[1].robot == 1);
+  CHECK(events.all()[1].level == LogLevel::kDebug);
+  floor.network.run_until(floor.network.now() + std::chrono::seconds(5));
+  CHECK(events.all().size() == 4);
+}
+
+TEST_CASE("a coordinator names the robots for whose registrations it waits, once per second") {
+  Floor floor;
+  const LogEvents events(floor.node);
+  floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
+  floor.network.run_until(floor.network.now() + std::chrono::milliseconds(3500));
+  CAPTURE(events.text());
+  CHECK(events.count("waits for the registrations of robots 2") == 3);
+}
+
+TEST_CASE("a coordinator reports robots that are quarantined and released") {
+  Floor floor;
+  floor.register_both();
+  const LogEvents events(floor.node);
+  floor.send(topics::kFeedback, fact(continued(floor.a, 10, 1001, {0, 3}), 1001));
+  CAPTURE(events.text());
+  CHECK(events.count("robot 1 executes version 10, which it was never granted") == 1);
+  CHECK(events.count("robot 1 is quarantined") == 1);
+  for (int i = 0; i < 60; ++i) floor.send(topics::kFeedback, fact(floor.a, 1000));
+  CHECK(events.count("robot 1 is released from quarantine") == 1);
+}
+
+TEST_CASE("a coordinator reports why it stands by") {
+  Floor floor;
+  const LogEvents events(floor.node);
+  msg::CoordinatorState other;
+  other.coordinator(3);
+  other.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + 3);
+  other.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
+  other.epoch(floor.node.coordinator().epoch() + 1000);
+  floor.send(topics::kCoordinator, other);
+  CAPTURE(events.text());
+  CHECK(events.count("stands by: coordinator 3 has the higher epoch " + std::to_string(other.epoch())) == 1);
 }
 
 TEST_CASE("the place of a displaced robot is published with every world state") {
@@ -218,15 +269,17 @@ TEST_CASE("the place of a displaced robot is published with every world state") 
   see(0);
   CHECK(floor.state.notices().empty());
   CHECK(floor.state.watched_until_ns() == world.valid_at_ns());
+  const LogEvents events(floor.node);
   see(0.3);
   REQUIRE(floor.state.notices().size() == 1);
   CHECK(floor.state.notices()[0].x_m() == 0.3);
+  CHECK(events.count("robot 1 is displaced") == 1);
   see(0.4);
   CHECK(floor.state.notices()[0].x_m() == 0.4);
   world.header().sender(1);
   see(0.5);
   CHECK(floor.state.notices()[0].x_m() == 0.4);
-  CHECK(floor.state.invalid() == 1);
+  CHECK(drops_of(floor.node).total() == 1);
 }
 
 TEST_CASE("a coordinator that stands by answers nothing") {

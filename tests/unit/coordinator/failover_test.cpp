@@ -96,6 +96,64 @@ TEST_CASE("heartbeats of standbys and of superseded coordinators do not prevent 
   CHECK(standby.failover.is_active());
 }
 
+TEST_CASE("a coordinator knows the reason of its role") {
+  using enum msg::RoleReason;
+  const auto reason_of = [](const Failover& failover) { return failover.cause().reason; };
+  Failover active({0, 5}, false, kBegin);
+  CHECK(reason_of(active) == ROLE_STARTED);
+
+  Standby standby;
+  CHECK(reason_of(standby.failover) == ROLE_STARTED);
+  SECTION("a standby hears no coordinator after its start") {
+    standby.run_until_takeover_ms();
+    CHECK(reason_of(standby.failover) == ROLE_NO_COORDINATOR);
+    CHECK(standby.failover.cause().silence >= std::chrono::milliseconds(1200));
+  }
+  SECTION("a standby hears no more heartbeats") {
+    standby.run_until(2000, kEpoch);
+    standby.run_until_takeover_ms();
+    CHECK(reason_of(standby.failover) == ROLE_HEARTBEATS_LOST);
+    CHECK(standby.failover.cause().peer == 0);
+    CHECK(standby.failover.cause().silence >= std::chrono::milliseconds(140));
+    CHECK(standby.failover.cause().silence <= std::chrono::milliseconds(170));
+    CHECK_THAT(describe(standby.failover.cause()), ContainsSubstring("no heartbeat of coordinator 0 for 1"));
+  }
+  SECTION("a robot or an agent knows a higher epoch than one that does not grant yet") {
+    const auto holder = GENERATE(EpochHolder::kRobot, EpochHolder::kAgent);
+    const Epoch higher = active.epoch() + 1000;
+    active.on_obeyed_epoch(higher, false, kBegin, 7, holder);
+    REQUIRE(active.is_active());
+    CHECK(reason_of(active) == (holder == EpochHolder::kRobot ? ROLE_EPOCH_OF_ROBOT : ROLE_EPOCH_OF_AGENT));
+    CHECK(active.cause().peer == 7);
+    CHECK(active.cause().learned == higher);
+  }
+  SECTION("a robot knows a higher epoch than one that grants, which yields and returns") {
+    active.on_obeyed_epoch(active.epoch() + 1000, true, kBegin, 7, EpochHolder::kRobot);
+    REQUIRE_FALSE(active.is_active());
+    CHECK(reason_of(active) == ROLE_EPOCH_OF_ROBOT);
+    for (double ms = 5; !active.is_active() && ms < 1000; ms += 5) active.update(after_ms(ms));
+    REQUIRE(active.is_active());
+    CHECK(reason_of(active) == ROLE_RETURNED);
+    CHECK(active.cause().silence >= std::chrono::milliseconds(200));
+  }
+  SECTION("another coordinator has a higher epoch") {
+    receive(active, heartbeat(active.epoch() + 1, 3), after_ms(1));
+    REQUIRE_FALSE(active.is_active());
+    CHECK(reason_of(active) == ROLE_EPOCH_OF_COORDINATOR);
+    CHECK(active.cause().peer == 3);
+  }
+  SECTION("a process with the same number has begun the same epoch") {
+    Failover later({0, 6}, false, kBegin);
+    const Epoch shared = active.epoch();
+    receive(active, heartbeat(shared, 0, 6), after_ms(1));
+    receive(later, heartbeat(shared, 0, 5), after_ms(1));
+    CHECK_FALSE(active.is_active());
+    CHECK(later.is_active());
+    CHECK(reason_of(active) == ROLE_SHARED_EPOCH);
+    CHECK(reason_of(later) == ROLE_SHARED_EPOCH);
+  }
+}
+
 TEST_CASE("a standby waits longer if heartbeats are irregular") {
   Standby standby;
   for (int i = 0; i < 40; ++i) {
@@ -136,29 +194,57 @@ TEST_CASE(
     "a coordinator begins above a higher epoch that agents obey, or yields to it if it grants already") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
-  active.on_obeyed_epoch(own - 1, false, kBegin);
+  active.on_obeyed_epoch(own - 1, false, kBegin, 7, EpochHolder::kRobot);
   CHECK(active.epoch() == own);
-  active.on_obeyed_epoch(own + 1000, false, kBegin);
+  active.on_obeyed_epoch(own + 1000, false, kBegin, 7, EpochHolder::kRobot);
   const Epoch raised = active.epoch();
   CHECK(raised > own + 1000);
-  active.on_obeyed_epoch(raised + 1000, true, kBegin);
+  active.on_obeyed_epoch(raised + 1000, true, kBegin, 7, EpochHolder::kRobot);
   CHECK_FALSE(active.is_active());
   const Duration first = active.takeover_timeout();
   Duration last = first;
   // It yields for longer each time, up to a limit, while no heartbeats of the other coordinator arrive.
   Time now = kBegin;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const Time yielded = now;
     while (!active.is_active()) active.update(now += std::chrono::milliseconds(5));
     CHECK(now - yielded >= last);
-    active.on_obeyed_epoch(active.epoch() + 1000, true, now);
+    now += std::chrono::seconds(5);
+    active.update(now);
+    active.on_obeyed_epoch(active.epoch() + 1000, true, now, 7, EpochHolder::kRobot);
+    CHECK_FALSE(active.is_active());
     CHECK(active.takeover_timeout() >= last);
     last = active.takeover_timeout();
   }
-  CHECK(last >= 16 * first);
-  CHECK(last < std::chrono::seconds(6));
+  CHECK(last == 2 * first);
+  CHECK(last < std::chrono::seconds(1));
   receive(active, heartbeat(active.epoch() + kEpoch + 100'000'000'000, 1), now);
   CHECK(active.takeover_timeout() < std::chrono::milliseconds(300));
+}
+
+TEST_CASE("a coordinator keeps working while somebody reports higher and higher epochs") {
+  const bool is_granting = GENERATE(true, false);
+  const Duration period = std::chrono::milliseconds(GENERATE(5, 100, 3000));
+  CAPTURE(is_granting, to_seconds(period));
+  Failover active({0, 5}, false, kBegin);
+  int epochs = 0, active_ms = 0;
+  constexpr int kDuration_ms = 120'000;
+  Time next = kBegin;
+  for (int ms = 0; ms < kDuration_ms; ms += 5) {
+    const Time now = after_ms(ms);
+    const Epoch before = active.epoch();
+    for (; next <= now; next += period)
+      active.on_obeyed_epoch(static_cast<Epoch>(to_ns(next)) + 10'000'000'000, is_granting, now, 7,
+                             EpochHolder::kRobot);
+    active.update(now);
+    epochs += active.epoch() != 0 && active.epoch() != before;
+    active_ms += active.is_active() ? 5 : 0;
+  }
+  CAPTURE(epochs, active_ms);
+  CHECK(epochs > 0);
+  CHECK(epochs <= 4 + kDuration_ms / 5000);
+  CHECK(active_ms > kDuration_ms * 8 / 10);
+  CHECK((active.too_frequent() > 0) == (period < std::chrono::seconds(5)));
 }
 
 TEST_CASE("coordinators never share an epoch, except two instances of one number, which give it up") {
@@ -169,7 +255,7 @@ TEST_CASE("coordinators never share an epoch, except two instances of one number
     for (CoordinatorNumber number = 0; number < kMaxCoordinators; ++number) {
       Failover one({number, rng.bits()}, false, kBegin + Duration{8 * round});
       CHECK(epochs.insert(one.epoch()).second);
-      one.on_obeyed_epoch(obeyed, false, kBegin);
+      one.on_obeyed_epoch(obeyed, false, kBegin, 7, EpochHolder::kRobot);
       CHECK(one.epoch() > obeyed);
       CHECK(epochs.insert(one.epoch()).second);
     }
@@ -189,8 +275,8 @@ TEST_CASE("epochs far ahead are ignored, and plausible hostile ones cost one cha
   for (const Epoch hostile : {Epoch{1} << 61, (Epoch{1} << 62) - 1, Epoch{1} << 62, ~Epoch{0},
                               static_cast<Epoch>(to_ns(kBegin + kHour))}) {
     CHECK_FALSE(receive(active, heartbeat(hostile, 3), kBegin));
-    active.on_obeyed_epoch(hostile, true, kBegin);
-    active.on_obeyed_epoch(hostile, false, kBegin);
+    active.on_obeyed_epoch(hostile, true, kBegin, 7, EpochHolder::kRobot);
+    active.on_obeyed_epoch(hostile, false, kBegin, 7, EpochHolder::kRobot);
     CHECK(active.epoch() == own);
   }
   CHECK(active.invalid() == 10);

@@ -224,6 +224,7 @@ TEST_CASE("no grant brings two robots closer than external events have left them
   Rng rng(seed);
   FloorRules rules = floor_for_tests();
   rules.field = {1.6, 1.6};
+  rules.margin_m = 0.01;
   const std::vector<RobotId> roster{0, 1, 2, 3, 4};
   Ledger ledger(rules, roster);
   std::map<RobotId, Version> executing;

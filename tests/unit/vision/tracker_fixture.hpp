@@ -8,6 +8,7 @@
 
 #include "common/protocol/obstacle_bounds.hpp"
 #include "common/random/rng.hpp"
+#include "tests/drops.hpp"
 #include "tests/unit/common/random/normal_vector.hpp"
 #include "vision/tracking/tracker.hpp"
 
@@ -141,6 +142,8 @@ class TrackerFixture {
     tracker_.obstacles_at(world_at(t), list_);
     return list_;
   }
+  /// Number of detections that were not used.
+  std::uint64_t rejected() const { return drops_of(tracker_).total(); }
   /// A robot in the world at a time, or nullptr.
   const msg::TrackedRobot* robot_at(RobotId id, Time t) {
     for (const auto& robot : world_at(t).robots()) {

@@ -15,7 +15,7 @@ inline constexpr double kStudyRadius_m = 0.09;
 /// 5).
 struct TraversalSettings {
   int robots = 8;
-  double margin_m = 0.01;
+  double margin_m = 0.014;
   double position_noise_m = 0.0005;  ///< of vision, standard deviation per axis
   bool has_poor_odometry = false;    ///< ten times the noise and the scale error, so that vision matters
   bool stops_off_reference = true;   ///< beyond the tracking bound; false: there is no bound

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the node does with hostile messages: none reaches the agent, and status.invalid counts each once.
+// What the node does with hostile messages: none reaches the agent, and each is counted once.
 #include "agents/agent/agent_node.hpp"
 
 #include <limits>
@@ -11,6 +11,7 @@
 #include "common/messaging/version_codec.hpp"
 #include "idl/disturbance.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 
 namespace sidestep::agent_node_test {
 
@@ -99,15 +100,15 @@ struct NodeFixture {
   }
   /// Runs until the next status has arrived.
   void run() { network.run_until(network.now() + Duration{250'000'000}); }
-  /// Sends one message. Returns how many invalid ones the status counts in addition.
+  /// Sends one message. Returns how many the node counts as dropped in addition.
   template <typename Message>
   std::uint64_t send(const Topic<Message>& topic, Message message) {
     run();
-    const std::uint64_t before = status.invalid();
+    const std::uint64_t before = drops_of(node).total();
     auto writer = other_bus.advertise(topic, kRobot);
     writer.publish(message, other_bus.now());
     run();
-    return status.invalid() - before;
+    return drops_of(node).total() - before;
   }
   template <typename Message, typename Spoil>
   std::uint64_t send_spoilt(const Topic<Message>& topic, Message message, Spoil spoil) {
@@ -126,6 +127,7 @@ TEST_CASE("valid messages are not counted as invalid") {
   msg::Verdict verdict;
   verdict.robot(kRobot);
   verdict.header().sender(kCoordinator);
+  verdict.epoch(7);
   CHECK(f.send(topics::kVerdict, verdict) == 0);
   CHECK(f.send(topics::kWorld, valid_world()) == 0);
   msg::WorldState empty;

@@ -4,6 +4,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 
 namespace sidestep::agent_test {
 
@@ -215,14 +216,14 @@ TEST_CASE("an observation from the future is dropped and counted, and later vali
   latest.self->captured_at = Time::max();
   d.agent.on_world(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
-  CHECK(d.agent.status(at_s(1)).invalid() == 2);
+  CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
   d.agent.on_world(WorldObservations(), at_s(0.61));
   latest.self->captured_at = Time::min();
   d.agent.on_world(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
   d.observe(0, 0.61, 0.62);
   CHECK(d.plans(0.63));
-  CHECK(d.agent.status(at_s(1)).invalid() == 2);
+  CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
 }
 
 TEST_CASE("an observation is forwarded to the robot once") {

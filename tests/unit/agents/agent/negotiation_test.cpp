@@ -170,7 +170,7 @@ TEST_CASE("a verdict that grants an unknown version is not forwarded") {
   Verdict verdict = verdict_on(f.propose(1.0, 0.9));
   verdict.granted_version = 424242;
   CHECK_FALSE(f.n.on_verdict(verdict, at_s(0.95)).granted);
-  CHECK(f.n.counts().invalid == 1);
+  CHECK(f.n.counts().unproposed_grants == 1);
 }
 
 TEST_CASE(
@@ -227,6 +227,29 @@ TEST_CASE("late facts change nothing") {
   f.n.on_feedback(fact(f.initial, 0.99));
   CHECK(f.n.executing().number == first->number);
   CHECK(f.n.counts().lost == 0);
+}
+
+TEST_CASE("a fact older than the one that ended the fencing does not exclude a version granted since") {
+  NegotiationFixture f;
+  Feedback lifted = fact(f.initial, 0.5);
+  lifted.is_lifted = true;
+  f.n.on_feedback(lifted);
+  f.n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
+  (void)f.n.registration();
+  const Trajectory rest = Trajectory::resting(at_s(1), {2, 0});
+  const auto granted = f.grant(f.n.propose({&rest, 1}, 0, at_s(0.9)), 0.95);
+  REQUIRE(granted);
+  // Sent after the fencing but before the lifting.
+  f.n.on_feedback(fact(f.initial, 0.4));
+  CHECK(f.n.is_absent());
+  f.n.on_coordinator_state(heartbeat(kEpoch + 1, {kRobot}), at_s(0.97));
+  lifted.valid_at = at_s(0.98);
+  lifted.obeyed_epoch = kEpoch + 1;
+  f.n.on_feedback(lifted);
+  REQUIRE(f.n.needs_registration());
+  const auto registration = f.n.registration();
+  REQUIRE(registration.versions->versions().size() == 1);
+  CHECK(registration.versions->versions()[0].number == granted->number);
 }
 
 TEST_CASE("an agent recovers from a false fact about a version that its robot does not execute") {

@@ -30,8 +30,12 @@ UncontrolledBody moving(const Vec2& velocity = {1, 0}) {
   return {{{0, 0}, 0.09, kNow, 2}, velocity, kSeparation_m};
 }
 
+bool may_follow(const Trajectory& candidate, const Trajectory& stop, const UncontrolledBody& body) {
+  return UncontrolledBodies({&body, 1}, &stop, candidate.start()).allow(candidate, kSeparation_m - 0.09, 5);
+}
+
 bool may_rest(double x, double y, const UncontrolledBody& body, const Trajectory& stop) {
-  return may_follow(resting(x, y), &stop, {&body, 1}, kSeparation_m - 0.09, 5);
+  return may_follow(resting(x, y), stop, body);
 }
 
 TEST_CASE("the path of a body widens ahead of it and ends behind it") {
@@ -64,7 +68,7 @@ TEST_CASE("a robot may not come to rest in a path, unless its stop ends nearer t
   CHECK_FALSE(may_rest(1.8, 0.2, moving(), within));
   CHECK(may_rest(1.9, 0.21, moving(), within));
   CHECK(may_rest(2.5, 0.1, moving(), within));
-  CHECK(may_follow(resting(2, 0), &within, {}, 0.1, 5));
+  CHECK(UncontrolledBodies({}, nullptr, kNow).allow(resting(2, 0), 0.1, 5));
 }
 
 TEST_CASE("a robot may pass before the body if it would be hit where it stops") {
@@ -76,16 +80,16 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   CHECK_FALSE(avoids(stop, kNow, body));
   CHECK(avoids(across, kNow, body));
   CHECK_FALSE(is_passively_safe(across, body.reach, kSeparation_m - 0.09));
-  CHECK(may_follow(across, &stop, {&body, 1}, kSeparation_m - 0.09, 5));
+  CHECK(may_follow(across, stop, body));
   // Also by driving on later.
   const Trajectory shorter = driving({1.2, -0.25}, {0, 1.6}, 0.05);
   CHECK_FALSE(avoids(shorter, kNow, body));
-  CHECK(may_follow(shorter, &stop, {&body, 1}, kSeparation_m - 0.09, 5));
+  CHECK(may_follow(shorter, stop, body));
   // Not if it could stop short of the path.
   const Trajectory short_stop = driving({1.2, -0.6}, {0, 1.6}, 0),
                    passing = driving({1.2, -0.6}, {0, 1.6}, 0.52);
   REQUIRE(avoids(short_stop, kNow, body));
-  CHECK_FALSE(may_follow(passing, &short_stop, {&body, 1}, kSeparation_m - 0.09, 5));
+  CHECK_FALSE(may_follow(passing, short_stop, body));
 }
 
 TEST_CASE("a trajectory that avoids a body stays clear of it at every sampled instant") {

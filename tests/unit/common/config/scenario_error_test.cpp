@@ -19,15 +19,16 @@ std::string text_of(const std::string& path) {
 
 TEST_CASE("a margin below the safety budget is rejected with the required margin") {
   // The defaults match exactly: 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s.
-  CHECK(budget_of(Scenario{}).required_margin_m() == Approx(0.01).epsilon(1e-12));
-  CHECK(error_of(kRobot + "margin_m: 0.01\n") == "accepted");
-  check_rejected(kRobot + "margin_m: 0.0099\n", 2, "expected at least 0.01 m");
-  check_rejected(kRobot + "\nlimits: {speed_mps: 3}\n", 1, "margin_m: 0.01 m is less than the safety budget");
-  check_rejected(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.011\n", 3, "expected at least 0.012 m");
-  CHECK(error_of(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.012\n") == "accepted");
-  check_rejected(kRobot + "tracking_bound_m: 0.005\n", 1, "expected at least 0.014 m");
-  check_rejected(kRobot + "clock_bound_s: 0.002\nmargin_m: 0.02\n", 3, "expected at least 0.022 m");
-  CHECK(error_of(kRobot + "clock_bound_s: 0\nmargin_m: 0.006\n") == "accepted");
+  CHECK(budget_of(Scenario{}).required_margin_m() == Approx(0.014).epsilon(1e-12));
+  CHECK(error_of(kRobot + "margin_m: 0.014\n") == "accepted");
+  check_rejected(kRobot + "margin_m: 0.0139\n", 2, "expected at least 0.014 m");
+  check_rejected(kRobot + "\nlimits: {speed_mps: 3}\n", 1,
+                 "margin_m: 0.014 m is less than the safety budget");
+  check_rejected(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.015\n", 3, "expected at least 0.016 m");
+  CHECK(error_of(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.016\n") == "accepted");
+  check_rejected(kRobot + "tracking_bound_m: 0.006\n", 1, "expected at least 0.016 m");
+  check_rejected(kRobot + "clock_bound_s: 0.002\nmargin_m: 0.025\n", 3, "expected at least 0.026 m");
+  CHECK(error_of(kRobot + "clock_bound_s: 0\nmargin_m: 0.01\n") == "accepted");
   check_rejected(kRobot + "tracking_bound_m: 0\n", 2, "tracking_bound_m: expected 0.0005 to 1");
   check_rejected(kRobot + "clock_bound_s: .nan\n", 2, "clock_bound_s: expected");
 }
@@ -180,15 +181,16 @@ TEST_CASE("more robots than ids are rejected") {
 TEST_CASE("overlapping starts and last goals are rejected, the exact minimum distance is accepted") {
   const auto pair = [](double apart, double goals_apart) {
     std::ostringstream text;
-    text << "radius_m: 0.09\nmargin_m: 0.01\nrobots:\n- {id: 0, start_m: [0, 0], goals_m: [[0, 0], [1, 1]]}\n"
-         << "- {id: 1, start_m: [" << apart << ", 0],\n   goals_m: [[1, 1],\n     [" << 1 + goals_apart
-         << ", 1]]}\n";
+    text
+        << "radius_m: 0.09\nmargin_m: 0.014\nrobots:\n- {id: 0, start_m: [0, 0], goals_m: [[0, 0], [1, 1]]}\n"
+        << "- {id: 1, start_m: [" << apart << ", 0],\n   goals_m: [[1, 1],\n     [" << 1 + goals_apart
+        << ", 1]]}\n";
     return text.str();
   };
-  check_rejected(pair(0.189, 0.5), 5,
-                 "starts of robots 0 and 1 overlap: distance 0.1890 m, expected at least 0.1900");
-  check_rejected(pair(0.5, 0.189), 7, "last goals of robots 0 and 1 overlap");
-  CHECK(error_of(pair(0.19, 0.19)) == "accepted");
+  check_rejected(pair(0.193, 0.5), 5,
+                 "starts of robots 0 and 1 overlap: distance 0.1930 m, expected at least 0.1940");
+  check_rejected(pair(0.5, 0.193), 7, "last goals of robots 0 and 1 overlap");
+  CHECK(error_of(pair(0.194, 0.194)) == "accepted");
 }
 
 TEST_CASE("starts and goals in an obstacle or outside the field are rejected") {
@@ -196,10 +198,10 @@ TEST_CASE("starts and goals in an obstacle or outside the field are rejected") {
   const auto robot = [](const char* start, const char* goal) {
     return std::string("robots:\n- id: 0\n  start_m: ") + start + "\n  goals_m: [" + goal + "]\n";
   };
-  check_rejected(obstacle + robot("[1.701, 0]", "[0, 0]"), 4,
-                 "start of robot 0 (1.701, 0) is inside the obstacle");
+  check_rejected(obstacle + robot("[1.697, 0]", "[0, 0]"), 4,
+                 "start of robot 0 (1.697, 0) is inside the obstacle");
   check_rejected(obstacle + robot("[0, 0]", "[0, 1],\n    [2.1, 0.1], [0, 0]"), 6, "goal of robot 0");
-  CHECK(error_of(obstacle + robot("[1.7, 0]", "[2.3, 0]")) == "accepted");
+  CHECK(error_of(obstacle + robot("[1.696, 0]", "[2.304, 0]")) == "accepted");
   check_rejected(robot("[4.411, 0]", "[0, 0]"), 3, "outside the field: expected |x| <= 4.41 and |y| <= 2.91");
   check_rejected(robot("[0, 0]", "[0, -2.92]"), 4, "outside the field");
   CHECK(error_of(robot("[4.41, 2.91]", "[-4.41, -2.91]")) == "accepted");

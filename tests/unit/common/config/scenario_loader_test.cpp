@@ -81,7 +81,7 @@ control_rate_hz: 50
 goal_tolerance_m: 0.03
 time_limit_s: 12.5
 vision: {images: {format: rgb, width_px: 1001, height_px: 400, camera_height_m: 3.5, distortion: 0.2}, rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
-         delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2}
+         delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2, ghost_obstacle_probability: 0.3}
 odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
 command_loss: 0.25
 network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
@@ -120,6 +120,7 @@ robots:
   CHECK(s.vision.delay == std::chrono::microseconds(12500));
   CHECK(s.vision.miss_probability == 0.1);
   CHECK(s.vision.ghost_probability == 0.2);
+  CHECK(s.vision.ghost_obstacle_probability == 0.3);
   REQUIRE(s.vision.images);
   CHECK(s.vision.images->format == PixelFormat::kRgb);
   CHECK(s.vision.images->width_px == 1001);

@@ -32,8 +32,8 @@ TEST_CASE("the rules are listed as keys and values of the scenario") {
         "limits.deceleration_mps2: 5\n"
         "limits.speed_mps: 2\n"
         "radius_m: 0.09\n"
-        "margin_m: 0.01\n"
-        "tracking_bound_m: 0.003\n"
+        "margin_m: 0.014\n"
+        "tracking_bound_m: 0.005\n"
         "clock_bound_s: 0.0005\n"
         "max_opponent_speed_mps: 1.5\n");
 }
@@ -65,8 +65,8 @@ TEST_CASE("differing rules are named with both values") {
   const SharedRules others(other);
   CHECK(own.fingerprint() != others.fingerprint());
   CHECK(describe(own.differences(others)) ==
-        "robots.yellow is none instead of 6, margin_m is 0.02 instead of 0.01");
-  const auto unknown = SharedRules::parse("margin_m: 0.01\nwings: 2\n");
+        "robots.yellow is none instead of 6, margin_m is 0.02 instead of 0.014");
+  const auto unknown = SharedRules::parse("margin_m: 0.014\nwings: 2\n");
   REQUIRE(unknown);
   const auto differences = own.differences(*unknown);
   CHECK(differences.size() == 13);

@@ -317,4 +317,33 @@ TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mod
   }
 }
 
+TEST_CASE("the reason of a coordinator's role is decoded unchanged, and a hostile one is refused") {
+  msg::CoordinatorState message;
+  message.header().sender(10000);
+  for (int i = 0; i <= static_cast<int>(msg::RoleReason::ROLE_SHARED_EPOCH); ++i) {
+    CAPTURE(i);
+    const RoleCause in{static_cast<msg::RoleReason>(i), 7, Duration{151'000'000}, 99};
+    encode(in, message);
+    const auto out = decode_role_cause(message);
+    REQUIRE(out);
+    CHECK(out->reason == in.reason);
+    CHECK(out->peer == in.peer);
+    CHECK(out->silence == in.silence);
+    CHECK(out->learned == in.learned);
+    CHECK(describe(*out) != "unknown");
+  }
+  REQUIRE(decode(message, kNow));
+  const auto is_refused = [&](auto spoil) {
+    msg::CoordinatorState hostile = message;
+    spoil(hostile);
+    return !decode_role_cause(hostile) && !decode(hostile, kNow);
+  };
+  CHECK(is_refused([](auto& m) {
+    m.role_reason(
+        static_cast<msg::RoleReason>(static_cast<std::uint32_t>(msg::RoleReason::ROLE_SHARED_EPOCH) + 1));
+  }));
+  CHECK(is_refused([](auto& m) { m.role_peer(kMaxRobots); }));
+  CHECK(is_refused([](auto& m) { m.role_silence_ns(-1); }));
+}
+
 }  // namespace sidestep::negotiation_codec_test

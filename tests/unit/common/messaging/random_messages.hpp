@@ -64,7 +64,7 @@ inline Feedback random_feedback(Rng& rng) {
   feedback.heading_rad = rng.uniform(-4, 4);
   feedback.tracking_error_m = rng.uniform(0, 1);
   feedback.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
-  feedback.counts = {rng.bits(), rng.bits(), rng.bits(), rng.bits(), rng.bits()};
+  feedback.activated = rng.bits();
   return feedback;
 }
 

@@ -6,6 +6,7 @@
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 
 namespace sidestep::rules_exchange_test {
 
@@ -57,8 +58,8 @@ TEST_CASE("messages of a process with other rules are refused on both sides, and
   CHECK(a.received == 200);  // its own
   CHECK(b.received == 100);
   CHECK(a.observed == 300);
-  CHECK(a.exchange->refused() == 100);
-  CHECK(b.exchange->refused() == 200);
+  CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 100);
+  CHECK(drops_of(b.bus).total(DropReason::kOtherRules) == 200);
   const std::string refuses_b = "refuses coordinator 1, which works by other rules",
                     refuses_a = "refuses coordinator, which works by other rules";
   // b learns first that a is there; a learns of b by its rules.
@@ -101,7 +102,7 @@ TEST_CASE("any number of invented processes is named only up to a bound") {
     writer.publish(state, stranger.now());
     network.run_until(network.now() + 1ms);
   }
-  CHECK(a.exchange->refused() == 5000);
+  CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 5000);
   CHECK(a.mismatches.size() == 256);
 }
 

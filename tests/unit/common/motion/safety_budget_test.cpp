@@ -10,8 +10,8 @@
 namespace sidestep::safety_budget_test {
 
 TEST_CASE("the budget line shows the composition of the margin and the spare part") {
-  CHECK(budget_line({}, 0.01) ==
-        "safety budget: margin 10.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
+  CHECK(budget_line({}, 0.014) ==
+        "safety budget: margin 14.0 mm = 2 x 5.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
   CHECK(
       budget_line({0.003, 0.0005, 2}, 0.025) ==
       "safety budget: margin 25.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s + 15.0 "

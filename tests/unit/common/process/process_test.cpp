@@ -66,7 +66,7 @@ TEST_CASE("a program prints its safety budget at start") {
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err,
              ContainsSubstring(
-                 "sidestep-test: safety budget: margin 10.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks "
+                 "sidestep-test: safety budget: margin 14.0 mm = 2 x 5.0 mm tracking + 4.0 mm for clocks "
                  "within 0.5 ms at 2 m/s\n"));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/cameras.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -120,6 +121,48 @@ TEST_CASE("ghosts appear at the scenario's rate, within the camera's view") {
     }
   }
   CHECK(ghosts / 10'000.0 == Approx(0.2).epsilon(0.1));
+}
+
+TEST_CASE("ghost obstacles appear at the scenario's rate, within the camera's view") {
+  Scenario scenario = scene();
+  scenario.vision.ghost_obstacle_probability = 0.2;
+  Cameras cameras(scenario, kBegin, 5);
+  msg::DetectionFrame frame;
+  int ghosts = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    cameras.capture(cameras.next_capture(), {}, frame);
+    REQUIRE(frame.obstacle_count() <= 1);
+    if (frame.obstacle_count() == 0) continue;
+    const auto& ghost = frame.obstacles()[0];
+    REQUIRE(cameras.views()[frame.camera()].sees({ghost.x_m(), ghost.y_m()}));
+    ++ghosts;
+  }
+  CHECK(ghosts / 10'000.0 == Approx(0.2).epsilon(0.1));
+}
+
+TEST_CASE("cameras show robots with their sight errors") {
+  Scenario scenario = scene();
+  scenario.vision.position_noise_m = 0;
+  scenario.vision.overlap_m = 100;  // every camera sees everything
+  const auto bodies = bodies_of(scenario);
+  REQUIRE(bodies.size() >= 3);
+  std::vector<SightError> errors(bodies.size());
+  errors[0].offset_m = Vec2(0.02, -0.01);
+  errors[1].shown_as = 2;
+  errors[2].shown_as = 1;
+  errors[2].frozen = SightError::Pose{Vec2(0.5, 0.25), 1};
+  Cameras cameras(scenario, kBegin, 1);
+  msg::DetectionFrame frame;
+  cameras.capture(cameras.next_capture(), {bodies, nullptr, {}, errors}, frame);
+  const auto place_of = [&](std::size_t index) {
+    const auto seen = std::ranges::find_if(
+        frame.robots(), [&](const auto& robot) { return robot.robot() == scenario.robots[index].id; });
+    REQUIRE(seen != frame.robots().end());
+    return Vec2(seen->x_m(), seen->y_m());
+  };
+  CHECK((place_of(0) - bodies[0].position_m() - Vec2(0.02, -0.01)).norm() < 1e-12);
+  CHECK((place_of(2) - bodies[1].position_m()).norm() < 1e-12);
+  CHECK((place_of(1) - Vec2(0.5, 0.25)).norm() < 1e-12);
 }
 
 TEST_CASE("a delayed camera drops overdue frames") {

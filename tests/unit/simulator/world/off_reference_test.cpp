@@ -186,6 +186,35 @@ TEST_CASE("a robot far from its reference returns to it without oscillating") {
   CHECK(max_speed_mps < 0.2);
 }
 
+TEST_CASE("a robot farther from its reference than the bound makes an own stop at once") {
+  // It drives 2 m unseen; then an observation shows how far it has drifted.
+  const double drift_m = 0.001 * GENERATE(range(1, 13)) * (GENERATE(false, true) ? -1 : 1);
+  CAPTURE(drift_m);
+  Floor floor(separated_robots(1), 1);
+  floor.agents[0].drives = false;
+  World& world = floor.world;
+  const double bound_m = floor.scenario.tracking_bound_m;
+  Trajectory dash(floor.now + milliseconds(10), {floor.scenario.robots[0].start_m, {0, 0}});
+  dash.append(milliseconds(600), Vec2(3, 0));
+  dash.append(milliseconds(800), Vec2(0, 0));
+  append_stop(dash, 5);
+  world.on_command(0, test::command_with({0, 1, 5, 0, dash}), floor.now);
+  for (; floor.now < kBegin + milliseconds(1200); floor.now += kPhysicsStep) world.advance(floor.now);
+  Command command = test::bare_command(0, 1);
+  command.fix = {world.time(), world.feedback(0, floor.now).estimate.position_m + Vec2(0, drift_m)};
+  REQUIRE(world.firmware(0).own_stops() == 0);
+  world.on_command(0, command, floor.now);
+  for (const Time end = floor.now + milliseconds(100); floor.now < end;) {
+    world.advance(floor.now += kPhysicsStep);
+    const Feedback facts = world.feedback(0, floor.now);
+    CHECK(facts.tracking_error_m <= bound_m + facts.executing.inflation_m);
+  }
+  // In between, the uncertainty of its estimate decides.
+  if (std::abs(drift_m) < 0.7 * bound_m) CHECK(world.firmware(0).own_stops() == 0);
+  if (std::abs(drift_m) > bound_m) CHECK(world.firmware(0).own_stops() == 1);
+  CHECK(world.firmware_violations() == 0);
+}
+
 TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
   Floor floor(separated_robots(1), 1);
   floor.agents[0].drives = false;

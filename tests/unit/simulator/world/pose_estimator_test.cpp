@@ -108,6 +108,24 @@ TEST_CASE("after a gap in time, fixes from before it are refused") {
   CHECK(estimator.correct(now - milliseconds(15), {0, 0}, 0));
 }
 
+TEST_CASE("a robot that is carried while its wheels roll does not take that for an error of its odometry") {
+  const double rolls_mps = GENERATE(-0.2, -0.1, 0.0, 0.1, 0.2);
+  CAPTURE(rolls_mps);
+  const EstimatorSettings settings{0.01, 0.005, 0.0005};
+  Rng rng(1);
+  Time now = kBegin;
+  Vec2 position_m(0, 0);
+  const Vec2 carried_mps(0.3, 0);
+  PoseEstimator estimator(position_m, 0, now, settings);
+  for (int i = 0; i < 7000; ++i) {
+    now += kPhysicsStep;
+    position_m += carried_mps * kPhysicsStepSeconds;
+    estimator.advance(now, {Vec2(rolls_mps, 0) + 0.01 * normal_vector(rng), 0}, Vec2(0, 0), 0);
+    if (i % 17 == 0) (void)estimator.correct(now, position_m + 0.0005 * normal_vector(rng), 0);
+  }
+  CHECK(std::abs(estimator.scale_error()) <= 5 * settings.scale_error);
+}
+
 TEST_CASE("a single outlier moves the estimate only slightly") {
   Circling run(5, 0);
   for (int i = 0; i < 5000; ++i) run.step();

@@ -10,6 +10,8 @@
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
+#include "tests/log_events.hpp"
 #include "tests/unit/simulator/world/commands.hpp"
 #include "tests/unit/simulator/world/random_drive.hpp"
 
@@ -138,7 +140,7 @@ TEST_CASE("a command's lateness is decided by the robot's clock at its arrival")
   const Time now = scene.network.now();
   scene.send(0, test::command_with({0, 9, 1, 0, Trajectory::resting(now + milliseconds(10), mark)}));
   scene.run(milliseconds(50));
-  CHECK(scene.facts[0].back().refused_late() == 1);
+  CHECK(scene.node.world().firmware(0).counts().refused_late == 1);
   CHECK(scene.facts[0].back().executing().version_number() == 0);
 }
 
@@ -174,6 +176,8 @@ TEST_CASE("the radio loses commands at the scenario's rate") {
   }
   const auto received = static_cast<double>(scene.node.world().firmware(0).counts().refused_malformed);
   CHECK(1 - received / 5000 == Approx(0.3).epsilon(0.1));
+  CHECK(drops_of(scene.node).total(DropReason::kCommandLost) == 5000 - static_cast<std::uint64_t>(received));
+  CHECK(drops_of(scene.node).total(DropReason::kMalformedCommand) == static_cast<std::uint64_t>(received));
 }
 
 TEST_CASE("the same seed gives the same messages") {
@@ -259,7 +263,7 @@ TEST_CASE("hostile commands over the bus do not stop the simulator") {
   }
   scene.run(milliseconds(100));
   const auto& last = scene.facts[0].back();
-  CHECK(last.refused_malformed() > 1000);
+  CHECK(scene.node.world().firmware(0).counts().refused_malformed > 1000);
   CHECK(last.executing().version_number() == 0);
   CHECK(last.tracking_error_m() < 0.002);
   CHECK(scene.node.world().firmware_violations() == 0);
@@ -286,7 +290,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   send(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   send(0, static_cast<msg::DisturbanceKind>(99));
   send(0, msg::DisturbanceKind::DISTURBANCE_PLACE);  // it is on the floor
-  CHECK(scene.node.disturbances_refused() == 5);
+  CHECK(drops_of(scene.node).total(DropReason::kRefusedDisturbance) == 5);
   CHECK_FALSE(scene.facts[0].back().is_lifted());
   send(0, msg::DisturbanceKind::DISTURBANCE_LIFT);
   CHECK(scene.facts[0].back().is_lifted());
@@ -300,7 +304,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   CHECK(scene.facts[1].back().valid_at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);
   scene.run(milliseconds(20));
   CHECK(scene.truths.back().robots().size() == 1);
-  CHECK(scene.node.disturbances_refused() == 5);
+  CHECK(drops_of(scene.node).total(DropReason::kRefusedDisturbance) == 5);
   CHECK(scene.node.world().firmware_violations() == 0);
 }
 
@@ -320,6 +324,30 @@ TEST_CASE("a version's start is timed by the robot's clock") {
   REQUIRE(first != facts.end());
   CHECK(first->valid_at_ns() == to_ns(start));
   CHECK(first->header().stamp_ns() == to_ns(start - scenario.robots[0].clock_offset));
+}
+
+TEST_CASE("disturbances, own stops with their reason, and contacts are reported") {
+  Scenario scenario = separated_robots(2);
+  scenario.robots[0].start_m = Vec2(0, 0);
+  scenario.robots[1].start_m = Vec2(0.25, 0);
+  Scene scene(scenario);
+  const LogEvents events(scene.node);
+  auto writer = scene.outside.advertise(topics::kDisturbance);
+  msg::Disturbance push;
+  push.robot(0);
+  push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
+  push.vx_mps(2);
+  writer.publish(push, scene.network.now());
+  scene.run(milliseconds(500));
+  CAPTURE(events.text());
+  CHECK(events.count("disturbance of robot 0: push") == 1);
+  CHECK(events.count("robot 0 makes its own stop: ") >= 1);
+  CHECK(events.count("robots 0 and 1 touch") == 1);
+  push.robot(99);
+  writer.publish(push, scene.network.now());
+  scene.run(milliseconds(50));
+  CHECK(events.count("a disturbance of robot 99 is refused") == 1);
+  for (const LogEvent& event : events.all()) CHECK(event.robot.has_value());
 }
 
 }  // namespace sidestep::simulator_node_test

@@ -68,6 +68,18 @@ TEST_CASE("bodies stay within 5 mm of their references, and mostly within 3 mm")
   CHECK(error.top_speed_mps > 1.9);
 }
 
+TEST_CASE("a resting robot that no camera sees stays where it is") {
+  const Scenario scenario = separated_robots(5);
+  const Time begin = time_from_ns(1'700'000'000'000'000'000);
+  World world(scenario, begin, 4);
+  world.advance(begin + std::chrono::seconds(120));
+  for (std::size_t i = 0; i < world.robot_count(); ++i) {
+    CAPTURE(i);
+    CHECK(world.reference_error_m(i) < 0.001);
+    CHECK(world.firmware(i).own_stops() == 0);
+  }
+}
+
 TEST_CASE("a robot without further commands comes to rest where its version ends") {
   Scenario scenario = separated_robots(5);
   const Time begin = time_from_ns(1'700'000'000'000'000'000);

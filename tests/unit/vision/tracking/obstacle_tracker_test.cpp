@@ -82,7 +82,7 @@ TEST_CASE("walkers keep their numbers and are reported at their last observation
   }
   CHECK(std::sqrt(square / (2 * count)) < 1.2 * noise_m);
   for (const auto& of_walker : numbers) CHECK(of_walker.size() == 1);
-  CHECK(fixture.world_at(kBegin).rejected() == 0);
+  CHECK(fixture.rejected() == 0);
 }
 
 TEST_CASE("an obstacle is published after its second observation, and dropped 1 s after its last") {

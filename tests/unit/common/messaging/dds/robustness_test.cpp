@@ -17,6 +17,7 @@
 #include "common/messaging/dds/types.hpp"
 #include "common/process/stop_signals.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::robustness_test {
@@ -100,7 +101,7 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
     for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(rng.bits());
     REQUIRE(fast_dds::write(*writer, &noise));
     REQUIRE(fast_dds::write(*writer, &huge));
-    return bus.refused() >= 300;
+    return drops_of(bus).total(DropReason::kUnreadable) >= 300;
   };
   const bool refused = run_until(many_are_refused, bus);
   const std::string log = captured.text();

@@ -4,6 +4,7 @@
 #include "common/messaging/dds/operator_channel.hpp"
 #include "common/messaging/impairment.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::transport_test {
@@ -79,6 +80,8 @@ TEST_CASE("a cut blocks all messages except an operator's, until it is ended") {
   const auto until = connection.here.now() + Duration{300'000'000};
   REQUIRE(connection.send_until([&] { return connection.here.now() > until; }));
   CHECK(connection.numbers.empty());
+  CHECK(drops_of(connection.there).total(DropReason::kInjectedLoss) > 0);
+  CHECK(drops_of(connection.here).total(DropReason::kInjectedLoss) == 0);
 
   fault.is_cut(false);
   channel.writer().write(&fault);

@@ -85,11 +85,39 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
-  SECTION("a robot that drives on beyond its tracking bound") {
-    require_violation(AuditRule::kTracking, [](History& h) {
-      h.each<msg::Feedback>([](msg::Feedback& f, Time) { f.tracking_error_m(0.02); });
+}
+
+TEST_CASE("a robot that reports a distance from its reference beyond the budget is reported") {
+  // The default bounds are 5 mm, and 3 mm for more than 25 ms. Robots report at least every 17 ms.
+  const auto [error_m, lasts, is_reported] = GENERATE(table<double, Duration, bool>({{0.0033, 1s, false},
+                                                                                     {0.0045, 20ms, false},
+                                                                                     {0.0045, 60ms, true},
+                                                                                     {0.006, 0ms, false},
+                                                                                     {0.006, 20ms, true}}));
+  CAPTURE(error_m, to_seconds(lasts), is_reported);
+  const AuditTotals totals = audit_of_tampered([&, off_m = error_m, until = lasts](History& h) {
+    std::optional<Time> first;
+    h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
+      if (f.robot() != 2 || at < h.messages.front().at + 1500ms) return;
+      if (!first) first = at;
+      if (at <= *first + until) f.tracking_error_m(off_m);
     });
-  }
+  });
+  INFO(lines(totals));
+  CHECK((count(totals, AuditRule::kTracking) > 0) == is_reported);
+}
+
+TEST_CASE("in a live run, too, ground truth shows robots beyond the tracking bound") {
+  const auto [error_m, is_reported] = GENERATE(table<double, bool>({{0.0045, false}, {0.0055, true}}));
+  CAPTURE(error_m);
+  History history = crossing();
+  history.each<msg::GroundTruth>([off_m = error_m](msg::GroundTruth& truth, Time) {
+    for (msg::TrueRobotState& robot : truth.robots()) robot.reference_error_m(off_m);
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(lines(totals));
+  CHECK((count(totals, AuditRule::kPosition) > 0) == is_reported);
+  CHECK(totals.max_position_error_m == Approx(error_m));
 }
 
 TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule") {
@@ -106,11 +134,13 @@ TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule
 
 TEST_CASE("ground truth that contradicts the promise is reported under its rule") {
   SECTION("a displaced robot") {
-    require_violation(AuditRule::kPosition, [](History& h) {
+    const double shift_m = GENERATE(0.007, 0.02);
+    CAPTURE(shift_m);
+    require_violation(AuditRule::kPosition, [shift_m](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time) {
         for (msg::TrueRobotState& robot : truth.robots()) {
-          if (robot.robot() == s.robot) robot.x_m(robot.x_m() + 0.02);
+          if (robot.robot() == s.robot) robot.x_m(robot.x_m() + shift_m);
         }
       });
     });
@@ -181,6 +211,11 @@ TEST_CASE("ground truth that contradicts the promise is reported under its rule"
   SECTION("a moving robot that something touches") {
     require_violation(AuditRule::kCrash, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(1); });
+    });
+  }
+  SECTION("more moving robots than ground truth lists") {
+    require_violation(AuditRule::kCrash, [](History& h) {
+      h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(100); });
     });
   }
   SECTION("a violation found by the simulator's firmware monitor") {

@@ -12,6 +12,12 @@ namespace sidestep::auditor_test {
 
 using namespace std::chrono_literals;
 
+msg::AbsenceAttestation attestation_of(RobotId robot) {
+  msg::AbsenceAttestation attestation;
+  attestation.robot(robot);
+  return attestation;
+}
+
 TEST_CASE("an unmodified history breaks no rule") {
   const AuditTotals totals = audit_of(crossing(), kComplete);
   INFO(lines(totals));
@@ -124,6 +130,12 @@ TEST_CASE("every wrong grant is reported under its rule") {
       h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     });
   }
+  SECTION("before a robot has registered whose absence was attested too late") {
+    require_violation(AuditRule::kAllRegistered, [](History& h) {
+      h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
+      h.messages.push_back({h.messages.back().at, attestation_of(3)});
+    });
+  }
   SECTION("while a robot obeys an older epoch") {
     const AuditTotals totals = [] {
       History history = crossing();
@@ -225,6 +237,16 @@ TEST_CASE("a verdict that is repeated much later breaks no rule") {
   });
   INFO(lines(totals));
   CHECK(totals.violations == 0);
+}
+
+TEST_CASE("an operator's attestation of absence stands for a robot's registration") {
+  const AuditTotals totals = audit_of_tampered([](History& h) {
+    h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
+    h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
+    h.messages.insert(h.messages.begin(), {h.messages.front().at, attestation_of(3)});
+  });
+  INFO(lines(totals));
+  CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
 TEST_CASE("a coordinator that resumes after many epochs keeps what was registered with it") {

@@ -56,6 +56,38 @@ TEST_CASE("only contacts of a disturbed robot are excused, and they carry the ca
   CHECK(floor.contact(std::nullopt, 0) == Cause("push"));
 }
 
+TEST_CASE("a robot rests where a disturbance has left it until it moves or is back in place") {
+  Floor floor;
+  floor.robots[0]->is_in_place = floor.robots[1]->is_in_place = false;
+  floor.push(0);
+  floor.run(60s);
+  CHECK_FALSE(floor.disturbances.is_displaced(0));
+  CHECK(floor.disturbances.rests_where_left(0));
+  CHECK_FALSE(floor.disturbances.rests_where_left(1));
+  SECTION("it moves") {
+    floor.robots[0]->speed_mps = 0.2;
+    floor.run(20ms);
+    floor.robots[0]->speed_mps = 0;
+  }
+  SECTION("it is back in place") { floor.robots[0]->is_in_place = true; }
+  floor.run(20ms);
+  floor.robots[0]->is_in_place = false;
+  floor.run(20ms);
+  CHECK_FALSE(floor.disturbances.rests_where_left(0));
+}
+
+TEST_CASE("a robot whose clock has jumped is excused until it rests, also if it drives in place") {
+  Floor floor;
+  floor.robots[0]->speed_mps = 1;
+  floor.disturbances.announce(0, Disturbances::kClockCause);
+  floor.disturbances.disturb(0, floor.now, floor.now);
+  floor.run(3s);
+  CHECK(floor.contact(0, 1) == Cause("clock"));
+  floor.robots[0]->speed_mps = 0;
+  floor.run(2s);
+  CHECK_FALSE(floor.contact(0, 2));
+}
+
 TEST_CASE("the excuse of a pair ends when both robots have rested since the disturbance") {
   Floor floor;
   floor.push(0, 500ms);

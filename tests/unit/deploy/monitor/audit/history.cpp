@@ -94,6 +94,7 @@ AuditTotals audit_of(const History& history, const AuditInput& input) {
     void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
     void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
     void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
+    void operator()(const msg::AbsenceAttestation& m) const { auditor.on_attestation(m, at); }
   };
   for (const ReceivedMessage& received : history.messages)
     std::visit(Deliver{auditor, received.at}, received.message);

@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-using AuditedMessage =
-    std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
-                 msg::Command, msg::Feedback, msg::GroundTruth, msg::WorldState, msg::Disturbance>;
+using AuditedMessage = std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState,
+                                    msg::LedgerPage, msg::Command, msg::Feedback, msg::GroundTruth,
+                                    msg::WorldState, msg::Disturbance, msg::AbsenceAttestation>;
 
 struct ReceivedMessage {
   Time at;

@@ -61,7 +61,6 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "missed_cycles",
                                          "route_changes",
                                          "route_changes_per_s",
-                                         "invalid_messages",
                                          "firmware_violations",
                                          "conflicts",
                                          "quarantined",
@@ -72,7 +71,9 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
                                          "negotiation_us",
                                          "robot_time_s",
                                          "deaths",
+                                         "epochs",
                                          "mismatches",
+                                         "counters",
                                          "audit",
                                          "wall_clock"});
   CHECK(json["seed"] == 7);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/drop_codec.hpp"
 #include "common/messaging/histogram_codec.hpp"
 #include "tests/catch.hpp"
 
@@ -160,7 +161,6 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
     message.denials(base + 2);
     message.cycles(base + 3);
     message.missed_cycles(base + 4);
-    message.invalid(base + 5);
     DurationHistogram histogram;
     for (std::uint64_t i = 0; i < base; ++i) histogram.add(std::chrono::milliseconds(incarnation));
     message.negotiation(encode(histogram));
@@ -184,9 +184,7 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
   later.min_clearance_m(-0.01);
   metrics.on_truth(later);
 
-  auto coordinator = state(1, 0, kGranting, 1);
-  coordinator.invalid(4);
-  metrics.on_coordinator(coordinator);
+  metrics.on_coordinator(state(1, 0, kGranting, 1));
   metrics.on_coordinator(state(1, 3, kRegistering, 2));
 
   const Report report = metrics.report();
@@ -195,7 +193,6 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
   CHECK(report.denials == 39);
   CHECK(report.cycles == 41);
   CHECK(report.missed_cycles == 43);
-  CHECK(report.invalid_messages == 45 + 4);
   CHECK(report.negotiation.count() == 35);
   CHECK(report.negotiation.quantile(30.0 / 35) < std::chrono::microseconds(1130));
   CHECK(report.negotiation.max() == std::chrono::milliseconds(2));
@@ -242,14 +239,13 @@ TEST_CASE("the status of an incarnation that is fencing counts only if no other 
   CHECK(metrics.arrived() == 1);
 }
 
-TEST_CASE("the coordinator with the highest epoch counts, and the counters of all coordinators are summed") {
+TEST_CASE("the coordinator with the highest epoch counts") {
   RunMetrics metrics(kTwo);
   const auto of = [](std::uint32_t number, Epoch epoch, std::uint64_t message_number, double at_s,
                      msg::CoordinatorMode mode) {
     msg::CoordinatorState message = state(message_number, at_s, mode, 10 - number);
     message.coordinator(number);
     message.epoch(epoch);
-    message.invalid(10 + number);
     return message;
   };
   metrics.on_coordinator(of(1, 0, 1, 0.5, msg::CoordinatorMode::COORDINATOR_STANDBY));
@@ -268,7 +264,6 @@ TEST_CASE("the coordinator with the highest epoch counts, and the counters of al
   metrics.on_coordinator(of(0, 0, 4, 5, msg::CoordinatorMode::COORDINATOR_STANDBY));
   CHECK(metrics.unregistered_robots() == std::vector<RobotId>{7});
   CHECK(metrics.granting_since() == after(2));
-  CHECK(metrics.report().invalid_messages == 21);
   CHECK(metrics.dropped_messages() == 0);
 }
 
@@ -386,6 +381,51 @@ TEST_CASE("crashes are summed over the simulator's incarnations, and maximum spe
   CHECK(report.max_crash_speed_mps == 1.5);
   CHECK(report.max_robot_crash_speed_mps == 0.3);
   CHECK(metrics.dropped_messages() == 1);
+}
+
+msg::Counters counters(std::uint32_t process, Incarnation incarnation, std::uint64_t number,
+                       const DropCounters& drops) {
+  msg::Counters message;
+  message.process(process);
+  message.header().sender(process);
+  message.header().incarnation(incarnation);
+  message.header().message_number(number);
+  encode(drops, message);
+  return message;
+}
+
+TEST_CASE(
+    "counters of a process are summed over robots and incarnations, and only the latest of each count") {
+  RunMetrics metrics(kTwo);
+  DropCounters drops;
+  drops.count(DropReason::kLateVersion, 3, 4);
+  drops.count(DropReason::kLateVersion, 7, 5);
+  metrics.on_counters(counters(30000, 1, 2, drops));
+  drops.count(DropReason::kOtherRules, std::nullopt, 100);
+  metrics.on_counters(counters(30000, 1, 1, drops));  // overtaken
+  metrics.on_counters(counters(30000, 2, 1, drops));
+  metrics.on_counters(counters(3, 1, 1, {}));
+  const Report report = metrics.report();
+  REQUIRE(report.counters.contains("simulator"));
+  CHECK(report.counters.at("simulator").at(DropReason::kLateVersion) == 18);
+  CHECK(report.counters.at("simulator").at(DropReason::kOtherRules) == 100);
+  CHECK_FALSE(report.counters.contains("agent 3"));
+  CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 1);
+  CHECK_THAT(summary(report), ContainsSubstring("refused: 100 other_rules by simulator\n"));
+}
+
+TEST_CASE("counters of ever new processes, incarnations and robots take a limited amount of memory") {
+  RunMetrics metrics(kTwo);
+  DropCounters drops;
+  drops.count(DropReason::kOtherRules);
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    metrics.on_counters(counters(50'000 + i, 1, 1, drops));  // no such process
+    metrics.on_counters(counters(20000, i + 1, 1, drops));
+  }
+  const Report report = metrics.report();
+  CHECK(report.counters.size() == 2);
+  CHECK(report.counters.at("vision").at(DropReason::kOtherRules) == 32);
+  CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 10'000 - 32);
 }
 
 }  // namespace sidestep::run_metrics_test

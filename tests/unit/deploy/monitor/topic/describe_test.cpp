@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/protocol/drop_reasons.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::describe_test {
@@ -85,6 +87,8 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   world.robots().resize(1);
   msg::ObstacleList obstacles;
   obstacles.obstacles().resize(1);
+  msg::Counters counters;
+  counters.counts().resize(1);
   msg::GroundTruth truth;
   truth.robots().resize(1);
   msg::Feedback feedback;
@@ -113,6 +117,8 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   CHECK(keys(describe(msg::LedgerPage())) == idl_members(idl, "LedgerPage"));
   CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
   CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
+  CHECK(keys(describe(counters)) == idl_members(idl, "Counters"));
+  CHECK(keys(describe(counters)["counts"].at(0)) == idl_members(idl, "Counter"));
   CHECK(keys(describe(truth)) == idl_members(idl, "GroundTruth"));
   CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TrueRobotState"));
 }
@@ -125,8 +131,8 @@ TEST_CASE("an enumerator is described by the words of its IDL name, an unknown o
     for (std::uint32_t i = 0; i < enumerators.size(); ++i) {
       CHECK(describe_value(i) == to_lines(enumerators[i], prefix));
     }
-    const auto beyond_tracking_bound = static_cast<std::uint32_t>(enumerators.size());
-    CHECK(describe_value(beyond_tracking_bound) == "unknown " + std::to_string(beyond_tracking_bound));
+    const auto unknown_value = static_cast<std::uint32_t>(enumerators.size());
+    CHECK(describe_value(unknown_value) == "unknown " + std::to_string(unknown_value));
     CHECK(describe_value(0xffffffffu) == "unknown 4294967295");
   };
   check("Reason", "REASON_", [](std::uint32_t value) -> std::string {
@@ -144,11 +150,37 @@ TEST_CASE("an enumerator is described by the words of its IDL name, an unknown o
     status.agent_state(static_cast<msg::AgentState>(value));
     return describe(status)["agent_state"];
   });
+  check("RoleReason", "ROLE_", [](std::uint32_t value) -> std::string {
+    msg::CoordinatorState state;
+    state.role_reason(static_cast<msg::RoleReason>(value));
+    return describe(state)["role_reason"];
+  });
   check("CoordinatorMode", "COORDINATOR_", [](std::uint32_t value) -> std::string {
     msg::CoordinatorState state;
     state.coordinator_mode(static_cast<msg::CoordinatorMode>(value));
     return describe(state)["coordinator_mode"];
   });
+}
+
+TEST_CASE("a counter is described by the name of its reason, an unknown reason by its number") {
+  msg::Counters message;
+  for (std::size_t i = 0; i <= kDropReasonCount; ++i)
+    message.counts().emplace_back().reason(static_cast<std::uint16_t>(i));
+  const Json description = describe(message);
+  for (std::size_t i = 0; i < kDropReasonCount; ++i)
+    CHECK(description["counts"][i]["reason"] == kDropReasons[i].name);
+  CHECK(description["counts"].back()["reason"] == "unknown " + std::to_string(kDropReasonCount));
+}
+
+TEST_CASE("the README of the monitor has the table of reasons") {
+  std::ifstream file(SIDESTEP_IDL_DIR "/../deploy/monitor/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  for (const DropReasonInfo& info : kDropReasons) {
+    const std::string row = std::string("| `") + info.name + "` | " + info.description + " | " +
+                            (info.is_unusual ? "yes |" : "|");
+    CAPTURE(row);
+    CHECK(readme.find(row) != std::string::npos);
+  }
 }
 
 TEST_CASE("a count beyond its array shows the whole array and the unmodified count") {

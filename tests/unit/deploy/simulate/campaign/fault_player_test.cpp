@@ -41,7 +41,7 @@ TEST_CASE("a partition cuts links for its duration, also if two overlap") {
   const FaultPlan plan = plan_of(scenario, {{1s, first}, {2500ms, second}}, 20s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
-  FaultPlayer player(system, plan);
+  FaultPlayer player(system, scenario, plan);
   player.run_until(1250ms);
   const auto before = verdicts.answered;
   CHECK(before > 10);
@@ -60,7 +60,7 @@ TEST_CASE("a killed process is dead until it is started, and a twin runs beside 
       plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
   plan.hosts.push_back({twin_process(1)});
   SimSystem system(scenario, 1);
-  FaultPlayer player(system, plan);
+  FaultPlayer player(system, scenario, plan);
   player.run_until(1500ms);
   CHECK_FALSE(system.is_alive("vision"));
   player.run_until(2500ms);
@@ -69,6 +69,61 @@ TEST_CASE("a killed process is dead until it is started, and a twin runs beside 
   player.run_until(3500ms);
   CHECK(system.is_alive(twin_process(1)));
   CHECK(system.is_alive("agent 1"));
+}
+
+TEST_CASE("the operator places a robot even if its agent is dead when the first place is requested") {
+  const Scenario scenario = pair_of_robots();
+  RobotDisturbance lift;
+  lift.robot = 1;
+  lift.kind = msg::DisturbanceKind::DISTURBANCE_LIFT;
+  const FaultPlan plan = plan_of(scenario,
+                                 {{1s, lift},
+                                  {2s, Kill{"agent 1"}},
+                                  {2500ms, Place{1, {Vec2(0.5, 1.5), Vec2(-0.5, -1.5)}, 1}},
+                                  {3s, Start{"agent 1"}}},
+                                 20s);
+  SimSystem system(scenario, 1);
+  std::size_t on_floor = 0;
+  system.on_truth([&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
+  FaultPlayer player(system, scenario, plan);
+  player.run_until(2900ms);
+  CHECK(on_floor == 1);
+  player.run_until(6s);
+  CHECK(on_floor == 2);
+}
+
+TEST_CASE("the operator places a robot whose lifting takes effect late, because the simulator was paused") {
+  const Scenario scenario = pair_of_robots();
+  RobotDisturbance lift;
+  lift.robot = 1;
+  lift.kind = msg::DisturbanceKind::DISTURBANCE_LIFT;
+  const FaultPlan plan = plan_of(
+      scenario, {{1s, Pause{{"simulator"}, 3s, 1000}}, {1100ms, lift}, {2s, Place{1, {Vec2(0.5, 1.5)}, 1}}},
+      20s);
+  SimSystem system(scenario, 1);
+  std::size_t on_floor = 0;
+  system.on_truth([&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
+  FaultPlayer player(system, scenario, plan);
+  player.run_until(4100ms);
+  CHECK(on_floor == 1);
+  player.run_until(8s);
+  CHECK(on_floor == 2);
+}
+
+TEST_CASE("the operator attests the absence of a robot that was taken away without power") {
+  const Scenario scenario = pair_of_robots();
+  RobotDisturbance off;
+  off.robot = 1;
+  off.kind = msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF;
+  const FaultPlan plan =
+      plan_of(scenario,
+              {{1s, off}, {2s, TakeAway{1}}, {3s, Kill{"coordinator"}}, {3500ms, Start{"coordinator"}}}, 20s);
+  SimSystem system(scenario, 1);
+  FaultPlayer player(system, scenario, plan);
+  player.run_until(8s);
+  CHECK(system.metrics().unregistered_robots().empty());
+  CHECK(system.metrics().progress().at(0).agent_state == msg::AgentState::AGENT_DRIVING);
+  CHECK(system.metrics().report().audit->violations == 0);
 }
 
 TEST_CASE("at the end of all faults link qualities recover and partitions end") {
@@ -81,7 +136,7 @@ TEST_CASE("at the end of all faults link qualities recover and partitions end") 
       {{0s, LinkChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
-  FaultPlayer player(system, plan);
+  FaultPlayer player(system, scenario, plan);
   player.run_until(3s);
   CHECK(verdicts.answered == 0);
   player.run_until(5s);

@@ -81,9 +81,46 @@ TEST_CASE("random faults stay within their bounds, include every kind, and end b
     CHECK(to_lines(plan).size() > plan.faults.size());
   }
   CHECK(kinds.size() == std::variant_size_v<Fault>);
-  for (const auto& [kind, count] : kinds) CHECK(count > 50);
+  for (const auto& [kind, count] : kinds) {
+    CAPTURE(kind, count);
+    CHECK(count >= 10);
+  }
   CHECK(one_way > 50);
   CHECK(two_way > 50);
+}
+
+TEST_CASE("every kind of fault occurs in a sensible share of the trials, and none without faults") {
+  constexpr int kTrials = 400;
+  std::map<std::string, int> trials;
+  for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+    for (const std::string& kind : sample_trial(seed, 60s, std::nullopt).fault_kinds()) ++trials[kind];
+    CHECK(sample_trial(seed, 60s, std::nullopt, false).plan.faults.empty());
+  }
+  for (const char* const kind : {"push",
+                                 "slip",
+                                 "block",
+                                 "reboot",
+                                 "lift",
+                                 "place",
+                                 "switch off",
+                                 "switch on",
+                                 "take away",
+                                 "carry",
+                                 "clock step",
+                                 "clock drift",
+                                 "clock out of bound",
+                                 "other rules",
+                                 "forgery",
+                                 "opponents",
+                                 "seen beside",
+                                 "seen as",
+                                 "seen frozen",
+                                 "ghost robots",
+                                 "ghost obstacles"}) {
+    CAPTURE(kind, trials[kind]);
+    CHECK(trials[kind] >= 0.03 * kTrials);
+    CHECK(trials[kind] <= 0.25 * kTrials);
+  }
 }
 
 TEST_CASE("robots' clocks are within the bound of every coordinator's clock, or far beyond it and listed") {
@@ -93,13 +130,14 @@ TEST_CASE("robots' clocks are within the bound of every coordinator's clock, or 
     const Trial trial = sample_trial(seed, 60s, std::nullopt);
     const auto& clocks = trial.plan.clocks;
     with_clocks += !clocks.empty();
-    beyond += !trial.plan.robots_out_of_clock_bound.empty();
+    const std::vector<RobotId> out_of_bound = robots_with(trial.plan, RobotEnd::kClockOutOfBound);
+    beyond += !out_of_bound.empty();
     for (const RobotSpec& robot : trial.scenario.robots) {
-      const Duration robot_s = robot.clock_offset + (clocks.empty() ? Duration{0} : clocks.at("simulator"));
+      const Duration robot_s =
+          robot.clock_offset + (clocks.empty() ? Duration{0} : clocks.at("simulator").offset);
       for (int number = 0; number < trial.scenario.coordinators && !clocks.empty(); ++number) {
-        const Duration difference = std::chrono::abs(robot_s - clocks.at(coordinator_process(number)));
-        const bool is_off = std::ranges::find(trial.plan.robots_out_of_clock_bound, robot.id) !=
-                            trial.plan.robots_out_of_clock_bound.end();
+        const Duration difference = std::chrono::abs(robot_s - clocks.at(coordinator_process(number)).offset);
+        const bool is_off = std::ranges::find(out_of_bound, robot.id) != out_of_bound.end();
         CAPTURE(robot.id, number, to_seconds(difference));
         CHECK((is_off ? difference > Duration{300ms}
                       : difference < from_seconds(trial.scenario.clock_bound_s)));

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "agents/agent/wait_reason.hpp"
+#include "common/log/log_event.hpp"
+#include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/robot_messages.hpp"
+#include "common/time/clock_offset.hpp"
+
+namespace sidestep {
+
+/// What an agent is doing, for its log.
+struct AgentActivity {
+  bool is_fenced = false;
+  bool is_superseded = false;
+  Incarnation incarnation = 0;
+  bool is_registered = false;
+  Epoch epoch = 0;  ///< 0: none known
+  WaitReason waits_for = WaitReason::kNone;
+  std::size_t goal_index = 0;
+  bool has_arrived = false;  ///< at that goal, which is the last one
+  bool is_recovering = false;
+  bool is_escaping = false;
+};
+
+/// The speed that the clocks allow, and the offset that limits it.
+struct ClockSpeedLimit {
+  double speed_mps = 0;
+  double robot_limit_mps = 0;  ///< the robot's own
+  std::optional<OffsetInterval> offset;
+};
+
+/// Reports what changes in the work of one agent. What may change in every cycle is reported once it has
+/// lasted for kSettlingTime, and at most once per kMinInterval.
+class AgentChanges {
+ public:
+  static constexpr Duration kSettlingTime{250'000'000};
+  static constexpr Duration kMinInterval{1'000'000'000};
+
+  AgentChanges(const EventReporter& events, RobotId robot) : events_(events), robot_(robot) {}
+
+  /// Call it once per cycle.
+  void update(const AgentActivity& activity, const ClockSpeedLimit& limit, Time now);
+  /// A fact of the obeyed agent's robot.
+  void on_feedback(const Feedback& feedback);
+  /// The agent has adopted an epoch of which `coordinator` has told it; nullopt: its robot has.
+  void on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator);
+  /// A proposal was denied.
+  void on_denial(const Verdict& verdict);
+
+ private:
+  void report_protocol(const AgentActivity& activity);
+  void report_motion(const AgentActivity& activity, Time now);
+  void report_wait(WaitReason reason, Time now);
+  void report_speed_limit(const ClockSpeedLimit& limit, Time now);
+  void report_denials(Time now);
+  void report_restart(std::uint64_t activated);
+
+  const EventReporter& events_;
+  const RobotId robot_;
+  AgentActivity last_;
+  // Waiting.
+  WaitReason waits_for_ = WaitReason::kNone, reported_wait_ = WaitReason::kNone;
+  Time waits_since_{};
+  // Speed limit.
+  std::optional<Time> limited_since_, limit_reported_at_;
+  double reported_limit_mps_ = 0;
+  // Motion.
+  std::optional<Time> escape_reported_at_, recovery_reported_at_;
+  // Facts.
+  Time latest_fact_{};
+  bool was_off_reference_ = false, was_lifted_ = false;
+  VersionNumber own_stop_ = 0;
+  std::uint64_t activated_ = 0;
+  // Denials since the last report.
+  std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_DISPLACED) + 1> denials_{};
+  std::uint64_t denial_count_ = 0;
+  RobotId blocker_ = 0;  // of the last conflict
+  Time denials_reported_at_{};
+};
+
+}  // namespace sidestep

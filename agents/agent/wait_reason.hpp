@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace sidestep {
+
+/// Why an agent proposes no motion. The first reason that holds, in this order.
+enum class WaitReason : std::uint8_t {
+  kNone,
+  kNotFenced,            ///< the robot has not acknowledged this agent
+  kSuperseded,           ///< the robot obeys a later agent
+  kNoCoordinator,        ///< no coordinator is heard
+  kEpochNotObeyed,       ///< the robot has not acknowledged the epoch
+  kNotRegistered,        ///< the coordinator has not confirmed the registration
+  kOthersNotRegistered,  ///< the coordinator does not grant yet
+  kRobotSilent,          ///< the robot reports nothing
+  kTooManyVersions,      ///< the robot may execute as many versions as can be tracked
+  kNotSeen,              ///< vision has lost the robot
+  kNoObstacleList,       ///< no complete list of obstacles has arrived lately
+  kNotWatched,           ///< the coordinator has had no world state lately
+  kClockNotMeasured,     ///< an offset of the robot's clock from the coordinator's is not known
+  kClockOutOfBound,      ///< the clocks differ by more than the safety budget allows
+};
+
+constexpr const char* to_text(WaitReason reason) {
+  switch (reason) {
+    case WaitReason::kNone:
+      return "nothing";
+    case WaitReason::kNotFenced:
+      return "the robot's acknowledgement of this agent";
+    case WaitReason::kSuperseded:
+      return "the robot, which obeys a later agent";
+    case WaitReason::kNoCoordinator:
+      return "a coordinator: none is heard";
+    case WaitReason::kEpochNotObeyed:
+      return "the robot's acknowledgement of the epoch";
+    case WaitReason::kNotRegistered:
+      return "its registration";
+    case WaitReason::kOthersNotRegistered:
+      return "the registrations of other robots";
+    case WaitReason::kRobotSilent:
+      return "facts from the robot: it is silent";
+    case WaitReason::kTooManyVersions:
+      return "a fact that shows which versions the robot has left";
+    case WaitReason::kNotSeen:
+      return "vision: it does not see the robot";
+    case WaitReason::kNoObstacleList:
+      return "vision: no complete list of obstacles arrives";
+    case WaitReason::kNotWatched:
+      return "the coordinator: it has no world state";
+    case WaitReason::kClockNotMeasured:
+      return "a measurement of the clocks";
+    case WaitReason::kClockOutOfBound:
+      return "the clocks: they differ by more than the bound";
+  }
+  return "?";
+}
+
+}  // namespace sidestep

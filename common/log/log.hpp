@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/log/log_event.hpp"
+#include "common/log/log_level.hpp"
+
+namespace sidestep {
+
+/// From now on log() writes lines of at least this level to stderr, each with the time, the level and the
+/// name of this process. Until then the level is info, and the name "sidestep". Call it before other threads
+/// log.
+void set_up_log(const std::string& process, LogLevel level);
+
+/// Whether log() writes lines of this level.
+[[nodiscard]] bool is_logged(LogLevel level);
+
+/// Writes one line to this process's log. Any thread may call it. Writing may block, so nothing calls it in
+/// every control cycle.
+void log(LogLevel level, const std::string& text);
+
+/// A line as log() writes it, without the end of the line, in the name of any process.
+[[nodiscard]] std::string log_line(const std::string& process, LogLevel level, const std::string& text);
+
+/// Writes the events of a node to the log.
+template <typename Node>
+void log_events_of(Node& node) {
+  LogLevel level = LogLevel::kTrace;
+  while (level < LogLevel::kOff && !is_logged(level))
+    level = static_cast<LogLevel>(static_cast<int>(level) + 1);
+  node.on_event(level, [](const LogEvent& event) { log(event.level, event.text); });
+}
+
+}  // namespace sidestep

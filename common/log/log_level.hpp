@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace sidestep {
+
+/// Severity of a line of the log, ascending. As the level of a log, the lowest severity that it contains;
+/// kOff is the level of an empty log and no severity.
+enum class LogLevel : std::uint8_t { kTrace, kDebug, kInfo, kWarning, kError, kOff };
+
+/// The names of the levels on the command line and in the log, by LogLevel.
+inline constexpr std::array<std::string_view, 6> kLogLevelNames{"trace",   "debug", "info",
+                                                                "warning", "error", "off"};
+
+constexpr std::string_view to_text(LogLevel level) { return kLogLevelNames[static_cast<std::size_t>(level)]; }
+
+/// nullopt if no level has this name.
+constexpr std::optional<LogLevel> log_level_from(std::string_view name) {
+  const auto found = std::ranges::find(kLogLevelNames, name);
+  if (found == kLogLevelNames.end()) return std::nullopt;
+  return static_cast<LogLevel>(found - kLogLevelNames.begin());
+}
+
+}  // namespace sidestep

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace sidestep {
+
+/// Why a process did not use a message that it received, or a part of one, or did not send one. The numbers
+/// are part of messages.
+enum class DropReason : std::uint16_t {
+  // The bus of any process.
+  kUnreadable,
+  kOtherRules,
+  kInjectedLoss,
+  kQueueFull,
+  kForgottenPeer,
+  // Any process that reads the topic.
+  kMalformedFeedback,
+  kMalformedVerdict,
+  kMalformedWorld,
+  kMalformedObservation,
+  kMalformedObstacles,
+  kMalformedLedgerPage,
+  kMalformedVersion,
+  kMalformedCoordinatorState,
+  kMalformedRegistration,
+  kMalformedProposal,
+  kMalformedAttestation,
+  kMalformedCommand,
+  kMalformedPlacement,
+  kMalformedNetworkFault,
+  kMalformedRules,
+  kMalformedFrame,
+  kMalformedDetection,
+  kMalformedImage,
+  kMalformedLeaguePacket,
+  kFutureWorld,
+  kFutureObservation,
+  kFutureObstacles,
+  kImplausibleEpoch,
+  kFrequentEpoch,
+  kImplausibleClock,
+  kUnknownRobot,
+  // Agents.
+  kUnproposedGrant,
+  kUnexpectedVerdict,
+  kLateFact,
+  kLatePage,
+  kOldEpoch,
+  // Coordinators.
+  kContradictoryFact,
+  kRefusedProposal,
+  kRefusedRegistration,
+  kRefusedAttestation,
+  // Vision.
+  kUntimelyFrame,
+  kFalseDetection,
+  kTooManyObstacles,
+  kRepeatedLeagueFrame,
+  kUndatedLeagueFrame,
+  kUnusedLeagueDetection,
+  // The simulator and its robots.
+  kCommandLost,
+  kFencedCommand,
+  kLateVersion,
+  kWrongBase,
+  kRefusedDisturbance,
+  kUnsentLeaguePacket,
+  // Monitors.
+  kUnusedByMonitor,
+};
+
+/// A row of the table of reasons.
+struct DropReasonInfo {
+  DropReason reason;
+  const char* name;         ///< in reports and `sidestep topic echo`
+  const char* description;  ///< what was dropped, for documents
+  bool is_unusual;          ///< whether only faulty, foreign or hostile processes cause it
+};
+
+/// By DropReason.
+inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
+    {DropReason::kUnreadable, "unreadable", "bytes that are no message of the topic", true},
+    {DropReason::kOtherRules, "other_rules", "messages of processes with other rules", true},
+    {DropReason::kInjectedLoss, "injected_loss", "messages lost by simulated or injected network faults",
+     false},
+    {DropReason::kQueueFull, "queue_full", "messages that found a queue full", false},
+    {DropReason::kForgottenPeer, "forgotten_peer",
+     "datagrams of a process that was silent for seconds, before both sides began anew", false},
+    {DropReason::kMalformedFeedback, "malformed_feedback", "facts of robots", true},
+    {DropReason::kMalformedVerdict, "malformed_verdict", "verdicts", true},
+    {DropReason::kMalformedWorld, "malformed_world", "world states that are not from vision", true},
+    {DropReason::kMalformedObservation, "malformed_observation", "robots in world states", true},
+    {DropReason::kMalformedObstacles, "malformed_obstacles", "lists of obstacles", true},
+    {DropReason::kMalformedLedgerPage, "malformed_ledger_page", "pages of the ledger", true},
+    {DropReason::kMalformedVersion, "malformed_version", "versions on pages of the ledger", true},
+    {DropReason::kMalformedCoordinatorState, "malformed_coordinator_state", "heartbeats of coordinators",
+     true},
+    {DropReason::kMalformedRegistration, "malformed_registration", "registrations", true},
+    {DropReason::kMalformedProposal, "malformed_proposal", "proposals", true},
+    {DropReason::kMalformedAttestation, "malformed_attestation", "attestations that are not from an operator",
+     true},
+    {DropReason::kMalformedCommand, "malformed_command", "commands to robots", true},
+    {DropReason::kMalformedPlacement, "malformed_placement", "places where a lifted robot is put down", true},
+    {DropReason::kMalformedNetworkFault, "malformed_network_fault", "network faults that are to be injected",
+     true},
+    {DropReason::kMalformedRules, "malformed_rules", "rules of other processes", true},
+    {DropReason::kMalformedFrame, "malformed_frame", "frames of detections", true},
+    {DropReason::kMalformedDetection, "malformed_detection", "detections in frames", true},
+    {DropReason::kMalformedImage, "malformed_image",
+     "camera images that are malformed, untimely or of no camera", true},
+    {DropReason::kMalformedLeaguePacket, "malformed_league_packet", "packets of the league", true},
+    {DropReason::kFutureWorld, "future_world", "world states whose time is ahead of the clock", true},
+    {DropReason::kFutureObservation, "future_observation",
+     "observations of the robot whose time is ahead of the clock", true},
+    {DropReason::kFutureObstacles, "future_obstacles",
+     "lists of obstacles, and obstacles in them, whose time is ahead of the clock", true},
+    {DropReason::kImplausibleEpoch, "implausible_epoch", "epochs far ahead of the clock", true},
+    {DropReason::kFrequentEpoch, "frequent_epoch",
+     "reports of higher epochs beyond the few that a coordinator acts on", true},
+    {DropReason::kImplausibleClock, "implausible_clock", "time stamps that contradict each other", true},
+    {DropReason::kUnknownRobot, "unknown_robot",
+     "proposals, registrations and detections of robots that the scenario does not have", true},
+    {DropReason::kUnproposedGrant, "unproposed_grant", "grants of versions that were never proposed", true},
+    {DropReason::kUnexpectedVerdict, "unexpected_verdict",
+     "verdicts that are repeated, or of another epoch or agent", false},
+    {DropReason::kLateFact, "late_fact", "facts that a later one has overtaken", false},
+    {DropReason::kLatePage, "late_page", "pages of the ledger that a later one has overtaken", false},
+    {DropReason::kOldEpoch, "old_epoch", "heartbeats of an epoch that a higher one has superseded", false},
+    {DropReason::kContradictoryFact, "contradictory_fact", "facts that contradict the ledger", true},
+    {DropReason::kRefusedProposal, "refused_proposal",
+     "proposals of another epoch or agent, or before all robots have registered", false},
+    {DropReason::kRefusedRegistration, "refused_registration", "registrations of another epoch or agent",
+     false},
+    {DropReason::kRefusedAttestation, "refused_attestation",
+     "attestations of robots that are not missing, or that were heard", false},
+    {DropReason::kUntimelyFrame, "untimely_frame", "frames whose capture time is too old or in the future",
+     false},
+    {DropReason::kFalseDetection, "false_detection",
+     "detections that belong to no track, or arrived too late", false},
+    {DropReason::kTooManyObstacles, "too_many_obstacles",
+     "detections of obstacles while all tracks were in use", false},
+    {DropReason::kRepeatedLeagueFrame, "repeated_league_frame", "frames of the league received before",
+     false},
+    {DropReason::kUndatedLeagueFrame, "undated_league_frame",
+     "frames of the league whose capture time cannot be determined yet", false},
+    {DropReason::kUnusedLeagueDetection, "unused_league_detection",
+     "balls and obstacles beyond the capacity of a frame, and robots without a heading", false},
+    {DropReason::kCommandLost, "command_lost", "commands lost by the simulated radio", false},
+    {DropReason::kFencedCommand, "fenced_command", "commands of an incarnation or epoch that a robot refuses",
+     false},
+    {DropReason::kLateVersion, "late_version", "versions that reached a robot after their start", false},
+    {DropReason::kWrongBase, "wrong_base", "versions whose base a robot did not execute", false},
+    {DropReason::kRefusedDisturbance, "refused_disturbance",
+     "disturbances that are invalid, or that the robot's state does not allow", false},
+    {DropReason::kUnsentLeaguePacket, "unsent_league_packet", "packets of the league that could not be sent",
+     false},
+    {DropReason::kUnusedByMonitor, "unused_by_monitor",
+     "invalid or overtaken states that the run's metrics did not use", false},
+});
+
+inline constexpr std::size_t kDropReasonCount = kDropReasons.size();
+
+/// Whether a row of the table is where its reason's number says.
+constexpr bool are_drop_reasons_in_order() {
+  for (std::size_t i = 0; i < kDropReasonCount; ++i) {
+    if (static_cast<std::size_t>(kDropReasons[i].reason) != i) return false;
+  }
+  return static_cast<std::size_t>(DropReason::kUnusedByMonitor) + 1 == kDropReasonCount;
+}
+static_assert(are_drop_reasons_in_order());
+
+constexpr const DropReasonInfo& info_of(DropReason reason) {
+  return kDropReasons[static_cast<std::size_t>(reason)];
+}
+
+}  // namespace sidestep

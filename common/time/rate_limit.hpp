@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Admits up to `burst` events at once, and then one per period.
+class RateLimit {
+ public:
+  constexpr RateLimit(int burst, Duration period) : period_(period), tolerance_((burst - 1) * period) {}
+
+  [[nodiscard]] constexpr bool admit(Time now) {
+    const Time due = std::max(due_, now);
+    if (due - now > tolerance_) return false;
+    due_ = due + period_;
+    return true;
+  }
+
+ private:
+  Duration period_, tolerance_;
+  Time due_ = Time{};  ///< when the next event would be due at one per period
+};
+
+}  // namespace sidestep

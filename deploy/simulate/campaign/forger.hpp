@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/messaging/rules_exchange.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "common/messaging/topics.hpp"
+
+namespace sidestep {
+
+/// A hostile process that knows the scenario's rules, repeats what it has received about one robot, its
+/// victim, and changes it. Observers do not hear it: they judge what the others say.
+class Forger {
+ private:
+  SimBus bus_;
+  RulesExchange rules_;
+  RobotId victim_;
+  std::vector<std::function<void()>> publish_;
+
+ public:
+  Forger(SimNetwork& network, const Scenario& scenario, RobotId victim);
+  Forger(const Forger&) = delete;
+  Forger& operator=(const Forger&) = delete;
+
+  RobotId victim() const { return victim_; }
+  /// Sends the messages that have been changed since the last call. Messages of which none was received are
+  /// not sent.
+  void send();
+
+  /// The latest message of a topic, as it was last changed. Calling it marks the message for sending.
+  template <typename Message>
+  class Forged {
+   public:
+    Forged(Forger& forger, const Topic<Message>& topic)
+        : writer_(forger.bus_.advertise(topic, forger.victim_)) {
+      forger.bus_.subscribe(topic, forger.victim_, [this, &forger](const Message& message) {
+        if constexpr (requires { message.robot(); }) {
+          if (message.robot() != forger.victim_) return;
+        }
+        message_ = message;
+        is_known_ = true;
+      });
+      forger.publish_.push_back([this, &forger] {
+        if (!std::exchange(is_changed_, false) || !is_known_) return;
+        Message copy = message_;
+        writer_.publish(copy, forger.bus_.now());
+      });
+    }
+    Message& operator()() {
+      is_changed_ = true;
+      return message_;
+    }
+
+   private:
+    Writer<Message> writer_;
+    Message message_;
+    bool is_known_ = false, is_changed_ = false;
+  };
+  Forged<msg::Feedback> feedback{*this, topics::kFeedback};
+  Forged<msg::Command> command{*this, topics::kCommand};
+  Forged<msg::Registration> registration{*this, topics::kRegistration};
+  Forged<msg::Proposal> proposal{*this, topics::kProposal};
+  Forged<msg::CoordinatorState> state{*this, topics::kCoordinator};
+  Forged<msg::Verdict> verdict{*this, topics::kVerdict};
+  Forged<msg::LedgerPage> page{*this, topics::kLedger};
+  Forged<msg::WorldState> world{*this, topics::kWorld};
+  Forged<msg::ObstacleList> obstacles{*this, topics::kObstacles};
+};
+
+/// A false message that must not cost any robot more than a moment (PROTOCOL.md, "Hostile messages").
+struct Forgery {
+  std::string name;
+  std::function<void(Forger&)> change;
+  /// The fact could be true, so a ledger holds for a while what no observer has heard of.
+  bool is_plausible_fact = false;
+};
+
+[[nodiscard]] const std::vector<Forgery>& forgeries();
+
+}  // namespace sidestep

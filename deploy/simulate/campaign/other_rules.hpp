@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+
+namespace sidestep {
+
+/// A change of a scenario by which a process has other rules than the rest (PROTOCOL.md, "The same rules").
+struct OtherRule {
+  std::string key;
+  std::function<void(Scenario&)> change;
+  bool changes_roster = false;
+};
+
+/// A change of every rule.
+[[nodiscard]] const std::vector<OtherRule>& other_rules();
+
+}  // namespace sidestep

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/protocol/drop_counters.hpp"
+
+namespace sidestep {
+
+/// What a class or node has dropped.
+template <typename Counting>
+DropCounters drops_of(const Counting& counting) {
+  DropCounters drops;
+  counting.count_drops(drops);
+  return drops;
+}
+
+}  // namespace sidestep

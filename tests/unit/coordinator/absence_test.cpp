@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots that are not on the floor, by their own word or by the operator's.
+#include "tests/catch.hpp"
+#include "tests/unit/coordinator/coordinator_fixture.hpp"
+
+namespace sidestep::coordinator_test {
+
+TEST_CASE("an operator can attest the absence of a robot that has not registered, until it registers") {
+  Floor floor;
+  CHECK_FALSE(floor.coordinator.on_attestation(3));  // not on the roster
+  floor.receive(registration_of(floor.b, kEpoch));
+  CHECK_FALSE(floor.coordinator.on_attestation(2));  // it has registered
+  CHECK(floor.coordinator.on_attestation(1));
+  CHECK_FALSE(floor.coordinator.on_attestation(1));
+  CHECK(floor.coordinator.is_granting());
+  CHECK(missing(floor.coordinator).empty());
+  CHECK(floor.coordinator.state().absent() == 1);
+  const Version crossing = continued(floor.b, 20, 1, {-3, 0}, 0.6);
+  CHECK(floor.ask(proposal_of({crossing}, kEpoch)).granted_version == 20);
+  // It is on the floor after all.
+  CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
+  CHECK(floor.coordinator.is_granting());
+  CHECK(floor.coordinator.state().absent() == 0);
+  CHECK(floor.coordinator.state().conflicts() == 1);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
+}
+
+TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept clear of") {
+  Floor floor;
+  floor.receive(registration_of(floor.b, kEpoch));
+  REQUIRE(floor.coordinator.on_attestation(1));
+  floor.receive(fact(floor.a, 1));
+  CHECK(floor.coordinator.ledger().is_quarantined(1));
+  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
+  floor.receive(registration_of(floor.a, kEpoch));
+  CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+  floor.coordinator.begin_epoch(kEpoch + 1);
+  CHECK(missing(floor.coordinator).size() == 2);
+  REQUIRE(floor.coordinator.on_attestation(1));
+  floor.coordinator.begin_epoch(kEpoch + 2);
+  CHECK(missing(floor.coordinator).size() == 2);
+}
+
+TEST_CASE("an absent robot registers without versions and is granted a rest version only") {
+  Floor floor;
+  auto absent = registration_of(floor.a, kEpoch);
+  absent.is_absent(true);
+  CHECK(floor.receive(absent)->reasons[0] == msg::Reason::REASON_MALFORMED);
+  absent.version_count(0);
+  CHECK(floor.receive(absent)->reasons[0] == msg::Reason::REASON_GRANTED);
+  floor.receive(registration_of(floor.b, kEpoch));
+  REQUIRE(floor.coordinator.is_granting());
+  CHECK(floor.coordinator.state().absent() == 1);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).reasons[0] ==
+        msg::Reason::REASON_ABSENT);
+  Version blocked = rest_version(1, {0.85, 0}, 11), free = rest_version(1, {0.5, 0.5}, 12);
+  blocked.incarnation = free.incarnation = 1;
+  const auto verdict = floor.ask(proposal_of({blocked, free}, kEpoch));
+  CHECK(verdict.reasons[0] == msg::Reason::REASON_CONFLICT);
+  CHECK(verdict.granted_version == 12);
+  CHECK(floor.coordinator.state().absent() == 0);
+}
+
+}  // namespace sidestep::coordinator_test
