@@ -104,6 +104,12 @@ bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
     ledger_.on_lifted(feedback.robot, feedback.valid_at, feedback.robot_incarnation);
     return true;
   }
+  const bool is_of_higher_epoch = feedback.obeyed_epoch > epoch_;
+  if (is_of_higher_epoch && ledger_.judge(feedback.executing, feedback.valid_at, feedback.is_off_reference,
+                                          feedback.robot_incarnation) == FactOutcome::kContradiction) {
+    drops_.count(DropReason::kFactOfHigherEpoch, feedback.robot);
+    return true;
+  }
   const bool was_quarantined = ledger_.is_quarantined(feedback.robot);
   const FactOutcome outcome = ledger_.on_executing(feedback.executing, feedback.valid_at,
                                                    feedback.is_off_reference, feedback.robot_incarnation);

@@ -134,21 +134,29 @@ msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base
   return reason_of(check_workspace_with_escape(candidate, base->trajectory, rules_));
 }
 
-FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference, Incarnation life) {
-  Entry& entry = entry_of(executing.robot);
+FactOutcome Ledger::judge(const Version& executing, Time at, bool is_off_reference, Incarnation life) const {
+  const Entry& entry = entries_[index_of(executing.robot)];
   if (life == entry.lifted_life && at <= entry.lifted_at) return FactOutcome::kStale;
   const auto is_older = [&](const Version& held) { return held.number < executing.number; };
   const auto versions = entry.set.versions();
-  const Version* held = entry.set.find(executing.number);
-  if (!held && !versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
-  const bool is_known = held && is_same(*held, executing);
-  const bool is_own_stop = is_off_reference && !held && std::ranges::all_of(versions, is_older);
-  if (!is_known && !is_own_stop) {
+  if (const Version* held = entry.set.find(executing.number))
+    return is_same(*held, executing) ? FactOutcome::kApplied : FactOutcome::kContradiction;
+  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
+  const bool is_own_stop = is_off_reference && std::ranges::all_of(versions, is_older);
+  return is_own_stop ? FactOutcome::kApplied : FactOutcome::kContradiction;
+}
+
+FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference, Incarnation life) {
+  const FactOutcome outcome = judge(executing, at, is_off_reference, life);
+  if (outcome == FactOutcome::kStale) return outcome;
+  Entry& entry = entry_of(executing.robot);
+  if (outcome == FactOutcome::kContradiction) {
     entry.quarantine(executing);
     update_bounds(index_of(executing.robot));
     find_conflicts(executing.robot);
-    return FactOutcome::kContradiction;
+    return outcome;
   }
+  const bool is_own_stop = !entry.set.find(executing.number);
   if (!entry.may_forget()) {
     if (is_own_stop) {
       entry.quarantined.back() = executing;
@@ -159,7 +167,7 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
   }
   const auto store_former = [&](const Version& version) { entry.former.add(version, at); };
   if (is_own_stop) {
-    std::ranges::for_each(versions, store_former);
+    std::ranges::for_each(entry.set.versions(), store_former);
     entry.set.clear();
     entry.set.add(executing);
   } else {

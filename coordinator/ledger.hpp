@@ -67,6 +67,9 @@ class Ledger {
   /// its own, which replaces all older versions without checks. `life` is the incarnation of the robot.
   [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
                                          Incarnation life = 0);
+  /// What on_executing() would return.
+  [[nodiscard]] FactOutcome judge(const Version& executing, Time at, bool is_off_reference,
+                                  Incarnation life) const;
   /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
   /// before t.
   void on_lifted(RobotId robot, Time at, Incarnation life = 0);

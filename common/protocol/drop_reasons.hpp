@@ -51,6 +51,7 @@ enum class DropReason : std::uint16_t {
   kOldEpoch,
   // Coordinators.
   kContradictoryFact,
+  kFactOfHigherEpoch,
   kRefusedProposal,
   kRefusedRegistration,
   kRefusedAttestation,
@@ -130,6 +131,8 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kLatePage, "late_page", "pages of the ledger that a later one has overtaken", false},
     {DropReason::kOldEpoch, "old_epoch", "heartbeats of an epoch that a higher one has superseded", false},
     {DropReason::kContradictoryFact, "contradictory_fact", "facts that contradict the ledger", true},
+    {DropReason::kFactOfHigherEpoch, "fact_of_higher_epoch",
+     "facts about versions that a coordinator of a higher epoch may have granted", false},
     {DropReason::kRefusedProposal, "refused_proposal",
      "proposals of another epoch or agent, or before all robots have registered", false},
     {DropReason::kRefusedRegistration, "refused_registration", "registrations of another epoch or agent",

@@ -35,6 +35,29 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 20);
 }
 
+TEST_CASE("a robot that obeys a higher epoch is not quarantined for what that epoch has granted") {
+  Floor floor;
+  floor.register_both();
+  auto granted_elsewhere = fact(rest_version(1, {0.5, 0}, 7), 1);
+  granted_elsewhere.obeyed_epoch(kEpoch + 1);
+  floor.receive(granted_elsewhere);
+  CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
+  CHECK(floor.coordinator.ledger().versions(1).size() == 1);
+  SECTION("its own stop enters the ledger all the same") {
+    auto stop = fact(rest_version(1, {0.5, 0}, 1'000'000), 1.1);
+    stop.obeyed_epoch(kEpoch + 1);
+    stop.is_off_reference(true);
+    floor.receive(stop);
+    REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
+    CHECK(floor.coordinator.ledger().versions(1).front().number == 1'000'000);
+  }
+  SECTION("within its epoch the same fact contradicts the ledger") {
+    granted_elsewhere.obeyed_epoch(kEpoch);
+    floor.receive(granted_elsewhere);
+    CHECK(floor.coordinator.ledger().is_quarantined(1));
+  }
+}
+
 TEST_CASE("other robots keep clear of what a quarantined robot has reported") {
   Floor floor;
   floor.register_both();
