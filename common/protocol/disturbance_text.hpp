@@ -9,8 +9,8 @@ namespace sidestep {
 
 /// The kinds of disturbances in words, by msg::DisturbanceKind.
 inline constexpr const char* kDisturbanceTexts[] = {
-    "push",       "slip",      "block", "lift",        "place",   "reboot",     "clock",
-    "switch off", "switch on", "carry", "seen beside", "seen as", "seen frozen"};
+    "push",  "slip",       "block",     "lift",  "place",       "reboot",  "forget pose",
+    "clock", "switch off", "switch on", "carry", "seen beside", "seen as", "seen frozen"};
 
 /// Precondition: the kind is an enumerator.
 constexpr const char* to_text(msg::DisturbanceKind kind) {

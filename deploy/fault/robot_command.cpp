@@ -103,6 +103,8 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
   add_pair(place, "--at", options->position_m, 1000, "position X,Y in m");
   place.add_option("--heading", options->heading_rad, "in rad").check(angle);
   add("reboot", "Restarts a robot's firmware", Kind::DISTURBANCE_REBOOT);
+  add("forget-pose", "Restarts a robot's firmware, which then does not know where it is",
+      Kind::DISTURBANCE_FORGET_POSE);
   add("switch-off", "Takes a robot's power away: it rolls freely", Kind::DISTURBANCE_SWITCH_OFF);
   add("switch-on", "Gives a robot its power back", Kind::DISTURBANCE_SWITCH_ON);
   const CliCommand carry =

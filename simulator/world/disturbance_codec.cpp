@@ -44,6 +44,7 @@ bool is_valid(const RobotDisturbance& disturbance, const Field& field, double ro
       return has_valid_duration(disturbance);
     case msg::DisturbanceKind::DISTURBANCE_LIFT:
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
+    case msg::DisturbanceKind::DISTURBANCE_FORGET_POSE:
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_ON:
       return true;

@@ -8,6 +8,12 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxInflation_m = 1;
+// A robot without a pose is at rest if its wheels have been slower than this for so long. The velocity
+// estimate, which begins at zero, converges in less.
+constexpr double kRestSpeed_mps = 0.02;
+constexpr Duration kRestTime = std::chrono::milliseconds(100);
+// Of the first fix of a robot that has just come to rest, per axis.
+constexpr double kFirstFixDeviation_m = 0.002;
 
 }  // namespace
 
@@ -40,7 +46,9 @@ void Firmware::on_command(const Command& command, Time now) {
   const bool is_old_epoch = command.epoch < obeyed_epoch_;
   obeyed_epoch_ = std::max(obeyed_epoch_, command.epoch);
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
-  if (command.fix)
+  if (command.fix && !has_pose_)
+    find_pose(*command.fix, now);
+  else if (command.fix)
     estimator_.correct(command.fix->captured_at, command.fix->position_m, command.fix->heading_rad);
   if (!command.version) return;
   if (is_old_epoch) {
@@ -81,7 +89,7 @@ void Firmware::take(const Version& version, Time now) {
 }
 
 bool Firmware::may_take(const Version& version) const {
-  if (version.number <= highest_executed_) return false;
+  if (!has_pose_ || version.number <= highest_executed_) return false;
   const Trajectory& trajectory = version.trajectory;
   const bool is_rest_version = trajectory.phases().empty() && trajectory.at_start().velocity_mps.isZero(0);
   return !is_lifted_ || (version.base == 0 && is_rest_version);
@@ -153,6 +161,7 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
   estimator_.advance(now, odometry, modelled, modelled_angular);
 
   if (is_lifted_) return last_actuation_ = {};
+  if (!has_pose_) return last_actuation_ = brake_by_wheels(now);
   const bool may_stop = now > last_fact_ && now > executing_.trajectory.start();
   if (is_rebooting_ && may_stop) restart(now);
 
@@ -239,6 +248,7 @@ void Firmware::start_own_stop(OwnStopReason reason, Time now) {
 void Firmware::lift(Time now) {
   is_lifted_ = true;
   is_rebooting_ = false;
+  has_pose_ = true;  // a lifted robot needs none until it is put down
   is_off_reference_ = false;
   pending_count_ = 0;
   executing_ = {robot_, 0, 0, 0, Trajectory::resting(now, estimator_.position_m()), 0};
@@ -255,7 +265,37 @@ void Firmware::switch_on(Time now) {
   estimator_ = PoseEstimator(estimator_.position_m(), estimator_.heading_rad(), now, settings_.estimator);
   last_actuation_ = modelled_ = {};
   pending_count_ = 0;
-  is_rebooting_ = !is_lifted_;
+  is_rebooting_ = !is_lifted_ && has_pose_;
+  moved_at_ = now;
+}
+
+void Firmware::forget_pose(Time now) {
+  estimator_ = PoseEstimator(Vec2(0, 0), 0, now, settings_.estimator);
+  last_actuation_ = modelled_ = {};
+  pending_count_ = 0;
+  is_rebooting_ = false;
+  has_pose_ = false;
+  moved_at_ = now;
+}
+
+Actuation Firmware::brake_by_wheels(Time now) {
+  const Vec2& velocity = estimator_.velocity_mps();
+  if (velocity.norm() > kRestSpeed_mps) moved_at_ = now;
+  const double lag = settings_.body.lag_s;
+  Vec2 braking = -settings_.velocity_gain_ps * (velocity + lag * modelled_.acceleration_mps2);
+  if (braking.norm() > settings_.deceleration_mps2) braking *= settings_.deceleration_mps2 / braking.norm();
+  const double max_angular = settings_.body.angular_acceleration_radps2;
+  return {braking,
+          std::clamp(-settings_.turning_gain_ps * estimator_.angular_radps(), -max_angular, max_angular)};
+}
+
+void Firmware::find_pose(const PoseFix& fix, Time now) {
+  const bool is_usable = fix.position_m.allFinite() && std::isfinite(fix.heading_rad) &&
+                         fix.captured_at > moved_at_ + kRestTime && fix.captured_at <= now;
+  if (!is_usable) return;
+  estimator_ = PoseEstimator(fix.position_m, fix.heading_rad, now, settings_.estimator, kFirstFixDeviation_m);
+  has_pose_ = true;
+  is_rebooting_ = true;
 }
 
 void Firmware::restart(Time now) {

@@ -67,6 +67,10 @@ constexpr const char* to_text(OwnStopReason reason) {
 /// firmware executes it at once. A lifted robot executes nothing (version 0 again) and accepts only a granted
 /// rest version on base 0.
 ///
+/// Firmware that has forgotten its pose brakes by its wheels, accepts no version and reports nothing, because
+/// every fact contains a position. The first fix of the resting robot gives it a pose. It makes a stop of its
+/// own there.
+///
 /// All times are by the robot's clock, which never goes back.
 class Firmware {
  public:
@@ -104,6 +108,8 @@ class Firmware {
   /// its own and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest
   /// number seen.
   void reboot() { is_rebooting_ = true; }
+  /// As reboot(), but the pose estimate is lost too. Precondition: the robot is not lifted.
+  void forget_pose(Time now);
   /// As reboot(), after a time without power: the robot takes itself to be at rest, and has forgotten its
   /// pending versions.
   void switch_on(Time now);
@@ -117,6 +123,8 @@ class Firmware {
   /// Why it has made the last one.
   OwnStopReason own_stop_reason() const { return own_stop_reason_; }
   bool is_lifted() const { return is_lifted_; }
+  /// Whether it knows its pose. Precondition of feedback().
+  bool has_pose() const { return has_pose_; }
   /// Its own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }
   Incarnation obeyed_incarnation() const { return obeyed_; }
@@ -139,6 +147,8 @@ class Firmware {
   std::optional<OwnStopReason> must_stop(const Vec2& error_m, Time now);
   void start_own_stop(OwnStopReason reason, Time now);
   void restart(Time now);
+  Actuation brake_by_wheels(Time now);
+  void find_pose(const PoseFix& fix, Time now);
 
   RobotId robot_;
   Incarnation obeyed_ = 0;
@@ -150,6 +160,8 @@ class Firmware {
   OwnStopReason own_stop_reason_ = OwnStopReason::kOffReference;
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
+  bool has_pose_ = true;
+  Time moved_at_{};  ///< without a pose: when its wheels turned last
   Time last_fact_ = Time::min();
   Time drifted_since_ = Time::max();  ///< Time::max(): within the drift bound
   std::optional<Feedback::CommandEcho> last_command_;

@@ -10,9 +10,8 @@ namespace {
 
 // By the robot's clock, which may drift, periods differ a little.
 constexpr Duration kMaxPeriodError = kPhysicsStep / 1000;
-constexpr double kVelocityGain = 0.08;  // of a velocity measurement relative to the motor model
-constexpr double kHeadingGain = 0.05;   // of a heading fix
-constexpr double kStartDeviation_m = 0.0005;
+constexpr double kVelocityGain = 0.08;       // of a velocity measurement relative to the motor model
+constexpr double kHeadingGain = 0.05;        // of a heading fix
 constexpr double kSlipVariance_m2ps = 1e-8;  // of wheels that roll imperfectly
 constexpr double kScaleDriftPerSqrtSecond = 2e-5;
 constexpr double kExtraFixNoise_m =
@@ -29,7 +28,7 @@ constexpr double kMinAgreement = 0.35;
 }  // namespace
 
 PoseEstimator::PoseEstimator(const Vec2& position_m, double heading_rad, Time now,
-                             const EstimatorSettings& settings)
+                             const EstimatorSettings& settings, double deviation_m)
     : history_(kHistoryPeriods),
       count_(1),
       time_(now),
@@ -38,7 +37,7 @@ PoseEstimator::PoseEstimator(const Vec2& position_m, double heading_rad, Time no
       covariance_(Eigen::Matrix3d::Zero()),
       heading_anchor_rad_(heading_rad),
       settings_(settings) {
-  covariance_.diagonal() << kStartDeviation_m * kStartDeviation_m, kStartDeviation_m * kStartDeviation_m,
+  covariance_.diagonal() << deviation_m * deviation_m, deviation_m * deviation_m,
       settings.scale_error * settings.scale_error;
 }
 

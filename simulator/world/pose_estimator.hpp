@@ -28,11 +28,15 @@ struct EstimatorSettings {
 };
 
 /// A robot's estimate of its own pose: dead reckoning from the last fix, with a Kalman filter over position
-/// and odometry scale that is updated at the fixes' capture times. Starts from the true pose, since robots
-/// begin at known positions.
+/// and odometry scale that is updated at the fixes' capture times.
 class PoseEstimator {
  public:
-  PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings);
+  /// Standard deviation of the place at which a robot begins or is put down, per axis.
+  static constexpr double kKnownPlaceDeviation_m = 0.0005;
+
+  /// Starts at a pose whose position has this standard deviation per axis.
+  PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings,
+                double deviation_m = kKnownPlaceDeviation_m);
 
   /// Integrates the measurement over the control period that ends now; the accelerations are those of the
   /// motor model. A gap in time clears the history, so that fixes from before it are refused.

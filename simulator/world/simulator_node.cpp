@@ -136,7 +136,7 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
-  if (!world_.is_powered(robot)) {
+  if (!world_.may_report(robot)) {
     feedback_due_[robot] = now + cycle_;
     world_.clear_pending_feedback(robot);
     return;

@@ -89,6 +89,7 @@ void World::step() {
     if (!robot.is_powered) continue;
     switch_versions(i, now);
     robot.actuation = robot.firmware.tick(now, measure(i));
+    if (!robot.firmware.has_pose()) record_disturbance(i, time_);
     if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.last_own_stop) {
       robot.last_own_stop = robot.firmware.executing().number;
       robot.monitor.started_own_stop(robot.firmware.executing());

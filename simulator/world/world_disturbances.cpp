@@ -48,6 +48,13 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       }
       record_disturbance(index, now);
       return true;
+    case msg::DisturbanceKind::DISTURBANCE_FORGET_POSE:
+      if (!robot.is_powered || !body.is_on_floor()) return false;
+      switch_versions(index, robot_time(index, now));
+      robot.firmware.forget_pose(robot_time(index, now));
+      robot.monitor.rebooted();
+      record_disturbance(index, now);
+      return true;
     case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       set_clock(index, disturbance.clock_offset, now);
       return true;

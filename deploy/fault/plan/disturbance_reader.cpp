@@ -17,12 +17,13 @@ struct DisturbanceKey {
   const char* key;
   Kind kind;
 };
-constexpr std::array<DisturbanceKey, 13> kDisturbanceKeys{{{"push", Kind::DISTURBANCE_PUSH},
+constexpr std::array<DisturbanceKey, 14> kDisturbanceKeys{{{"push", Kind::DISTURBANCE_PUSH},
                                                            {"slip", Kind::DISTURBANCE_SLIP},
                                                            {"block", Kind::DISTURBANCE_BLOCK},
                                                            {"lift", Kind::DISTURBANCE_LIFT},
                                                            {"place", Kind::DISTURBANCE_PLACE},
                                                            {"reboot", Kind::DISTURBANCE_REBOOT},
+                                                           {"forget_pose", Kind::DISTURBANCE_FORGET_POSE},
                                                            {"clock", Kind::DISTURBANCE_CLOCK},
                                                            {"switch_off", Kind::DISTURBANCE_SWITCH_OFF},
                                                            {"switch_on", Kind::DISTURBANCE_SWITCH_ON},

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, clock, switch_off, switch_on,
+/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock, switch_off, switch_on,
 /// carry.
 [[nodiscard]] std::vector<std::string> disturbance_keys();
 

@@ -32,6 +32,8 @@ std::optional<std::string_view> cause_of(msg::DisturbanceKind kind) {
       return "place";
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
       return "reboot";
+    case msg::DisturbanceKind::DISTURBANCE_FORGET_POSE:
+      return "forget pose";
     case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       return Disturbances::kClockCause;
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:

@@ -27,6 +27,7 @@ class DisturbanceSampler {
     if (rng_.chance(0.08)) repeat(2, [&] { sample_carry(); });
     if (rng_.chance(0.12)) repeat(4, [&] { sample_clock_step(); });
     if (rng_.chance(0.15)) repeat(3, [&] { sample_sight_error(); });
+    if (rng_.chance(0.12)) repeat(3, [&] { sample_lost_pose(); });
   }
 
  private:
@@ -115,6 +116,11 @@ class DisturbanceSampler {
     const bool is_confused = disturbance.kind == Kind::DISTURBANCE_SEEN_AS;
     if (!is_confused || disturbance.other_robot != disturbance.robot) add(at, disturbance);
   }
+  void sample_lost_pose() {
+    const RobotId robot = random_robot();
+    if (plan_.ends.contains(robot) || !handled_.insert(robot).second) return;
+    add(times_.sample(rng_), robot, Kind::DISTURBANCE_FORGET_POSE);
+  }
   /// The clock jumps, and mostly is set right later.
   void sample_clock_step() {
     const RobotSpec& robot = scenario_.robots[rng_.below(scenario_.robots.size())];
@@ -148,7 +154,8 @@ class DisturbanceSampler {
   FaultPlan& plan_;
   Rng& rng_;
   PositionSampler positions_;
-  std::set<RobotId> handled_;  // lifted or without power, at most once each
+  std::set<RobotId>
+      handled_;  // lifted, without power, with a wrong clock or without a pose; at most once each
 };
 
 }  // namespace

@@ -29,6 +29,8 @@ std::string to_text(const RobotDisturbance& disturbance) {
                          duration_s, disturbance.heading_rad);
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
       return fmt::format("firmware of robot {} restarted", disturbance.robot);
+    case msg::DisturbanceKind::DISTURBANCE_FORGET_POSE:
+      return fmt::format("robot {} forgets its pose", disturbance.robot);
     case msg::DisturbanceKind::DISTURBANCE_CLOCK:
       return fmt::format("clock of robot {} set to {:+.4f} ms", disturbance.robot,
                          ms(disturbance.clock_offset));

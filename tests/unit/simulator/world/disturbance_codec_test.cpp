@@ -73,10 +73,11 @@ TEST_CASE("an invalid disturbance is refused") {
   CHECK(is_valid(clock));
   clock.clock_offset = Duration::min();
   CHECK_FALSE(is_valid(clock));
-  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(13))));
+  CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(14))));
   CHECK_FALSE(is_valid(disturbance(0, static_cast<msg::DisturbanceKind>(-1))));
   CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT)));
   CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT)));
+  CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_FORGET_POSE)));
 }
 
 // Any disturbance at any time: the firmware keeps its rules, facts stay true, numbers are never reused, and

@@ -187,6 +187,80 @@ TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same ag
   CHECK(world.firmware_violations() == 0);
 }
 
+TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itself where a fix shows it") {
+  const Scenario scenario = separated_robots(1);
+  World world(scenario, kBegin, 1);
+  Trajectory dash(kBegin + milliseconds(10), {scenario.robots[0].start_m, {0, 0}});
+  dash.append(milliseconds(500), Vec2(3, 0));
+  append_stop(dash, 5);
+  world.on_command(0, test::command_with({0, 3, 10, 0, dash}), kBegin);
+  Time now = kBegin + milliseconds(400);
+  world.advance(now);
+  REQUIRE(world.may_report(0));
+  const Vec2 before_m = world.bodies()[0].position_m();
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_FORGET_POSE), now));
+  const Time forgotten_at = now;
+  CHECK_FALSE(world.may_report(0));
+  const auto send_fix = [&](Duration age) {
+    Command command{0, 3, 0};
+    command.fix = PoseFix{now - age, world.bodies()[0].position_m(), world.bodies()[0].heading_rad()};
+    world.on_command(0, command, now);
+  };
+  // A fix of the moving robot does not count.
+  for (int i = 0; i < 25; ++i) {
+    world.advance(now += milliseconds(10));
+    send_fix(milliseconds(5));
+  }
+  CHECK_FALSE(world.may_report(0));
+  world.advance(now += milliseconds(500));
+  CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
+  CHECK((world.bodies()[0].position_m() - before_m).norm() < 0.2);  // 1.2 m/s, at 5 m/s^2: 0.14 m
+  send_fix(milliseconds(600));
+  CHECK_FALSE(world.may_report(0));
+  msg::GroundTruth truth;
+  world.fill(truth);
+  CHECK(truth.robots()[0].disturbance_end_ns() == to_ns(now));
+  // Nor does a version while it knows no place.
+  world.on_command(0, rest_version(0, 11, now + milliseconds(5), dash.rest_position_m()), now);
+  world.advance(now += milliseconds(50));
+  send_fix(milliseconds(20));
+  REQUIRE(world.may_report(0));
+  world.advance(now += milliseconds(2));
+  const Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_off_reference);
+  CHECK(facts.executing.number > 11);
+  CHECK(facts.executing.trajectory.start() > forgotten_at);
+  CHECK((facts.executing.trajectory.rest_position_m() - world.bodies()[0].position_m()).norm() < 0.001);
+  CHECK(facts.executing.inflation_m > 0.004);
+  CHECK(facts.obeyed_incarnation == 3);
+  CHECK(world.firmware_violations() == 0);
+}
+
+TEST_CASE("a robot without a pose that is lifted or switched off and on behaves as others do") {
+  const Scenario scenario = separated_robots(1);
+  World world(scenario, kBegin, 1);
+  Time now = kBegin + milliseconds(10);
+  world.advance(now);
+  const auto disturb = [&](msg::DisturbanceKind kind) { return world.disturb(0, disturbance(0, kind), now); };
+  REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
+  SECTION("the hand that lifts it tells it so") {
+    REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_LIFT));
+    REQUIRE(world.may_report(0));
+    CHECK(world.feedback(0, now).is_lifted);
+    CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
+  }
+  SECTION("power does not bring the pose back") {
+    REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF));
+    CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
+    world.advance(now += milliseconds(100));
+    REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_ON));
+    REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_REBOOT));
+    world.advance(now += milliseconds(100));
+    CHECK_FALSE(world.may_report(0));
+  }
+  CHECK(world.firmware_violations() == 0);
+}
+
 TEST_CASE("a robot's facts are by its own clock, which stands still after being set back") {
   Scenario scenario = separated_robots(1);
   scenario.robots[0].clock_offset = milliseconds(7);

@@ -128,6 +128,7 @@ TEST_CASE("disturbances of robots are read") {
   CHECK(disturbance_of("at_s: 1, lift: 1").kind == Kind::DISTURBANCE_LIFT);
   CHECK(disturbance_of("at_s: 1, place: 1, at_m: [1, 2]").place_m == Vec2(1, 2));
   CHECK(disturbance_of("at_s: 1, reboot: 1").kind == Kind::DISTURBANCE_REBOOT);
+  CHECK(disturbance_of("at_s: 1, forget_pose: 1").kind == Kind::DISTURBANCE_FORGET_POSE);
   CHECK(disturbance_of("at_s: 1, clock: 1, offset_ms: -250").clock_offset == std::chrono::milliseconds(-250));
   CHECK(disturbance_of("at_s: 1, switch_off: 1").kind == Kind::DISTURBANCE_SWITCH_OFF);
   CHECK(disturbance_of("at_s: 1, switch_on: 1").kind == Kind::DISTURBANCE_SWITCH_ON);

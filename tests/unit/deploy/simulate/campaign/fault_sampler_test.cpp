@@ -100,6 +100,7 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and non
                                  "slip",
                                  "block",
                                  "reboot",
+                                 "forget pose",
                                  "lift",
                                  "place",
                                  "switch off",
