@@ -55,6 +55,7 @@ void Negotiation::apply_fact(const Feedback& feedback) {
     }
     held_.forget_started(at);
     executing_ = 0;
+    number_above(executing);
   } else if (held_.forget(executing.number, at)) {
     executing_ = executing.number;
     if (has_advanced) pacing_.on_version_taken();
@@ -82,7 +83,7 @@ void Negotiation::rebase(const Version& executing) {
   held_.clear();
   held_.add(executing);
   executing_ = executing.number;
-  next_number_ = std::max(next_number_, executing.number + 1);
+  number_above(executing);
   close_proposals();
   contradicted_ = true;
 }
@@ -93,7 +94,14 @@ void Negotiation::finish_fencing(const Feedback& feedback) {
   if (!feedback.is_absent()) held_.add(feedback.executing);
   executing_ = feedback.executing.number;
   latest_fact_ = feedback.valid_at;
-  next_number_ = std::max({next_number_, feedback.obeyed_incarnation, executing_ + 1});
+  next_number_ = std::max(next_number_, feedback.obeyed_incarnation);
+  number_above(feedback.executing);
+}
+
+// A robot off the floor names its last version as the base: the stop that it made before it was lifted may
+// never have been reported.
+void Negotiation::number_above(const Version& executing) {
+  next_number_ = std::max({next_number_, executing.number + 1, executing.base + 1});
 }
 
 void Negotiation::adopt_epoch(Epoch epoch) {

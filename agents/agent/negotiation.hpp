@@ -102,6 +102,7 @@ class Negotiation {
     VersionNumber number() const { return candidates.front().number; }
     Time start() const { return candidates.front().trajectory.start(); }
   };
+  void number_above(const Version& executing);
   void finish_fencing(const Feedback& feedback);
   void apply_fact(const Feedback& feedback);
   /// Replaces all versions by one that the robot executes and this agent does not know.

@@ -251,7 +251,7 @@ void Firmware::lift(Time now) {
   has_pose_ = true;  // a lifted robot needs none until it is put down
   is_off_reference_ = false;
   pending_count_ = 0;
-  executing_ = {robot_, 0, 0, 0, Trajectory::resting(now, estimator_.position_m()), 0};
+  executing_ = {robot_, 0, 0, highest_executed_, Trajectory::resting(now, estimator_.position_m()), 0};
 }
 
 void Firmware::put_down(double heading_rad, Time now) {

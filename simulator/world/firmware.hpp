@@ -98,8 +98,9 @@ class Firmware {
   /// call.
   Actuation tick(Time now, const Odometry& odometry);
 
-  /// The robot has been lifted off the floor: discards the executed version and all pending ones. Called
-  /// again, it also discards a rest version accepted since.
+  /// The robot has been lifted off the floor: discards the executed version and all pending ones. Its facts
+  /// name the last version as the base of nothing, number 0, so that its agent can number the next one above
+  /// it. Called again, it also discards a rest version accepted since.
   void lift(Time now);
   /// The lifted robot has been put down at the rest version that it executes. Precondition:
   /// executing().number > 0.

@@ -252,6 +252,19 @@ TEST_CASE("a fact older than the one that ended the fencing does not exclude a v
   CHECK(registration.versions->versions()[0].number == granted->number);
 }
 
+TEST_CASE("an agent numbers a rest version above the robot's last one, also if that was never reported") {
+  NegotiationFixture f;
+  f.become_ready();
+  const VersionNumber unreported_stop = f.propose(1, 0.96).candidates[0]->number + (VersionNumber{1} << 20);
+  Feedback lifted = fact(f.initial, 0.97);
+  lifted.is_lifted = true;
+  lifted.executing.base = unreported_stop;
+  f.n.on_feedback(lifted);
+  REQUIRE(f.n.is_absent());
+  const Trajectory rest = Trajectory::resting(at_s(1.1), {2, 0});
+  CHECK(f.n.propose({&rest, 1}, 0, at_s(1)).candidates[0]->number > unreported_stop);
+}
+
 TEST_CASE("an agent recovers from a false fact about a version that its robot does not execute") {
   NegotiationFixture f;
   f.become_ready();

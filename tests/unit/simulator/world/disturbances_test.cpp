@@ -135,6 +135,29 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   CHECK(world.firmware_violations() == 0);
 }
 
+TEST_CASE("a lifted robot names its last version, which may be a stop that it has not reported") {
+  World world(separated_robots(1), kBegin, 1);
+  Time now = kBegin + milliseconds(10);
+  world.advance(now);
+  auto push = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
+  push.push_mps = {1, 0};
+  REQUIRE(world.disturb(0, push, now));
+  const auto is_off_reference = [&] { return world.firmware(0).is_off_reference(); };
+  for (int i = 0; i < 500 && !is_off_reference(); ++i) {
+    world.advance(now += milliseconds(1));
+    Command command{0, 1, 0};
+    command.fix = PoseFix{now - milliseconds(1), world.bodies()[0].position_m(), 0};
+    world.on_command(0, command, now);
+  }
+  REQUIRE(is_off_reference());
+  const VersionNumber stop = world.firmware(0).executing().number;
+  REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
+  const Feedback facts = world.feedback(0, now);
+  CHECK(facts.is_absent());
+  CHECK(facts.executing.base == stop);
+  CHECK(world.firmware_violations() == 0);
+}
+
 TEST_CASE("a version from before the robot was lifted is never executed afterwards") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
