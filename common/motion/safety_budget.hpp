@@ -10,6 +10,12 @@ namespace sidestep {
 /// from its reference must return within 25 ms; the rest of the bound is for the time until it has.
 constexpr double drift_bound_m(double tracking_bound_m) { return 0.6 * tracking_bound_m; }
 
+/// How far beside its place vision may show a robot for long, for example because a camera is calibrated
+/// badly: the part of the tracking bound that drift does not use up.
+constexpr double sight_error_bound_m(double tracking_bound_m) {
+  return tracking_bound_m - drift_bound_m(tracking_bound_m);
+}
+
 /// The errors that the margin between two robots has to cover; derived in coordinator/PROTOCOL.md.
 struct SafetyBudget {
   double tracking_bound_m = 0.005;  ///< maximum distance of a robot from its reference

@@ -160,11 +160,11 @@ void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, T
   start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
 }
 
-// A robot follows what cameras show. Within the tracking bound that is part of its tracking error.
+// A robot follows what cameras show. Within the bound of sight errors that is part of its tracking error.
 bool World::affects_body(const ActiveDisturbance& disturbance) const {
   if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return false;
   return disturbance.kind != msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||
-         disturbance.place_m.norm() > tracking_bound_m_;
+         disturbance.place_m.norm() > sight_error_bound_m(tracking_bound_m_);
 }
 
 void World::record_disturbance(std::size_t index, Time at) {
@@ -210,7 +210,7 @@ bool World::is_still_misled(const ActiveDisturbance& disturbance) const {
                           disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_AS ||
                           disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN;
   return has_misled && affects_body(disturbance) && robot.is_powered && body.is_on_floor() &&
-         (robot.firmware.position_m() - body.position_m()).norm() > tracking_bound_m_;
+         (robot.firmware.position_m() - body.position_m()).norm() > sight_error_bound_m(tracking_bound_m_);
 }
 
 void World::end(const ActiveDisturbance& disturbance) {

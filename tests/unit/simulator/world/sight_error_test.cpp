@@ -24,14 +24,14 @@ TEST_CASE("cameras see robots wrongly for a while, and ground truth reports it i
   };
   auto sight = disturbance(0, msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE);
   sight.duration = milliseconds(100);
-  SECTION("beside its place, within the tracking bound") {
-    sight.place_m = Vec2(0, 0.9 * scenario.tracking_bound_m);
+  SECTION("beside its place, within the bound") {
+    sight.place_m = Vec2(0, 0.9 * sight_error_bound_m(scenario.tracking_bound_m));
     REQUIRE(world.disturb(0, sight, now));
     CHECK(world.sight_errors()[0].offset_m == sight.place_m);
     CHECK(end_of(0) < 0);
   }
-  SECTION("beside its place, beyond the tracking bound") {
-    sight.place_m = Vec2(0, 1.1 * scenario.tracking_bound_m);
+  SECTION("beside its place, beyond the bound") {
+    sight.place_m = Vec2(0, 1.1 * sight_error_bound_m(scenario.tracking_bound_m));
     REQUIRE(world.disturb(0, sight, now));
     CHECK(world.sight_errors()[0].offset_m == sight.place_m);
     CHECK(end_of(0) == to_ns(now + sight.duration));
