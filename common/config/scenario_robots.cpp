@@ -15,7 +15,7 @@ constexpr Range kCoordinate_m{-1000, 1000};
 constexpr Range kAngle_rad{-2 * std::numbers::pi, 2 * std::numbers::pi};
 constexpr Range kRobotId{0, kMaxRobots - 1};
 constexpr Range kClockOffset_ms{-60000, 60000};
-constexpr std::size_t kMaxGoals = 1000;
+constexpr std::size_t kMaxGoals = 10000;
 
 struct PlacedRobot {
   RobotSpec robot;
