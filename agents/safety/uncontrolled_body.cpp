@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sidestep {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 constexpr double kSpread = 0.1;
 // Covers errors of the expected motion.
 constexpr double kAllowance_m = 0.03;
+// A robot that cannot avoid the body altogether leaves its stop only for this much more distance.
+constexpr double kGain_m = 0.01;
 // A body whose direction is not known may begin to move in any.
 constexpr double kUnknownDirection_m = 0.4;
 // Two bodies of 4 m/s relative speed come 2 cm closer in this time.
@@ -30,33 +33,36 @@ double UncontrolledBody::required_distance_m(const Vec2& position_m) const {
   return separation_m + kAllowance_m + kSpread * std::max(0.0, ahead_m);
 }
 
-bool avoids(const Trajectory& trajectory, Time from, const UncontrolledBody& body) {
-  const Vec2 rest_m = trajectory.rest_position_m();
+double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body) {
+  double spare_m = std::numeric_limits<double>::infinity();
   for (Time t = from; t < trajectory.end(); t += kSampling) {
     const double age_s = to_seconds(t - body.reach.observed_at);
     const Vec2 body_m = body.reach.position_m + age_s * body.velocity_mps;
-    if ((trajectory.state_at(t).position_m - body_m).norm() < body.separation_m + kAllowance_m) return false;
+    const double distance_m = (trajectory.state_at(t).position_m - body_m).norm();
+    spare_m = std::min(spare_m, distance_m - body.separation_m - kAllowance_m);
   }
   // From then on the body may still have its way before it, or have passed.
   UncontrolledBody later = body;
   later.reach.position_m +=
       to_seconds(std::max(from, trajectory.end()) - body.reach.observed_at) * body.velocity_mps;
-  return later.distance_from_path_m(rest_m) >=
-         std::min(later.required_distance_m(rest_m), body.required_distance_m(rest_m));
+  const Vec2 rest_m = trajectory.rest_position_m();
+  const double required_m = std::min(later.required_distance_m(rest_m), body.required_distance_m(rest_m));
+  return std::min(spare_m, later.distance_from_path_m(rest_m) - required_m);
 }
 
 namespace {
 
-/// Whether the robot avoids the body if it drives on for a while after the candidate's first phase.
-bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& body,
+/// Whether the robot keeps this distance to spare if it drives on for a while after the candidate's first
+/// phase.
+bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& body, double min_spare_m,
                           double deceleration_mps2) {
-  if (candidate.phases().empty()) return avoids(candidate, candidate.start(), body);
+  if (candidate.phases().empty()) return spare_distance_m(candidate, candidate.start(), body) >= min_spare_m;
   for (Duration longer{0}; longer <= kMaxDrivingOn; longer += kDrivingOnStep) {
     Trajectory trajectory(candidate.start(), candidate.at_start());
     trajectory.append(candidate.phases().front().duration, candidate.phases().front().acceleration_mps2);
     trajectory.append(longer, Vec2(0, 0));
     append_stop(trajectory, deceleration_mps2);
-    if (avoids(trajectory, trajectory.start(), body)) return true;
+    if (spare_distance_m(trajectory, trajectory.start(), body) >= min_spare_m) return true;
   }
   return false;
 }
@@ -76,7 +82,8 @@ bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& 
 UncontrolledBodies::UncontrolledBodies(std::span<const UncontrolledBody> bodies, const Trajectory* stop,
                                        Time start)
     : bodies_(bodies), stop_(stop) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) hits_stop_[i] = !avoids(*stop_, start, bodies_[i]);
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    stop_spare_m_[i] = spare_distance_m(*stop_, start, bodies_[i]);
 }
 
 bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separation_m,
@@ -85,7 +92,9 @@ bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separatio
     const UncontrolledBody& body = bodies_[i];
     if (!rests_well(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
     if (is_passively_safe(candidate, body.reach, min_separation_m)) continue;
-    if (!hits_stop_[i] || !avoids_by_driving_on(candidate, body, deceleration_mps2)) return false;
+    if (stop_spare_m_[i] >= 0) return false;
+    const double min_spare_m = std::min(0.0, stop_spare_m_[i] + kGain_m);
+    if (!avoids_by_driving_on(candidate, body, min_spare_m, deceleration_mps2)) return false;
   }
   return true;
 }

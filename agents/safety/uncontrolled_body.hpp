@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bitset>
+#include <array>
 #include <span>
 
 #include "agents/safety/moving_obstacle.hpp"
@@ -24,9 +24,9 @@ struct UncontrolledBody {
   [[nodiscard]] double required_distance_m(const Vec2& position_m) const;
 };
 
-/// Whether the body, if it moves as expected, never touches a robot that follows the trajectory from a time
-/// on and then rests.
-[[nodiscard]] bool avoids(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
+/// By how much more than required the body, if it moves as expected, stays away from a robot that follows the
+/// trajectory from a time on and then rests. Negative: it may touch the robot.
+[[nodiscard]] double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
 
 /// Which candidates a robot may follow that otherwise follows `stop`. What follows from the stop alone is
 /// decided once, in the constructor.
@@ -39,15 +39,16 @@ class UncontrolledBodies {
   /// Whether the candidate, with respect to every body,
   /// - rests beside the body's path, or farther out than the stop, by as much as it rests nearer to the body,
   /// and
-  /// - is at rest before the body could reach the robot (passive safety), or, if the body would hit the robot
-  ///   where it stops, leads out of its way if the robot then drives on for up to 0.4 s.
+  /// - is at rest before the body could reach the robot (passive safety), or, if the body may touch the robot
+  ///   that stops, leads out of its way, or at least farther from it, if the robot then drives on for up to
+  ///   0.4 s.
   [[nodiscard]] bool allow(const Trajectory& candidate, double min_separation_m,
                            double deceleration_mps2) const;
 
  private:
   std::span<const UncontrolledBody> bodies_;
   const Trajectory* stop_;
-  std::bitset<kMaxRobots> hits_stop_;  ///< by body: it would hit the robot that stops
+  std::array<double, kMaxRobots> stop_spare_m_;  ///< spare distance of the stop, by body
 };
 
 }  // namespace sidestep

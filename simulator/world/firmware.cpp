@@ -214,7 +214,10 @@ bool Firmware::is_beyond(double bound_m, const Vec2& error_m) const {
 // the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
 // control cannot correct in time, or that the margin does not cover.
 std::optional<OwnStopReason> Firmware::must_stop(const Vec2& error_m, Time now) {
-  if (!is_beyond(drift_bound_m(settings_.tracking_bound_m), error_m)) {
+  // Inflation covers where the robot may be, not the way back to its reference.
+  const double drift_m = drift_bound_m(settings_.tracking_bound_m);
+  if (estimator_.jump_m() > 0 && error_m.norm() > drift_m) return OwnStopReason::kDisplaced;
+  if (!is_beyond(drift_m, error_m)) {
     drifted_since_ = Time::max();
     return std::nullopt;
   }

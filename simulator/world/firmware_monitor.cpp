@@ -78,8 +78,7 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
   const State reference = executing_.trajectory.state_at(to.trajectory.start());
   const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
-  check_rule(expects_reboot_stop_ ||
-             error_m >= 0.5 * drift_bound_m(tracking_bound_m_) + executing_.inflation_m);
+  check_rule(expects_reboot_stop_ || error_m >= 0.5 * drift_bound_m(tracking_bound_m_));
   expects_reboot_stop_ = false;
   executing_ = to;
   highest_executed_ = to.number;

@@ -207,6 +207,7 @@ Fault choose_fault(Run& run, const Scenario& scenario, Rng& rng, bool is_carried
 void count_touches(const Run& run, std::size_t first, const Fault& fault, const std::set<RobotId>& judged,
                    std::uint64_t seed, Totals& totals) {
   bool is_on_path = true;
+  std::set<RobotId> displaced{fault.robot};  // also those that it has pushed
   for (std::size_t i = first; i < run.touches.size(); ++i) {
     const Run::Touch& touch = run.touches[i];
     const RobotId low = std::min(touch.pair.first(), touch.pair.second());
@@ -214,9 +215,11 @@ void count_touches(const Run& run, std::size_t first, const Fault& fault, const 
     const Moment& before = run.truths[touch.moment - 1];
     const bool is_with_body = low == fault.robot || high == fault.robot;
     const bool is_judged = is_with_body && judged.contains(low == fault.robot ? high : low);
-    if (!is_with_body) ++totals.other_contacts;
+    const bool is_of_others = !displaced.contains(low) && !displaced.contains(high);
+    if (!is_of_others) displaced.insert({low, high});
+    totals.other_contacts += is_of_others;
     if (is_judged && is_on_path) ++totals.touched;
-    if (!is_with_body || (is_judged && is_on_path)) {
+    if (is_of_others || (is_judged && is_on_path)) {
       WARN("seed " << seed << ": robots " << low << " at " << before.robots.at(low).velocity_mps.norm()
                    << " m/s and " << high << " at " << before.robots.at(high).velocity_mps.norm()
                    << " m/s touch " << to_seconds(before.at - fault.moved) << " s after robot " << fault.robot
