@@ -254,6 +254,19 @@ const std::vector<Cause> kCauses{
        s.feedback.executing().version_number(s.feedback.executing().version_number() + 5000);
        s.send(topics::kFeedback, s.feedback);
      }},
+    {DropReason::kFactOfHigherEpoch, "coordinator",
+     [](Stranger& s, SimSystem& system) {
+       // The coordinator no longer acts on reports of higher epochs.
+       for (int i = 1; i <= 4; ++i) {
+         s.proposal.epoch(static_cast<Epoch>(to_ns(s.now() + i * 10s)));
+         s.send(topics::kProposal, s.proposal);
+         system.run_for(10ms);
+       }
+       system.run_for(1s);
+       s.feedback.obeyed_epoch(static_cast<Epoch>(to_ns(s.now() + 60s)));
+       s.feedback.executing().version_number(s.feedback.executing().version_number() + 5000);
+       s.send(topics::kFeedback, s.feedback);
+     }},
     {DropReason::kRefusedProposal, "coordinator",
      [](Stranger& s, SimSystem&) {
        s.proposal.epoch(1);
