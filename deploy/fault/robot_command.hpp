@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// Adds the commands for a single robot to `sidestep fault`: push, slip, block, lift, place, reboot, clock and more.
+/// Adds the commands for a single robot to `sidestep fault`: push, slip, block, lift, place, reboot, clock
+/// and more.
 void add_robot_commands(const CliCommand& fault, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock, switch_off, switch_on,
-/// carry.
+/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock,
+/// switch_off, switch_on, carry.
 [[nodiscard]] std::vector<std::string> disturbance_keys();
 
 /// Reads the disturbance of the robot under one of these keys. Throws ConfigError.
