@@ -7,18 +7,18 @@
 namespace sidestep {
 namespace {
 
-constexpr double kStandardDeviations = 3;
+// Standard deviations that count. Among hundreds of robots one may have odometry that is three standard
+// deviations off, and it stays so until its filter has learned it.
+constexpr double kFixDeviations = 3, kScaleDeviations = 4;
 constexpr double kMinScaleDeviation = 1e-6;
 
 }  // namespace
 
 double max_dead_reckoning_m(const LocalisationUncertainty& uncertainty, double drift_bound_m) {
-  const double max_deviation_m = drift_bound_m / kStandardDeviations;
-  const double remaining_m2 =
-      max_deviation_m * max_deviation_m - uncertainty.position_error_rms_m * uncertainty.position_error_rms_m;
-  return remaining_m2 > 0
-             ? std::sqrt(remaining_m2) / std::max(uncertainty.odometry_scale_stddev, kMinScaleDeviation)
-             : 0;
+  const double fix_m = kFixDeviations * uncertainty.position_error_rms_m;
+  const double remaining_m2 = drift_bound_m * drift_bound_m - fix_m * fix_m;
+  const double scale = kScaleDeviations * std::max(uncertainty.odometry_scale_stddev, kMinScaleDeviation);
+  return remaining_m2 > 0 ? std::sqrt(remaining_m2) / scale : 0;
 }
 
 }  // namespace sidestep

@@ -8,6 +8,7 @@
 #include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/counter_publisher.hpp"
+#include "vision/tracking/camera_watch.hpp"
 #include "vision/tracking/tracker.hpp"
 #include "vision/tracking/vision_changes.hpp"
 
@@ -52,6 +53,7 @@ class VisionNode {
   Time next_;
   Frame frame_;
   Tracker tracker_;
+  CameraWatch watch_;
   msg::WorldState world_;
   msg::ObstacleList obstacles_;
   Writer<msg::WorldState> world_writer_;
