@@ -65,14 +65,18 @@ void Agent::update_goal(const Feedback& feedback) {
   }
 }
 
-void Agent::on_world(const WorldObservations& world, Time now) {
+void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
   obstacles_.on_world(world);
   if (!world.self || world.self->captured_at <= last_fix_) return;
-  if (world.self->captured_at > now + max_clock_difference_) {
+  const Time captured_at = world.self->captured_at;
+  const bool is_ahead =
+      is_robot_clock_known ? captured_at > now + max_clock_difference_ : !is_plausible(captured_at, now);
+  if (is_ahead) {
     ++invalid_;
     return;
   }
   fix_ = world.self;
+  if (!is_robot_clock_known) return;
   last_fix_ = fix_->captured_at;
   last_fix_m_ = fix_->position_m;
 }

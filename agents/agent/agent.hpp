@@ -47,9 +47,10 @@ class Agent {
   /// Returns whether the agent should propose again immediately, because the robot does not execute the
   /// version that the last proposal was based on.
   bool on_feedback(const Feedback& feedback);
+  /// `now`: upper bound of the time by the robot's clock. If that clock has not been measured yet, the
+  /// observation is only forwarded: a robot that has lost its pose reports nothing before it gets one.
+  void on_world(const WorldObservations& world, Time now, bool is_robot_clock_known = true);
   /// `now`: upper bound of the time by the robot's clock.
-  void on_world(const WorldObservations& world, Time now);
-  /// `now`: as for on_world().
   void on_obstacles(const ObstacleObservations& list, Time now) {
     obstacles_.on_list(list, estimate_.position_m, now);
   }

@@ -95,7 +95,7 @@ void AgentNode::on_world(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
   // The robot would take the place for that of another time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
-  agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()));
+  agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
 }
 
 void AgentNode::on_obstacles(const msg::ObstacleList& message) {

@@ -13,7 +13,9 @@ void ClockMonitor::on_feedback(const Feedback& feedback, Incarnation own, Time r
     robot_.reset();
   }
   invalid_ += !robot_.add({command->sent_at, command->received_at, feedback.valid_at, received});
-  if (const auto known = robot_.at(received)) robot_offset_ = known->nearest_to_zero();
+  const auto known = robot_.at(received);
+  knows_robot_ |= known.has_value();
+  if (known) robot_offset_ = known->nearest_to_zero();
 }
 
 void ClockMonitor::on_request_sent(Time sent) { requests_[request_count_++ % requests_.size()] = sent; }

@@ -47,6 +47,8 @@ class ClockMonitor {
   /// Estimated offset of the robot's clock from the agent's, positive if the robot's clock is ahead: the
   /// offset closest to zero that is consistent with the measurements. It is zero for clocks that agree.
   Duration robot_offset() const { return robot_offset_; }
+  /// Whether the robot's clock has ever been measured.
+  bool knows_robot() const { return knows_robot_; }
   /// Upper bound of the offset of the robot's clock from the agent's; robot_offset() if there is no recent
   /// measurement.
   Duration max_robot_offset(Time now) const;
@@ -66,6 +68,7 @@ class ClockMonitor {
   ClockOffset robot_, coordinator_;  // offsets from the agent's clock
   Incarnation robot_incarnation_ = 0;
   Epoch epoch_ = 0;
+  bool knows_robot_ = false;
   Duration robot_offset_{0};
   std::array<Time, 64> requests_{};  // send times of the latest requests: echoes of other stamps are ignored
   std::size_t request_count_ = 0;

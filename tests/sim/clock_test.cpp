@@ -39,6 +39,26 @@ struct Statuses {
   }
 };
 
+TEST_CASE("a new agent helps a robot to find its pose although its host's clock is wrong") {
+  const double ahead_s = GENERATE(-4.0, 4.0);
+  CAPTURE(ahead_s);
+  const Scenario scenario = circle_scenario(4);
+  ClockError error;
+  error.offset = from_seconds(ahead_s);
+  SimSystem system(scenario, 1, {{"agent 2", error}});
+  system.run_for(std::chrono::milliseconds(1500));
+  msg::Disturbance disturbance;
+  disturbance.robot(2);
+  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE);
+  system.disturb(disturbance);
+  // The new agent cannot measure the robot's clock, because the robot reports nothing.
+  system.run_for(std::chrono::milliseconds(5));
+  system.kill("agent 2");
+  system.restart("agent 2");
+  CHECK(system.run_until_arrived(system.now() + std::chrono::seconds(20)));
+  CHECK(system.metrics().report().contacts == 0);
+}
+
 TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);

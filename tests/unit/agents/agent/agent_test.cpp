@@ -226,6 +226,21 @@ TEST_CASE("an observation from the future is dropped and counted, and later vali
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
 }
 
+TEST_CASE("before the robot's clock is known, an observation is forwarded but not used") {
+  DrivenAgent d;
+  d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
+  d.observe_self(0, 0.5, 0.61);
+  d.agent.on_world(observation(0, 3599), at_s(0.61), false);
+  const Command command = d.agent.command(at_s(0.62));
+  REQUIRE(command.fix);
+  CHECK(command.fix->captured_at == at_s(3599));
+  d.agent.on_world(observation(0, 3601), at_s(0.61), false);
+  CHECK_FALSE(d.agent.command(at_s(0.62)).fix);
+  d.observe(0, 0.62, 0.63);
+  CHECK(d.plans(0.63));
+  CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 1);
+}
+
 TEST_CASE("an observation is forwarded to the robot once") {
   DrivenAgent d;
   d.observe(0.001, 0.6, 0.61);
