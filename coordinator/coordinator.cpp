@@ -22,7 +22,8 @@ Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, E
       displaced_(rules.margin_m),
       epoch_(epoch),
       unregistered_count_(ledger_.roster().size()),
-      records_(kMaxRobots) {}
+      records_(kMaxRobots),
+      held_(kMaxRobots) {}
 
 void Coordinator::begin_epoch(Epoch epoch) {
   epoch_ = epoch;
@@ -210,8 +211,9 @@ msg::Reason Coordinator::suspension_reason(RobotId robot) const {
   if (ledger_.is_quarantined(robot)) return msg::Reason::REASON_QUARANTINED;
   // Vision may see an absent robot while it is carried. It may still be granted a place to be put down.
   const bool is_absent = ledger_.versions(robot).empty();
-  return displaced_.contains(robot) && !is_absent ? msg::Reason::REASON_DISPLACED
-                                                  : msg::Reason::REASON_GRANTED;
+  if (is_absent) return msg::Reason::REASON_GRANTED;
+  if (displaced_.contains(robot)) return msg::Reason::REASON_DISPLACED;
+  return held_[robot] ? msg::Reason::REASON_HELD : msg::Reason::REASON_GRANTED;
 }
 
 const Verdict* Coordinator::find_verdict(const Record& record, VersionNumber proposal_number) const {

@@ -38,6 +38,10 @@ class Coordinator {
   /// awaits the robot's registration.
   bool on_attestation(RobotId robot);
 
+  /// Nothing is granted to a held robot, also in later epochs, so that it stops as it may already do.
+  /// Initially none is held.
+  void set_held(RobotId robot, bool is_held) { held_[robot] = is_held; }
+
   bool is_active() const { return epoch_ != 0; }
   /// False until every robot of the roster has registered, or its absence is attested.
   bool is_granting() const { return is_active() && unregistered_count_ == 0; }
@@ -90,6 +94,7 @@ class Coordinator {
   Epoch epoch_;
   std::size_t unregistered_count_, silent_count_ = 0;
   std::vector<Record> records_;  // by robot
+  std::vector<bool> held_;       // by robot
   std::uint64_t proposals_ = 0, grants_ = 0, denials_ = 0;
   DropCounters drops_;
 };

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coordinator/coordinator_node.hpp"
 
+#include <algorithm>
+
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/observation_codec.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/protocol/reason_text.hpp"
@@ -15,6 +18,9 @@ namespace {
 constexpr int kStandbyAnnouncePeriod = 10;
 // A robot that has been heard of within this time is not absent.
 constexpr Duration kSilence{1'000'000'000};
+constexpr Duration kOrderPeriod{1'000'000'000};
+// A new agent is told the orders at once, but not more often than this.
+constexpr Duration kMinOrderPeriod{50'000'000};
 // A world state that is valid later by this coordinator's clock is refused: it would make all others
 // outdated.
 constexpr Duration kMaxVisionAhead{100'000'000};
@@ -28,10 +34,13 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       cycle_(scenario.cycle),
       failover_(self, is_standby, bus.now()),
       coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch()),
+      orders_(scenario, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number),
       counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
+  answer_writer_ = bus_.advertise(topics::kOrderAnswer);
+  memory_writer_ = bus_.advertise(topics::kOrderMemory);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
@@ -50,9 +59,18 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world(message); });
   bus_.subscribe(topics::kAttestation,
                  [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
+  bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { on_order(message); });
+  bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& message) {
+    take(decode(message, bus_.now()), DropReason::kMalformedOrder);
+  });
+  bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& message) {
+    take(decode(message), DropReason::kMalformedOrder);
+  });
+  apply_holds();
   update_failover();
   publish_state_periodically();
   publish_ledger();
+  publish_orders_periodically();
 }
 
 void CoordinatorNode::on_event(LogLevel min_level, OnLogEvent callback) {
@@ -94,6 +112,7 @@ void CoordinatorNode::count_drops(DropCounters& drops) const {
 void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
   failover_.on_heartbeat(heartbeat, bus_.now());
   apply_epoch();
+  if (!heartbeat.remembers_orders) repeat_orders();
 }
 
 void CoordinatorNode::handle(const Registration& registration) {
@@ -102,8 +121,22 @@ void CoordinatorNode::handle(const Registration& registration) {
   if (const auto verdict = coordinator_.on_registration(registration)) {
     answer(*verdict);
     report_registration(registration, *verdict);
+    if (verdict->reasons.front() == msg::Reason::REASON_GRANTED) learn_of_orders(registration);
   }
-  if (coordinator_.is_granting() != was_granting) publish_state();
+  if (coordinator_.is_granting() != was_granting) {
+    update_orders();
+    publish_state();
+  }
+}
+
+void CoordinatorNode::learn_of_orders(const Registration& registration) {
+  has_history_ |= registration.knows_orders || registration.has_moved;
+  if (!registration.knows_orders) repeat_orders();
+}
+
+void CoordinatorNode::repeat_orders() {
+  const bool is_due = !orders_published_at_ || bus_.now() - *orders_published_at_ > kMinOrderPeriod;
+  if (orders_.is_complete() && is_due) publish_orders(orders_.book().all(), false);
 }
 
 void CoordinatorNode::report_registration(const Registration& registration, const Verdict& verdict) const {
@@ -175,6 +208,68 @@ void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
   }
 }
 
+void CoordinatorNode::on_order(const msg::Order& message) {
+  const auto order = decode(message, bus_.now());
+  const auto result = order ? orders_.on_order(*order) : msg::OrderResult::RESULT_MALFORMED;
+  if (!order)
+    drops_.count(DropReason::kMalformedOrder);
+  else if (result != msg::OrderResult::RESULT_REMEMBERED)
+    drops_.count(DropReason::kRefusedOrder);
+  apply_orders();
+  if (!coordinator_.is_active()) return;
+  msg::OrderAnswer answer;
+  answer.client(message.header().sender());
+  answer.order_number(message.terms().order_number());
+  answer.result(result);
+  answer.newest_number(orders_.book().newest_number());
+  publish(answer_writer_, answer);
+}
+
+void CoordinatorNode::handle(const OrderPage& page) {
+  if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
+  const bool was_complete = orders_.is_complete();
+  if (orders_.on_page(page)) apply_orders();
+  if (orders_.is_complete() == was_complete) return;
+  apply_holds();
+  publish_state();
+}
+
+void CoordinatorNode::update_orders() {
+  if (!orders_.update(coordinator_.is_granting(), has_history_, bus_.now())) return;
+  if (has_history_)
+    events_.report(LogLevel::kWarning, {},
+                   "no process remembers what was ordered: holds all robots until an operator resumes");
+  apply_orders();
+  apply_holds();
+  publish_orders(orders_.book().all(), false);
+  publish_state();
+}
+
+void CoordinatorNode::apply_holds() {
+  for (const RobotId robot : coordinator_.ledger().roster())
+    coordinator_.set_held(robot, orders_.is_held(robot));
+}
+
+void CoordinatorNode::apply_orders() {
+  const auto changes = orders_.take_changes();
+  if (changes.empty()) return;
+  apply_holds();
+  if (coordinator_.is_active()) publish_orders(changes, true);
+}
+
+void CoordinatorNode::publish_orders(std::span<const RememberedOrder> orders, bool have_changed) {
+  if (!have_changed) orders_published_at_ = bus_.now();
+  for (msg::OrderMemory& page : encode(orders, orders_.is_complete(), have_changed)) {
+    page.process(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
+    publish(memory_writer_, page);
+  }
+}
+
+void CoordinatorNode::publish_orders_periodically() {
+  bus_.at(bus_.now() + kOrderPeriod, [this] { publish_orders_periodically(); });
+  publish_orders(orders_.book().all(), false);
+}
+
 void CoordinatorNode::handle(const Proposal& proposal) {
   observe_epoch(proposal.robot, proposal.epoch, EpochHolder::kAgent);
   if (const auto verdict = coordinator_.on_proposal(proposal)) answer(*verdict);
@@ -194,9 +289,12 @@ void CoordinatorNode::answer(const Verdict& verdict) {
 void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
+  has_history_ = false;
   changes_.reset();
   report_role();
   publish_state();
+  // Orders that arrived while it stood by were announced by another, if at all.
+  if (coordinator_.is_active()) publish_orders(orders_.book().all(), false);
 }
 
 void CoordinatorNode::update_failover() {
@@ -208,6 +306,7 @@ void CoordinatorNode::update_failover() {
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
+  state.remembers_orders(orders_.is_complete());
   encode(failover_.cause(), state);
   publish(state_writer_, state);
   changes_.update(state, coordinator_.ledger().conflicts(), bus_.now());
@@ -215,6 +314,7 @@ void CoordinatorNode::publish_state() {
 
 void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
+  update_orders();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }
 

@@ -11,6 +11,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"
+#include "coordinator/order_keeper.hpp"
 #include "coordinator/state_changes.hpp"
 
 namespace sidestep {
@@ -29,6 +30,7 @@ class CoordinatorNode {
   void on_event(LogLevel min_level, OnLogEvent callback);
 
   const Coordinator& coordinator() const { return coordinator_; }
+  const OrderKeeper& orders() const { return orders_; }
   void count_drops(DropCounters& drops) const;
 
  private:
@@ -43,6 +45,20 @@ class CoordinatorNode {
   void handle(const Proposal& proposal);
   void on_world(const msg::WorldState& message);
   void on_attestation(const msg::AbsenceAttestation& message);
+  void on_order(const msg::Order& message);
+  void handle(const OrderPage& page);
+  void handle(const OrderReport& report) { (void)orders_.on_report(report); }
+  /// Learns from a registration whether there may be orders, and tells the agent those that it lacks.
+  void learn_of_orders(const Registration& registration);
+  /// Completes the memory of orders if that is possible.
+  void update_orders();
+  void apply_holds();
+  /// Applies and announces changes of the orders.
+  void apply_orders();
+  void publish_orders(std::span<const RememberedOrder> orders, bool have_changed);
+  void publish_orders_periodically();
+  /// Tells all orders again for a process that has just started.
+  void repeat_orders();
   /// Reports in which epoch this coordinator is active, or that it stands by, and why.
   void report_role();
   void report_registration(const Registration& registration, const Verdict& verdict) const;
@@ -61,13 +77,18 @@ class CoordinatorNode {
   Duration cycle_;
   Failover failover_;
   Coordinator coordinator_;
+  OrderKeeper orders_;
+  bool has_history_ = false;  // in this epoch, a robot has registered that has moved or been given orders
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
+  Writer<msg::OrderAnswer> answer_writer_;
+  Writer<msg::OrderMemory> memory_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
   EventReporter events_;
   StateChanges changes_{events_};
   std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
   std::vector<RobotObservation> observations_;  // of the last world state
+  std::optional<Time> orders_published_at_;     // all of them
   int standby_periods_ = 0;                     // heartbeat periods while standing by
   DropCounters drops_;                          // messages that this node has not used
   CounterPublisher counters_;

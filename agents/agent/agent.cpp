@@ -29,6 +29,8 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       displaced_(robot, scenario.radius_m, scenario.margin_m,
                  std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps), max_clock_difference_),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
+      assignment_(robot, robot_.goals),
+      desired_heading_rad_(robot_.start_heading_rad),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
 }
@@ -46,6 +48,7 @@ void Agent::update_estimate(const Feedback& feedback) {
   neighbours_.set_horizon(estimate_.position_m, page_horizon_m());
   const VersionNumber stop = feedback.is_off_reference ? feedback.executing.number : 0;
   reference_losses_ += stop > last_own_stop_;
+  robot_has_moved_ |= feedback.has_moved;
   last_own_stop_ = std::max(last_own_stop_, stop);
 }
 
@@ -55,14 +58,41 @@ void Agent::update_goal(const Feedback& feedback) {
     return;
   }
   if (!feedback.is_lifted) placement_m_.reset();  // the robot has been put down
+  if (!assignment_.goal()) return;
   const Trajectory& executing = negotiation_.executing().trajectory;
   const bool is_at_rest = feedback.valid_at >= executing.end();
-  arrived_ = is_at_rest && (executing.rest_position_m() - goal().position_m).norm() < goal_tolerance_m_;
-  if (arrived_ && goal_index_ + 1 < robot_.goals.size()) {
-    ++goal_index_;
-    arrived_ = false;
-    route_planner_.reset();
-  }
+  arrived_ = is_at_rest && (executing.rest_position_m() - goal().position_m).norm() <
+                               goal().tolerance_m.value_or(goal_tolerance_m_);
+  if (!arrived_) return;
+  const std::uint64_t revision = assignment_.revision();
+  assignment_.on_arrival();
+  begin_if_changed(revision);
+}
+
+void Agent::on_orders(std::shared_ptr<const OrderPage> page) {
+  const std::uint64_t revision = assignment_.revision();
+  assignment_.on_page(std::move(page));
+  begin_if_changed(revision);
+}
+
+void Agent::choose_order() {
+  const std::uint64_t revision = assignment_.revision();
+  assignment_.choose();
+  begin_if_changed(revision);
+}
+
+void Agent::begin_if_changed(std::uint64_t revision) {
+  if (assignment_.revision() == revision) return;
+  arrived_ = false;
+  route_planner_.reset();
+  if (assignment_.goal()) desired_heading_rad_ = goal().heading_rad.value_or(robot_.start_heading_rad);
+}
+
+Registration Agent::registration() {
+  Registration registration = negotiation_.registration();
+  registration.has_moved = robot_has_moved_;
+  registration.knows_orders = assignment_.is_known();
+  return registration;
 }
 
 void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
@@ -115,35 +145,33 @@ Command Agent::command(Time now) {
   Command command{robot_.id, negotiation_.incarnation(), negotiation_.epoch()};
   command.version = forwarded_;
   command.fix = std::exchange(fix_, std::nullopt);
-  command.desired_heading_rad = goal().heading_rad.value_or(robot_.start_heading_rad);
+  command.desired_heading_rad = desired_heading_rad_;
   return command;
 }
 
 AgentActivity Agent::activity(Time now) const {
-  return {negotiation_.is_fenced(),
-          negotiation_.is_superseded(),
-          negotiation_.incarnation(),
-          negotiation_.is_registered(),
-          negotiation_.epoch(),
-          wait_reason(now),
-          goal_index_,
-          arrived_,
-          recovery_.is_active(),
-          is_escaping_};
+  return {negotiation_.is_fenced(),   negotiation_.is_superseded(),
+          negotiation_.incarnation(), negotiation_.is_registered(),
+          negotiation_.epoch(),       wait_reason(now),
+          assignment_.goal_index(),   arrived_,
+          recovery_.is_active(),      is_escaping_};
 }
 
 msg::AgentStatus Agent::status(Time now) const {
   msg::AgentStatus status;
   status.robot(robot_.id);
   const Negotiation& n = negotiation_;
-  status.agent_state(!n.is_fenced()           ? msg::AgentState::AGENT_FENCING
-                     : n.needs_registration() ? msg::AgentState::AGENT_REGISTERING
-                     : n.is_absent()          ? msg::AgentState::AGENT_ABSENT
-                     : arrived_               ? msg::AgentState::AGENT_ARRIVED
-                     : n.may_propose(now)     ? msg::AgentState::AGENT_DRIVING
-                                              : msg::AgentState::AGENT_WAITING);
-  status.goal_index(static_cast<std::uint32_t>(goal_index_));
-  status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());
+  status.agent_state(!n.is_fenced()            ? msg::AgentState::AGENT_FENCING
+                     : n.needs_registration()  ? msg::AgentState::AGENT_REGISTERING
+                     : n.is_absent()           ? msg::AgentState::AGENT_ABSENT
+                     : assignment_.is_held()   ? msg::AgentState::AGENT_HELD
+                     : !assignment_.is_known() ? msg::AgentState::AGENT_WAITING
+                     : arrived_                ? msg::AgentState::AGENT_ARRIVED
+                     : !assignment_.goal()     ? msg::AgentState::AGENT_WITHOUT_ORDER
+                     : n.may_propose(now)      ? msg::AgentState::AGENT_DRIVING
+                                               : msg::AgentState::AGENT_WAITING);
+  status.goal_index(static_cast<std::uint32_t>(assignment_.goal_index()));
+  if (assignment_.goal()) status.distance_to_go_m((goal().position_m - estimate_.position_m).norm());
   status.speed_mps(estimate_.velocity_mps.norm());
   status.cycles(n.counts().cycles);
   status.missed_cycles(n.counts().missed);
@@ -153,6 +181,19 @@ msg::AgentStatus Agent::status(Time now) const {
   status.proposals(n.counts().proposals);
   status.grants(n.counts().grants);
   status.denials(n.counts().denials);
+  return status;
+}
+
+msg::OrderStatus Agent::order_status() const {
+  const OrderReport report = assignment_.report();
+  msg::OrderStatus status;
+  status.robot(robot_.id);
+  status.client(report.client);
+  status.order_number(report.number);
+  status.order_state(report.progress.state);
+  status.pose_index(static_cast<std::uint16_t>(report.progress.goal_index));
+  status.is_held(assignment_.is_held());
+  status.remaining_s(-1);
   return status;
 }
 

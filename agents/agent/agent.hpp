@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "agents/agent/agent_changes.hpp"
+#include "agents/agent/assignment.hpp"
 #include "agents/agent/displaced_obstacles.hpp"
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/neighbours.hpp"
@@ -58,6 +59,8 @@ class Agent {
   /// Learns where the lifted robot is to be put down.
   void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
+  /// Orders that a coordinator remembers.
+  void on_orders(std::shared_ptr<const OrderPage> page);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
   /// Closes the cycle that ends now: abandons its proposals that have no verdict.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
@@ -70,7 +73,7 @@ class Agent {
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
-  Registration registration() { return negotiation_.registration(); }
+  Registration registration();
   /// The earliest start for a new version: the next cycle, or a later one on a slow network.
   Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
@@ -98,6 +101,13 @@ class Agent {
   /// version until its start.
   Command command(Time now);
 
+  const Assignment& assignment() const { return assignment_; }
+  /// Goes on to the next order if the robot has finished one.
+  void choose_order();
+  /// See Assignment.
+  std::vector<RememberedOrder> take_missing_orders() { return assignment_.take_missing(); }
+  msg::OrderStatus order_status() const;
+
   void count_drops(DropCounters& drops) const;
   /// Without the durations, which the caller measures.
   msg::AgentStatus status(Time now) const;
@@ -107,7 +117,10 @@ class Agent {
   void update_estimate(const Feedback& feedback);
   /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
   void update_goal(const Feedback& feedback);
-  const Goal& goal() const { return robot_.goals[goal_index_]; }
+  /// Precondition: the robot has an order.
+  const Goal& goal() const { return *assignment_.goal(); }
+  /// Begins with another goal if it has changed since this revision of the assignment.
+  void begin_if_changed(std::uint64_t revision);
   /// Replaces the route planner if stationary robots or moving obstacles have changed.
   void update_route_planner(Time now);
   std::vector<Circle> temporary_obstacles(Time now);
@@ -143,7 +156,9 @@ class Agent {
   Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions
   LastChoice last_choice_;
   Rng rng_;
-  std::size_t goal_index_ = 0;
+  Assignment assignment_;
+  bool robot_has_moved_ = false;  // ever, by a granted version
+  double desired_heading_rad_;
   std::optional<RoutePlanner> route_planner_;  // to the current goal
   std::vector<Circle> temporary_obstacles_;    // of route_planner_, in addition to the scenario's obstacles
   DeadlockRecovery recovery_;

@@ -76,7 +76,7 @@ class AgentChanges {
   VersionNumber own_stop_ = 0;
   std::uint64_t activated_ = 0;
   // Denials since the last report.
-  std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_DISPLACED) + 1> denials_{};
+  std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_HELD) + 1> denials_{};
   std::uint64_t denial_count_ = 0;
   RobotId blocker_ = 0;  // of the last conflict
   Time denials_reported_at_{};

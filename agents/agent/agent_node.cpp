@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <tuple>
 #include <utility>
 
 #include "common/messaging/histogram_codec.hpp"
 #include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "idl/disturbance.hpp"
 
@@ -15,6 +17,8 @@ namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
+constexpr Duration kOrderRepetitionPeriod{250'000'000};
+constexpr Duration kOrderStatusPeriod{1'000'000'000};
 
 /// Offset of the robot's cycles from multiples of the cycle time.
 Duration cycle_offset(const Scenario& scenario, RobotId robot) {
@@ -48,6 +52,8 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)),
+      order_writer_(bus.advertise(topics::kOrderMemory)),
+      order_status_writer_(bus.advertise(topics::kOrderStatus)),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
   subscribe();
   const Time now = robot_now();
@@ -64,6 +70,7 @@ void AgentNode::subscribe() {
   bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& m) { on_disturbance(m); });
   bus_.subscribe(topics::kLedger, [this](const msg::LedgerPage& m) { on_page(m); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& m) { on_coordinator_state(m); });
+  bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& m) { on_orders(m); });
 }
 
 void AgentNode::on_feedback(const msg::Feedback& message) {
@@ -72,6 +79,7 @@ void AgentNode::on_feedback(const msg::Feedback& message) {
   measure_robot_clock(*feedback);
   const Epoch last_epoch = agent_.epoch();
   const bool is_contradicted = agent_.on_feedback(*feedback);
+  publish_order_status();
   changes_.on_feedback(*feedback);
   if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), std::nullopt);
   register_if_due();
@@ -120,6 +128,12 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
   register_if_due();
+  const bool needs_orders = heartbeat->epoch == agent_.epoch() && !heartbeat->remembers_orders;
+  if (needs_orders && agent_.assignment().is_known() &&
+      bus_.now() - orders_repeated_at_ > kOrderRepetitionPeriod) {
+    orders_repeated_at_ = bus_.now();
+    publish_orders(agent_.assignment().all(), true);
+  }
   if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))
     negotiate_if_time();
 }
@@ -134,6 +148,28 @@ void AgentNode::on_disturbance(const msg::Disturbance& message) {
     drops_.count(DropReason::kMalformedPlacement);
 }
 
+std::shared_ptr<const OrderPage> AgentNode::shared_page(const msg::OrderMemory& message) {
+  MessageAttachment* const attachment = bus_.attachment(&message);
+  if (attachment) {
+    if (auto shared = attachment->get<OrderPage>()) return shared;
+  }
+  auto decoded = decode(message, bus_.now());
+  if (!decoded) return nullptr;
+  const auto page = std::make_shared<OrderPage>(std::move(*decoded));
+  if (attachment) attachment->set(page);
+  return page;
+}
+
+void AgentNode::on_orders(const msg::OrderMemory& message) {
+  if (!is_coordinator(message.header().sender())) return;
+  const auto page = shared_page(message);
+  if (!page) return drops_.count(DropReason::kMalformedOrder);
+  agent_.on_orders(page);
+  if (agent_.is_superseded()) return;
+  if (const auto missing = agent_.take_missing_orders(); !missing.empty()) publish_orders(missing, false);
+  publish_order_status();
+}
+
 void AgentNode::begin_cycle() {
   // The estimate of the robot's clock may have changed slightly since the timer was set.
   const Duration early = next_cycle_ - robot_now();
@@ -143,6 +179,7 @@ void AgentNode::begin_cycle() {
   agent_.close_cycle(now);
   report_changes();
   if (agent_.is_superseded()) return;
+  agent_.choose_order();
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
@@ -243,6 +280,30 @@ void AgentNode::count_drops(DropCounters& drops) const {
   agent_.count_drops(drops);
   clocks_.count_drops(drops);
   world_.count_drops(drops);
+}
+
+void AgentNode::publish_orders(std::span<const RememberedOrder> orders, bool are_all) {
+  for (msg::OrderMemory& page : encode(orders, agent_.assignment().is_known(), !are_all)) {
+    page.process(robot_);
+    page.header().sender(robot_);
+    page.header().incarnation(agent_.incarnation());
+    order_writer_.publish(page, bus_.now());
+  }
+}
+
+void AgentNode::publish_order_status() {
+  if (agent_.is_superseded()) return;
+  msg::OrderStatus status = agent_.order_status();
+  const bool has_changed =
+      std::tuple(status.order_number(), status.order_state(), status.pose_index(), status.is_held()) !=
+      std::tuple(order_status_.order_number(), order_status_.order_state(), order_status_.pose_index(),
+                 order_status_.is_held());
+  if (!has_changed && bus_.now() - order_status_at_ < kOrderStatusPeriod) return;
+  order_status_at_ = bus_.now();
+  order_status_ = status;
+  status.header().sender(robot_);
+  status.header().incarnation(agent_.incarnation());
+  order_status_writer_.publish(status, bus_.now());
 }
 
 void AgentNode::publish_status() {

@@ -39,6 +39,9 @@ class AgentNode {
   void on_page(const msg::LedgerPage& message);
   void on_coordinator_state(const msg::CoordinatorState& message);
   void on_disturbance(const msg::Disturbance& message);
+  void on_orders(const msg::OrderMemory& message);
+  /// The decoded page, which all agents of this process share; null if it is not valid.
+  std::shared_ptr<const OrderPage> shared_page(const msg::OrderMemory& message);
   /// Whether a message could be decoded. Counts the others.
   template <typename Value>
   bool accept(const std::optional<Value>& decoded, DropReason reason) {
@@ -67,6 +70,10 @@ class AgentNode {
   void publish_registration();
   void publish_proposal(const Proposal& proposal);
   void publish_status();
+  /// Tells coordinators of orders; all that the agent remembers, or those that one lacks.
+  void publish_orders(std::span<const RememberedOrder> orders, bool are_all);
+  /// Publishes the order's status if it has changed, and once a second.
+  void publish_order_status();
 
   Bus& bus_;
   RobotId robot_;
@@ -88,6 +95,10 @@ class AgentNode {
   Writer<msg::Registration> registration_writer_;
   Writer<msg::Proposal> proposal_writer_;
   Writer<msg::AgentStatus> status_writer_;
+  Writer<msg::OrderMemory> order_writer_;
+  Writer<msg::OrderStatus> order_status_writer_;
+  msg::OrderStatus order_status_;  // published last
+  Time orders_repeated_at_{}, order_status_at_{};
   CounterPublisher counters_;
 };
 

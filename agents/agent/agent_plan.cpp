@@ -107,6 +107,9 @@ WaitReason Agent::wait_reason(Time now) const {
   const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
   if (const WaitReason reason = negotiation_.wait_reason(now); reason != WaitReason::kNone) return reason;
   if (negotiation_.is_absent()) return WaitReason::kNone;
+  if (!assignment_.is_known()) return WaitReason::kOrdersUnknown;
+  if (assignment_.is_held()) return WaitReason::kHeld;
+  if (!assignment_.goal()) return WaitReason::kNoOrder;
   if (!is_recent(last_fix_, settings_.max_fix_age)) return WaitReason::kNotSeen;
   if (!is_recent(obstacles_.complete_at(), settings_.max_fix_age)) return WaitReason::kNoObstacleList;
   if (!is_recent(watched_until_, settings_.max_watch_age)) return WaitReason::kNotWatched;
@@ -122,6 +125,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
       (rest - goal().position_m).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
   if (ends_at_goal || start <= base.trajectory.start()) return std::nullopt;
   const State at_start = base.trajectory.state_at(start);
+  if (goal().speed_limit_mps) max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
   update_route_planner(now);
   const Route straight{goal().position_m, (goal().position_m - at_start.position_m).norm()};
   const Route route = route_planner_->route_from(at_start.position_m).value_or(straight);

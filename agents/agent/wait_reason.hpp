@@ -16,6 +16,9 @@ enum class WaitReason : std::uint8_t {
   kOthersNotRegistered,  ///< the coordinator does not grant yet
   kRobotSilent,          ///< the robot reports nothing
   kTooManyVersions,      ///< the robot may execute as many versions as can be tracked
+  kOrdersUnknown,        ///< no coordinator that remembers all orders has been heard
+  kHeld,                 ///< an order holds the robot
+  kNoOrder,              ///< the robot has no order
   kNotSeen,              ///< vision has lost the robot
   kNoObstacleList,       ///< no complete list of obstacles has arrived lately
   kNotWatched,           ///< the coordinator has had no world state lately
@@ -43,6 +46,12 @@ constexpr const char* to_text(WaitReason reason) {
       return "facts from the robot: it is silent";
     case WaitReason::kTooManyVersions:
       return "a fact that shows which versions the robot has left";
+    case WaitReason::kOrdersUnknown:
+      return "the orders that coordinators remember";
+    case WaitReason::kHeld:
+      return "an order to resume: it is held";
+    case WaitReason::kNoOrder:
+      return "an order";
     case WaitReason::kNotSeen:
       return "vision: it does not see the robot";
     case WaitReason::kNoObstacleList:

@@ -9,6 +9,7 @@
 #include "common/geometry/field.hpp"
 #include "common/image/image.hpp"
 #include "common/motion/floor_rules.hpp"
+#include "common/motion/goal.hpp"
 #include "common/motion/limits.hpp"
 #include "common/motion/safety_budget.hpp"
 #include "common/motion/version.hpp"
@@ -18,17 +19,12 @@ namespace sidestep {
 
 enum class Team { kBlue, kYellow };
 
-struct Goal {
-  Vec2 position_m{0, 0};
-  std::optional<double> heading_rad;  ///< nullopt: any
-};
-
 struct RobotSpec {
   RobotId id = 0;
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;     ///< visited in order; at least one
+  std::vector<Goal> goals;     ///< visited in order; may be empty
   Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
   double clock_drift_ppm = 0;  ///< by which the robot's clock gains on the host's
   bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate

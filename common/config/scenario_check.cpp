@@ -62,6 +62,12 @@ struct PlacementCheck {
   }
 };
 
+/// Where the robot stays at the end: a robot without goals stays where it starts.
+std::optional<Vec2> last_place_m(const RobotSpec& robot) {
+  if (!robot.goals.empty()) return robot.goals.back().position_m;
+  return robot.is_absent ? std::nullopt : std::optional(robot.start_m);
+}
+
 }  // namespace
 
 void check_placement(const Scenario& scenario, const std::vector<RobotLines>& lines,
@@ -90,9 +96,12 @@ void check_placement(const Scenario& scenario, const std::vector<RobotLines>& li
           return fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id);
         });
       }
-      check.check_distance(
-          robots[i].goals.back().position_m, robots[j].goals.back().position_m, lines[i].goals.back(),
-          [&] { return fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id); });
+      const auto last_i = last_place_m(robots[i]), last_j = last_place_m(robots[j]);
+      if (!last_i || !last_j) continue;
+      const int line = robots[i].goals.empty() ? lines[i].start : lines[i].goals.back();
+      check.check_distance(*last_i, *last_j, line, [&] {
+        return fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id);
+      });
     }
   }
 }

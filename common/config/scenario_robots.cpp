@@ -41,7 +41,10 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
   map.read("absent", robot.is_absent);
 
   const YamlLocation goals = map.location_of("goals_m");
-  for (const YAML::Node& element : list_from(map.require("goals_m"), goals, kMaxGoals)) {
+  const YAML::Node goal_list = map.find("goals_m");
+  const auto elements =
+      goal_list.IsDefined() ? list_from(goal_list, goals, kMaxGoals) : std::vector<YAML::Node>();
+  for (const YAML::Node& element : elements) {
     const YamlLocation goal_location = goals.of(element, goals.what);
     const auto numbers = numbers_from(element, goal_location, 2, 3, kCoordinate_m);
     Goal goal{{numbers[0], numbers[1]}, std::nullopt};
@@ -49,7 +52,7 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
     robot.goals.push_back(goal);
     placed.lines.goals.push_back(goal_location.line);
   }
-  if (robot.goals.empty()) goals.fail("expected at least one goal");
+  if (goal_list.IsDefined() && robot.goals.empty()) goals.fail("expected at least one goal");
   map.finish();
   return placed;
 }

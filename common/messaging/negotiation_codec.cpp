@@ -59,14 +59,17 @@ std::optional<Proposal> decode(const msg::Proposal& message, Time now) {
 
 std::optional<Registration> decode(const msg::Registration& message, Time now) {
   if (!speaks_for_itself(message) || !is_plausible(message, now)) return std::nullopt;
-  return Registration{message.robot(), message.header().incarnation(), message.epoch(),
-                      time_from_ns(message.header().stamp_ns()), decode_versions(message, now)};
+  return Registration{message.robot(),
+                      message.header().incarnation(),
+                      message.epoch(),
+                      time_from_ns(message.header().stamp_ns()),
+                      decode_versions(message, now),
+                      message.has_moved(),
+                      message.knows_orders()};
 }
 
 std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
-  const auto is_known = [](msg::Reason reason) {
-    return is_enumerator(reason, msg::Reason::REASON_DISPLACED);
-  };
+  const auto is_known = [](msg::Reason reason) { return is_enumerator(reason, msg::Reason::REASON_HELD); };
   const bool is_valid = message.robot() == robot && is_coordinator(message.header().sender()) &&
                         std::ranges::all_of(message.reasons(), is_known);
   if (!is_valid) return std::nullopt;
@@ -93,7 +96,8 @@ std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message,
   if (!is_valid) return std::nullopt;
   return CoordinatorHeartbeat{
       message.header().sender(),  message.header().incarnation(),           message.epoch(),
-      message.coordinator_mode(), time_from_ns(message.watched_until_ns()), message.notices()};
+      message.coordinator_mode(), time_from_ns(message.watched_until_ns()), message.remembers_orders(),
+      message.notices()};
 }
 
 std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message) {
@@ -132,6 +136,8 @@ msg::Registration encode(const Registration& registration) {
   message.epoch(registration.epoch);
   const VersionSet versions = registration.versions.value_or(VersionSet{});
   message.is_absent(versions.versions().empty());
+  message.has_moved(registration.has_moved);
+  message.knows_orders(registration.knows_orders);
   message.version_count(static_cast<std::uint8_t>(versions.versions().size()));
   std::ranges::transform(versions.versions(), message.versions().begin(),
                          [](const Version& version) { return encode(version); });

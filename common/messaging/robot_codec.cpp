@@ -85,6 +85,7 @@ std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time
   feedback.heading_rad = message.heading_rad();
   feedback.tracking_error_m = message.tracking_error_m();
   feedback.uncertainty = uncertainty;
+  feedback.has_moved = message.has_moved();
   feedback.activated = message.activated();
   return feedback;
 }
@@ -126,6 +127,7 @@ msg::Feedback encode(const Feedback& feedback) {
   message.tracking_error_m(feedback.tracking_error_m);
   message.position_error_rms_m(feedback.uncertainty.position_error_rms_m);
   message.odometry_scale_stddev(feedback.uncertainty.odometry_scale_stddev);
+  message.has_moved(feedback.has_moved);
   message.activated(feedback.activated);
   return message;
 }

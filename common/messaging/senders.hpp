@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace sidestep {
 
@@ -12,6 +13,9 @@ enum class Sender : std::uint32_t {
   kVision = 20000,
   kSimulator = 30000,
   kOperator = 40000,
+  kReferee = 50000,
+  kScenario = 60000,  ///< orders that the scenario file gives
+  kClient = 1000000,  ///< the first of all other clients
 };
 
 /// Coordinators are numbered 0 .. kMaxCoordinators - 1.
@@ -20,6 +24,14 @@ inline constexpr std::uint32_t kMaxCoordinators = 8;
 constexpr bool is_coordinator(std::uint32_t sender) {
   const auto first = static_cast<std::uint32_t>(Sender::kCoordinator);
   return sender >= first && sender < first + kMaxCoordinators;
+}
+
+/// The id of the client with this name: programs of different names hardly ever have the same one.
+constexpr std::uint32_t client_id(std::string_view name) {
+  std::uint32_t hash = 2166136261;  // FNV-1a
+  for (const char c : name) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619;
+  const auto first = static_cast<std::uint32_t>(Sender::kClient);
+  return first + hash % (4294967295 - first);
 }
 
 /// NetworkFault.target that addresses every process.

@@ -8,7 +8,8 @@ std::vector<TopicInfo> all_topics() {
           topics::kCommand,     topics::kFeedback,    topics::kRegistration, topics::kProposal,
           topics::kVerdict,     topics::kLedger,      topics::kCoordinator,  topics::kStatus,
           topics::kDisturbance, topics::kAttestation, topics::kNetworkFault, topics::kTruth,
-          topics::kRules,       topics::kCounters};
+          topics::kRules,       topics::kCounters,    topics::kOrder,        topics::kOrderAnswer,
+          topics::kOrderMemory, topics::kOrderStatus};
 }
 
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {

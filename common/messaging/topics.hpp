@@ -12,6 +12,7 @@
 #include "idl/disturbance.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
+#include "idl/order.hpp"
 #include "idl/robot.hpp"
 #include "idl/rules.hpp"
 #include "idl/vision.hpp"
@@ -116,6 +117,18 @@ inline constexpr Topic<msg::CoordinatorState> kCoordinator{
 inline constexpr Topic<msg::AbsenceAttestation> kAttestation{
     {"attestation", "robot absent", Qos::kEvent, false, false,
      message_type<msg::AbsenceAttestation>("sidestep::msg::AbsenceAttestation")}};
+inline constexpr Topic<msg::Order> kOrder{
+    {"order", "client", Qos::kEvent, false, false,
+     message_type<msg::Order>("sidestep::msg::Order", msg::MAX_ORDER_POSES)}};
+inline constexpr Topic<msg::OrderAnswer> kOrderAnswer{
+    {"order_answer", "coordinator", Qos::kEvent, false, false,
+     message_type<msg::OrderAnswer>("sidestep::msg::OrderAnswer")}};
+inline constexpr Topic<msg::OrderMemory> kOrderMemory{
+    {"order_memory", "coordinator", Qos::kEvent, false, true,
+     message_type<msg::OrderMemory>("sidestep::msg::OrderMemory", msg::MAX_MEMORY_POSES)}};
+inline constexpr Topic<msg::OrderStatus> kOrderStatus{
+    {"order_status", "agent", Qos::kState, false, true,
+     message_type<msg::OrderStatus>("sidestep::msg::OrderStatus")}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", "agent", Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};

@@ -43,6 +43,8 @@ struct Registration {
   Time sent_at{};  ///< by the agent's clock
   /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed.
   std::optional<VersionSet> versions{};
+  bool has_moved = false;     ///< the robot has ever executed a granted version
+  bool knows_orders = false;  ///< the agent has learned all orders
 };
 
 /// The part of a CoordinatorState that agents and other coordinators use.
@@ -53,6 +55,7 @@ struct CoordinatorHeartbeat {
   msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
   /// The world state with which the robots' places were last compared.
   Time watched_until{};
+  bool remembers_orders = false;
   std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message
 };
 

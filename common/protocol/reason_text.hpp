@@ -9,11 +9,13 @@
 namespace sidestep {
 
 /// The reasons of verdicts in words, by msg::Reason.
-inline constexpr const char* kReasonTexts[] = {
-    "granted",         "not evaluated", "malformed",    "wrong epoch",    "not all registered",
-    "old incarnation", "old version",   "base unknown", "not continuous", "beyond limits",
-    "not at rest",     "outside field", "obstacle",     "conflict",       "ledger full",
-    "absent",          "quarantined",   "displaced"};
+inline constexpr const char* kReasonTexts[] = {"granted",       "not evaluated",      "malformed",
+                                               "wrong epoch",   "not all registered", "old incarnation",
+                                               "old version",   "base unknown",       "not continuous",
+                                               "beyond limits", "not at rest",        "outside field",
+                                               "obstacle",      "conflict",           "ledger full",
+                                               "absent",        "quarantined",        "displaced",
+                                               "held"};
 
 /// Precondition: the reason is an enumerator.
 constexpr const char* to_text(msg::Reason reason) { return kReasonTexts[static_cast<std::size_t>(reason)]; }

@@ -53,6 +53,7 @@ struct Feedback {
   double heading_rad = 0;
   double tracking_error_m = 0;
   LocalisationUncertainty uncertainty{};
+  bool has_moved = false;       ///< has ever executed a granted version
   std::uint64_t activated = 0;  ///< versions switched to since the firmware's last restart
 
   /// The robot is off the floor and executes nothing.

@@ -131,6 +131,7 @@ bool Firmware::switch_next(Time now) {
     if (due.base == executing_.number && due.number > highest_executed_) {
       executing_ = due;
       highest_executed_ = due.number;
+      has_moved_ = true;
       is_off_reference_ = false;
       ++counts_.activated;
       return true;
@@ -308,6 +309,7 @@ void Firmware::restart(Time now) {
   again.obeyed_epoch_ = obeyed_epoch_;
   again.highest_seen_ = highest_seen_;
   again.highest_executed_ = highest_executed_;
+  again.has_moved_ = has_moved_;
   again.executing_ = executing_;
   again.last_fact_ = last_fact_;
   again.counts_ = counts_;
@@ -336,6 +338,7 @@ Feedback Firmware::feedback(Time now) {
   facts.heading_rad = wrapped_rad(estimator_.heading_rad());
   facts.tracking_error_m = (position - reference).norm();
   facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
+  facts.has_moved = has_moved_;
   facts.activated = counts_.activated;
   return facts;
 }

@@ -156,6 +156,7 @@ class Firmware {
   Epoch obeyed_epoch_ = 0;
   VersionNumber highest_seen_ = 0;  ///< of all version numbers and incarnations received
   Version executing_;
+  bool has_moved_ = false;
   VersionNumber highest_executed_ = 0;
   bool is_off_reference_ = false;
   OwnStopReason own_stop_reason_ = OwnStopReason::kOffReference;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -282,6 +283,13 @@ const std::vector<Cause> kCauses{
     {DropReason::kRefusedAttestation, "coordinator",
      [](Stranger& s, SimSystem&) {
        s.send(topics::kAttestation, from<msg::AbsenceAttestation>(Sender::kOperator));
+     }},
+    {DropReason::kMalformedOrder, "coordinator",
+     [](Stranger& s, SimSystem&) { s.send(topics::kOrder, from<msg::Order>(Sender::kVision)); }},
+    {DropReason::kRefusedOrder, "coordinator",
+     [](Stranger& s, SimSystem&) {
+       s.send(topics::kOrder,
+              encode(Order{msg::OrderKind::ORDER_CANCEL, 900, static_cast<ClientId>(Sender::kOperator), 1}));
      }},
     {DropReason::kUntimelyFrame, "vision",
      [](Stranger& s, SimSystem&) {

@@ -140,6 +140,7 @@ void IdealRobots::advance(Robot& robot, Time now) {
     if (due.base == robot.executing.number && due.number > robot.executing.number &&
         (!robot.is_lifted || is_rest_version)) {
       robot.executing = robot.pending.front();
+      robot.has_moved = true;
       robot.is_off_reference = robot.is_lifted = false;  // a lifted robot is put down now
     }
     robot.pending.erase(robot.pending.begin());
@@ -158,6 +159,7 @@ void IdealRobots::report(Robot& robot) {
   facts.executing = robot.executing;
   facts.is_off_reference = robot.is_off_reference;
   facts.is_lifted = robot.is_lifted;
+  facts.has_moved = robot.has_moved;
   facts.estimate = robot.executing.trajectory.state_at(now);
   msg::Feedback message = encode(facts);
   robot.writer.publish(message, bus_.now());

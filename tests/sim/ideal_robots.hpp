@@ -48,7 +48,7 @@ class IdealRobots {
     std::optional<Feedback::CommandEcho> last_command;
     Version executing;
     VersionNumber highest = 0;  // of all version numbers and incarnations received
-    bool is_off_reference = false, is_lifted = false;
+    bool is_off_reference = false, is_lifted = false, has_moved = false;
     bool rounds_versions = false;
     std::vector<Version> pending;  // ascending by start
     Writer<msg::Feedback> writer;

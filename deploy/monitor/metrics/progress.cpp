@@ -32,6 +32,10 @@ const char* state_name(const RobotProgress& row) {
       return "clock off";
     case msg::AgentState::AGENT_ABSENT:
       return "absent";
+    case msg::AgentState::AGENT_HELD:
+      return "held";
+    case msg::AgentState::AGENT_WITHOUT_ORDER:
+      return "no order";
   }
   return "?";
 }

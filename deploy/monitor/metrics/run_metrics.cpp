@@ -81,12 +81,15 @@ const msg::AgentStatus* RunMetrics::RobotRecord::status() const {
 }
 
 double RunMetrics::distance_to_go_m(const RobotRecord& robot) const {
+  if (robot.spec->goals.empty()) return 0;
   return (robot.spec->goals.back().position_m - robot.position_m).norm();
 }
 
 bool RunMetrics::has_arrived(const RobotRecord& robot) const {
-  return robot.settled_since && robot.status() &&
-         robot.status()->agent_state() == msg::AgentState::AGENT_ARRIVED;
+  if (!robot.settled_since || !robot.status()) return false;
+  const msg::AgentState state = robot.status()->agent_state();
+  return state == msg::AgentState::AGENT_ARRIVED ||
+         (robot.spec->goals.empty() && state == msg::AgentState::AGENT_WITHOUT_ORDER);
 }
 
 void RunMetrics::on_truth(const msg::GroundTruth& truth) {
@@ -132,7 +135,7 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
 
 void RunMetrics::on_status(const msg::AgentStatus& status) {
   RobotRecord* robot = find(status.robot());
-  const bool is_state = is_enumerator(status.agent_state(), msg::AgentState::AGENT_ABSENT);
+  const bool is_state = is_enumerator(status.agent_state(), msg::AgentState::AGENT_WITHOUT_ORDER);
   msg::AgentStatus* life = robot && is_state ? slot_for(robot->lives, status.header()) : nullptr;
   if (!life) {
     ++dropped_messages_;
@@ -144,6 +147,8 @@ void RunMetrics::on_status(const msg::AgentStatus& status) {
   if (is_fencing && robot->status() && robot->authoritative != status.header().incarnation() &&
       ++robot->fencing_statuses < kSilentAfter)
     return;
+  has_had_orders_ |= robot->spec->goals.empty() && (status.agent_state() == msg::AgentState::AGENT_DRIVING ||
+                                                    status.agent_state() == msg::AgentState::AGENT_ARRIVED);
   robot->authoritative = status.header().incarnation();
   robot->fencing_statuses = 0;
 }
@@ -229,6 +234,10 @@ void RunMetrics::on_mismatch(const RulesMismatch& mismatch) {
 int RunMetrics::arrived() const {
   return static_cast<int>(std::count_if(robots_.begin(), robots_.end(),
                                         [this](const RobotRecord& robot) { return has_arrived(robot); }));
+}
+
+bool RunMetrics::awaits_orders() const {
+  return std::ranges::all_of(robots_, [](const RobotRecord& robot) { return robot.spec->goals.empty(); });
 }
 
 bool RunMetrics::all_arrived() const { return arrived() == static_cast<int>(robots_.size()); }

@@ -55,6 +55,11 @@ class RunMetrics {
   /// Includes what the monitor's own bus has dropped in reports; the bus must outlive the last report.
   void set_bus(const Bus& bus) { bus_ = &bus; }
 
+  /// Whether the scenario gives no robot a goal, so that clients do.
+  bool awaits_orders() const;
+  /// Whether any robot has been ordered somewhere since the start, by clients only.
+  bool has_had_orders() const { return has_had_orders_; }
+  /// A robot without a goal of the scenario has arrived if it has finished its orders, and is at rest.
   bool all_arrived() const;
   int arrived() const;
   /// Whether no robot moves in the latest ground truth.
@@ -115,6 +120,7 @@ class RunMetrics {
   const Scenario& scenario_;
   const Auditor* auditor_ = nullptr;
   const Bus* bus_ = nullptr;
+  bool has_had_orders_ = false;
   std::vector<RobotRecord> robots_;           ///< ascending by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
   std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>

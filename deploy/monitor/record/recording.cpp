@@ -156,6 +156,10 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kCoordinator);
   subscribe(topics::kStatus);
   subscribe(topics::kAttestation);
+  subscribe(topics::kOrder);
+  subscribe(topics::kOrderAnswer);
+  subscribe(topics::kOrderMemory);
+  subscribe(topics::kOrderStatus);
   subscribe(topics::kDisturbance);
   subscribe(topics::kNetworkFault);
   subscribe(topics::kTruth);

@@ -11,47 +11,22 @@
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/drop_reasons.hpp"
 #include "common/protocol/reason_text.hpp"
+#include "deploy/monitor/topic/describe_parts.hpp"
 
 namespace sidestep {
+
+using namespace description;
+
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// The enumerator in words. The network may deliver any number.
-template <typename Enum, std::size_t kCount>
-Json word(Enum value, const char* const (&words)[kCount]) {
-  const auto number = static_cast<std::uint32_t>(value);
-  return number < kCount ? Json(words[number]) : Json("unknown " + std::to_string(number));
-}
 
 constexpr const char* kCoordinatorModes[] = {"standby", "registering", "granting"};
 constexpr const char* kRoleReasons[] = {"started",        "no coordinator",       "heartbeats lost",
                                         "returned",       "epoch of coordinator", "epoch of agent",
                                         "epoch of robot", "shared epoch"};
-constexpr const char* kAgentStates[] = {"fencing", "registering",        "waiting", "driving",
-                                        "arrived", "clock out of bound", "absent"};
+constexpr const char* kAgentStates[] = {"fencing", "registering", "waiting",
+                                        "driving", "arrived",     "clock out of bound",
+                                        "absent",  "held",        "without order"};
 constexpr const char* kImageFormats[] = {"yuv422", "rgb"};
-
-template <typename Range, typename Describe>
-Json list(const Range& range, std::size_t count, Describe describe_one) {
-  Json result = Json::array();
-  for (std::size_t i = 0; i < std::min<std::size_t>(count, range.size()); ++i)
-    result.push_back(describe_one(range[i]));
-  return result;
-}
-
-template <typename Range, typename Describe>
-Json list(const Range& range, Describe describe_one) {
-  return list(range, range.size(), describe_one);
-}
-
-Json header(const msg::Header& m) {
-  return {{"sender", m.sender()},
-          {"incarnation", m.incarnation()},
-          {"rules", fmt::format("{:016x}", m.rules())},
-          {"message_number", m.message_number()},
-          {"stamp_ns", m.stamp_ns()}};
-}
 
 Json notice(const msg::RobotNotice& m) {
   return {{"robot", m.robot()},
@@ -220,6 +195,7 @@ Json describe(const msg::Feedback& m) {
           {"tracking_error_m", m.tracking_error_m()},
           {"position_error_rms_m", m.position_error_rms_m()},
           {"odometry_scale_stddev", m.odometry_scale_stddev()},
+          {"has_moved", m.has_moved()},
           {"activated", m.activated()}};
 }
 
@@ -228,6 +204,8 @@ Json describe(const msg::Registration& m) {
           {"header", header(m.header())},
           {"epoch", m.epoch()},
           {"is_absent", m.is_absent()},
+          {"has_moved", m.has_moved()},
+          {"knows_orders", m.knows_orders()},
           {"version_count", m.version_count()},
           {"versions", list(m.versions(), m.version_count(), version)}};
 }
@@ -281,6 +259,7 @@ Json describe(const msg::CoordinatorState& m) {
           {"conflict_first", m.conflict_first()},
           {"conflict_second", m.conflict_second()},
           {"absent", m.absent()},
+          {"remembers_orders", m.remembers_orders()},
           {"watched_until_ns", m.watched_until_ns()},
           {"notices", list(m.notices(), notice)}};
 }

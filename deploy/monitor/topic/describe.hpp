@@ -6,6 +6,7 @@
 #include "idl/disturbance.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
+#include "idl/order.hpp"
 #include "idl/robot.hpp"
 #include "idl/rules.hpp"
 #include "idl/vision.hpp"
@@ -26,6 +27,10 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::LedgerPage& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::CoordinatorState& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AbsenceAttestation& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::Order& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::OrderAnswer& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::OrderMemory& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::OrderStatus& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AgentStatus& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Counters& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);

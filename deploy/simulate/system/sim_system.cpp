@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "simulator/images/image_output.hpp"
@@ -87,7 +88,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       observer_bus_(network_),
       rules_(observer_bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario_),
              [this](const RulesMismatch& mismatch) { metrics_.on_mismatch(mismatch); }),
-      disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)) {
+      disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)),
+      order_writer_(observer_bus_.advertise(topics::kOrder)) {
   observer_bus_.become_observer();
   metrics_.set_auditor(auditor_);
   listen(observer_bus_, scenario_, auditor_);
@@ -171,6 +173,19 @@ void SimSystem::kill(const std::string& process) {
 void SimSystem::pause(const std::string& process, Duration duration, std::size_t max_queued) {
   const auto found = processes_.find(process);
   if (found != processes_.end()) found->second->bus.pause(now() + duration, max_queued);
+}
+
+void SimSystem::send(const Order& order) {
+  auto message = encode(order);
+  order_writer_.publish(message, now());
+}
+
+void SimSystem::on_order_answer(std::function<void(const msg::OrderAnswer&)> callback) {
+  observer_bus_.subscribe<msg::OrderAnswer>(topics::kOrderAnswer, std::move(callback));
+}
+
+void SimSystem::on_order_status(std::function<void(const msg::OrderStatus&)> callback) {
+  observer_bus_.subscribe<msg::OrderStatus>(topics::kOrderStatus, std::move(callback));
 }
 
 void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {

@@ -14,6 +14,7 @@
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/order.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
 
@@ -55,6 +56,11 @@ class SimSystem {
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
   /// Disturbs a robot as an operator would.
   void disturb(msg::Disturbance& disturbance) { disturbance_writer_.publish(disturbance, now()); }
+  /// Publishes a client's order.
+  void send(const Order& order);
+  /// Calls back with every answer of a coordinator to an order, and with every status of an order.
+  void on_order_answer(std::function<void(const msg::OrderAnswer&)> callback);
+  void on_order_status(std::function<void(const msg::OrderStatus&)> callback);
   /// Sets the quality of the link between two processes, for all their incarnations.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
   /// The names of the processes that a system starts.
@@ -92,6 +98,7 @@ class SimSystem {
   SimBus observer_bus_;
   RulesExchange rules_;
   Writer<msg::Disturbance> disturbance_writer_;
+  Writer<msg::Order> order_writer_;
   std::map<std::string, RobotId> robot_of_;  // by agent process
   std::map<std::string, ProcessId> ids_;
   std::map<std::string, Incarnation> incarnations_;  // the latest ones

@@ -41,6 +41,22 @@ TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept
   CHECK(missing(floor.coordinator).size() == 2);
 }
 
+TEST_CASE("a held robot is granted nothing until it is released, in every epoch") {
+  Floor floor;
+  floor.coordinator.set_held(1, true);
+  for (const Epoch epoch : {kEpoch, kEpoch + 1}) {
+    if (epoch > kEpoch) floor.coordinator.begin_epoch(epoch);
+    floor.receive(registration_of(floor.a, epoch));
+    floor.receive(registration_of(floor.b, epoch));
+    REQUIRE(floor.coordinator.is_granting());
+    CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, epoch)).reasons[0] ==
+          msg::Reason::REASON_HELD);
+  }
+  CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch + 1)).granted_version == 20);
+  floor.coordinator.set_held(1, false);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch + 1)).granted_version == 10);
+}
+
 TEST_CASE("an absent robot registers without versions and is granted a rest version only") {
   Floor floor;
   auto absent = registration_of(floor.a, kEpoch);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
@@ -86,12 +87,20 @@ struct NodeFixture {
   Scenario scenario = one_robot();
   SimNetwork network{1, kBegin, scenario.network};
   SimBus agent_bus{network}, other_bus{network};
+  Writer<msg::OrderMemory> memory_writer;
   msg::AgentStatus status;
   std::uint64_t commands = 0;
   Epoch commanded_epoch = 0;  ///< of the last command
   AgentNode node{agent_bus, scenario, kRobot, kSelf, std::make_shared<PlanningScratch>(scenario)};
 
   NodeFixture() {
+    const RememberedOrder order{
+        {msg::OrderKind::ORDER_GO, kRobot, static_cast<ClientId>(Sender::kScenario), 1}};
+    msg::OrderMemory memory = encode({&order, 1}, true, false).front();
+    memory.process(kCoordinator);
+    memory.header().sender(kCoordinator);
+    memory_writer = other_bus.advertise(topics::kOrderMemory);
+    memory_writer.publish(memory, other_bus.now());
     other_bus.subscribe(topics::kStatus, [this](const msg::AgentStatus& latest) { status = latest; });
     other_bus.subscribe(topics::kCommand, kRobot, [this](const msg::Command& command) {
       ++commands;

@@ -32,6 +32,13 @@ Feedback resting_at(const Vec2& position, double at, Epoch epoch = 7) {
   return feedback;
 }
 
+/// The coordinator remembers that the scenario has given the robot its goals.
+std::shared_ptr<OrderPage> scenario_orders() {
+  const RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, static_cast<ClientId>(Sender::kScenario), 1}};
+  return std::make_shared<OrderPage>(
+      OrderPage{static_cast<std::uint32_t>(Sender::kCoordinator), true, 0, 1, {order}});
+}
+
 /// The coordinator grants, and the agent has registered.
 void become_ready(Agent& agent, double now = 0.6, double watched_until = 0) {
   CoordinatorHeartbeat heartbeat;
@@ -39,6 +46,7 @@ void become_ready(Agent& agent, double now = 0.6, double watched_until = 0) {
   heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
   heartbeat.watched_until = at_s(watched_until);
   agent.on_coordinator_state(heartbeat, at_s(now));
+  agent.on_orders(scenario_orders());
   (void)agent.registration();
 }
 
@@ -261,6 +269,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
   CHECK(d.agent.status(at_s(1)).distance_to_go_m() == Approx(1));
   CHECK(d.agent.command(at_s(1)).desired_heading_rad == 0);
   Agent fresh(d.scenario, 3, kSelf, std::make_shared<PlanningScratch>(d.scenario));
+  fresh.on_orders(scenario_orders());
   fresh.on_feedback(resting_at({1, 0}, 2, 0));
   CHECK(fresh.status(at_s(1)).goal_index() == 1);
   CHECK(fresh.status(at_s(1)).distance_to_go_m() == Approx(1));
@@ -271,6 +280,7 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   Scenario scenario = two_goals();
   scenario.robots[0].goals = {{{0, 0}, std::nullopt}};
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
+  agent.on_orders(scenario_orders());
   agent.on_feedback(resting_at({0, 0}, 0.5, 0));
   become_ready(agent);
   agent.on_world(observation(0, 0.6), at_s(0.61));

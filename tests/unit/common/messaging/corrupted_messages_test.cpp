@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/topics.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/messaging/random_messages.hpp"
@@ -172,7 +173,7 @@ TEST_CASE("a verdict with random bytes is refused or has known reasons") {
       [](const msg::Verdict& message) { return decode(message, kRobot); },
       [](const Verdict& verdict) {
         return verdict.robot == kRobot && std::ranges::all_of(verdict.reasons, [](msg::Reason reason) {
-                 return static_cast<std::uint32_t>(reason) <= 17;
+                 return reason <= msg::Reason::REASON_HELD;
                });
       });
 }
@@ -198,6 +199,66 @@ TEST_CASE("a coordinator state with random bytes is refused or has a plausible e
                std::ranges::all_of(heartbeat.notices, [](const msg::RobotNotice& notice) {
                  return notice.robot() < kMaxRobots &&
                         (!notice.is_displaced() || std::isfinite(notice.x_m()));
+               });
+      });
+}
+
+Order random_order(Rng& rng) {
+  Order order{static_cast<msg::OrderKind>(rng.below(6)), static_cast<RobotId>(rng.below(30)),
+              static_cast<ClientId>(Sender::kOperator),
+              static_cast<OrderNumber>(to_ns(kNow)) - rng.below(1'000'000'000)};
+  if (order.kind >= msg::OrderKind::ORDER_ZONE) order.robot = kAllRobots;
+  const std::uint64_t count = 1 + rng.below(4);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Vec2 place(rng.uniform(-9, 9), rng.uniform(-9, 9));
+    if (order.kind == msg::OrderKind::ORDER_GO) order.goals.push_back({place, rng.uniform(-3, 3), 1.5, 0.1});
+    if (order.kind == msg::OrderKind::ORDER_ZONE) order.zone.corners_m.push_back(place);
+  }
+  return order;
+}
+
+bool is_within(const Order& order) {
+  const auto is_goal = [](const Goal& goal) {
+    return is_within(goal.position_m, 1e4) && is_within(goal.heading_rad.value_or(0), -100, 100) &&
+           is_within(goal.speed_limit_mps.value_or(1), 0.01, 100) &&
+           is_within(goal.tolerance_m.value_or(1), 0.001, 10);
+  };
+  const auto is_corner = [](const Vec2& corner) { return is_within(corner, 1e4); };
+  return static_cast<std::uint32_t>(order.kind) <= 5 && order.number > 0 && is_within(order.number) &&
+         order.goals.size() <= msg::MAX_ORDER_POSES && std::ranges::all_of(order.goals, is_goal) &&
+         order.zone.corners_m.size() <= 16 && std::ranges::all_of(order.zone.corners_m, is_corner) &&
+         is_within(order.zone.radius_m, 0, 1e4) &&
+         (order.kind != msg::OrderKind::ORDER_ZONE || !order.zone.corners_m.empty());
+}
+
+TEST_CASE("an order with random bytes is refused or within bounds") {
+  check_corrupted(
+      topics::kOrder, [](Rng& rng) { return encode(random_order(rng)); },
+      [](const msg::Order& message) { return decode(message, kNow); },
+      [](const Order& order) {
+        return is_within(order) && (order.kind != msg::OrderKind::ORDER_GO || !order.goals.empty());
+      });
+}
+
+TEST_CASE("a page of remembered orders with random bytes is refused or within bounds") {
+  check_corrupted(
+      topics::kOrderMemory,
+      [](Rng& rng) {
+        std::vector<RememberedOrder> orders;
+        for (std::uint64_t i = rng.below(8); i > 0; --i)
+          orders.push_back({random_order(rng), {msg::OrderState::ORDER_DRIVING, rng.below(3)}});
+        msg::OrderMemory message = encode(orders, true, false).front();
+        const auto process = static_cast<std::uint32_t>(rng.below(30));
+        message.process(process);
+        message.header().sender(process);
+        return message;
+      },
+      [](const msg::OrderMemory& message) { return decode(message, kNow); },
+      [](const OrderPage& page) {
+        return page.orders.size() <= msg::MAX_MEMORY_ORDERS && page.index < std::max(1U, page.count) &&
+               std::ranges::all_of(page.orders, [](const RememberedOrder& remembered) {
+                 return is_within(remembered.order) &&
+                        static_cast<std::uint32_t>(remembered.progress.state) <= 4;
                });
       });
 }

@@ -191,7 +191,7 @@ TEST_CASE("a verdict for another robot or with an unknown reason is refused") {
   REQUIRE(decode(message, kRobot));
   CHECK_FALSE(decode(message, kRobot + 1));
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) {
-    for (const std::uint32_t reason : {static_cast<std::uint32_t>(msg::Reason::REASON_DISPLACED) + 1,
+    for (const std::uint32_t reason : {static_cast<std::uint32_t>(msg::Reason::REASON_HELD) + 1,
                                        std::numeric_limits<std::uint32_t>::max()}) {
       CAPTURE(i, reason);
       msg::Verdict hostile = message;

@@ -64,6 +64,7 @@ inline Feedback random_feedback(Rng& rng) {
   feedback.heading_rad = rng.uniform(-4, 4);
   feedback.tracking_error_m = rng.uniform(0, 1);
   feedback.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
+  feedback.has_moved = rng.chance(0.5);
   feedback.activated = rng.bits();
   return feedback;
 }
@@ -92,8 +93,7 @@ inline Registration random_registration(Rng& rng) {
 inline Verdict random_verdict(Rng& rng) {
   Verdict verdict{kRobot, random_number(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
   for (msg::Reason& reason : verdict.reasons)
-    reason =
-        static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_DISPLACED) + 1));
+    reason = static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_HELD) + 1));
   for (RobotId& blocker : verdict.blockers) blocker = static_cast<RobotId>(rng.bits());
   return verdict;
 }

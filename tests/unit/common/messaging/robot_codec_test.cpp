@@ -90,6 +90,7 @@ TEST_CASE("encoding and decoding feedback preserves it bit for bit") {
     REQUIRE(out->tracking_error_m == in.tracking_error_m);
     REQUIRE(out->uncertainty.position_error_rms_m == in.uncertainty.position_error_rms_m);
     REQUIRE(out->uncertainty.odometry_scale_stddev == in.uncertainty.odometry_scale_stddev);
+    REQUIRE(out->has_moved == in.has_moved);
     REQUIRE(out->activated == in.activated);
   }
 }

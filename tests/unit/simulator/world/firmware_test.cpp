@@ -206,6 +206,22 @@ TEST_CASE("a new incarnation continues from the executed version") {
   CHECK(robot.feedback(at(40)).executing.number == 201);
 }
 
+TEST_CASE("a robot reports for ever whether it has executed a granted version, and own stops are none") {
+  auto robot = firmware();
+  robot.reboot();
+  (void)robot.tick(at(5), {});
+  const VersionNumber stop = robot.feedback(at(6)).executing.number;
+  CHECK(stop > 0);
+  CHECK_FALSE(robot.feedback(at(7)).has_moved);
+  robot.on_command(command_with(version(stop + 1, stop, 2000)), at(1900));
+  CHECK_FALSE(robot.feedback(at(1999)).has_moved);
+  CHECK(robot.feedback(at(2000)).has_moved);
+  robot.reboot();
+  (void)robot.tick(at(2005), {});
+  CHECK(robot.feedback(at(2006)).executing.number > stop + 1);
+  CHECK(robot.feedback(at(2007)).has_moved);
+}
+
 TEST_CASE("a due switch is made before a fact is reported") {
   SECTION("by a report") {
     auto robot = firmware();

@@ -11,6 +11,7 @@
 #include "idl/disturbanceCdrAux.hpp"
 #include "idl/monitorCdrAux.hpp"
 #include "idl/negotiationCdrAux.hpp"
+#include "idl/orderCdrAux.hpp"
 #include "idl/robotCdrAux.hpp"
 #include "idl/rulesCdrAux.hpp"
 #include "idl/visionCdrAux.hpp"

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::string idl_text() {
   std::ostringstream text;
   for (const char* name :
-       {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor"}) {
+       {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor", "order"}) {
     std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
     REQUIRE(file);
     text << file.rdbuf();
@@ -116,6 +116,16 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   CHECK(keys(describe(msg::Verdict())) == idl_members(idl, "Verdict"));
   CHECK(keys(describe(msg::LedgerPage())) == idl_members(idl, "LedgerPage"));
   CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
+  msg::OrderMemory memory;
+  memory.order_count(1);
+  memory.poses().resize(1);
+  CHECK(keys(describe(msg::Order())) == idl_members(idl, "Order"));
+  CHECK(keys(describe(msg::Order())["terms"]) == idl_members(idl, "OrderTerms"));
+  CHECK(keys(describe(msg::OrderAnswer())) == idl_members(idl, "OrderAnswer"));
+  CHECK(keys(describe(memory)) == idl_members(idl, "OrderMemory"));
+  CHECK(keys(describe(memory)["orders"].at(0)) == idl_members(idl, "RememberedOrder"));
+  CHECK(keys(describe(memory)["poses"].at(0)) == idl_members(idl, "OrderPose"));
+  CHECK(keys(describe(msg::OrderStatus())) == idl_members(idl, "OrderStatus"));
   CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
   CHECK(keys(describe(counters)) == idl_members(idl, "Counters"));
   CHECK(keys(describe(counters)["counts"].at(0)) == idl_members(idl, "Counter"));
@@ -149,6 +159,26 @@ TEST_CASE("an enumerator is described by the words of its IDL name, an unknown o
     msg::AgentStatus status;
     status.agent_state(static_cast<msg::AgentState>(value));
     return describe(status)["agent_state"];
+  });
+  check("OrderKind", "ORDER_", [](std::uint32_t value) -> std::string {
+    msg::Order order;
+    order.terms().order_kind(static_cast<msg::OrderKind>(value));
+    return describe(order)["terms"]["order_kind"];
+  });
+  check("OrderResult", "RESULT_", [](std::uint32_t value) -> std::string {
+    msg::OrderAnswer answer;
+    answer.result(static_cast<msg::OrderResult>(value));
+    return describe(answer)["result"];
+  });
+  check("OrderState", "ORDER_", [](std::uint32_t value) -> std::string {
+    msg::OrderStatus status;
+    status.order_state(static_cast<msg::OrderState>(value));
+    return describe(status)["order_state"];
+  });
+  check("BlockReason", "BLOCK_", [](std::uint32_t value) -> std::string {
+    msg::OrderStatus status;
+    status.block_reason(static_cast<msg::BlockReason>(value));
+    return describe(status)["block_reason"];
   });
   check("RoleReason", "ROLE_", [](std::uint32_t value) -> std::string {
     msg::CoordinatorState state;

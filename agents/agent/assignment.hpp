@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/messaging/order_codec.hpp"
+#include "common/protocol/order_book.hpp"
+
+namespace sidestep {
+
+/// Which order a robot carries out: of those that it has not finished, the one of the highest rank. A robot
+/// without one stays where it is, and returns there if something moves it away.
+class Assignment {
+ public:
+  /// `scenario_goals`: of orders that the scenario gives.
+  Assignment(RobotId robot, std::vector<Goal> scenario_goals)
+      : robot_(robot), scenario_goals_(std::move(scenario_goals)) {}
+
+  /// Orders that a coordinator remembers.
+  void on_page(std::shared_ptr<const OrderPage> page);
+  /// The robot is at rest at its goal. Precondition: goal().
+  void on_arrival();
+  /// Chooses the order to carry out. A finished one remains the robot's order until this is called, so that
+  /// its end can be reported.
+  void choose();
+
+  /// Whether a coordinator with a complete memory has been heard. Nothing is ordered before.
+  bool is_known() const { return is_known_; }
+  bool is_held() const { return book_.is_held(robot_); }
+  /// nullptr: the robot has no order.
+  const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
+  /// Goals left, from goal() on.
+  std::span<const Goal> remaining_goals() const { return std::span(goals_).subspan(progress_.goal_index); }
+  std::size_t goal_index() const { return progress_.goal_index; }
+  /// Increases with every change of goal().
+  std::uint64_t revision() const { return revision_; }
+  /// Number 0: the robot has no order.
+  OrderReport report() const { return {robot_, client_, number_, progress_}; }
+  std::vector<Zone> zones() const { return book_.zones(); }
+
+  /// All orders, also of other robots, whose agents may have restarted together with all coordinators.
+  std::vector<RememberedOrder> all() const;
+  /// Orders for the robot that the coordinator lacked whose memory has been heard last; then none.
+  std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
+
+ private:
+  /// A coordinator's memory, while its pages arrive.
+  struct Round {
+    std::vector<std::shared_ptr<const OrderPage>> pages;
+    OrderBook book;  // of the robot
+  };
+  bool concerns(const RememberedOrder& order) const {
+    return order.order.robot == robot_ || order.order.robot == kAllRobots;
+  }
+  /// Adds a page of a coordinator's whole memory.
+  void add(std::shared_ptr<const OrderPage> page);
+  void take(const RememberedOrder& order);
+  void drop();
+  const RememberedOrder* find_order() const;
+
+  const RobotId robot_;
+  const std::vector<Goal> scenario_goals_;
+  OrderBook book_;  // of the robot
+  bool is_known_ = false;
+  std::vector<std::shared_ptr<const OrderPage>> memory_;  // whole, and what has changed since
+  std::map<std::uint32_t, Round> rounds_;                 // by coordinator
+  std::vector<RememberedOrder> missing_;
+  // The order that the robot carries out, or has carried out last.
+  ClientId client_ = 0;
+  OrderNumber number_ = 0;
+  std::vector<Goal> goals_;
+  OrderProgress progress_;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/client/order_client.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sidestep {
+namespace {
+
+// An order counts as forgotten if so many whole memories in a row lack it: one may have been sent before the
+// coordinator heard of the order.
+constexpr int kRoundsUntilForgotten = 3;
+
+bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
+
+OrderPhase phase_of(const OrderProgress& progress) {
+  switch (progress.state) {
+    case msg::OrderState::ORDER_ACCEPTED:
+      return OrderPhase::kAccepted;
+    case msg::OrderState::ORDER_DRIVING:
+      return OrderPhase::kDriving;
+    case msg::OrderState::ORDER_BLOCKED:
+      return OrderPhase::kBlocked;
+    case msg::OrderState::ORDER_ARRIVED:
+    case msg::OrderState::ORDER_LEFT:
+      break;
+  }
+  return OrderPhase::kArrived;
+}
+
+bool is_refused(msg::OrderResult result) {
+  return result != msg::OrderResult::RESULT_REMEMBERED && result != msg::OrderResult::RESULT_REPLACED;
+}
+
+/// Whether there is nothing more to hear about an order.
+bool is_closed(const SentOrder& sent) {
+  return is_final(sent.phase) || (!drives(sent.order) && sent.phase == OrderPhase::kAccepted);
+}
+
+}  // namespace
+
+OrderClient::OrderClient(Bus& bus, ClientId client)
+    : bus_(bus), client_(client), writer_(bus.advertise(topics::kOrder)) {
+  bus_.subscribe(topics::kOrderAnswer, [this](const msg::OrderAnswer& answer) { on_answer(answer); });
+  bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) { on_status(status); });
+  bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& memory) { on_memory(memory); });
+  repeat();
+}
+
+OrderHandle OrderClient::go(RobotId robot, std::vector<Goal> goals) {
+  Order order{msg::OrderKind::ORDER_GO, robot};
+  order.goals = std::move(goals);
+  return send(std::move(order));
+}
+
+OrderHandle OrderClient::send(Order order) {
+  newest_ = std::max(newest_ + 1, static_cast<OrderNumber>(to_ns(bus_.now())));
+  order.client = client_;
+  order.number = newest_;
+  publish(order);
+  by_number_[newest_] = ++last_handle_;
+  sent_.emplace(last_handle_, SentOrder{last_handle_, std::move(order)});
+  return last_handle_;
+}
+
+SentOrder* OrderClient::find_number(OrderNumber number) {
+  const auto handle = by_number_.find(number);
+  return handle == by_number_.end() ? nullptr : &sent_.at(handle->second);
+}
+
+bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
+  const bool is_behind = answer.newest_number() > sent.order.number && newest_ >= answer.newest_number();
+  const bool is_affected = answer.result() == msg::OrderResult::RESULT_REPLACED ||
+                           sent.order.kind == msg::OrderKind::ORDER_HOLD ||
+                           sent.order.kind == msg::OrderKind::ORDER_RESUME;
+  if (sent.is_renumbered || !is_behind || !is_affected || is_refused(answer.result())) return false;
+  sent.is_renumbered = true;
+  by_number_.erase(sent.order.number);
+  sent.order.number = ++newest_;
+  by_number_[newest_] = sent.handle;
+  publish(sent.order);
+  return true;
+}
+
+void OrderClient::publish(const Order& order) {
+  msg::Order message = encode(order);
+  writer_.publish(message, bus_.now());
+}
+
+void OrderClient::repeat() {
+  bus_.at(bus_.now() + kRepetitionPeriod, [this] { repeat(); });
+  for (const auto& [number, sent] : sent_) {
+    if (sent.phase == OrderPhase::kSent) publish(sent.order);
+  }
+}
+
+const SentOrder* OrderClient::find(OrderHandle handle) const {
+  const auto found = sent_.find(handle);
+  return found == sent_.end() ? nullptr : &found->second;
+}
+
+void OrderClient::update(SentOrder& sent, OrderPhase phase, std::size_t goal_index) {
+  if (is_closed(sent) || (phase == sent.phase && goal_index == sent.goal_index)) return;
+  sent.phase = phase;
+  sent.goal_index = goal_index;
+  if (on_change_) on_change_(sent);
+  if (!is_closed(sent) || ++final_count_ <= kMaxFinal) return;
+  const auto oldest = std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); });
+  by_number_.erase(oldest->second.order.number);
+  sent_.erase(oldest);
+  --final_count_;
+}
+
+void OrderClient::on_answer(const msg::OrderAnswer& answer) {
+  if (answer.client() != client_ || !is_coordinator(answer.header().sender())) return;
+  if (is_plausible(answer.newest_number(), bus_.now())) newest_ = std::max(newest_, answer.newest_number());
+  SentOrder* const found = find_number(answer.order_number());
+  if (!found || found->phase != OrderPhase::kSent || renumber(*found, answer)) return;
+  SentOrder& sent = *found;
+  sent.refusal = answer.result();
+  switch (answer.result()) {
+    case msg::OrderResult::RESULT_REMEMBERED:
+      return update(sent, OrderPhase::kAccepted, 0);
+    case msg::OrderResult::RESULT_REPLACED:
+      return update(sent, OrderPhase::kReplaced, 0);
+    default:
+      return update(sent, OrderPhase::kRefused, 0);
+  }
+}
+
+void OrderClient::on_status(const msg::OrderStatus& status) {
+  const auto report = decode(status);
+  if (!report) return;
+  statuses_[report->robot] = status;
+  SentOrder* const found = find_number(report->number);
+  if (!found || report->client != client_ || found->order.robot != report->robot) return;
+  update(*found, phase_of(report->progress), report->progress.goal_index);
+}
+
+void OrderClient::on_memory(const msg::OrderMemory& memory) {
+  const auto page = decode(memory, bus_.now());
+  if (!page || !is_coordinator(page->process) || page->count == 0 || !page->is_complete) return;
+  Round& round = rounds_[page->process];
+  if (page->index == 0) round = {};
+  if (page->index != round.next_page) return;
+  for (const RememberedOrder& order : page->orders) round.book.merge(order);
+  if (++round.next_page == page->count) compare(round.book);
+}
+
+void OrderClient::compare(const OrderBook& remembered) {
+  std::vector<OrderHandle> open;
+  for (const auto& [handle, sent] : sent_) {
+    if (drives(sent.order) && !is_closed(sent)) open.push_back(handle);
+  }
+  for (const OrderHandle handle : open) {
+    SentOrder& sent = sent_.at(handle);
+    const OrderNumber number = sent.order.number;
+    const RememberedOrder* known = remembered.drive_order(sent.order.robot, rank_of(client_));
+    if (known && known->order.number == number && known->order.client == client_) {
+      missing_.erase(handle);
+      // The robot's status is more recent, unless it was lost.
+      if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
+        update(sent, phase_of(known->progress), known->progress.goal_index);
+    } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
+      update(sent, OrderPhase::kReplaced, sent.goal_index);
+    } else if (sent.phase != OrderPhase::kSent && ++missing_[handle] >= kRoundsUntilForgotten) {
+      missing_.erase(handle);
+      update(sent, OrderPhase::kSent, 0);  // and is repeated
+    }
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messaging/bus.hpp"
+#include "common/messaging/order_codec.hpp"
+#include "common/protocol/order_book.hpp"
+
+namespace sidestep {
+
+/// What has become of an order.
+enum class OrderPhase : std::uint8_t {
+  kSent,      ///< no coordinator has answered yet
+  kAccepted,  ///< coordinators remember it; cancel, hold and resume are complete then
+  kDriving,
+  kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can
+  kArrived,   ///< at the last goal
+  kReplaced,  ///< by a later order
+  kRefused
+};
+
+constexpr bool is_final(OrderPhase phase) { return phase >= OrderPhase::kArrived; }
+
+/// Identifies an order for its client.
+using OrderHandle = std::uint64_t;
+
+/// An order that a client has sent.
+struct SentOrder {
+  OrderHandle handle = 0;
+  Order order;
+  bool is_renumbered = false;  ///< because its first number was below those of earlier orders
+  OrderPhase phase = OrderPhase::kSent;
+  msg::OrderResult refusal = msg::OrderResult::RESULT_REMEMBERED;  ///< if it is refused
+  std::size_t goal_index = 0;                                      ///< of the goal that the robot drives to
+};
+
+/// Sends orders, repeats them until a coordinator has answered and whenever all coordinators have forgotten
+/// them, and follows what becomes of them. If this client's clock is behind those of others, an order is
+/// numbered again, above all that the coordinators know: otherwise an earlier order of another client would
+/// count as later.
+class OrderClient {
+ public:
+  OrderClient(Bus& bus, ClientId client);
+  OrderClient(const OrderClient&) = delete;
+  OrderClient& operator=(const OrderClient&) = delete;
+
+  /// Precondition: at least one goal, at most msg::MAX_ORDER_POSES.
+  OrderHandle go(RobotId robot, std::vector<Goal> goals);
+  OrderHandle cancel(RobotId robot) { return send({msg::OrderKind::ORDER_CANCEL, robot}); }
+  /// `robot` may be kAllRobots.
+  OrderHandle hold(RobotId robot) { return send({msg::OrderKind::ORDER_HOLD, robot}); }
+  OrderHandle resume(RobotId robot) { return send({msg::OrderKind::ORDER_RESUME, robot}); }
+
+  /// nullptr: unknown, or forgotten because it is final and kMaxFinal others are too.
+  const SentOrder* find(OrderHandle handle) const;
+  /// The robots' latest statuses.
+  const std::map<RobotId, msg::OrderStatus>& statuses() const { return statuses_; }
+  /// Calls back whenever the phase or goal of an order has changed.
+  void on_change(std::function<void(const SentOrder&)> callback) { on_change_ = std::move(callback); }
+
+  static constexpr std::size_t kMaxFinal = 1000;
+  static constexpr Duration kRepetitionPeriod{200'000'000};
+
+ private:
+  struct Round {
+    std::uint32_t next_page = 0;
+    OrderBook book;
+  };
+  OrderHandle send(Order order);
+  void publish(const Order& order);
+  /// nullptr: no order of this client has this number.
+  SentOrder* find_number(OrderNumber number);
+  /// Numbers the order again if the client's clock is behind, so that the answer says nothing of what the
+  /// client wants. Whether it has.
+  bool renumber(SentOrder& sent, const msg::OrderAnswer& answer);
+  void repeat();
+  void on_answer(const msg::OrderAnswer& answer);
+  void on_status(const msg::OrderStatus& status);
+  void on_memory(const msg::OrderMemory& memory);
+  void compare(const OrderBook& remembered);
+  void update(SentOrder& sent, OrderPhase phase, std::size_t goal_index);
+
+  Bus& bus_;
+  const ClientId client_;
+  OrderNumber newest_ = 0;
+  OrderHandle last_handle_ = 0;
+  std::map<OrderHandle, SentOrder> sent_;
+  std::map<OrderNumber, OrderHandle> by_number_;  // current numbers
+  std::size_t final_count_ = 0;
+  std::map<OrderHandle, int> missing_;  // whole memories in a row that lack the order
+  std::map<RobotId, msg::OrderStatus> statuses_;
+  std::map<std::uint32_t, Round> rounds_;  // by coordinator
+  std::function<void(const SentOrder&)> on_change_;
+  Writer<msg::Order> writer_;
+};
+
+}  // namespace sidestep

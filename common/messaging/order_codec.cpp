@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/order_codec.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "common/messaging/enumerator.hpp"
+#include "common/messaging/version_codec.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kMaxCorners = 16;
+constexpr double kMinTolerance_m = 0.001, kMaxTolerance_m = 10;
+constexpr double kMinSpeed_mps = 0.01;
+constexpr double kMaxHeading_rad = 100;
+
+// False for a NaN.
+bool is_between(double value, double low, double high) { return value >= low && value <= high; }
+
+/// Zero stands for none.
+bool is_none_or_between(double value, double low, double high) {
+  return value == 0 || is_between(value, low, high);
+}
+
+std::optional<double> if_positive(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
+
+bool is_valid(const msg::OrderPose& pose) {
+  return is_between(pose.x_m(), -kMaxCoordinate_m, kMaxCoordinate_m) &&
+         is_between(pose.y_m(), -kMaxCoordinate_m, kMaxCoordinate_m) &&
+         is_between(pose.heading_rad(), -kMaxHeading_rad, kMaxHeading_rad) &&
+         is_none_or_between(pose.speed_limit_mps(), kMinSpeed_mps, kMaxSpeed_mps) &&
+         is_none_or_between(pose.tolerance_m(), kMinTolerance_m, kMaxTolerance_m);
+}
+
+Goal decode(const msg::OrderPose& pose) {
+  return {{pose.x_m(), pose.y_m()},
+          pose.has_heading() ? std::optional(pose.heading_rad()) : std::nullopt,
+          if_positive(pose.speed_limit_mps()),
+          if_positive(pose.tolerance_m())};
+}
+
+msg::OrderPose encode(const Goal& goal) {
+  msg::OrderPose pose;
+  pose.x_m(goal.position_m.x());
+  pose.y_m(goal.position_m.y());
+  pose.has_heading(goal.heading_rad.has_value());
+  pose.heading_rad(goal.heading_rad.value_or(0));
+  pose.speed_limit_mps(goal.speed_limit_mps.value_or(0));
+  pose.tolerance_m(goal.tolerance_m.value_or(0));
+  return pose;
+}
+
+/// Whether orders of this kind are for all robots, for one, or for either.
+bool fits(msg::OrderKind kind, RobotId robot) {
+  switch (kind) {
+    case msg::OrderKind::ORDER_GO:
+    case msg::OrderKind::ORDER_CANCEL:
+      return robot != kAllRobots;
+    case msg::OrderKind::ORDER_HOLD:
+    case msg::OrderKind::ORDER_RESUME:
+      return true;
+    case msg::OrderKind::ORDER_ZONE:
+    case msg::OrderKind::ORDER_REMOVE_ZONE:
+      return robot == kAllRobots;
+  }
+  return false;
+}
+
+bool is_valid(const msg::OrderTerms& terms, std::size_t poses) {
+  const bool is_zone = terms.order_kind() == msg::OrderKind::ORDER_ZONE;
+  return is_zone ? is_between(static_cast<double>(poses), 1, kMaxCorners) &&
+                       is_between(terms.zone_radius_m(), 0, kMaxCoordinate_m) &&
+                       is_none_or_between(terms.zone_speed_limit_mps(), kMinSpeed_mps, kMaxSpeed_mps)
+                 : poses == 0 || terms.order_kind() == msg::OrderKind::ORDER_GO;
+}
+
+/// Also for the orders of the scenario, which have no poses.
+std::optional<Order> decode(RobotId robot, ClientId client, const msg::OrderTerms& terms,
+                            std::span<const msg::OrderPose> poses, Time now) {
+  const auto is_valid_pose = [](const msg::OrderPose& pose) { return is_valid(pose); };
+  const bool is_known_kind = is_enumerator(terms.order_kind(), msg::OrderKind::ORDER_REMOVE_ZONE);
+  if (!is_known_kind || !fits(terms.order_kind(), robot) || terms.order_number() == 0 ||
+      !is_plausible(terms.order_number(), now) || !is_valid(terms, poses.size()) ||
+      !std::ranges::all_of(poses, is_valid_pose))
+    return std::nullopt;
+  Order order{terms.order_kind(), robot, client, terms.order_number()};
+  if (order.kind == msg::OrderKind::ORDER_GO)
+    std::ranges::transform(poses, std::back_inserter(order.goals), [](const auto& p) { return decode(p); });
+  order.zone_number = terms.zone();
+  if (order.kind == msg::OrderKind::ORDER_ZONE) {
+    for (const msg::OrderPose& corner : poses) order.zone.corners_m.emplace_back(corner.x_m(), corner.y_m());
+    order.zone.radius_m = terms.zone_radius_m();
+    order.zone.speed_limit_mps = if_positive(terms.zone_speed_limit_mps());
+  }
+  return order;
+}
+
+msg::OrderTerms encode_terms(const Order& order) {
+  msg::OrderTerms terms;
+  terms.order_kind(order.kind);
+  terms.order_number(order.number);
+  terms.zone(order.zone_number);
+  terms.zone_radius_m(order.zone.radius_m);
+  terms.zone_speed_limit_mps(order.zone.speed_limit_mps.value_or(0));
+  return terms;
+}
+
+std::vector<msg::OrderPose> encode_poses(const Order& order) {
+  std::vector<msg::OrderPose> poses;
+  for (const Goal& goal : order.goals) poses.push_back(encode(goal));
+  for (const Vec2& corner : order.zone.corners_m) poses.push_back(encode(Goal{corner}));
+  return poses;
+}
+
+bool is_client(std::uint32_t sender) {
+  return sender == static_cast<std::uint32_t>(Sender::kOperator) ||
+         sender == static_cast<std::uint32_t>(Sender::kReferee) ||
+         sender >= static_cast<std::uint32_t>(Sender::kClient);
+}
+
+/// Whether an order of this client may be remembered: scenarios only let robots drive, and coordinators only
+/// hold them.
+bool may_order(std::uint32_t client, const msg::OrderTerms& terms, std::size_t poses) {
+  if (is_coordinator(client)) return terms.order_kind() == msg::OrderKind::ORDER_HOLD;
+  const bool is_go = terms.order_kind() == msg::OrderKind::ORDER_GO;
+  if (client == static_cast<std::uint32_t>(Sender::kScenario)) return is_go && poses == 0;
+  return is_client(client) && (!is_go || poses > 0);
+}
+
+}  // namespace
+
+std::optional<Order> decode(const msg::Order& message, Time now) {
+  const std::uint32_t client = message.header().sender();
+  const auto& poses = message.poses();
+  if (!is_client(client) || !may_order(client, message.terms(), poses.size())) return std::nullopt;
+  return decode(message.robot(), client, message.terms(), poses, now);
+}
+
+std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
+  const std::uint32_t process = message.header().sender();
+  const bool is_valid = message.process() == process && (is_coordinator(process) || process < kMaxRobots) &&
+                        message.order_count() <= msg::MAX_MEMORY_ORDERS &&
+                        message.page_index() < std::max(1U, message.page_count());
+  if (!is_valid) return std::nullopt;
+  OrderPage page{process, message.is_complete(), message.page_index(), message.page_count(), {}};
+  std::span<const msg::OrderPose> poses = message.poses();
+  for (std::size_t i = 0; i < message.order_count(); ++i) {
+    const msg::RememberedOrder& remembered = message.orders()[i];
+    const std::size_t count = remembered.pose_count();
+    if (count > poses.size()) return std::nullopt;
+    const auto own_poses = poses.first(count);
+    poses = poses.subspan(count);
+    if (!may_order(remembered.client(), remembered.terms(), count) ||
+        !is_enumerator(remembered.order_state(), msg::OrderState::ORDER_LEFT))
+      return std::nullopt;
+    auto order = decode(remembered.robot(), remembered.client(), remembered.terms(), own_poses, now);
+    if (!order) return std::nullopt;
+    page.orders.push_back({std::move(*order), {remembered.order_state(), remembered.pose_index()}});
+  }
+  if (!poses.empty()) return std::nullopt;
+  return page;
+}
+
+std::optional<OrderReport> decode(const msg::OrderStatus& message) {
+  const bool is_valid = message.robot() < kMaxRobots && message.header().sender() == message.robot() &&
+                        is_enumerator(message.order_state(), msg::OrderState::ORDER_LEFT);
+  if (!is_valid) return std::nullopt;
+  return OrderReport{message.robot(),
+                     message.client(),
+                     message.order_number(),
+                     {message.order_state(), message.pose_index()}};
+}
+
+msg::Order encode(const Order& order) {
+  msg::Order message;
+  message.robot(order.robot);
+  message.header().sender(order.client);
+  message.terms(encode_terms(order));
+  message.poses(encode_poses(order));
+  return message;
+}
+
+std::vector<msg::OrderMemory> encode(std::span<const RememberedOrder> orders, bool is_complete,
+                                     bool have_changed) {
+  std::vector<msg::OrderMemory> pages(1);
+  for (const RememberedOrder& order : orders) {
+    const auto poses = encode_poses(order.order);
+    const msg::OrderMemory& last = pages.back();
+    if (last.order_count() == msg::MAX_MEMORY_ORDERS ||
+        last.poses().size() + poses.size() > msg::MAX_MEMORY_POSES)
+      pages.emplace_back();
+    msg::OrderMemory& page = pages.back();
+    msg::RememberedOrder& remembered = page.orders()[page.order_count()];
+    remembered.robot(order.order.robot);
+    remembered.client(order.order.client);
+    remembered.terms(encode_terms(order.order));
+    remembered.pose_count(static_cast<std::uint8_t>(poses.size()));
+    remembered.pose_index(static_cast<std::uint16_t>(order.progress.goal_index));
+    remembered.order_state(order.progress.state);
+    page.order_count(static_cast<std::uint8_t>(page.order_count() + 1));
+    page.poses().insert(page.poses().end(), poses.begin(), poses.end());
+  }
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    pages[i].is_complete(is_complete);
+    pages[i].page_index(static_cast<std::uint32_t>(have_changed ? 0 : i));
+    pages[i].page_count(static_cast<std::uint32_t>(have_changed ? 0 : pages.size()));
+  }
+  return pages;
+}
+
+}  // namespace sidestep

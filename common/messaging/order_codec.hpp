@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/protocol/order.hpp"
+
+namespace sidestep {
+
+/// A page of the orders that a process remembers; see OrderMemory in idl/order.idl.
+struct OrderPage {
+  std::uint32_t process = 0;
+  bool is_complete = false;
+  std::uint32_t index = 0;
+  std::uint32_t count = 0;  ///< of the sender's pages; 0: these orders have changed
+  std::vector<RememberedOrder> orders;
+};
+
+/// What an agent does with its robot's order; see OrderStatus in idl/order.idl.
+struct OrderReport {
+  RobotId robot = 0;
+  ClientId client = 0;
+  OrderNumber number = 0;  ///< 0: the robot has no order
+  OrderProgress progress{};
+};
+
+/// Decodes an untrusted order. Returns nullopt if its sender may not send orders or not this one, if its kind
+/// is unknown, its number implausible at `now`, by the local clock, or any value out of bounds.
+[[nodiscard]] std::optional<Order> decode(const msg::Order& message, Time now);
+/// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, or if any
+/// of its orders is not valid.
+[[nodiscard]] std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now);
+/// Decodes the part of an untrusted status that coordinators use. Returns nullopt if the sender is not an
+/// agent of its robot, or if its state is unknown.
+[[nodiscard]] std::optional<OrderReport> decode(const msg::OrderStatus& message);
+
+/// Without the header's incarnation, message_number and stamp_ns.
+msg::Order encode(const Order& order);
+/// The orders on as many pages as they need, at least one. Without the header. If they have only changed,
+/// page_count is 0.
+std::vector<msg::OrderMemory> encode(std::span<const RememberedOrder> orders, bool is_complete,
+                                     bool have_changed);
+
+}  // namespace sidestep

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/geometry/vec2.hpp"
+
+namespace sidestep {
+
+/// Where a robot is to drive.
+struct Goal {
+  Vec2 position_m{0, 0};
+  std::optional<double> heading_rad{};      ///< nullopt: any
+  std::optional<double> speed_limit_mps{};  ///< on the way there; nullopt: that of the robots
+  std::optional<double> tolerance_m{};      ///< nullopt: that of the scenario
+};
+
+}  // namespace sidestep

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/messaging/senders.hpp"
+#include "common/motion/goal.hpp"
+#include "common/motion/version.hpp"
+#include "idl/order.hpp"
+
+namespace sidestep {
+
+/// The Header.sender of a process that sends orders.
+using ClientId = std::uint32_t;
+using OrderNumber = std::uint64_t;
+
+/// Order::robot of orders that apply to every robot.
+inline constexpr RobotId kAllRobots = msg::ALL_ROBOTS;
+
+/// A robot carries out the order of the highest rank first.
+enum class Rank : std::uint8_t { kScenario, kClient, kReferee, kOperator };
+inline constexpr std::size_t kRanks = 4;
+
+constexpr Rank rank_of(ClientId client) {
+  switch (client) {
+    case static_cast<ClientId>(Sender::kOperator):
+      return Rank::kOperator;
+    case static_cast<ClientId>(Sender::kReferee):
+      return Rank::kReferee;
+    case static_cast<ClientId>(Sender::kScenario):
+      return Rank::kScenario;
+    default:
+      return Rank::kClient;
+  }
+}
+
+/// A part of the floor: the convex hull of its corners, grown by a radius.
+struct Zone {
+  std::vector<Vec2> corners_m;  ///< at least one
+  double radius_m = 0;
+  std::optional<double> speed_limit_mps{};  ///< nullopt: to keep out of
+};
+
+/// What a client orders; see Order in idl/order.idl.
+struct Order {
+  msg::OrderKind kind = msg::OrderKind::ORDER_GO;
+  RobotId robot = 0;
+  ClientId client = 0;
+  OrderNumber number = 0;
+  std::vector<Goal> goals{};  ///< of ORDER_GO; empty: those of the scenario
+  std::uint32_t zone_number = 0;
+  Zone zone{};  ///< of ORDER_ZONE
+};
+
+/// How far a robot has got with an order to drive.
+struct OrderProgress {
+  msg::OrderState state = msg::OrderState::ORDER_ACCEPTED;
+  std::size_t goal_index = 0;  ///< of the goal that it drives to
+
+  bool is_finished() const { return state >= msg::OrderState::ORDER_ARRIVED; }
+};
+
+struct RememberedOrder {
+  Order order;
+  OrderProgress progress{};
+};
+
+}  // namespace sidestep

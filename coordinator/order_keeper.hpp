@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/order_codec.hpp"
+#include "common/protocol/order_book.hpp"
+
+namespace sidestep {
+
+/// The orders that a coordinator remembers. Until its memory is complete, every robot is held: an order to
+/// hold might have been given that it does not know.
+class OrderKeeper {
+ public:
+  /// How long a coordinator that could grant waits for a complete memory, before it holds all robots in its
+  /// own name.
+  static constexpr Duration kMaxWait{2'000'000'000};
+
+  OrderKeeper(const Scenario& scenario, std::uint32_t coordinator_id);
+
+  /// Takes an order of a client, and returns the answer.
+  msg::OrderResult on_order(const Order& order);
+  /// A page of another process's memory. Returns whether anything is new.
+  bool on_page(const OrderPage& page);
+  /// Returns whether anything is new.
+  bool on_report(const OrderReport& report);
+  /// To be called periodically. While this coordinator could grant: `has_moved`, whether any robot has
+  /// moved since its firmware's first start. Returns whether this completes the memory.
+  bool update(bool is_granting, bool has_moved, Time now);
+
+  bool is_complete() const { return is_complete_; }
+  bool is_held(RobotId robot) const { return !is_complete_ || book_.is_held(robot); }
+  const OrderBook& book() const { return book_; }
+  /// What has changed since the last call.
+  std::vector<RememberedOrder> take_changes();
+
+ private:
+  OrderBook::Outcome merge(const RememberedOrder& order);
+  bool is_known(RobotId robot) const { return robot == kAllRobots || has_goals_.contains(robot); }
+
+  const Field field_;
+  const double radius_m_;
+  const std::uint32_t id_;
+  std::map<RobotId, bool> has_goals_;  // by robot of the roster: whether the scenario gives it goals
+  OrderBook book_;
+  std::vector<RememberedOrder> changes_;
+  bool is_complete_ = false;
+  std::map<std::uint32_t, std::uint32_t> next_page_;  // by process: of its complete memory
+  std::optional<Time> waiting_since_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders at run time, in whole systems.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "common/client/order_client.hpp"
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/process_names.hpp"
+#include "common/random/rng.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::orders_test {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+constexpr ClientId kClient = 1'000'001, kOtherClient = 1'000'002;
+constexpr double kAtRest_mps = 0.02;  // beyond the noise of a robot that holds its place
+
+Scenario shipped(const std::string& name) {
+  return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
+}
+
+/// Robots without goals, on two sides of the field.
+Scenario waiting_robots(int count, int coordinators = 1) {
+  std::string text =
+      "field: {length_m: 6, width_m: 5}\ntime_limit_s: 60\ncoordinators: " + std::to_string(coordinators) +
+      "\nrobots:\n";
+  for (int i = 0; i < count; ++i)
+    text += "  - {id: " + std::to_string(i) + ", start_m: [" + (i % 2 ? "2" : "-2") + ", " +
+            std::to_string(-1.5 + 0.5 * (i / 2)) + "]}\n";
+  return parse_scenario(text, "waiting.yaml");
+}
+
+struct OrderedSystem {
+  Scenario scenario;
+  SimSystem system;
+  std::map<RobotId, msg::OrderStatus> statuses;
+  std::map<OrderNumber, msg::OrderResult> answers;
+  std::set<OrderNumber> arrived;
+  OrderNumber number = 0;
+  Time moved_at{};  ///< when a robot was in motion last
+
+  OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
+    system.on_order_status([this](const msg::OrderStatus& status) {
+      statuses[status.robot()] = status;
+      if (status.order_state() == msg::OrderState::ORDER_ARRIVED) arrived.insert(status.order_number());
+    });
+    system.on_truth([this](const msg::GroundTruth& truth) {
+      const auto moves = [](const msg::TrueRobotState& robot) {
+        return std::hypot(robot.vx_mps(), robot.vy_mps()) > kAtRest_mps;
+      };
+      if (std::ranges::any_of(truth.robots(), moves)) moved_at = time_from_ns(truth.valid_at_ns());
+    });
+    system.on_order_answer(
+        [this](const msg::OrderAnswer& answer) { answers[answer.order_number()] = answer.result(); });
+  }
+  OrderNumber send(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
+    number = std::max(number + 1, static_cast<OrderNumber>(to_ns(system.now())));
+    system.send({kind, robot, client, number, std::move(goals)});
+    return number;
+  }
+  template <typename Condition>
+  bool run_until(Duration limit, Condition condition) {
+    const Time end = system.now() + limit;
+    while (!condition() && system.now() < end) system.run_for(milliseconds(5));
+    return condition();
+  }
+  double max_speed_mps() {
+    double max_mps = 0;
+    for (const RobotProgress& row : system.metrics().progress()) max_mps = std::max(max_mps, row.speed_mps);
+    return max_mps;
+  }
+  void require_safe() {
+    const Report report = system.metrics().report();
+    REQUIRE(report.contacts == 0);
+    REQUIRE(report.firmware_violations == 0);
+    for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
+    REQUIRE(report.audit->violations == 0);
+  }
+};
+
+TEST_CASE("robots without goals wait, and go where they are ordered, pose by pose") {
+  OrderedSystem run(waiting_robots(4), 1);
+  run.system.run_for(seconds(2));
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  CHECK(run.statuses[0].order_number() == 0);
+  const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{0, 0}}, {{1, 2}, 1.0, 0.5}});
+  double fastest_mps = 0;
+  CHECK(run.run_until(seconds(20), [&] {
+    if (run.statuses[0].pose_index() == 1) fastest_mps = std::max(fastest_mps, run.max_speed_mps());
+    return run.arrived.contains(order);
+  }));
+  CHECK(run.answers[order] == msg::OrderResult::RESULT_REMEMBERED);
+  CHECK(fastest_mps > 0.4);
+  CHECK(fastest_mps < 0.55);
+  CHECK(run.send(msg::OrderKind::ORDER_GO, 9, kClient, {{{0, 0}}}) > 0);
+  CHECK(run.run_until(seconds(1), [&] { return run.answers.contains(run.number); }));
+  CHECK(run.answers[run.number] == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
+  run.require_safe();
+}
+
+TEST_CASE("twenty-two robots that are held at full speed rest after the time to brake and three cycles") {
+  const double loss = GENERATE(0.0, 0.05);
+  CAPTURE(loss);
+  std::vector<double> delays_s;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scenario scenario = shipped("two-teams-22");
+    scenario.network.loss = loss;
+    OrderedSystem run(scenario, seed);
+    const double full_mps = scenario.limits.speed_mps;
+    REQUIRE(run.run_until(seconds(10), [&] { return run.max_speed_mps() > 0.98 * full_mps; }));
+    const Time ordered_at = run.system.now();
+    run.send(msg::OrderKind::ORDER_HOLD, kAllRobots, kOperator);
+    REQUIRE(run.run_until(seconds(5), [&] { return run.max_speed_mps() < kAtRest_mps; }));
+    run.system.run_for(seconds(1));
+    delays_s.push_back(to_seconds(run.moved_at - ordered_at));
+    CHECK(run.max_speed_mps() < kAtRest_mps);
+    run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator);
+    CHECK(run.system.run_until_arrived(run.system.begin() + from_seconds(scenario.time_limit_s)));
+    run.require_safe();
+  }
+  std::ranges::sort(delays_s);
+  const Scenario scenario = shipped("two-teams-22");
+  const double budget_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2 +
+                          3 * to_seconds(scenario.cycle) + (loss > 0 ? 0.2 : 0);
+  WARN("loss " << loss << ": median " << delays_s[10] << " s, longest " << delays_s.back() << " s, budget "
+               << budget_s << " s");
+  CHECK(delays_s.back() <= budget_s);
+}
+
+TEST_CASE("a hold outlives the coordinator, the agents and both, until its owner or an operator resumes") {
+  const int coordinators = GENERATE(1, 2);
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(coordinators, seed);
+  Scenario scenario = shipped("crossing");
+  scenario.coordinators = coordinators;
+  OrderedSystem run(scenario, seed);
+  REQUIRE(run.run_until(seconds(5), [&] { return run.max_speed_mps() > 1; }));
+  run.send(msg::OrderKind::ORDER_HOLD, kAllRobots, kClient);
+  REQUIRE(run.run_until(seconds(3), [&] { return run.max_speed_mps() < kAtRest_mps; }));
+  const auto stays = [&](Duration duration) {
+    return !run.run_until(duration, [&] { return run.max_speed_mps() > kAtRest_mps; });
+  };
+  const auto restart = [&](const std::string& process) {
+    run.system.kill(process);
+    run.system.run_for(milliseconds(50));
+    run.system.restart(process);
+  };
+  restart("coordinator");
+  CHECK(stays(seconds(4)));
+  for (const RobotSpec& robot : scenario.robots) restart(agent_process(robot.id));
+  CHECK(stays(seconds(4)));
+  // All at once.
+  for (const std::string& process : SimSystem::process_names(scenario)) {
+    if (process != "simulator" && process != "vision") run.system.kill(process);
+  }
+  for (const std::string& process : SimSystem::process_names(scenario)) run.system.restart(process);
+  CHECK(stays(seconds(5)));
+  // Another client cannot lift it, and after a restart of everything the owner cannot either.
+  run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOtherClient);
+  run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kClient);
+  CHECK(stays(seconds(2)));
+  run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator);
+  std::vector<OrderNumber> orders;
+  for (const RobotSpec& robot : scenario.robots)
+    orders.push_back(run.send(msg::OrderKind::ORDER_GO, robot.id, kClient, robot.goals));
+  CHECK(run.run_until(seconds(30), [&] {
+    return std::ranges::all_of(orders, [&](OrderNumber order) { return run.arrived.contains(order); });
+  }));
+  run.require_safe();
+}
+
+TEST_CASE("no order is lost while agents and coordinators are killed") {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    Scenario scenario = waiting_robots(8, 2);
+    scenario.network.loss = 0.05;
+    OrderedSystem run(scenario, seed);
+    run.system.run_for(seconds(1));
+    std::map<RobotId, OrderNumber> latest;
+    for (int i = 0; i < 60; ++i) {
+      const RobotId robot = rng.below(8);
+      const Goal goal{{rng.uniform(-2.8, 2.8), rng.uniform(-2.3, 2.3)}};
+      latest[robot] =
+          run.send(msg::OrderKind::ORDER_GO, robot, rng.below(2) ? kClient : kOtherClient, {goal});
+      const std::string victim =
+          rng.below(3) ? agent_process(rng.below(8)) : coordinator_process(rng.below(2));
+      if (rng.below(3) == 0) {
+        run.system.kill(victim);
+        run.system.run_for(milliseconds(rng.below(400)));
+        run.system.restart(victim);
+      }
+      run.system.run_for(milliseconds(rng.below(500)));
+    }
+    // Each robot carries out the last order that it was given, or stands as near as others let it.
+    run.run_until(seconds(40), [&] {
+      return std::ranges::all_of(latest, [&](const auto& l) { return run.arrived.contains(l.second); });
+    });
+    for (const auto& [robot, order] : latest) {
+      INFO("robot " << robot);
+      CHECK(run.statuses[robot].order_number() == order);
+    }
+    run.require_safe();
+  }
+}
+
+/// A client on its own link, which gives robots random goals, each on a place of its own.
+struct RandomClient {
+  static constexpr int kColumns = 6, kRows = 5;
+  SimBus bus;
+  OrderClient client;
+  Rng rng;
+  std::map<RobotId, int> places;
+  std::vector<OrderHandle> sent;
+
+  RandomClient(SimNetwork& network, std::uint64_t seed) : bus(network), client(bus, kClient), rng(seed) {}
+  void send_one(RobotId robot) {
+    int place = 0;
+    do {
+      place = static_cast<int>(rng.below(kColumns * kRows));
+    } while (std::ranges::any_of(places, [&](const auto& taken) { return taken.second == place; }));
+    places[robot] = place;
+    sent.push_back(client.go(robot, {{{-2 + 0.8 * (place % kColumns), -1.6 + 0.8 * (place / kColumns)}}}));
+  }
+  std::size_t count(OrderPhase phase) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(sent, [&](OrderHandle handle) { return client.find(handle)->phase == phase; }));
+  }
+};
+
+TEST_CASE("a client learns the end of every order, whatever is killed meanwhile") {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    Scenario scenario = waiting_robots(8, 1 + static_cast<int>(seed % 2));
+    scenario.network.loss = 0.05;
+    OrderedSystem run(scenario, seed);
+    RandomClient random(run.system.network(), seed);
+    std::map<std::string, Time> dead_until;
+    for (int i = 0; i < 400; ++i) {
+      run.system.run_for(milliseconds(100));
+      if (rng.below(3) == 0) random.send_one(static_cast<RobotId>(rng.below(8)));
+      for (const std::string& process : SimSystem::process_names(scenario)) {
+        if (process == "simulator" || process == "vision") continue;
+        if (run.system.is_alive(process) && rng.below(100) == 0) {
+          run.system.kill(process);
+          dead_until[process] = run.system.now() + milliseconds(rng.below(1500));
+        } else if (!run.system.is_alive(process) && run.system.now() >= dead_until[process]) {
+          run.system.restart(process);
+        }
+      }
+    }
+    for (const std::string& process : SimSystem::process_names(scenario)) run.system.restart(process);
+    const auto is_over = [&] {
+      return random.count(OrderPhase::kArrived) + random.count(OrderPhase::kReplaced) == random.sent.size();
+    };
+    CHECK(run.run_until(seconds(40), is_over));
+    CAPTURE(random.sent.size(), random.count(OrderPhase::kSent), random.count(OrderPhase::kAccepted),
+            random.count(OrderPhase::kDriving), random.count(OrderPhase::kRefused));
+    CHECK(is_over());
+    CHECK(random.count(OrderPhase::kArrived) > 20);
+    run.require_safe();
+  }
+}
+
+TEST_CASE("orders count in the order in which clients give them, although their clocks differ") {
+  OrderedSystem run(shipped("crossing"), 1);
+  SimNetwork& network = run.system.network();
+  SimBus early_bus(network, {network.new_process(), {seconds(-20), 0, run.system.begin()}});
+  SimBus late_bus(network, {network.new_process(), {seconds(20), 0, run.system.begin()}});
+  OrderClient early(early_bus, kClient), late(late_bus, kOperator);
+  REQUIRE(run.run_until(seconds(5), [&] { return run.max_speed_mps() > 1; }));
+  const auto rests = [&] { return run.max_speed_mps() < kAtRest_mps; };
+  const auto drives = [&] { return run.max_speed_mps() > 0.5; };
+  for (int i = 0; i < 2; ++i) {
+    late.hold(kAllRobots);
+    CHECK(run.run_until(seconds(2), rests));
+    late.resume(kAllRobots);
+    CHECK(run.run_until(seconds(2), drives));
+    early.hold(kAllRobots);
+    CHECK(run.run_until(seconds(2), rests));
+    early.resume(kAllRobots);
+    CHECK(run.run_until(seconds(2), drives));
+  }
+  OrderClient stranger(late_bus, kOtherClient);
+  const Vec2 position = shipped("crossing").robots[0].start_m;
+  stranger.go(0, {{position}});
+  run.system.run_for(milliseconds(100));
+  const OrderHandle last = early.go(0, {{position}});
+  run.system.run_for(milliseconds(300));
+  CHECK(early.find(last)->phase == OrderPhase::kDriving);
+}
+
+TEST_CASE("robots that stopped by themselves before anything was granted are not held") {
+  OrderedSystem run(shipped("crossing"), 1);
+  run.system.kill("coordinator");
+  run.system.run_for(milliseconds(100));
+  msg::Disturbance reboot;
+  reboot.robot(3);
+  reboot.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_REBOOT);
+  run.system.disturb(reboot);
+  run.system.run_for(milliseconds(200));
+  run.system.restart("coordinator");
+  CHECK(run.system.run_until_arrived(run.system.now() + seconds(20)));
+  run.require_safe();
+}
+
+TEST_CASE("another robot's agent restores an order that coordinator and agent have forgotten together") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    INFO("seed " << seed);
+    OrderedSystem run(waiting_robots(3), seed);
+    run.system.run_for(seconds(1));
+    const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{2, 2}}});
+    run.system.run_for(milliseconds(300));
+    run.system.kill("coordinator");
+    run.system.kill(agent_process(0));
+    run.system.run_for(milliseconds(100));
+    run.system.restart("coordinator");
+    run.system.restart(agent_process(0));
+    CHECK(run.run_until(seconds(20), [&] { return run.arrived.contains(order); }));
+    run.require_safe();
+  }
+}
+
+TEST_CASE("ten thousand orders a second neither stop a run nor fill the memory") {
+  OrderedSystem run(waiting_robots(4), 1);
+  run.system.run_for(seconds(1));
+  const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kOperator, {{{1, 0}}});
+  Rng rng(1);
+  for (int i = 0; i < 20000; ++i) {
+    run.number = static_cast<OrderNumber>(to_ns(run.system.now())) + rng.below(1000);
+    const auto kind = static_cast<msg::OrderKind>(rng.below(6));
+    const auto robot = static_cast<RobotId>(rng.below(5));
+    Order flood{kind, robot, kClient + static_cast<ClientId>(rng.below(100'000)), run.number};
+    // Their own holds would stop the robot, as they should.
+    if (flood.kind == msg::OrderKind::ORDER_HOLD || flood.kind == msg::OrderKind::ORDER_RESUME)
+      flood.robot = 1 + robot % 4;
+    if (flood.kind == msg::OrderKind::ORDER_GO) flood.goals = {{{rng.uniform(-5, 5), 0}}};
+    if (flood.kind == msg::OrderKind::ORDER_ZONE) flood.zone.corners_m = {{2.5, 2}};
+    if (flood.kind >= msg::OrderKind::ORDER_ZONE) flood.robot = kAllRobots;
+    flood.zone_number = static_cast<std::uint32_t>(rng.below(1'000'000));
+    run.system.send(flood);
+    run.system.run_for(std::chrono::microseconds(100));
+  }
+  CHECK(run.run_until(seconds(10), [&] { return run.arrived.contains(order); }));
+  run.require_safe();
+}
+
+}  // namespace sidestep::orders_test

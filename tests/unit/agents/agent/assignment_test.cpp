@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/assignment.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::assignment_test {
+
+constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+constexpr ClientId kClient = 1'000'001;
+
+RememberedOrder go(ClientId client, OrderNumber number, std::vector<Vec2> positions) {
+  RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, client, number}};
+  for (const Vec2& position : positions) order.order.goals.push_back({position});
+  return order;
+}
+RememberedOrder scenario_order() { return go(static_cast<ClientId>(Sender::kScenario), 1, {}); }
+RememberedOrder of_kind(msg::OrderKind kind, ClientId client, OrderNumber number) {
+  return {{kind, 3, client, number}};
+}
+
+/// All that a coordinator remembers.
+OrderPage memory(std::vector<RememberedOrder> orders) {
+  return {kCoordinator, true, 0, 1, std::move(orders)};
+}
+OrderPage change(RememberedOrder order) { return {kCoordinator, true, 0, 0, {std::move(order)}}; }
+
+struct Robot {
+  Assignment assignment{3, {{{1, 0}}, {{2, 0}}}};
+  void hear(const OrderPage& page) { assignment.on_page(std::make_shared<OrderPage>(page)); }
+  double goal_x() const { return assignment.goal() ? assignment.goal()->position_m.x() : 0; }
+};
+
+TEST_CASE("a robot knows its orders once it has heard the whole memory of a coordinator") {
+  Robot r;
+  CHECK_FALSE(r.assignment.is_known());
+  r.hear(change(scenario_order()));
+  CHECK_FALSE(r.assignment.is_known());
+  OrderPage second = memory({});
+  second.index = 1;
+  second.count = 2;
+  r.hear(second);
+  CHECK_FALSE(r.assignment.is_known());
+  OrderPage first = memory({scenario_order()});
+  first.count = 2;
+  r.hear(first);
+  r.hear(second);
+  CHECK(r.assignment.is_known());
+  Robot other;
+  OrderPage incomplete = memory({});
+  incomplete.is_complete = false;
+  other.hear(incomplete);
+  CHECK_FALSE(other.assignment.is_known());
+  OrderPage of_agent = memory({});
+  of_agent.process = 4;
+  other.hear(of_agent);
+  CHECK_FALSE(other.assignment.is_known());
+}
+
+TEST_CASE("a robot visits its goals in order, and stays at the last one") {
+  Robot r;
+  r.hear(memory({scenario_order()}));
+  CHECK(r.goal_x() == 1);
+  r.assignment.on_arrival();
+  CHECK(r.goal_x() == 2);
+  CHECK(r.assignment.report().progress.state == msg::OrderState::ORDER_DRIVING);
+  r.assignment.on_arrival();
+  CHECK(r.goal_x() == 2);
+  CHECK(r.assignment.report().progress.state == msg::OrderState::ORDER_ARRIVED);
+  const auto revision = r.assignment.revision();
+  r.hear(memory({scenario_order()}));  // the coordinator has not heard of it yet
+  CHECK(r.assignment.revision() == revision);
+  REQUIRE(r.assignment.take_missing().size() == 1);
+  CHECK(r.assignment.take_missing().empty());
+}
+
+TEST_CASE("an order of a higher rank comes first, and the interrupted one goes on") {
+  Robot r;
+  r.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}})}));
+  r.assignment.on_arrival();
+  CHECK(r.goal_x() == 6);
+  r.hear(change(go(kOperator, 11, {{7, 0}})));
+  CHECK(r.goal_x() == 7);
+  r.hear(change(go(kClient, 12, {{8, 0}})));
+  CHECK(r.goal_x() == 7);
+  r.assignment.on_arrival();
+  CHECK(r.assignment.report().progress.state == msg::OrderState::ORDER_ARRIVED);
+  r.assignment.choose();
+  CHECK(r.goal_x() == 8);
+  r.assignment.on_arrival();
+  CHECK(r.goal_x() == 8);
+  r.hear(change(go(kClient, 10, {{5, 0}})));  // late
+  CHECK(r.goal_x() == 8);
+}
+
+TEST_CASE("a cancelled robot has no goal, until it is given another one") {
+  Robot r;
+  r.hear(memory({go(kClient, 10, {{5, 0}})}));
+  r.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kClient, 11)));
+  CHECK_FALSE(r.assignment.goal());
+  CHECK(r.assignment.report().number == 0);
+  r.hear(change(go(kClient, 12, {{6, 0}})));
+  CHECK(r.goal_x() == 6);
+  r.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kOperator, 13)));
+  CHECK(r.goal_x() == 6);  // each rank cancels its own orders
+}
+
+TEST_CASE("a new agent goes on where the last one was, and leaves finished orders alone") {
+  Robot first;
+  first.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}, {7, 0}})}));
+  first.assignment.on_arrival();
+  Robot second;
+  second.hear(memory(first.assignment.all()));
+  CHECK(second.goal_x() == 6);
+  second.assignment.on_arrival();
+  second.assignment.on_arrival();
+  Robot third;
+  third.hear(memory(second.assignment.all()));
+  CHECK(third.goal_x() == 7);  // it stays there, or returns
+  CHECK(third.assignment.report().progress.state == msg::OrderState::ORDER_ARRIVED);
+  third.hear(change(go(kOperator, 11, {{8, 0}})));
+  third.assignment.on_arrival();
+  third.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kOperator, 12)));
+  CHECK_FALSE(third.assignment.goal());  // the finished order has been left
+}
+
+TEST_CASE("an agent remembers the orders of all robots, as the coordinator told them last") {
+  const RememberedOrder other{{msg::OrderKind::ORDER_CANCEL, 4, kClient, 20}};
+  const RememberedOrder another{{msg::OrderKind::ORDER_CANCEL, 5, kClient, 21}};
+  Robot r;
+  r.hear(memory({scenario_order(), other}));
+  r.hear(change(another));
+  CHECK(r.assignment.all().size() == 3);
+  r.assignment.on_arrival();
+  CHECK(r.assignment.all().front().progress.goal_index == 1);
+  r.hear(memory({scenario_order(), another}));
+  CHECK(r.assignment.all().size() == 2);
+}
+
+TEST_CASE("a robot is held as the orders say") {
+  Robot r;
+  r.hear(memory({scenario_order(), of_kind(msg::OrderKind::ORDER_HOLD, kClient, 5)}));
+  CHECK(r.assignment.is_held());
+  r.hear(change(of_kind(msg::OrderKind::ORDER_RESUME, kClient, 6)));
+  CHECK_FALSE(r.assignment.is_held());
+}
+
+}  // namespace sidestep::assignment_test

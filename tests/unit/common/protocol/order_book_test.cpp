@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/protocol/order_book.hpp"
+
+#include <algorithm>
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::order_book_test {
+
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+constexpr auto kReferee = static_cast<ClientId>(Sender::kReferee);
+constexpr ClientId kAnna = 1'000'001, kBert = 1'000'002;
+constexpr std::array kClients{kAnna, kBert, kReferee, kOperator};
+
+RememberedOrder order(msg::OrderKind kind, RobotId robot, ClientId client, OrderNumber number) {
+  return {{kind, robot, client, number}};
+}
+RememberedOrder go(RobotId robot, ClientId client, OrderNumber number) {
+  RememberedOrder remembered = order(msg::OrderKind::ORDER_GO, robot, client, number);
+  remembered.order.goals.push_back({{1, 2}});
+  return remembered;
+}
+RememberedOrder hold(RobotId robot, ClientId client, OrderNumber number) {
+  return order(msg::OrderKind::ORDER_HOLD, robot, client, number);
+}
+RememberedOrder resume(RobotId robot, ClientId client, OrderNumber number) {
+  return order(msg::OrderKind::ORDER_RESUME, robot, client, number);
+}
+RememberedOrder zone(ClientId client, std::uint32_t zone_number, OrderNumber number) {
+  RememberedOrder remembered = order(msg::OrderKind::ORDER_ZONE, kAllRobots, client, number);
+  remembered.order.zone_number = zone_number;
+  return remembered;
+}
+
+/// The rules in words, from the list of all orders: a robot is held if there is a hold of it after which
+/// neither its owner nor an operator has sent a resume for it.
+bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot) {
+  const auto concerns = [=](const Order& o) { return o.robot == robot || o.robot == kAllRobots; };
+  return std::ranges::any_of(orders, [&](const RememberedOrder& h) {
+    if (h.order.kind != msg::OrderKind::ORDER_HOLD || !concerns(h.order)) return false;
+    return std::ranges::none_of(orders, [&](const RememberedOrder& r) {
+      return r.order.kind == msg::OrderKind::ORDER_RESUME && concerns(r.order) &&
+             r.order.number > h.order.number &&
+             (r.order.client == h.order.client || r.order.client == kOperator);
+    });
+  });
+}
+
+/// The last order to drive of a rank.
+const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot, Rank rank) {
+  const Order* last = nullptr;
+  for (const RememberedOrder& o : orders) {
+    const bool drives =
+        o.order.kind == msg::OrderKind::ORDER_GO || o.order.kind == msg::OrderKind::ORDER_CANCEL;
+    if (!drives || o.order.robot != robot || rank_of(o.order.client) != rank) continue;
+    if (!last || std::pair(o.order.number, o.order.client) > std::pair(last->number, last->client))
+      last = &o.order;
+  }
+  return last;
+}
+
+TEST_CASE("books that hear the same orders agree with each other and with the rules, whatever the order") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    std::vector<RememberedOrder> orders;
+    for (int i = 0; i < 40; ++i) {
+      const auto kind = static_cast<msg::OrderKind>(rng.below(4));
+      const bool may_be_all = kind == msg::OrderKind::ORDER_HOLD || kind == msg::OrderKind::ORDER_RESUME;
+      const RobotId robot = may_be_all && rng.below(3) == 0 ? kAllRobots : rng.below(3);
+      // No client uses a number twice.
+      const std::uint32_t client = rng.below(4);
+      orders.push_back(
+          order(kind, robot, kClients[client], 1 + 4 * static_cast<OrderNumber>(i / 2) + client));
+      if (i % 2 == 1 && orders[i].order.number == orders[i - 1].order.number) orders.pop_back(), --i;
+    }
+    OrderBook first, second;
+    for (const RememberedOrder& o : orders) first.merge(o);
+    for (std::size_t i = orders.size(); i-- > 0;) {
+      // Out of order, and twice.
+      second.merge(orders[i]);
+      second.merge(orders[rng.below(static_cast<std::uint32_t>(orders.size()))]);
+    }
+    CHECK(first.missing_in(second).empty());
+    CHECK(second.missing_in(first).empty());
+    for (RobotId robot = 0; robot < 3; ++robot) {
+      CHECK(first.is_held(robot) == is_held_by_reference(orders, robot));
+      CHECK(second.is_held(robot) == first.is_held(robot));
+      for (std::size_t rank = 0; rank < kRanks; ++rank) {
+        const Order* expected = drive_by_reference(orders, robot, static_cast<Rank>(rank));
+        const RememberedOrder* found = second.drive_order(robot, static_cast<Rank>(rank));
+        REQUIRE((found != nullptr) == (expected != nullptr));
+        if (expected) CHECK((found->order.number == expected->number && found->order.kind == expected->kind));
+      }
+    }
+  }
+}
+
+TEST_CASE("only its owner or an operator lifts a hold, also for one robot of all") {
+  OrderBook book;
+  book.merge(hold(kAllRobots, kAnna, 10));
+  book.merge(resume(kAllRobots, kBert, 11));
+  book.merge(resume(kAllRobots, kReferee, 12));
+  CHECK(book.is_held(3));
+  book.merge(resume(3, kAnna, 13));
+  CHECK_FALSE(book.is_held(3));
+  CHECK(book.is_held(4));
+  book.merge(hold(4, kBert, 14));
+  book.merge(resume(kAllRobots, kOperator, 15));
+  CHECK_FALSE(book.is_held(4));
+  book.merge(resume(4, kOperator, 16));
+  book.merge(hold(4, kOperator, 17));
+  book.merge(resume(4, kReferee, 18));
+  CHECK(book.is_held(4));
+}
+
+TEST_CASE("an order is known by its number, and a late one changes nothing") {
+  OrderBook book;
+  CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kStored);
+  CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kKnown);
+  CHECK(book.merge(go(3, kBert, 9)) == OrderBook::Outcome::kReplaced);
+  CHECK(book.merge(go(3, kBert, 11)) == OrderBook::Outcome::kStored);
+  CHECK(book.merge(go(3, kOperator, 5)) == OrderBook::Outcome::kStored);  // has a place of its own
+  CHECK(book.newest_number() == 11);
+}
+
+TEST_CASE("progress only grows, and a robot leaves what it has finished when it begins another order") {
+  OrderBook book;
+  book.merge(go(3, kAnna, 10));
+  book.merge(go(3, kOperator, 11));
+  CHECK(book.report(3, kOperator, 11, {msg::OrderState::ORDER_ARRIVED, 0}));
+  CHECK_FALSE(book.report(3, kOperator, 11, {msg::OrderState::ORDER_DRIVING, 0}));
+  CHECK_FALSE(
+      book.report(3, 0, 0, {msg::OrderState::ORDER_ACCEPTED, 0}));  // a new agent, which knows no order
+  CHECK(book.drive_order(3, Rank::kOperator)->progress.is_finished());
+  CHECK(book.report(3, kAnna, 10, {msg::OrderState::ORDER_DRIVING, 0}));
+  CHECK(book.drive_order(3, Rank::kOperator)->progress.state == msg::OrderState::ORDER_LEFT);
+  CHECK_FALSE(book.report(3, kAnna, 9, {msg::OrderState::ORDER_ARRIVED, 0}));  // of an earlier order
+  CHECK_FALSE(book.drive_order(3, Rank::kClient)->progress.is_finished());
+  RememberedOrder further = go(3, kAnna, 10);
+  further.progress = {msg::OrderState::ORDER_ARRIVED, 0};
+  CHECK(book.merge(further) == OrderBook::Outcome::kStored);
+  OrderBook other;
+  other.merge(go(3, kAnna, 10));
+  CHECK(book.missing_in(other).size() == 2);
+  CHECK(other.missing_in(book).empty());
+}
+
+TEST_CASE("a zone stays until it is removed, each client has its own numbers, and a book is bounded") {
+  OrderBook book;
+  book.merge(zone(kAnna, 1, 10));
+  book.merge(zone(kBert, 1, 11));
+  CHECK(book.zones().size() == 2);
+  RememberedOrder removal = zone(kAnna, 1, 12);
+  removal.order.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
+  book.merge(removal);
+  CHECK(book.zones().size() == 1);
+  CHECK(book.merge(zone(kAnna, 1, 10)) == OrderBook::Outcome::kReplaced);
+  for (std::uint32_t i = 2; i < 1000; ++i) book.merge(zone(kAnna, i, 100 + i));
+  CHECK(book.merge(zone(kBert, 7, 5000)) == OrderBook::Outcome::kFull);
+  CHECK(book.zones().size() == OrderBook::kMaxZones - 1);
+  CHECK(book.merge(zone(kReferee, 7, 5000)) == OrderBook::Outcome::kStored);
+  for (std::uint32_t i = 0; i < 2000; ++i) book.merge(hold(5, kAnna + i, 100));
+  CHECK(book.all().size() <= OrderBook::kMaxZones + OrderBook::kMaxHolds + 1);
+  CHECK(book.merge(hold(kAllRobots, kOperator, 100)) == OrderBook::Outcome::kStored);
+  CHECK(book.is_held(1));
+}
+
+}  // namespace sidestep::order_book_test

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/order_keeper.hpp"
+
+#include "common/config/scenario_loader.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::order_keeper_test {
+
+constexpr std::uint32_t kSelf = 10000, kOther = 10001;
+constexpr ClientId kClient = 1'000'001;
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+constexpr Time kNow = time_from_ns(1'000'000'000'000);
+constexpr Duration kSecond{1'000'000'000};
+
+Scenario two_robots() {
+  return parse_scenario(
+      "field: {length_m: 6, width_m: 4}\nrobots:\n"
+      "  - {id: 3, start_m: [0, 0], goals_m: [[1, 0]]}\n  - {id: 4, start_m: [0, 1]}\n",
+      "two-robots.yaml");
+}
+
+Order go(RobotId robot, OrderNumber number, const Vec2& position) {
+  Order order{msg::OrderKind::ORDER_GO, robot, kClient, number};
+  order.goals.push_back({position});
+  return order;
+}
+Order of_kind(msg::OrderKind kind, RobotId robot, ClientId client, OrderNumber number) {
+  return {kind, robot, client, number};
+}
+
+struct Keeper {
+  OrderKeeper keeper{two_robots(), kSelf};
+  bool is_held() const { return keeper.is_held(3) || keeper.is_held(4); }
+};
+
+TEST_CASE("before anything has moved, a coordinator gives the scenario's orders") {
+  Keeper k;
+  CHECK(k.is_held());
+  CHECK_FALSE(k.keeper.update(false, false, kNow));
+  CHECK(k.keeper.update(true, false, kNow));
+  CHECK_FALSE(k.is_held());
+  CHECK(k.keeper.take_changes().size() == 1);
+  const RememberedOrder* order = k.keeper.book().drive_order(3, Rank::kScenario);
+  REQUIRE(order);
+  CHECK(order->order.goals.empty());
+  CHECK_FALSE(k.keeper.book().drive_order(4, Rank::kScenario));
+}
+
+TEST_CASE(
+    "a coordinator that has forgotten waits for another memory, and then holds all robots for an operator") {
+  Keeper k;
+  CHECK_FALSE(k.keeper.update(true, true, kNow));
+  CHECK_FALSE(k.keeper.update(true, true, kNow + OrderKeeper::kMaxWait - Duration{1}));
+  CHECK(k.is_held());
+  CHECK_FALSE(k.keeper.update(false, true, kNow + OrderKeeper::kMaxWait));  // others must register again
+  CHECK_FALSE(k.keeper.update(true, true, kNow + kSecond * 9));
+  CHECK(k.keeper.update(true, true, kNow + kSecond * 9 + OrderKeeper::kMaxWait));
+  CHECK(k.keeper.is_complete());
+  CHECK(k.is_held());
+  const auto number = static_cast<OrderNumber>(to_ns(kNow + kSecond * 20));
+  CHECK(k.keeper.on_order(of_kind(msg::OrderKind::ORDER_RESUME, kAllRobots, kClient, number)) ==
+        msg::OrderResult::RESULT_REMEMBERED);
+  CHECK(k.is_held());
+  k.keeper.on_order(of_kind(msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, number));
+  CHECK_FALSE(k.is_held());
+}
+
+TEST_CASE("a coordinator learns the orders from the whole memory of a process that knows them") {
+  const RememberedOrder hold{of_kind(msg::OrderKind::ORDER_HOLD, 3, kClient, 7)};
+  for (const std::uint32_t process : {kOther, 4U}) {
+    Keeper k;
+    k.keeper.on_page({process, true, 1, 2, {}});  // the first page was not heard
+    CHECK_FALSE(k.keeper.is_complete());
+    k.keeper.on_page({process, false, 0, 2, {}});
+    k.keeper.on_page({process, false, 1, 2, {}});
+    CHECK_FALSE(k.keeper.is_complete());
+    k.keeper.on_page({process, true, 0, 0, {hold}});  // only changes
+    CHECK_FALSE(k.keeper.is_complete());
+    k.keeper.on_page({process, true, 0, 2, {hold}});
+    k.keeper.on_page({process, true, 1, 2, {}});
+    CHECK(k.keeper.is_complete());
+    CHECK(k.keeper.is_held(3));
+    CHECK_FALSE(k.keeper.is_held(4));
+  }
+}
+
+TEST_CASE(
+    "orders are refused for unknown robots, outside the field, and if a later one stands in their place") {
+  Keeper k;
+  k.keeper.update(true, false, kNow);
+  CHECK(k.keeper.on_order(go(9, 5, {0, 0})) == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
+  CHECK(k.keeper.on_order(go(3, 5, {2.95, 0})) == msg::OrderResult::RESULT_OUTSIDE_FIELD);
+  CHECK(k.keeper.on_order(go(3, 5, {2.9, 0})) == msg::OrderResult::RESULT_REMEMBERED);
+  CHECK(k.keeper.on_order(go(3, 5, {2.9, 0})) == msg::OrderResult::RESULT_REMEMBERED);
+  CHECK(k.keeper.on_order(go(3, 4, {2.9, 0})) == msg::OrderResult::RESULT_REPLACED);
+  CHECK(k.keeper.take_changes().size() == 2);
+  CHECK(k.keeper.on_report({3, kClient, 5, {msg::OrderState::ORDER_ARRIVED, 0}}));
+  CHECK(k.keeper.book().drive_order(3, Rank::kClient)->progress.is_finished());
+}
+
+}  // namespace sidestep::order_keeper_test
