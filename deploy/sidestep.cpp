@@ -18,6 +18,7 @@
 #include "deploy/monitor/audit/audit_command.hpp"
 #include "deploy/monitor/record/record_command.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
+#include "deploy/order/order_command.hpp"
 #include "deploy/simulate/simulate_command.hpp"
 
 namespace {
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
   add_fault_command(app, action);
   add_test_command(app, action);
   add_attest_command(app, action);
+  add_order_commands(app, action);
   add_audit_command(app, action);
   add_record_command(app, action);
   add_plan_command(app, action);

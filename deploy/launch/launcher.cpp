@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
+#include <limits>
 #include <sstream>
 
 #include "common/log/log.hpp"
@@ -88,6 +89,7 @@ Report Launcher::run() {
   report.program = "run";
   report.seed = options_.seed;
   report.abort_reason = abort_reason_;
+  report.must_arrive = !metrics_.awaits_orders();
   report.duration_s = to_seconds(bus_.now() - begin);
   report.fast_dds = fast_dds_version();
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
@@ -190,6 +192,7 @@ void Launcher::handle(const ChildEvent& event) {
 }
 
 bool Launcher::is_over() {
+  if (is_interrupted_ && is_ready_ && metrics_.awaits_orders()) return true;
   if (is_interrupted_) abort_reason_ = kInterrupted;
   if (!abort_reason_.empty()) return true;
   if (!is_ready_) return is_startup_over();
@@ -224,14 +227,18 @@ std::string Launcher::startup_failure() const {
 
 bool Launcher::is_drive_over() {
   const Time now = bus_.now();
-  if (!metrics_.all_arrived())
+  const bool awaits_orders = metrics_.awaits_orders();
+  const bool may_end = !awaits_orders || (options_.until_idle && metrics_.has_had_orders());
+  if (!may_end || !metrics_.all_arrived())
     arrived_since_.reset();
   else if (!arrived_since_)
     arrived_since_ = now;
   if (arrived_since_ && now - *arrived_since_ >= kSettlingTime) return true;
 
-  const double limit_s = options_.seconds.value_or(scenario_.time_limit_s);
-  if (now - *metrics_.granting_since() > from_seconds(limit_s)) {
+  const double limit_s = options_.seconds.value_or(awaits_orders ? std::numeric_limits<double>::infinity()
+                                                                 : scenario_.time_limit_s);
+  if (to_seconds(now - *metrics_.granting_since()) > limit_s) {
+    if (awaits_orders) return true;
     abort_reason_ = fmt::format("time limit of {} s", limit_s);
   } else if (is_stuck(now)) {
     abort_reason_ = fmt::format("{} died", fmt::join(dead_, ", "));

@@ -21,6 +21,7 @@ struct RunOptions {
   DdsSettings dds;
   std::uint64_t seed = 1;                         ///< of the simulator's noise
   std::optional<double> seconds;                  ///< overrides the scenario's time limit
+  bool until_idle = false;                        ///< see run()
   bool faults = false;                            ///< processes accept `sidestep fault network`
   std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
   LogLevel log_level = LogLevel::kInfo;           ///< of all processes
@@ -28,10 +29,12 @@ struct RunOptions {
 };
 
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
-/// or the user interrupts, stops them, and writes the report. Returns the exit code: 0 only if all robots
-/// arrived without contact and the auditor found no violation; kExitNotJudged if that may be so, but the
-/// audit covered too little. Throws ConfigError, and std::runtime_error when a process cannot be started or a
-/// file cannot be written.
+/// or the user interrupts, stops them, and writes the report. If the scenario gives no robot a goal, clients
+/// do: the run lasts until the user interrupts, RunOptions::seconds have passed or, with `until_idle`, all
+/// robots have finished what they were ordered, and no robot has to arrive. Returns the exit code: 0 only if
+/// all robots arrived without contact and the auditor found no violation; kExitNotJudged if that may be so,
+/// but the audit covered too little. Throws ConfigError, and std::runtime_error when a process cannot be
+/// started or a file cannot be written.
 int run(const RunOptions& options);
 
 }  // namespace sidestep

@@ -23,6 +23,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .check(non_negative())
       .show_default();
   command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
+  command.add_flag("--until-idle", options->until_idle,
+                   "if clients give the goals: end when all robots have finished their orders");
   add_dds_options(command, options->dds);
   add_log_option(command, options->log_level);
   command.add_flag("--faults", options->faults,

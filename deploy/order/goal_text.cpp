@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/order/goal_text.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/config/yaml_document.hpp"
+#include "common/config/yaml_map.hpp"
+#include "common/messaging/version_codec.hpp"
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Range kCoordinate{-kMaxCoordinate_m, kMaxCoordinate_m};
+
+Goal goal_from(const std::vector<double>& numbers) {
+  Goal goal{{numbers[0], numbers[1]}};
+  if (numbers.size() == 3) goal.heading_rad = numbers[2];
+  return goal;
+}
+
+}  // namespace
+
+Goal parse_goal(const std::string& text) {
+  std::vector<double> numbers;
+  const char *at = text.data(), *const end = at + text.size();
+  while (at < end && numbers.size() <= 3) {
+    double number = 0;
+    const auto [stop, error] = std::from_chars(at, end, number);
+    const bool is_valid =
+        error == std::errc{} && std::abs(number) <= kMaxCoordinate_m && (stop == end || *stop == ',');
+    if (!is_valid) break;
+    numbers.push_back(number);
+    at = stop == end ? end : stop + 1;
+  }
+  const bool is_whole = at == end && !text.empty() && text.back() != ',';
+  if (!is_whole || numbers.size() < 2 || numbers.size() > 3)
+    throw UsageError(
+        fmt::format("\"{}\" is no goal, expected X,Y or X,Y,HEADING in metres and radians", text));
+  return goal_from(numbers);
+}
+
+RobotId parse_robots(const std::string& text) {
+  if (text == "all") return kAllRobots;
+  RobotId robot = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, robot);
+  if (error != std::errc{} || stop != end || robot >= kMaxRobots)
+    throw UsageError(fmt::format("\"{}\" is no robot, expected 0 to {} or all", text, kMaxRobots - 1));
+  return robot;
+}
+
+GoalLists parse_goal_lists(const std::string& text, const std::string& file_name) {
+  const YAML::Node root = parse_yaml(text, file_name, "goals of robots");
+  const YamlLocation location = YamlLocation{file_name, 1, "goals"}.of(root, "goals");
+  if (!root.IsMap()) location.fail("expected robots with their goals, such as \"3: [[1.2, -0.4]]\"");
+  GoalLists lists;
+  for (const auto& entry : root) {
+    const auto robot = static_cast<RobotId>(
+        integer_from(entry.first, location.of(entry.first, "robot"), {0, kMaxRobots - 1}));
+    const YamlLocation of_robot = location.of(entry.first, fmt::format("robot {}", robot));
+    if (lists.contains(robot)) of_robot.fail("given twice");
+    std::vector<Goal>& goals = lists[robot];
+    for (const YAML::Node& element : list_from(entry.second, of_robot, msg::MAX_ORDER_POSES))
+      goals.push_back(
+          goal_from(numbers_from(element, of_robot.of(element, of_robot.what), 2, 3, kCoordinate)));
+    if (goals.empty()) of_robot.fail("expected at least one goal");
+  }
+  if (lists.empty()) location.fail("expected at least one robot");
+  return lists;
+}
+
+}  // namespace sidestep

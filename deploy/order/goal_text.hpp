@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/protocol/order.hpp"
+
+namespace sidestep {
+
+/// Reads "X,Y" or "X,Y,HEADING", in metres and radians. Throws UsageError.
+[[nodiscard]] Goal parse_goal(const std::string& text);
+
+/// Reads a robot's number, or "all" for kAllRobots. Throws UsageError.
+[[nodiscard]] RobotId parse_robots(const std::string& text);
+
+using GoalLists = std::map<RobotId, std::vector<Goal>>;
+
+/// Reads the goals of robots from a YAML text such as "3: [[1.2, -0.4], [0, 0, 1.57]]". `file_name` appears
+/// in error messages. Throws ConfigError.
+[[nodiscard]] GoalLists parse_goal_lists(const std::string& text, const std::string& file_name);
+
+}  // namespace sidestep

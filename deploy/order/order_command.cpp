@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/order/order_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "common/config/yaml_document.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/order/goal_text.hpp"
+#include "deploy/order/order_text.hpp"
+
+namespace sidestep {
+namespace {
+
+// Discovery takes up to half a second, and a takeover as long.
+constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
+constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
+constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
+
+struct OrderOptions {
+  DdsSettings dds;
+  std::string client;  ///< empty: the operator
+  RobotId robot = 0;
+  std::vector<std::string> goals;
+  std::string file;
+  double speed_limit_mps = 0, tolerance_m = 0;
+  bool waits = false;
+  bool once = false;
+};
+
+ClientId client_of(const OrderOptions& options) {
+  return options.client.empty() ? static_cast<ClientId>(Sender::kOperator) : client_id(options.client);
+}
+
+/// Sends orders by `send`, and prints what becomes of them until they are accepted or, with `waits`, over.
+int give_orders(const OrderOptions& options,
+                const std::function<std::vector<OrderHandle>(OrderClient&)>& send) {
+  DdsBus bus(options.dds);
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  OrderClient client(bus, client_of(options));
+  std::vector<OrderHandle> handles;
+  const auto all = [&](auto condition) {
+    return std::ranges::all_of(handles, [&](OrderHandle handle) { return condition(*client.find(handle)); });
+  };
+  const auto is_answered = [](const SentOrder& sent) { return sent.phase != OrderPhase::kSent; };
+  const auto is_over = [](const SentOrder& sent) { return is_final(sent.phase); };
+  client.on_change([&](const SentOrder& sent) {
+    fmt::print("{}\n", to_line(sent));
+    if (options.waits ? all(is_over) : all(is_answered)) bus.stop();
+  });
+  handles = send(client);
+  bus.run_until(bus.now() + kAnswerTimeout);
+  if (!all(is_answered)) {
+    fmt::print(stderr, "sidestep: no active coordinator answers on this domain and interface\n");
+    return kExitFailure;
+  }
+  if (options.waits && !all(is_over)) bus.run();
+  const auto is_good = [&](const SentOrder& sent) {
+    return options.waits ? sent.phase == OrderPhase::kArrived : sent.phase != OrderPhase::kRefused;
+  };
+  return all(is_good) ? 0 : kExitFailure;
+}
+
+GoalLists goals_of(const OrderOptions& options) {
+  if (!options.file.empty())
+    return parse_goal_lists(read_yaml_file(options.file, "goals of robots"), options.file);
+  GoalLists lists;
+  for (const std::string& text : options.goals) lists[options.robot].push_back(parse_goal(text));
+  return lists;
+}
+
+int go(const OrderOptions& options) {
+  GoalLists lists = goals_of(options);
+  for (auto& [robot, goals] : lists) {
+    for (Goal& goal : goals) {
+      if (options.speed_limit_mps > 0) goal.speed_limit_mps = options.speed_limit_mps;
+      if (options.tolerance_m > 0) goal.tolerance_m = options.tolerance_m;
+    }
+  }
+  return give_orders(options, [&](OrderClient& client) {
+    std::vector<OrderHandle> handles;
+    for (const auto& [robot, goals] : lists) handles.push_back(client.go(robot, goals));
+    return handles;
+  });
+}
+
+int show_status(const OrderOptions& options) {
+  DdsBus bus(options.dds);
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  const OrderClient client(bus, client_of(options));
+  if (options.once || isatty(STDOUT_FILENO) == 0) {
+    bus.run_until(bus.now() + kOnceDuration);
+    fmt::print("{}", to_table(client.statuses()));
+  } else {
+    const std::function<void()> refresh = [&] {
+      bus.at(bus.now() + kTablePeriod, refresh);
+      fmt::print("\x1b[H\x1b[J{}", to_table(client.statuses()));
+      std::fflush(stdout);
+    };
+    refresh();
+    bus.run();
+  }
+  if (!client.statuses().empty()) return 0;
+  fmt::print(stderr, "sidestep: no agent is heard on this domain and interface\n");
+  return kExitFailure;
+}
+
+using Options = std::shared_ptr<OrderOptions>;
+
+Options add_command(const CliCommand& command) {
+  const auto options = std::make_shared<OrderOptions>();
+  options->dds.participant = "sidestep-order";
+  options->dds.is_operator = true;
+  add_dds_options(command, options->dds);
+  return options;
+}
+
+void add_client_option(const CliCommand& command, const Options& options) {
+  command.add_option("--client", options->client,
+                     "send as this client instead of the operator, whose orders come first");
+}
+
+void add_go(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command = root.add_subcommand("go", "Sends robots to goals, one after another");
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  const auto robot = command.add_option(
+      "ROBOT", [options](const std::string& text) { options->robot = parse_robots(text); }, "robot id");
+  const auto goals = command.add_option("GOAL", options->goals, "X,Y[,HEADING] in metres and radians");
+  const auto file = command.add_option("--file", options->file,
+                                       "YAML file with lines such as \"3: [[1.2, -0.4], [0, 0, 1.57]]\"");
+  command.add_option("--speed", options->speed_limit_mps, "speed limit on the way, m/s").check(positive());
+  command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
+      .check(positive());
+  command.add_flag("--wait", options->waits, "wait until all have arrived");
+  command.on_parsed([=, &action] {
+    if (file.is_given() == robot.is_given()) throw UsageError("expected either ROBOT and GOAL, or --file");
+    if (robot.is_given() && !goals.is_given()) throw UsageError("GOAL is missing: expected X,Y[,HEADING]");
+    if (options->robot == kAllRobots) throw UsageError("expected one robot, or --file");
+    if (options->goals.size() > msg::MAX_ORDER_POSES)
+      throw UsageError(fmt::format("expected at most {} goals", msg::MAX_ORDER_POSES));
+    for (const std::string& goal : options->goals) (void)parse_goal(goal);
+    action = [options] { return go(*options); };
+  });
+}
+
+void add_simple(const CliCommand& root, std::function<int()>& action, const char* name,
+                const char* description, bool allows_all, OrderHandle (OrderClient::*send)(RobotId)) {
+  const CliCommand command = root.add_subcommand(name, description);
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  command
+      .add_option(
+          "ROBOT", [options](const std::string& text) { options->robot = parse_robots(text); },
+          allows_all ? "robot id, or all" : "robot id")
+      .required();
+  command.on_parsed([=, &action] {
+    if (!allows_all && options->robot == kAllRobots) throw UsageError("expected one robot");
+    action = [=] {
+      return give_orders(*options,
+                         [=](OrderClient& client) { return std::vector{(client.*send)(options->robot)}; });
+    };
+  });
+}
+
+}  // namespace
+
+void add_order_commands(const CliCommand& root, std::function<int()>& action) {
+  add_go(root, action);
+  add_simple(root, action, "cancel", "Cancels the robot's order to go", false, &OrderClient::cancel);
+  add_simple(root, action, "hold",
+             "Stops robots until they are resumed. Not a certified emergency stop: it needs a coordinator",
+             true, &OrderClient::hold);
+  add_simple(root, action, "resume", "Ends holds: those of this client; the operator ends all", true,
+             &OrderClient::resume);
+  const CliCommand status = root.add_subcommand("status", "Shows what robots do with their orders");
+  const Options options = add_command(status);
+  status.add_flag("--once", options->once, "print the table once, and end");
+  status.on_parsed([options, &action] { action = [options] { return show_status(*options); }; });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "common/client/order_client.hpp"
+
+namespace sidestep {
+
+/// One line that says what has become of an order.
+[[nodiscard]] std::string to_line(const SentOrder& sent);
+
+/// A table of what the robots do with their orders, one line for each.
+[[nodiscard]] std::string to_table(const std::map<RobotId, msg::OrderStatus>& statuses);
+
+}  // namespace sidestep

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders at run time, with real processes.
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <signal.h>
+
+#include "common/client/order_client.hpp"
+#include "common/messaging/process_names.hpp"
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+#include "tests/faults/launched_run.hpp"
+
+namespace sidestep::orders_faults_test {
+
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+constexpr int kRobots = 8, kColumns = 6, kRows = 5;
+
+/// Robots without goals, on two sides of the field.
+std::string waiting_robots() {
+  std::string text =
+      "field: {length_m: 6, width_m: 5}\ncoordinators: 2\nrestart: [agents, coordinator]\nrobots:\n";
+  for (int i = 0; i < kRobots; ++i)
+    text += fmt::format("  - {{id: {}, start_m: [{}, {}]}}\n", i, i % 2 ? 2.4 : -2.4, -1.5 + 0.5 * (i / 2));
+  return text;
+}
+
+/// Sends robots to random places, each to one of its own.
+class RandomClient {
+ public:
+  RandomClient(DdsBus& bus, std::uint64_t seed) : client_(bus, client_id("random")), rng_(seed) {}
+
+  void send_one() {
+    const auto robot = static_cast<RobotId>(rng_.below(kRobots));
+    int place = 0;
+    do {
+      place = static_cast<int>(rng_.below(kColumns * kRows));
+    } while (std::ranges::count(places_, place) > 0);
+    places_[robot] = place;
+    const Vec2 position(-2 + 0.8 * (place % kColumns), -1.6 + 0.8 * (place / kColumns));
+    open_.push_back(client_.go(robot, {{position}}));
+    ++sent_;
+  }
+  /// Forgets orders that are over. Whether there are no others.
+  bool is_over() {
+    std::erase_if(open_, [this](OrderHandle number) {
+      const OrderPhase phase = client_.find(number)->phase;
+      arrived_ += phase == OrderPhase::kArrived;
+      refused_ += phase == OrderPhase::kRefused;
+      return is_final(phase);
+    });
+    return open_.empty();
+  }
+  int sent() const { return sent_; }
+  int arrived() const { return arrived_; }
+  int refused() const { return refused_; }
+  Rng& rng() { return rng_; }
+
+ private:
+  OrderClient client_;
+  Rng rng_;
+  std::array<int, kRobots> places_{-1, -1, -1, -1, -1, -1, -1, -1};
+  std::vector<OrderHandle> open_;
+  int sent_ = 0, arrived_ = 0, refused_ = 0;
+};
+
+void check_random_goals(Duration duration) {
+  LaunchedRun run(waiting_robots());
+  RandomClient client(run.bus(), 1);
+  int kills = 0;
+  Time next_order = run.bus().now(), next_kill = next_order + seconds(3);
+  const Time end = next_order + duration;
+  while (run.bus().now() < end) {
+    REQUIRE(run.wait_until([&] { return run.bus().now() >= std::min({next_order, next_kill, end}); }));
+    if (run.bus().now() >= next_order) {
+      client.send_one();
+      (void)client.is_over();
+      next_order += milliseconds(400);
+    }
+    if (run.bus().now() >= next_kill) {
+      const auto number = static_cast<std::uint32_t>(client.rng().below(kRobots + 2));
+      const pid_t pid = run.pid_of(
+          number < kRobots ? agent_process(number) : coordinator_process(static_cast<int>(number - kRobots)));
+      if (pid != 0 && is_running(pid)) kills += kill(pid, SIGKILL) == 0;
+      next_kill += seconds(3);
+    }
+  }
+  CHECK(run.wait_until([&] { return client.is_over(); }));
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  WARN(client.sent() << " orders, " << client.arrived() << " arrived, "
+                     << client.sent() - client.arrived() - client.refused() << " replaced, "
+                     << client.refused() << " refused; " << kills << " processes killed");
+  CHECK(client.refused() == 0);
+  CHECK(client.arrived() > client.sent() / 4);
+  require_no_violations(run.report());
+}
+
+TEST_CASE("a client learns the end of every order while agents and coordinators are killed") {
+  check_random_goals(seconds(12));
+}
+
+TEST_CASE("a client learns the end of every order in ten minutes", "[.long]") {
+  check_random_goals(minutes(10));
+}
+
+TEST_CASE(
+    "robots are held from the command line until they are resumed, although the coordinator is killed") {
+  LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "18"});
+  const auto command = [&](std::vector<std::string> arguments) {
+    for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+    return run.command(arguments);
+  };
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 1; }));
+  INFO(run.output());
+  const Time begin = run.bus().now();
+  CHECK(command({"hold", "all"}) == "exit code 0");
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
+  const double held_s = to_seconds(run.bus().now() - begin);
+  WARN("all robots at rest " << held_s << " s after the command was started");
+  REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
+  const Time killed = run.bus().now();
+  double fastest_mps = 0;
+  REQUIRE(run.wait_until([&] {
+    fastest_mps = std::max(fastest_mps, run.max_speed_mps());
+    return run.bus().now() - killed > seconds(4);
+  }));
+  CHECK(fastest_mps < 0.03);
+  CHECK(command({"resume", "all", "--client", "stranger"}) == "exit code 0");
+  CHECK(command({"resume", "all"}) == "exit code 0");
+  CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
+  CHECK(command({"go", "9", "0,0"}) == "exit code 1");
+  CHECK(run.printed("go 9: refused, the scenario has no such robot"));
+  CHECK(run.wait_for_end() == "exit code 1");  // no robot visits all its goals
+  CHECK(run.report()["contacts"] == 0);
+  CHECK(run.report()["audit"]["violations"] == 0);
+}
+
+}  // namespace sidestep::orders_faults_test

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/order/order_command.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::order_command_test {
+
+/// Empty if the arguments are accepted.
+std::string usage_error(const std::vector<std::string>& arguments) {
+  CommandLine command_line("test", "sidestep");
+  std::function<int()> action;
+  add_order_commands(command_line.root(), action);
+  try {
+    command_line.parse(arguments);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return action ? "" : "no action";
+}
+
+TEST_CASE("orders on the command line are checked before anything is sent") {
+  CHECK(usage_error({"go", "3", "1.2,-0.4"}).empty());
+  CHECK(usage_error({"go", "3", "-1.2,-0.4", "0,0,1.57", "--wait", "--speed", "0.5"}).empty());
+  CHECK(usage_error({"go", "--file", "goals.yaml"}).empty());
+  CHECK(usage_error({"hold", "all"}).empty());
+  CHECK(usage_error({"resume", "3", "--client", "dispatcher"}).empty());
+  CHECK(usage_error({"cancel", "3"}).empty());
+  CHECK(usage_error({"status", "--once"}).empty());
+  CHECK_THAT(usage_error({"go", "3"}), ContainsSubstring("GOAL is missing"));
+  CHECK_THAT(usage_error({"go"}), ContainsSubstring("--file"));
+  CHECK_THAT(usage_error({"go", "3", "1,2", "--file", "x"}), ContainsSubstring("either"));
+  CHECK_THAT(usage_error({"go", "all", "1,2"}), ContainsSubstring("one robot"));
+  CHECK_THAT(usage_error({"go", "3", "1;2"}), ContainsSubstring("\"1;2\" is no goal"));
+  CHECK_THAT(usage_error({"go", "3", "1,2", "--speed", "0"}), ContainsSubstring("--speed"));
+  CHECK_THAT(usage_error({"cancel", "all"}), ContainsSubstring("one robot"));
+  CHECK_THAT(usage_error({"hold", "5000"}), ContainsSubstring("\"5000\" is no robot"));
+  CHECK_THAT(usage_error({"hold"}), ContainsSubstring("ROBOT"));
+  std::vector<std::string> many{"go", "3"};
+  many.resize(70, "1,2");
+  CHECK_THAT(usage_error(many), ContainsSubstring("at most 64"));
+}
+
+}  // namespace sidestep::order_command_test
