@@ -52,14 +52,14 @@ bool OrderKeeper::on_report(const OrderReport& report) {
   return book_.report(report.robot, report.client, report.number, report.progress);
 }
 
-bool OrderKeeper::update(bool is_granting, bool has_moved, Time now) {
+bool OrderKeeper::update(bool is_granting, bool has_history, Time now) {
   if (is_complete_) return false;
   if (!is_granting) {
     waiting_since_.reset();
     return false;
   }
   if (!waiting_since_) waiting_since_ = now;
-  if (!has_moved) {
+  if (!has_history) {
     // No order can have been carried out.
     for (const auto& [robot, has_goals] : has_goals_) {
       if (has_goals) merge({{msg::OrderKind::ORDER_GO, robot, static_cast<ClientId>(Sender::kScenario), 1}});

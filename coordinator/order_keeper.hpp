@@ -27,9 +27,9 @@ class OrderKeeper {
   bool on_page(const OrderPage& page);
   /// Returns whether anything is new.
   bool on_report(const OrderReport& report);
-  /// To be called periodically. While this coordinator could grant: `has_moved`, whether any robot has
-  /// moved since its firmware's first start. Returns whether this completes the memory.
-  bool update(bool is_granting, bool has_moved, Time now);
+  /// To be called periodically. `has_history`: a registered robot has ever executed a granted version, or its
+  /// agent knows the orders; used only if `is_granting`. Returns whether this completes the memory.
+  bool update(bool is_granting, bool has_history, Time now);
 
   bool is_complete() const { return is_complete_; }
   bool is_held(RobotId robot) const { return !is_complete_ || book_.is_held(robot); }

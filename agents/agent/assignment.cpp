@@ -68,7 +68,7 @@ void Assignment::choose() {
     if (order->order.number != number_ || order->order.client != client_) take(*order);
     return;
   }
-  if (find_order()) return;
+  if (stands()) return;
   // An earlier agent of this robot has finished an order, and the robot is to stay there.
   for (const Rank rank : kFromHighestRank) {
     const RememberedOrder* order = book_.drive_order(robot_, rank);
@@ -97,11 +97,10 @@ void Assignment::drop() {
   ++revision_;
 }
 
-const RememberedOrder* Assignment::find_order() const {
+bool Assignment::stands() const {
   const RememberedOrder* order = book_.drive_order(robot_, rank_of(client_));
-  const bool is_same = number_ != 0 && order && order->order.client == client_ &&
-                       order->order.number == number_ && order->order.kind == msg::OrderKind::ORDER_GO;
-  return is_same ? order : nullptr;
+  return number_ != 0 && order && order->order.client == client_ && order->order.number == number_ &&
+         order->order.kind == msg::OrderKind::ORDER_GO;
 }
 
 void Assignment::on_arrival() {

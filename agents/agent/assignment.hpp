@@ -33,14 +33,11 @@ class Assignment {
   bool is_held() const { return book_.is_held(robot_); }
   /// nullptr: the robot has no order.
   const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
-  /// Goals left, from goal() on.
-  std::span<const Goal> remaining_goals() const { return std::span(goals_).subspan(progress_.goal_index); }
   std::size_t goal_index() const { return progress_.goal_index; }
   /// Increases with every change of goal().
   std::uint64_t revision() const { return revision_; }
   /// Number 0: the robot has no order.
   OrderReport report() const { return {robot_, client_, number_, progress_}; }
-  std::vector<Zone> zones() const { return book_.zones(); }
 
   /// All orders, also of other robots, whose agents may have restarted together with all coordinators.
   std::vector<RememberedOrder> all() const;
@@ -60,7 +57,8 @@ class Assignment {
   void add(std::shared_ptr<const OrderPage> page);
   void take(const RememberedOrder& order);
   void drop();
-  const RememberedOrder* find_order() const;
+  /// Whether the order still stands.
+  bool stands() const;
 
   const RobotId robot_;
   const std::vector<Goal> scenario_goals_;

@@ -142,6 +142,7 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
   const std::uint32_t process = message.header().sender();
   const bool is_valid = message.process() == process && (is_coordinator(process) || process < kMaxRobots) &&
                         message.order_count() <= msg::MAX_MEMORY_ORDERS &&
+                        message.page_count() <= kMaxOrderPages &&
                         message.page_index() < std::max(1U, message.page_count());
   if (!is_valid) return std::nullopt;
   OrderPage page{process, message.is_complete(), message.page_index(), message.page_count(), {}};

@@ -10,6 +10,9 @@
 
 namespace sidestep {
 
+/// More pages than the orders of kMaxRobots robots and all holds and zones need.
+inline constexpr std::uint32_t kMaxOrderPages = 256;
+
 /// A page of the orders that a process remembers; see OrderMemory in idl/order.idl.
 struct OrderPage {
   std::uint32_t process = 0;
@@ -30,8 +33,8 @@ struct OrderReport {
 /// Decodes an untrusted order. Returns nullopt if its sender may not send orders or not this one, if its kind
 /// is unknown, its number implausible at `now`, by the local clock, or any value out of bounds.
 [[nodiscard]] std::optional<Order> decode(const msg::Order& message, Time now);
-/// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, or if any
-/// of its orders is not valid.
+/// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, if it is
+/// one of more than kMaxOrderPages, or if any of its orders is not valid.
 [[nodiscard]] std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now);
 /// Decodes the part of an untrusted status that coordinators use. Returns nullopt if the sender is not an
 /// agent of its robot, or if its state is unknown.

@@ -100,6 +100,10 @@ TEST_CASE("a memory of any size survives on as many pages as it needs") {
     CHECK(page->count == pages.size());
     CHECK(page->is_complete);
     decoded.insert(decoded.end(), page->orders.begin(), page->orders.end());
+    message.page_count(kMaxOrderPages + 1);
+    CHECK_FALSE(decode(message, kNow));
+    message.page_count(kMaxOrderPages);
+    CHECK(decode(message, kNow));
     message.process(10000);
     CHECK_FALSE(decode(message, kNow));  // speaks for another
   }
