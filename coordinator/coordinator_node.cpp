@@ -253,7 +253,10 @@ void CoordinatorNode::apply_holds() {
 void CoordinatorNode::apply_orders() {
   const auto changes = orders_.take_changes();
   if (changes.empty()) return;
-  apply_holds();
+  const auto is_hold = [](const RememberedOrder& order) {
+    return order.order.kind == msg::OrderKind::ORDER_HOLD || order.order.kind == msg::OrderKind::ORDER_RESUME;
+  };
+  if (std::ranges::any_of(changes, is_hold)) apply_holds();
   if (coordinator_.is_active()) publish_orders(changes, true);
 }
 

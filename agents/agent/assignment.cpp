@@ -30,7 +30,9 @@ void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
     add(std::move(page));
   else if (memory_.size() < kMaxPages)
     memory_.push_back(std::move(page));
-  if (concerns_robot) choose();
+  if (!concerns_robot) return;
+  is_held_ = book_.is_held(robot_);
+  choose();
 }
 
 void Assignment::add(std::shared_ptr<const OrderPage> page) {

@@ -30,7 +30,7 @@ class Assignment {
 
   /// Whether a coordinator with a complete memory has been heard. Nothing is ordered before.
   bool is_known() const { return is_known_; }
-  bool is_held() const { return book_.is_held(robot_); }
+  bool is_held() const { return is_held_; }
   /// nullptr: the robot has no order.
   const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
   std::size_t goal_index() const { return progress_.goal_index; }
@@ -63,7 +63,7 @@ class Assignment {
   const RobotId robot_;
   const std::vector<Goal> scenario_goals_;
   OrderBook book_;  // of the robot
-  bool is_known_ = false;
+  bool is_known_ = false, is_held_ = false;
   std::vector<std::shared_ptr<const OrderPage>> memory_;  // whole, and what has changed since
   std::map<std::uint32_t, Round> rounds_;                 // by coordinator
   std::vector<RememberedOrder> missing_;

@@ -103,6 +103,7 @@ void OrderClient::update(SentOrder& sent, OrderPhase phase, std::size_t goal_ind
   if (is_closed(sent) || (phase == sent.phase && goal_index == sent.goal_index)) return;
   sent.phase = phase;
   sent.goal_index = goal_index;
+  if (is_closed(sent)) missing_.erase(sent.handle);
   if (on_change_) on_change_(sent);
   if (!is_closed(sent) || ++final_count_ <= kMaxFinal) return;
   const auto oldest = std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); });
