@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "agents/navigation/dead_reckoning.hpp"
+#include "agents/navigation/trapezoidal_profile.hpp"
 
 namespace sidestep {
 namespace {
@@ -70,9 +71,12 @@ void Agent::update_goal(const Feedback& feedback) {
 }
 
 void Agent::on_orders(std::shared_ptr<const OrderPage> page) {
-  const std::uint64_t revision = assignment_.revision();
+  const std::uint64_t revision = assignment_.revision(), zone_revision = assignment_.zone_revision();
   assignment_.on_page(std::move(page));
   begin_if_changed(revision);
+  if (assignment_.zone_revision() == zone_revision) return;
+  zones_ = ZoneMap(assignment_.zones());
+  route_planner_.reset();
 }
 
 void Agent::choose_order() {
@@ -85,6 +89,8 @@ void Agent::begin_if_changed(std::uint64_t revision) {
   if (assignment_.revision() == revision) return;
   arrived_ = false;
   route_planner_.reset();
+  blockage_.reset();
+  blocked_since_.reset();
   if (assignment_.goal()) desired_heading_rad_ = goal().heading_rad.value_or(robot_.start_heading_rad);
 }
 
@@ -184,17 +190,26 @@ msg::AgentStatus Agent::status(Time now) const {
   return status;
 }
 
-msg::OrderStatus Agent::order_status() const {
-  const OrderReport report = assignment_.report();
-  msg::OrderStatus status;
-  status.robot(robot_.id);
-  status.client(report.client);
-  status.order_number(report.number);
-  status.order_state(report.progress.state);
-  status.pose_index(static_cast<std::uint16_t>(report.progress.goal_index));
-  status.is_held(assignment_.is_held());
-  status.remaining_s(-1);
-  return status;
+OrderReport Agent::order_report() const {
+  OrderReport report = assignment_.report();
+  const bool is_blocked = blocked_since_ && last_plan_ - *blocked_since_ >= settings_.blocked_after;
+  if (assignment_.goal() && is_blocked) report.blockage = blockage_;
+  return report;
+}
+
+std::optional<double> Agent::remaining_s() const {
+  if (!assignment_.goal() || blocked_since_ || (!route_planner_ && !arrived_)) return std::nullopt;
+  if (assignment_.report().progress.is_finished()) return 0;
+  double length_m = route_length_m_, seconds = 0;
+  Vec2 from = goal().position_m;
+  for (const Goal& goal : assignment_.goals_left()) {
+    MotionLimits limits = rules_.limits;
+    limits.speed_mps = std::min(limits.speed_mps, goal.speed_limit_mps.value_or(limits.speed_mps));
+    if (&goal != assignment_.goal()) length_m = (goal.position_m - from).norm();
+    seconds += TrapezoidalProfile::duration_s(length_m, 0, limits);
+    from = goal.position_m;
+  }
+  return seconds;
 }
 
 void Agent::count_drops(DropCounters& drops) const {

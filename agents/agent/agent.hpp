@@ -13,9 +13,11 @@
 #include "agents/agent/observed_obstacles.hpp"
 #include "agents/agent/planning_scratch.hpp"
 #include "agents/agent/planning_settings.hpp"
+#include "agents/agent/route_obstacles.hpp"
 #include "agents/navigation/deadlock_recovery.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/route_planner.hpp"
+#include "agents/navigation/zone_map.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/drop_counters.hpp"
@@ -106,7 +108,10 @@ class Agent {
   void choose_order();
   /// See Assignment.
   std::vector<RememberedOrder> take_missing_orders() { return assignment_.take_missing(); }
-  msg::OrderStatus order_status() const;
+  /// Without the remaining time.
+  OrderReport order_report() const;
+  /// Estimate for all goals that are left; nullopt: unknown.
+  std::optional<double> remaining_s() const;
 
   void count_drops(DropCounters& drops) const;
   /// Without the durations, which the caller measures.
@@ -121,10 +126,18 @@ class Agent {
   const Goal& goal() const { return *assignment_.goal(); }
   /// Begins with another goal if it has changed since this revision of the assignment.
   void begin_if_changed(std::uint64_t revision);
-  /// Replaces the route planner if stationary robots or moving obstacles have changed.
-  void update_route_planner(Time now);
-  std::vector<Circle> temporary_obstacles(Time now);
-  std::vector<Circle> moving_obstacles(Time now);
+  /// Where the robot is to go: to its goal or, without one, nowhere.
+  Vec2 target_m(const Vec2& rest_m) const { return assignment_.goal() ? goal().position_m : rest_m; }
+  /// Replaces the route planner if the target, zones, stationary robots or moving obstacles have changed.
+  void update_route_planner(const Vec2& target_m, Time now);
+  std::vector<TemporaryObstacle> temporary_obstacles(const Vec2& target_m, Time now);
+  std::vector<Circle> moving_obstacles(const Vec2& target_m, Time now);
+  /// Whether a robot at rest will not leave by itself.
+  bool is_to_stay(const Neighbours::Stationary& other) const;
+  /// Remembers since when the target cannot be reached.
+  void update_blockage(const Route& route, Time now);
+  /// Required distance of the robot's centre from the edge of an obstacle.
+  double required_separation_m() const { return rules_.radius_m + rules_.margin_m; }
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
   /// Inflation of a version that continues `base`: the base's inflation, or 0 once the robot is at rest and
@@ -159,8 +172,15 @@ class Agent {
   Assignment assignment_;
   bool robot_has_moved_ = false;  // ever, by a granted version
   double desired_heading_rad_;
-  std::optional<RoutePlanner> route_planner_;  // to the current goal
-  std::vector<Circle> temporary_obstacles_;    // of route_planner_, in addition to the scenario's obstacles
+  ZoneMap zones_;
+  std::optional<RoutePlanner> route_planner_;  // to route_target_m_
+  Vec2 route_target_m_{0, 0};
+  std::vector<TemporaryObstacle> temporary_obstacles_;  // of route_planner_
+  std::optional<RouteObstacles> route_obstacles_;       // of route_planner_
+  double route_length_m_ = 0;                           // of the last route
+  std::optional<Blockage> blockage_;                    // of the target
+  std::optional<Time> blocked_since_;
+  Time last_plan_{};
   DeadlockRecovery recovery_;
   bool is_escaping_ = false;  // the last search has found only an escape from a conflict
   bool arrived_ = false;

@@ -293,14 +293,16 @@ void AgentNode::publish_orders(std::span<const RememberedOrder> orders, bool are
 
 void AgentNode::publish_order_status() {
   if (agent_.is_superseded()) return;
-  msg::OrderStatus status = agent_.order_status();
-  const bool has_changed =
-      std::tuple(status.order_number(), status.order_state(), status.pose_index(), status.is_held()) !=
-      std::tuple(order_status_.order_number(), order_status_.order_state(), order_status_.pose_index(),
-                 order_status_.is_held());
-  if (!has_changed && bus_.now() - order_status_at_ < kOrderStatusPeriod) return;
+  OrderReport report = agent_.order_report();
+  const auto news = [](const OrderReport& r) {
+    const auto reason = r.blockage ? r.blockage->reason : msg::BlockReason::BLOCK_NONE;
+    return std::tuple(r.client, r.number, r.progress.state, r.progress.goal_index, r.is_held, reason);
+  };
+  if (news(report) == news(order_report_) && bus_.now() - order_status_at_ < kOrderStatusPeriod) return;
   order_status_at_ = bus_.now();
-  order_status_ = status;
+  order_report_ = report;
+  report.remaining_s = agent_.remaining_s();
+  msg::OrderStatus status = encode(report);
   status.header().sender(robot_);
   status.header().incarnation(agent_.incarnation());
   order_status_writer_.publish(status, bus_.now());

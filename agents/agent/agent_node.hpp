@@ -29,6 +29,11 @@ class AgentNode {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
+  /// Whether this agent must keep its clock although the host's has been set: it can drive its robot by it,
+  /// or would come back as a later agent than the one that its robot obeys.
+  bool uses_clock() const {
+    return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
+  }
 
  private:
   void subscribe();
@@ -97,7 +102,7 @@ class AgentNode {
   Writer<msg::AgentStatus> status_writer_;
   Writer<msg::OrderMemory> order_writer_;
   Writer<msg::OrderStatus> order_status_writer_;
-  msg::OrderStatus order_status_;  // published last
+  OrderReport order_report_;  // published last
   Time orders_repeated_at_{}, order_status_at_{};
   CounterPublisher counters_;
 };

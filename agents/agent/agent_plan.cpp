@@ -54,54 +54,6 @@ double Agent::planning_separation_m() const {
   return rules_.radius_m + rules_.margin_m + settings_.extra_clearance_m;
 }
 
-std::vector<Circle> Agent::moving_obstacles(Time now) {
-  const Vec2& position = estimate_.position_m;
-  const double grid_m = settings_.moving_grid_m;
-  std::vector<Circle> found;
-  const auto add = [&](const MovingObstacle& obstacle) {
-    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) return;
-    const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
-    const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
-    // The inflated circle must not cover the goal.
-    const double max_inflation =
-        (centre - goal().position_m).norm() - radius - planning_separation_m() - settings_.at_goal_m;
-    const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
-    found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
-  };
-  for (const MovingObstacle& obstacle : obstacles_.recent(now)) add(obstacle);
-  for (const UncontrolledBody& body : displaced_.recent(now)) add(body.reach);
-  std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
-  if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
-  std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });
-  return found;
-}
-
-std::vector<Circle> Agent::temporary_obstacles(Time now) {
-  std::vector<Circle> found = moving_obstacles(now);
-  for (const Vec2& position : neighbours_.find_stationary(now - settings_.stationary_after,
-                                                          estimate_.position_m, settings_.max_stationary)) {
-    found.push_back({position, rules_.radius_m});
-  }
-  // Ignore obstacles that cover the goal: no route around them could reach it.
-  std::erase_if(found, [&](const Circle& circle) {
-    return (circle.centre_m - goal().position_m).norm() < circle.radius_m + planning_separation_m();
-  });
-  return found;
-}
-
-void Agent::update_route_planner(Time now) {
-  std::vector<Circle> found = temporary_obstacles(now);
-  const auto is_same = [](const Circle& a, const Circle& b) {
-    return a.centre_m == b.centre_m && a.radius_m == b.radius_m;
-  };
-  if (route_planner_ && std::ranges::equal(found, temporary_obstacles_, is_same)) return;
-  temporary_obstacles_ = std::move(found);
-  std::vector<Circle> obstacles = rules_.obstacles;
-  obstacles.insert(obstacles.end(), temporary_obstacles_.begin(), temporary_obstacles_.end());
-  route_planner_.emplace(obstacles, rules_.field, rules_.radius_m, rules_.margin_m,
-                         settings_.extra_clearance_m, goal().position_m);
-}
-
 WaitReason Agent::wait_reason(Time now) const {
   // A time far in the future means that a clock has been set.
   const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
@@ -109,7 +61,8 @@ WaitReason Agent::wait_reason(Time now) const {
   if (negotiation_.is_absent()) return WaitReason::kNone;
   if (!assignment_.is_known()) return WaitReason::kOrdersUnknown;
   if (assignment_.is_held()) return WaitReason::kHeld;
-  if (!assignment_.goal()) return WaitReason::kNoOrder;
+  if (!assignment_.goal() && !zones_.is_kept_out(estimate_.position_m, required_separation_m()))
+    return WaitReason::kNoOrder;
   if (!is_recent(last_fix_, settings_.max_fix_age)) return WaitReason::kNotSeen;
   if (!is_recent(obstacles_.complete_at(), settings_.max_fix_age)) return WaitReason::kNoObstacleList;
   if (!is_recent(watched_until_, settings_.max_watch_age)) return WaitReason::kNotWatched;
@@ -118,17 +71,31 @@ WaitReason Agent::wait_reason(Time now) const {
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
   if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
+  last_plan_ = now;
   const Version& base = negotiation_.base_at(start);
-  const Vec2 rest = base.trajectory.rest_position_m();
+  const Vec2 rest = base.trajectory.rest_position_m(), target = target_m(rest);
   const double inflation_m = inflation_from(base, start);
-  const bool ends_at_goal =
-      (rest - goal().position_m).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
-  if (ends_at_goal || start <= base.trajectory.start()) return std::nullopt;
+  const auto ends_at = [&](const Vec2& place) {
+    return (rest - place).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
+  };
+  if (start <= base.trajectory.start()) return std::nullopt;
+  if (ends_at(target) && !zones_.is_kept_out(target, required_separation_m())) {
+    update_blockage({}, now);
+    route_length_m_ = 0;
+    return std::nullopt;
+  }
   const State at_start = base.trajectory.state_at(start);
-  if (goal().speed_limit_mps) max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
-  update_route_planner(now);
-  const Route straight{goal().position_m, (goal().position_m - at_start.position_m).norm()};
+  update_route_planner(target, now);
+  const Route straight{target, (target - at_start.position_m).norm(), target};
   const Route route = route_planner_->route_from(at_start.position_m).value_or(straight);
+  route_length_m_ = route.length_m;
+  update_blockage(route, now);
+  if (!route.reaches_goal && ends_at(route.end_m)) return std::nullopt;
+  if (assignment_.goal() && goal().speed_limit_mps)
+    max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
+  max_speed_mps = std::min(
+      max_speed_mps, zones_.max_speed_mps(at_start.position_m, at_start.velocity_mps.norm(), rules_.radius_m,
+                                          cycle_ * (negotiation_.lead() + 1), rules_.limits));
   const Intent intent = steer(at_start, start, route);
   const AccelerationCommand desired = follow(intent, at_start, route, max_speed_mps);
   SearchQuery query{start,        at_start,    desired.acceleration_mps2,
@@ -137,13 +104,15 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   query.stop = &base.trajectory;
   query.max_speed_mps = max_speed_mps;
   query.seen = obstacles_.seen(now);
+  query.keep_outs = zones_.keep_outs();
+  if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};
 }
 
 Intent Agent::steer(const State& at_start, Time start, const Route& route) {
   if (recovery_.is_active()) {
     return {rules_.limits.speed_mps * recovery_direction(at_start.position_m, route),
-            settings_.recovery_hold_s, route.waypoint_m, goal().position_m};
+            settings_.recovery_hold_s, route.waypoint_m, route.end_m};
   }
   Steering& steering = scratch_->steering;
   steering.clear();
@@ -157,10 +126,12 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
       steering.add_moving(state, *intent, separation);
   }
   for (const Circle& obstacle : rules_.obstacles)
-    steering.add_stationary(obstacle.centre_m, obstacle.radius_m + rules_.radius_m + rules_.margin_m);
+    steering.add_stationary(obstacle.centre_m, obstacle.radius_m + required_separation_m());
+  for (const Circle& zone : zones_.seen_from(at_start.position_m))
+    steering.add_stationary(zone.centre_m, zone.radius_m + required_separation_m());
   const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));
   last_steered_start_ = start;
-  return steering.choose(at_start, route.waypoint_m, goal().position_m, elapsed_s, last_choice_);
+  return steering.choose(at_start, route.waypoint_m, route.end_m, elapsed_s, last_choice_);
 }
 
 AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route,

@@ -12,6 +12,10 @@ constexpr std::array kFromHighestRank{Rank::kOperator, Rank::kReferee, Rank::kCl
 // With more, what has changed since the whole memory is forgotten.
 constexpr std::size_t kMaxPages = 256;
 
+bool is_zone(const Order& order) {
+  return order.kind == msg::OrderKind::ORDER_ZONE || order.kind == msg::OrderKind::ORDER_REMOVE_ZONE;
+}
+
 bool is_to_do(const RememberedOrder* order) {
   return order && order->order.kind == msg::OrderKind::ORDER_GO && !order->progress.is_finished();
 }
@@ -20,11 +24,16 @@ bool is_to_do(const RememberedOrder* order) {
 
 void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
   if (!is_coordinator(page->process)) return;
-  bool concerns_robot = false;
+  bool concerns_robot = false, concerns_zones = false;
   for (const RememberedOrder& order : page->orders) {
     if (!concerns(order)) continue;
-    book_.merge(order);
+    const bool is_new = book_.merge(order) == OrderBook::Outcome::kStored;
     concerns_robot = true;
+    concerns_zones |= is_new && is_zone(order.order);
+  }
+  if (concerns_zones) {
+    zones_ = book_.zones();
+    ++zone_revision_;
   }
   if (page->count > 0)
     add(std::move(page));
@@ -61,6 +70,33 @@ std::vector<RememberedOrder> Assignment::all() const {
   }
   for (const RememberedOrder& order : book_.all()) whole.merge(order);
   return whole.all();
+}
+
+OrderReport Assignment::report() const {
+  OrderReport report{robot_, client_, number_, progress_};
+  report.is_held = is_held_;
+  return report;
+}
+
+OtherAssignment Assignment::other(RobotId robot) const {
+  OrderBook book;
+  for (const auto& page : memory_) {
+    for (const RememberedOrder& order : page->orders) {
+      if (order.order.robot == robot || order.order.robot == kAllRobots) book.merge(order);
+    }
+  }
+  OtherAssignment other;
+  other.is_held = book.is_held(robot);
+  for (const Rank rank : kFromHighestRank) {
+    const RememberedOrder* order = book.drive_order(robot, rank);
+    if (!is_to_do(order)) continue;
+    other.has_to_go = true;
+    const std::vector<Goal>& goals = order->order.goals;
+    if (order->progress.goal_index < goals.size())
+      other.goal_m = goals[order->progress.goal_index].position_m;
+    break;
+  }
+  return other;
 }
 
 void Assignment::choose() {

@@ -5,12 +5,20 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/messaging/order_codec.hpp"
 #include "common/protocol/order_book.hpp"
 
 namespace sidestep {
+
+/// What is known of another robot's orders.
+struct OtherAssignment {
+  bool is_held = false;
+  bool has_to_go = false;        ///< it has an order to drive that it has not finished
+  std::optional<Vec2> goal_m{};  ///< of that order; nullopt if only the scenario states it
+};
 
 /// Which order a robot carries out: of those that it has not finished, the one of the highest rank. A robot
 /// without one stays where it is, and returns there if something moves it away.
@@ -36,8 +44,18 @@ class Assignment {
   std::size_t goal_index() const { return progress_.goal_index; }
   /// Increases with every change of goal().
   std::uint64_t revision() const { return revision_; }
-  /// Number 0: the robot has no order.
-  OrderReport report() const { return {robot_, client_, number_, progress_}; }
+  /// The goals from goal() on.
+  std::span<const Goal> goals_left() const {
+    return std::span(goals_).subspan(std::min(progress_.goal_index, goals_.size()));
+  }
+  /// Number 0: the robot has no order. Without what only the agent knows.
+  OrderReport report() const;
+  /// The orders of the zones on the floor.
+  const std::vector<Order>& zones() const { return zones_; }
+  /// Increases with every change of zones().
+  std::uint64_t zone_revision() const { return zone_revision_; }
+  /// What the last memory that was heard says of another robot.
+  OtherAssignment other(RobotId robot) const;
 
   /// All orders, also of other robots, whose agents may have restarted together with all coordinators.
   std::vector<RememberedOrder> all() const;
@@ -73,6 +91,8 @@ class Assignment {
   std::vector<Goal> goals_;
   OrderProgress progress_;
   std::uint64_t revision_ = 0;
+  std::vector<Order> zones_;
+  std::uint64_t zone_revision_ = 0;
 };
 
 }  // namespace sidestep

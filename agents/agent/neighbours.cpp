@@ -97,22 +97,22 @@ std::span<const Version* const> Neighbours::newest(const Vec2& centre, double ho
   return newest_;
 }
 
-std::span<const Vec2> Neighbours::find_stationary(Time since, const Vec2& centre, std::size_t max_count) {
+std::span<const Neighbours::Stationary> Neighbours::find_stationary(Time since, const Vec2& centre,
+                                                                    std::size_t max_count) {
   stationary_.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.nearby) {
       const Version& version = page.view->versions[i];
       if (page.view->ends[i] > since || is_moving(version.robot, since)) continue;
-      const Vec2 position = version.trajectory.rest_position_m();
-      stationary_.push_back({version.robot, position, (position - centre).squaredNorm()});
+      stationary_.push_back(
+          {version.robot, version.trajectory.rest_position_m(), version.intent ? &*version.intent : nullptr});
     }
   }
-  std::ranges::sort(stationary_, {}, [](const Stationary& s) { return std::pair(s.distance2, s.robot); });
+  const auto distance2 = [&](const Stationary& s) { return (s.position_m - centre).squaredNorm(); };
+  std::ranges::sort(stationary_, {}, [&](const Stationary& s) { return std::pair(distance2(s), s.robot); });
   if (stationary_.size() > max_count) stationary_.resize(max_count);
-  std::ranges::sort(stationary_, {}, [](const Stationary& s) { return std::pair(s.robot, s.distance2); });
-  positions_.clear();
-  for (const Stationary& robot : stationary_) positions_.push_back(robot.position_m);
-  return positions_;
+  std::ranges::sort(stationary_, {}, [&](const Stationary& s) { return std::pair(s.robot, distance2(s)); });
+  return stationary_;
 }
 
 bool Neighbours::is_moving(RobotId robot, Time since) const {

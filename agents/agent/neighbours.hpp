@@ -31,9 +31,15 @@ class Neighbours {
   /// The newest version of each robot that has versions within `horizon_m`. Valid until the next page or
   /// call.
   std::span<const Version* const> newest(const Vec2& centre_m, double horizon_m);
-  /// Rest positions of the robots that have been at rest since `since` and hold no version that moves later.
-  /// Returns the `max_count` nearest ones, ordered by robot id. Valid until the next call.
-  std::span<const Vec2> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
+  /// A robot at rest, and where it intends to go; nullptr: nowhere.
+  struct Stationary {
+    RobotId robot = 0;
+    Vec2 position_m{0, 0};
+    const Intent* intent = nullptr;
+  };
+  /// The robots that have been at rest since `since` and hold no version that moves later. Returns the
+  /// `max_count` nearest ones, ordered by robot id. Valid until the next page or call.
+  std::span<const Stationary> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
   void count_drops(DropCounters& drops) const;
@@ -46,11 +52,6 @@ class Neighbours {
     std::vector<std::uint32_t> nearby;  // indices into the view of the versions within the horizon
   };
   void store(const ReceivedPage& received, Page& page);
-  struct Stationary {
-    RobotId robot = 0;
-    Vec2 position_m{0, 0};
-    double distance2 = 0;
-  };
   /// Whether any of the robot's versions ends after `since`.
   bool is_moving(RobotId robot, Time since) const;
 
@@ -64,7 +65,6 @@ class Neighbours {
   RobotId self_;
   std::vector<Page> pages_;
   std::vector<Stationary> stationary_;
-  std::vector<Vec2> positions_;
   std::vector<const Version*> newest_;
   std::uint64_t invalid_ = 0, late_ = 0;
 };

@@ -23,8 +23,9 @@ struct PlanningSettings {
   Duration moving_horizon{150'000'000};  ///< their motion over this time is added to their radii
 
   // Goals.
-  double at_goal_m = 0.001;           ///< a robot whose version ends this close to its goal stays there
-  double neighbour_at_goal_m = 0.02;  ///< a neighbour at rest this close to its goal is assumed to stay
+  double at_goal_m = 0.001;             ///< a robot whose version ends this close to its goal stays there
+  double neighbour_at_goal_m = 0.02;    ///< a neighbour at rest this close to its goal is assumed to stay
+  Duration blocked_after{300'000'000};  ///< a goal that cannot be reached for longer is reported as blocked
 
   // Observation.
   /// A robot stops if vision has not observed it, or its agent has had no list of obstacles, for longer.

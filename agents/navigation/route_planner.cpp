@@ -2,6 +2,10 @@
 #include "agents/navigation/route_planner.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "agents/planning/domain/nearest_reachable.hpp"
+#include "agents/planning/robust.hpp"
 
 namespace sidestep {
 namespace {
@@ -12,48 +16,78 @@ constexpr double kReplanIncrease_m = 0.05;
 // safe.
 constexpr std::size_t kMaxSamples = 5000;
 
-std::vector<Shape> inflated(const std::vector<Circle>& obstacles, double inflation_m) {
-  std::vector<Shape> shapes;
-  shapes.reserve(obstacles.size());
-  for (const Circle& circle : obstacles)
-    shapes.push_back(Circle{circle.centre_m, circle.radius_m + inflation_m});
-  return shapes;
+Budget cycle_budget() {
+  Budget budget;
+  budget.samples = kMaxSamples;
+  return budget;
 }
 
 }  // namespace
 
-RoutePlanner::RoutePlanner(const std::vector<Circle>& obstacles, const Field& field, double radius_m,
-                           double margin_m, double extra_clearance_m, const Vec2& goal_m)
-    : preferred_world_(inflated(obstacles, margin_m + extra_clearance_m)),
-      required_world_(inflated(obstacles, margin_m)),
+RoutePlanner::RoutePlanner(std::vector<Shape> obstacles, const Field& field, double radius_m, double margin_m,
+                           double extra_clearance_m, const Vec2& goal_m)
+    : world_(std::move(obstacles)),
       field_(field),
       radius_m_(radius_m),
+      required_m_(radius_m + margin_m),
+      preferred_m_(required_m_ + extra_clearance_m),
+      clearance_m_(preferred_m_),
       goal_m_(goal_m) {}
 
-bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
-  return DiscDomain(*world_, field_, radius_m_, from, to).check(from, to);
+/// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
+DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
+  const double extra = 2 * (clearance_m_ - radius_m_);
+  return {world_, {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal};
 }
 
-bool RoutePlanner::replan(const Vec2& start) {
-  const DiscDomain domain(*world_, field_, radius_m_, start, goal_m_);
-  Budget budget;
-  budget.samples = kMaxSamples;
-  const Plan<Vec2>& plan = planner_.plan(domain, start, budget, rng_);
+bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
+  return domain(from, to).check(from, to);
+}
+
+std::optional<std::size_t> RoutePlanner::obstacle_on_goal() const {
+  const Nearest nearest = world_.nearest(goal_m_);
+  if (nearest.distance_m > required_m_) return std::nullopt;
+  return static_cast<std::size_t>(nearest.obstacle);
+}
+
+bool RoutePlanner::follow(const Plan<Vec2>& plan) {
   next_waypoint_ = 0;
   waypoints_.clear();
   if (plan.arrives()) waypoints_.assign(plan.states.begin() + 1, plan.states.end());
   return !waypoints_.empty();
 }
 
+bool RoutePlanner::replan(const Vec2& start, double clearance) {
+  clearance_m_ = clearance;
+  return follow(plan_robustly(planner_, domain(start, goal_m_), start, cycle_budget(), rng_));
+}
+
+bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance) {
+  clearance_m_ = clearance;
+  const DiscDomain here = domain(start, goal_m_);
+  const std::optional<Vec2> nearest = nearest_reachable(here, start, goal_m_);
+  return nearest && follow(planner_.plan(here.with_goal_at(*nearest), start, cycle_budget(), rng_));
+}
+
 std::optional<Route> RoutePlanner::route_from(const Vec2& start) {
-  if (const auto route = continued_from(start)) return route;
-  world_ = &preferred_world_;
-  if (!replan(start)) {
-    world_ = &required_world_;
-    if (!replan(start)) return std::nullopt;
-  }
+  if (auto route = continued_from(start)) return route;
+  // The goal may be nearer to an obstacle than preferred.
+  const bool is_near = world_.nearest(goal_m_).distance_m <= preferred_m_ && !obstacle_on_goal();
+  const bool is_found = (!is_near && replan(start, preferred_m_)) || replan(start, required_m_) ||
+                        replan_to_nearest(start, preferred_m_) || replan_to_nearest(start, required_m_);
+  if (!is_found) return way_out(start);
   min_remaining_m_ = remaining_length_m(start);
-  return Route{waypoints_.front(), min_remaining_m_};
+  return route(min_remaining_m_);
+}
+
+std::optional<Route> RoutePlanner::way_out(const Vec2& start) {
+  waypoints_.clear();
+  clearance_m_ = preferred_m_;
+  const DiscDomain here = domain(start, start);
+  if (!here.start_is_blocked()) return std::nullopt;
+  const std::vector<Vec2> positions = here.free_positions_near_goal();
+  if (positions.empty()) return std::nullopt;
+  return Route{positions.front(), (positions.front() - start).norm(), positions.front(), false, true};
 }
 
 std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
@@ -64,7 +98,7 @@ std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
   if (length > min_remaining_m_ + kReplanIncrease_m || !is_line_free(start, waypoints_[next_waypoint_]))
     return std::nullopt;
   min_remaining_m_ = std::min(min_remaining_m_, length);
-  return Route{waypoints_[next_waypoint_], length};
+  return route(length);
 }
 
 double RoutePlanner::remaining_length_m(const Vec2& start) const {
@@ -72,6 +106,10 @@ double RoutePlanner::remaining_length_m(const Vec2& start) const {
   for (std::size_t i = next_waypoint_ + 1; i < waypoints_.size(); ++i)
     length += (waypoints_[i] - waypoints_[i - 1]).norm();
   return length;
+}
+
+Route RoutePlanner::route(double length) const {
+  return {waypoints_[next_waypoint_], length, waypoints_.back(), waypoints_.back() == goal_m_, false};
 }
 
 }  // namespace sidestep

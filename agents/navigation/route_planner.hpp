@@ -6,50 +6,63 @@
 
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "common/collision/obstacle_world.hpp"
-#include "common/geometry/circle.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
-/// The next waypoint, and the length of the remaining route to the goal.
+/// The next waypoint of a route.
 struct Route {
   Vec2 waypoint_m{0, 0};
-  double length_m = 0;
+  double length_m = 0;  ///< of the remaining route
+  Vec2 end_m{0, 0};     ///< the goal, or the nearest place that can be reached
+  bool reaches_goal = true;
+  bool is_way_out = false;  ///< leads straight out of several obstacles, whatever lies between
 };
 
-/// Plans shortest routes around discs to one goal, once per control cycle. A route is kept while it is free
-/// and its remaining length does not grow, so that the robot does not alternate between two routes of equal
-/// length.
+/// Plans shortest routes around obstacles to one goal, once per control cycle. A route is kept while it is
+/// free and its remaining length does not grow, so that the robot does not alternate between two routes of
+/// equal length. If obstacles cover or enclose the goal, routes lead to the nearest place that can be
+/// reached.
 class RoutePlanner {
  public:
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
-  /// The robot's centre keeps at least `radius_m + margin_m` from the edges of the discs, and
-  /// `extra_clearance_m` more where a route with that clearance exists.
-  RoutePlanner(const std::vector<Circle>& obstacles, const Field& field, double radius_m, double margin_m,
+  /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, and `extra_clearance_m` more
+  /// where a route with that clearance exists.
+  RoutePlanner(std::vector<Shape> obstacles, const Field& field, double radius_m, double margin_m,
                double extra_clearance_m, const Vec2& goal_m);
 
-  /// Returns nullopt if there is no route, or none within the sample budget of a cycle. A start that is too
-  /// near a disc may be left on a straight line away from it. If the goal is too near a disc, the route leads
-  /// to the nearest free position.
+  /// Returns nullopt if no route is found within the sample budget of a cycle. A start that is too near an
+  /// obstacle may be left on a straight line away from it. If several obstacles leave no such line, the route
+  /// leads straight to the nearest free position.
   [[nodiscard]] std::optional<Route> route_from(const Vec2& start_m);
   /// Whether the straight line between two points is free for the robot, in the world of the last route. A
-  /// line that leads out of a disc counts as free.
+  /// line that leads out of an obstacle counts as free.
   [[nodiscard]] bool is_line_free(const Vec2& from_m, const Vec2& to_m) const;
+  /// The index of the obstacle that covers the goal most deeply; nullopt if none does.
+  [[nodiscard]] std::optional<std::size_t> obstacle_on_goal() const;
 
  private:
-  /// Plans a new route in world_; returns whether one exists.
-  bool replan(const Vec2& start_m);
+  DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
+  /// Plans a new route that keeps this distance from obstacles. Returns whether one leads to the goal or, if
+  /// an obstacle covers it, to the nearest place.
+  bool replan(const Vec2& start_m, double clearance_m);
+  /// Plans a new route to the nearest place that can be reached.
+  bool replan_to_nearest(const Vec2& start_m, double clearance_m);
+  bool follow(const Plan<Vec2>& plan);
+  /// The straight line from a blocked start to the nearest free position.
+  std::optional<Route> way_out(const Vec2& start_m);
   /// The rest of the last route, if that is still free and not longer.
   std::optional<Route> continued_from(const Vec2& start_m);
   double remaining_length_m(const Vec2& start_m) const;
+  Route route(double length_m) const;
 
-  ObstacleWorld preferred_world_;                   // obstacles inflated by margin and extra clearance
-  ObstacleWorld required_world_;                    // obstacles inflated by the margin
-  const ObstacleWorld* world_ = &preferred_world_;  // of the last route
+  ObstacleWorld world_;
   Field field_;
   double radius_m_;
+  double required_m_, preferred_m_;  // distance of the robot's centre from obstacles
+  double clearance_m_;               // of the last route
   Vec2 goal_m_;
   LazyVisibility planner_;
   Rng rng_{0};                   // required by the planner interface; never sampled

@@ -82,6 +82,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   const Circle disc{desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m};
   find_nearby(query, disc, others);
   find_moving(query, disc);
+  keep_out_.find(query.keep_outs, query.at_start.position_m, query.way_out_m, disc, rules_.radius_m);
   compare(query, desired_bounds, max_deviation_m, result.checks);
   const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
   while (const auto index = candidates_.take_nearest(settings_.spread_mps2)) {
@@ -92,6 +93,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
     if (!uncontrolled.allow(trajectory, min_separation_m, limits.deceleration_mps2)) continue;
     if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m)) continue;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) continue;
+    if (!keep_out_.allows(trajectory)) continue;
     candidates_.accept(*index);
     result.desired_is_clear = result.desired_is_clear || *index == 0;
     result.candidates[result.count++] = trajectory;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "agents/safety/candidate_set.hpp"
+#include "agents/safety/keep_out.hpp"
 #include "agents/safety/moving_obstacle.hpp"
 #include "agents/safety/seen_region.hpp"
 #include "agents/safety/trajectory_index.hpp"
@@ -32,7 +33,9 @@ struct SearchQuery {
   std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored
   /// Below the speed limit if the clocks require it. A robot that is faster already slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
-  SeenRegion seen{};  ///< where there are no obstacles but those in `moving`
+  SeenRegion seen{};                   ///< where there are no obstacles but those in `moving`
+  std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter
+  std::optional<Vec2> way_out_m{};     ///< out of zones that overlap at the start
 
   /// The motion limits, with the lower of both speeds.
   MotionLimits limited(MotionLimits limits) const {
@@ -93,6 +96,7 @@ class SafetySearch {
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
   std::vector<MovingObstacle> moving_;  // the subset of the query's that may be near
+  KeepOut keep_out_;
 };
 
 /// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.

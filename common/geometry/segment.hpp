@@ -12,12 +12,17 @@ struct Segment {
   Vec2 from_m{0, 0}, to_m{0, 0};
 };
 
-/// The squared distance from a point to a segment.
-inline double squared_distance(const Vec2& p, const Segment& s) {
+/// The position on a segment that is nearest to a point, relative to the segment's beginning.
+inline Vec2 nearest_offset(const Vec2& p, const Segment& s) {
   const Vec2 direction = s.to_m - s.from_m, off = p - s.from_m;
   const double length2 = direction.squaredNorm();
   const double along = length2 > 0 ? std::clamp(off.dot(direction) / length2, 0.0, 1.0) : 0.0;
-  return (off - along * direction).squaredNorm();
+  return along * direction;
+}
+
+/// The squared distance from a point to a segment.
+inline double squared_distance(const Vec2& p, const Segment& s) {
+  return (p - s.from_m - nearest_offset(p, s)).squaredNorm();
 }
 
 /// Whether two segments cross, each with its ends on different sides of the other. An end on the other

@@ -11,10 +11,9 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMaxCorners = 16;
 constexpr double kMinTolerance_m = 0.001, kMaxTolerance_m = 10;
-constexpr double kMinSpeed_mps = 0.01;
 constexpr double kMaxHeading_rad = 100;
+constexpr double kMaxRemaining_s = 1e9;
 
 // False for a NaN.
 bool is_between(double value, double low, double high) { return value >= low && value <= high; }
@@ -26,11 +25,15 @@ bool is_none_or_between(double value, double low, double high) {
 
 std::optional<double> if_positive(double value) { return value > 0 ? std::optional(value) : std::nullopt; }
 
+bool is_on_floor(double x_m, double y_m) {
+  return is_between(x_m, -kMaxCoordinate_m, kMaxCoordinate_m) &&
+         is_between(y_m, -kMaxCoordinate_m, kMaxCoordinate_m);
+}
+
 bool is_valid(const msg::OrderPose& pose) {
-  return is_between(pose.x_m(), -kMaxCoordinate_m, kMaxCoordinate_m) &&
-         is_between(pose.y_m(), -kMaxCoordinate_m, kMaxCoordinate_m) &&
+  return is_on_floor(pose.x_m(), pose.y_m()) &&
          is_between(pose.heading_rad(), -kMaxHeading_rad, kMaxHeading_rad) &&
-         is_none_or_between(pose.speed_limit_mps(), kMinSpeed_mps, kMaxSpeed_mps) &&
+         is_none_or_between(pose.speed_limit_mps(), kMinSpeedLimit_mps, kMaxSpeed_mps) &&
          is_none_or_between(pose.tolerance_m(), kMinTolerance_m, kMaxTolerance_m);
 }
 
@@ -70,9 +73,9 @@ bool fits(msg::OrderKind kind, RobotId robot) {
 
 bool is_valid(const msg::OrderTerms& terms, std::size_t poses) {
   const bool is_zone = terms.order_kind() == msg::OrderKind::ORDER_ZONE;
-  return is_zone ? is_between(static_cast<double>(poses), 1, kMaxCorners) &&
+  return is_zone ? is_between(static_cast<double>(poses), 1, kMaxZoneCorners) &&
                        is_between(terms.zone_radius_m(), 0, kMaxCoordinate_m) &&
-                       is_none_or_between(terms.zone_speed_limit_mps(), kMinSpeed_mps, kMaxSpeed_mps)
+                       is_none_or_between(terms.zone_speed_limit_mps(), kMinSpeedLimit_mps, kMaxSpeed_mps)
                  : poses == 0 || terms.order_kind() == msg::OrderKind::ORDER_GO;
 }
 
@@ -154,7 +157,8 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
     const auto own_poses = poses.first(count);
     poses = poses.subspan(count);
     if (!may_order(remembered.client(), remembered.terms(), count) ||
-        !is_enumerator(remembered.order_state(), msg::OrderState::ORDER_LEFT))
+        !is_enumerator(remembered.order_state(), msg::OrderState::ORDER_LEFT) ||
+        remembered.order_state() == msg::OrderState::ORDER_BLOCKED)
       return std::nullopt;
     auto order = decode(remembered.robot(), remembered.client(), remembered.terms(), own_poses, now);
     if (!order) return std::nullopt;
@@ -166,12 +170,49 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
 
 std::optional<OrderReport> decode(const msg::OrderStatus& message) {
   const bool is_valid = message.robot() < kMaxRobots && message.header().sender() == message.robot() &&
-                        is_enumerator(message.order_state(), msg::OrderState::ORDER_LEFT);
-  if (!is_valid) return std::nullopt;
-  return OrderReport{message.robot(),
-                     message.client(),
-                     message.order_number(),
-                     {message.order_state(), message.pose_index()}};
+                        is_enumerator(message.order_state(), msg::OrderState::ORDER_LEFT) &&
+                        is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_NO_PATH) &&
+                        is_on_floor(message.blocker_x_m(), message.blocker_y_m()) &&
+                        is_on_floor(message.nearest_x_m(), message.nearest_y_m()) &&
+                        message.remaining_s() <= kMaxRemaining_s;
+  const bool is_blocked = message.order_state() == msg::OrderState::ORDER_BLOCKED;
+  if (!is_valid || (is_blocked && message.block_reason() == msg::BlockReason::BLOCK_NONE))
+    return std::nullopt;
+  OrderReport report{
+      message.robot(),
+      message.client(),
+      message.order_number(),
+      {is_blocked ? msg::OrderState::ORDER_DRIVING : message.order_state(), message.pose_index()}};
+  report.is_held = message.is_held();
+  if (message.block_reason() != msg::BlockReason::BLOCK_NONE) {
+    report.blockage = Blockage{message.block_reason(),
+                               message.blocker(),
+                               {message.blocker_x_m(), message.blocker_y_m()},
+                               {message.nearest_x_m(), message.nearest_y_m()}};
+  }
+  if (message.remaining_s() >= 0) report.remaining_s = message.remaining_s();
+  return report;
+}
+
+msg::OrderStatus encode(const OrderReport& report) {
+  msg::OrderStatus message;
+  message.robot(report.robot);
+  message.client(report.client);
+  message.order_number(report.number);
+  const bool is_blocked = report.blockage && !report.progress.is_finished();
+  message.order_state(is_blocked ? msg::OrderState::ORDER_BLOCKED : report.progress.state);
+  message.pose_index(static_cast<std::uint16_t>(report.progress.goal_index));
+  message.is_held(report.is_held);
+  if (report.blockage) {
+    message.block_reason(report.blockage->reason);
+    message.blocker(report.blockage->blocker);
+    message.blocker_x_m(report.blockage->blocker_m.x());
+    message.blocker_y_m(report.blockage->blocker_m.y());
+    message.nearest_x_m(report.blockage->nearest_m.x());
+    message.nearest_y_m(report.blockage->nearest_m.y());
+  }
+  message.remaining_s(std::min(report.remaining_s.value_or(-1), kMaxRemaining_s));
+  return message;
 }
 
 msg::Order encode(const Order& order) {

@@ -13,6 +13,11 @@ namespace sidestep {
 /// More pages than the orders of kMaxRobots robots and all holds and zones need.
 inline constexpr std::uint32_t kMaxOrderPages = 256;
 
+/// Codecs refuse zones with more corners.
+inline constexpr std::size_t kMaxZoneCorners = 16;
+/// Codecs refuse lower speed limits: a robot would hardly move.
+inline constexpr double kMinSpeedLimit_mps = 0.01;
+
 /// A page of the orders that a process remembers; see OrderMemory in idl/order.idl.
 struct OrderPage {
   std::uint32_t process = 0;
@@ -28,6 +33,9 @@ struct OrderReport {
   ClientId client = 0;
   OrderNumber number = 0;  ///< 0: the robot has no order
   OrderProgress progress{};
+  bool is_held = false;
+  std::optional<Blockage> blockage{};  ///< set: the goal cannot be reached now
+  std::optional<double> remaining_s{};
 };
 
 /// Decodes an untrusted order. Returns nullopt if its sender may not send orders or not this one, if its kind
@@ -36,12 +44,14 @@ struct OrderReport {
 /// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, if it is
 /// one of more than kMaxOrderPages, or if any of its orders is not valid.
 [[nodiscard]] std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now);
-/// Decodes the part of an untrusted status that coordinators use. Returns nullopt if the sender is not an
-/// agent of its robot, or if its state is unknown.
+/// Decodes an untrusted status. Returns nullopt if the sender is not an agent of its robot, or if any value
+/// is unknown or out of bounds.
 [[nodiscard]] std::optional<OrderReport> decode(const msg::OrderStatus& message);
 
 /// Without the header's incarnation, message_number and stamp_ns.
 msg::Order encode(const Order& order);
+/// Without the header.
+msg::OrderStatus encode(const OrderReport& report);
 /// The orders on as many pages as they need, at least one. Without the header. If they have only changed,
 /// page_count is 0.
 std::vector<msg::OrderMemory> encode(std::span<const RememberedOrder> orders, bool is_complete,

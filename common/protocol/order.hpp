@@ -56,10 +56,18 @@ struct Order {
 
 /// How far a robot has got with an order to drive.
 struct OrderProgress {
-  msg::OrderState state = msg::OrderState::ORDER_ACCEPTED;
-  std::size_t goal_index = 0;  ///< of the goal that it drives to
+  msg::OrderState state = msg::OrderState::ORDER_ACCEPTED;  ///< never ORDER_BLOCKED, see Blockage
+  std::size_t goal_index = 0;                               ///< of the goal that it drives to
 
   bool is_finished() const { return state >= msg::OrderState::ORDER_ARRIVED; }
+};
+
+/// Why a robot cannot reach its goal.
+struct Blockage {
+  msg::BlockReason reason = msg::BlockReason::BLOCK_NO_PATH;
+  std::uint32_t blocker = 0;  ///< number of the robot or zone
+  Vec2 blocker_m{0, 0};       ///< where the obstacle or robot is
+  Vec2 nearest_m{0, 0};       ///< where the robot goes instead
 };
 
 struct RememberedOrder {

@@ -110,10 +110,15 @@ const RememberedOrder* OrderBook::drive_order(RobotId robot, Rank rank) const {
   return found == orders_.end() ? nullptr : &found->second;
 }
 
-std::vector<Zone> OrderBook::zones() const {
-  std::vector<Zone> zones;
+const RememberedOrder* OrderBook::in_place_of(const Order& order) const {
+  const auto found = orders_.find(place_of(order));
+  return found == orders_.end() ? nullptr : &found->second;
+}
+
+std::vector<Order> OrderBook::zones() const {
+  std::vector<Order> zones;
   for (auto i = orders_.lower_bound({Kind::kZone, 0, 0, 0}); i != orders_.end(); ++i) {
-    if (i->second.order.kind == msg::OrderKind::ORDER_ZONE) zones.push_back(i->second.order.zone);
+    if (i->second.order.kind == msg::OrderKind::ORDER_ZONE) zones.push_back(i->second.order);
   }
   return zones;
 }

@@ -35,8 +35,10 @@ class OrderBook {
   bool is_held(RobotId robot) const;
   /// The robot's order to drive (or its cancellation) of this rank; null: none.
   const RememberedOrder* drive_order(RobotId robot, Rank rank) const;
-  /// Zones that have not been removed.
-  std::vector<Zone> zones() const;
+  /// The order that has the place of this one, or this one itself; null: none.
+  const RememberedOrder* in_place_of(const Order& order) const;
+  /// The orders of zones that have not been removed.
+  std::vector<Order> zones() const;
   std::vector<RememberedOrder> all() const;
   /// The orders that `other` lacks, or knows less of.
   std::vector<RememberedOrder> missing_in(const OrderBook& other) const;

@@ -15,6 +15,22 @@ namespace {
 
 constexpr Range kCoordinate{-kMaxCoordinate_m, kMaxCoordinate_m};
 
+/// Reads a comma-separated list of up to three coordinates; empty if the text is anything else.
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  const char *at = text.data(), *const end = at + text.size();
+  while (numbers.size() < 3) {
+    double number = 0;
+    const auto [stop, error] = std::from_chars(at, end, number);
+    if (error != std::errc{} || !(std::abs(number) <= kMaxCoordinate_m)) return {};
+    numbers.push_back(number);
+    if (stop == end) return numbers;
+    if (*stop != ',') return {};
+    at = stop + 1;
+  }
+  return {};
+}
+
 Goal goal_from(const std::vector<double>& numbers) {
   Goal goal{{numbers[0], numbers[1]}};
   if (numbers.size() == 3) goal.heading_rad = numbers[2];
@@ -24,22 +40,18 @@ Goal goal_from(const std::vector<double>& numbers) {
 }  // namespace
 
 Goal parse_goal(const std::string& text) {
-  std::vector<double> numbers;
-  const char *at = text.data(), *const end = at + text.size();
-  while (at < end && numbers.size() <= 3) {
-    double number = 0;
-    const auto [stop, error] = std::from_chars(at, end, number);
-    const bool is_valid =
-        error == std::errc{} && std::abs(number) <= kMaxCoordinate_m && (stop == end || *stop == ',');
-    if (!is_valid) break;
-    numbers.push_back(number);
-    at = stop == end ? end : stop + 1;
-  }
-  const bool is_whole = at == end && !text.empty() && text.back() != ',';
-  if (!is_whole || numbers.size() < 2 || numbers.size() > 3)
+  const auto numbers = parse_numbers(text);
+  if (numbers.size() < 2 || numbers.size() > 3)
     throw UsageError(
         fmt::format("\"{}\" is no goal, expected X,Y or X,Y,HEADING in metres and radians", text));
   return goal_from(numbers);
+}
+
+Vec2 parse_corner(const std::string& text) {
+  const auto numbers = parse_numbers(text);
+  if (numbers.size() != 2)
+    throw UsageError(fmt::format("\"{}\" is no corner of a zone, expected X,Y in metres", text));
+  return {numbers[0], numbers[1]};
 }
 
 RobotId parse_robots(const std::string& text) {

@@ -12,6 +12,9 @@ namespace sidestep {
 /// Reads "X,Y" or "X,Y,HEADING", in metres and radians. Throws UsageError.
 [[nodiscard]] Goal parse_goal(const std::string& text);
 
+/// Reads "X,Y", in metres. Throws UsageError.
+[[nodiscard]] Vec2 parse_corner(const std::string& text);
+
 /// Reads a robot's number, or "all" for kAllRobots. Throws UsageError.
 [[nodiscard]] RobotId parse_robots(const std::string& text);
 

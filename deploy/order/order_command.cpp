@@ -13,10 +13,12 @@
 #include "common/client/order_client.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/order/goal_text.hpp"
 #include "deploy/order/order_text.hpp"
+#include "deploy/order/zone_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -33,6 +35,10 @@ struct OrderOptions {
   std::vector<std::string> goals;
   std::string file;
   double speed_limit_mps = 0, tolerance_m = 0;
+  std::uint32_t zone = 0;
+  std::vector<std::string> corners;
+  double radius_m = 0;
+  bool removes = false;
   bool waits = false;
   bool once = false;
 };
@@ -78,6 +84,12 @@ GoalLists goals_of(const OrderOptions& options) {
   return lists;
 }
 
+Zone zone_of(const OrderOptions& options) {
+  const double limit_mps = options.speed_limit_mps;
+  return parse_zone(options.corners, options.radius_m,
+                    limit_mps > 0 ? std::optional(limit_mps) : std::nullopt);
+}
+
 int go(const OrderOptions& options) {
   GoalLists lists = goals_of(options);
   for (auto& [robot, goals] : lists) {
@@ -99,17 +111,17 @@ int show_status(const OrderOptions& options) {
   const OrderClient client(bus, client_of(options));
   if (options.once || isatty(STDOUT_FILENO) == 0) {
     bus.run_until(bus.now() + kOnceDuration);
-    fmt::print("{}", to_table(client.statuses()));
+    fmt::print("{}", to_table(client.reports()));
   } else {
     const std::function<void()> refresh = [&] {
       bus.at(bus.now() + kTablePeriod, refresh);
-      fmt::print("\x1b[H\x1b[J{}", to_table(client.statuses()));
+      fmt::print("\x1b[H\x1b[J{}", to_table(client.reports()));
       std::fflush(stdout);
     };
     refresh();
     bus.run();
   }
-  if (!client.statuses().empty()) return 0;
+  if (!client.reports().empty()) return 0;
   fmt::print(stderr, "sidestep: no agent is heard on this domain and interface\n");
   return kExitFailure;
 }
@@ -172,6 +184,36 @@ void add_simple(const CliCommand& root, std::function<int()>& action, const char
   });
 }
 
+int zone(const OrderOptions& options) {
+  return give_orders(options, [&](OrderClient& client) {
+    if (options.removes) return std::vector{client.remove_zone(options.zone)};
+    return std::vector{client.zone(options.zone, zone_of(options))};
+  });
+}
+
+void add_zone(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command = root.add_subcommand(
+      "zone", "Sets a zone for all robots: to keep out of or, with --speed, to drive slowly in");
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  command.add_option("NUMBER", options->zone, "the client's number of the zone; a later zone replaces it")
+      .required();
+  const auto corners = command.add_option(
+      "CORNER", options->corners, "X,Y in metres; the zone is the convex hull of all corners, plus --radius");
+  const auto radius = command.add_option("--radius", options->radius_m, "distance that the zone extends, m")
+                          .check(in_range(0, kMaxCoordinate_m));
+  const auto speed = command.add_option("--speed", options->speed_limit_mps, "speed limit in the zone, m/s")
+                         .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
+  command.add_flag("--remove", options->removes, "remove the zone of this number")
+      .excludes(corners)
+      .excludes(radius)
+      .excludes(speed);
+  command.on_parsed([=, &action] {
+    if (!options->removes) (void)zone_of(*options);
+    action = [options] { return zone(*options); };
+  });
+}
+
 }  // namespace
 
 void add_order_commands(const CliCommand& root, std::function<int()>& action) {
@@ -182,6 +224,7 @@ void add_order_commands(const CliCommand& root, std::function<int()>& action) {
              true, &OrderClient::hold);
   add_simple(root, action, "resume", "Ends holds: those of this client; the operator ends all", true,
              &OrderClient::resume);
+  add_zone(root, action);
   const CliCommand status = root.add_subcommand("status", "Shows what robots do with their orders");
   const Options options = add_command(status);
   status.add_flag("--once", options->once, "print the table once, and end");

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "common/messaging/enumerator.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -47,6 +45,8 @@ const char* refusal_text(msg::OrderResult result) {
 std::string order_name(const Order& order) {
   static constexpr const char* kNames[] = {"go", "cancel", "hold", "resume", "zone", "remove zone"};
   const char* const name = kNames[static_cast<std::size_t>(order.kind)];
+  if (order.kind == msg::OrderKind::ORDER_ZONE || order.kind == msg::OrderKind::ORDER_REMOVE_ZONE)
+    return fmt::format("{} {}", name, order.zone_number);
   return order.robot == kAllRobots ? fmt::format("{} all", name) : fmt::format("{} {}", name, order.robot);
 }
 
@@ -64,32 +64,56 @@ std::string client_name(ClientId client) {
   return std::to_string(client);
 }
 
-std::string state_text(const msg::OrderStatus& status) {
-  static constexpr const char* kStates[] = {"accepted", "driving", "blocked", "arrived", "left"};
-  if (status.is_held()) return "held";
-  if (status.order_number() == 0) return "no order";
-  return is_enumerator(status.order_state(), msg::OrderState::ORDER_LEFT)
-             ? kStates[static_cast<std::size_t>(status.order_state())]
-             : "?";
+std::string state_text(const OrderReport& report) {
+  static constexpr const char* kStates[] = {"accepted", "driving", "driving", "arrived", "left"};
+  if (report.is_held) return "held";
+  if (report.number == 0) return "no order";
+  if (report.blockage && !report.progress.is_finished()) return "blocked";
+  return kStates[static_cast<std::size_t>(report.progress.state)];
+}
+
+std::string remaining_text(const OrderReport& report) {
+  return report.remaining_s && !report.is_held ? fmt::format("{:.1f}", *report.remaining_s) : "-";
 }
 
 }  // namespace
+
+std::string to_text(const Blockage& blockage) {
+  const std::string instead =
+      fmt::format(", goes to {:.2f},{:.2f} instead", blockage.nearest_m.x(), blockage.nearest_m.y());
+  switch (blockage.reason) {
+    case msg::BlockReason::BLOCK_OBSTACLE:
+      return fmt::format("by an obstacle at {:.2f},{:.2f}", blockage.blocker_m.x(), blockage.blocker_m.y()) +
+             instead;
+    case msg::BlockReason::BLOCK_ROBOT:
+      return fmt::format("by robot {}", blockage.blocker) + instead;
+    case msg::BlockReason::BLOCK_ZONE:
+      return fmt::format("by zone {}", blockage.blocker) + instead;
+    case msg::BlockReason::BLOCK_NONE:
+    case msg::BlockReason::BLOCK_NO_PATH:
+      break;
+  }
+  return "no path leads there" + instead;
+}
 
 std::string to_line(const SentOrder& sent) {
   std::string line = fmt::format("{}: {}", order_name(sent.order), phase_text(sent.phase));
   if (sent.phase == OrderPhase::kRefused) line += fmt::format(", {}", refusal_text(sent.refusal));
   if (sent.phase == OrderPhase::kDriving)
     line += fmt::format(" to goal {} of {}", sent.goal_index + 1, sent.order.goals.size());
+  if (sent.phase == OrderPhase::kBlocked && sent.blockage) line += " " + to_text(*sent.blockage);
   return line;
 }
 
-std::string to_table(const std::map<RobotId, msg::OrderStatus>& statuses) {
-  std::string table = fmt::format("{:>5}  {:<9} {:<10} {:>4}\n", "robot", "state", "ordered by", "goal");
-  for (const auto& [robot, status] : statuses) {
-    const bool has_order = status.order_number() != 0;
-    table += fmt::format("{:>5}  {:<9} {:<10} {:>4}\n", robot, state_text(status),
-                         has_order ? client_name(status.client()) : "-",
-                         has_order ? std::to_string(status.pose_index() + 1) : "-");
+std::string to_table(const std::map<RobotId, OrderReport>& reports) {
+  std::string table = fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", "robot", "state", "ordered by",
+                                  "goal", "left s", "blocked");
+  for (const auto& [robot, report] : reports) {
+    const bool has_order = report.number != 0;
+    table += fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", robot, state_text(report),
+                         has_order ? client_name(report.client) : "-",
+                         has_order ? std::to_string(report.progress.goal_index + 1) : "-",
+                         remaining_text(report), report.blockage ? to_text(*report.blockage) : "");
   }
   return table;
 }

@@ -12,6 +12,6 @@ namespace sidestep {
 [[nodiscard]] std::string to_line(const SentOrder& sent);
 
 /// A table of what the robots do with their orders, one line for each.
-[[nodiscard]] std::string to_table(const std::map<RobotId, msg::OrderStatus>& statuses);
+[[nodiscard]] std::string to_table(const std::map<RobotId, OrderReport>& reports);
 
 }  // namespace sidestep

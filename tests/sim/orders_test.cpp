@@ -9,81 +9,17 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/monitor/metrics/report.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::orders_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
-constexpr ClientId kClient = 1'000'001, kOtherClient = 1'000'002;
-constexpr double kAtRest_mps = 0.02;  // beyond the noise of a robot that holds its place
-
 Scenario shipped(const std::string& name) {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
 }
-
-/// Robots without goals, on two sides of the field.
-Scenario waiting_robots(int count, int coordinators = 1) {
-  std::string text =
-      "field: {length_m: 6, width_m: 5}\ntime_limit_s: 60\ncoordinators: " + std::to_string(coordinators) +
-      "\nrobots:\n";
-  for (int i = 0; i < count; ++i)
-    text += "  - {id: " + std::to_string(i) + ", start_m: [" + (i % 2 ? "2" : "-2") + ", " +
-            std::to_string(-1.5 + 0.5 * (i / 2)) + "]}\n";
-  return parse_scenario(text, "waiting.yaml");
-}
-
-struct OrderedSystem {
-  Scenario scenario;
-  SimSystem system;
-  std::map<RobotId, msg::OrderStatus> statuses;
-  std::map<OrderNumber, msg::OrderResult> answers;
-  std::set<OrderNumber> arrived;
-  OrderNumber number = 0;
-  Time moved_at{};  ///< when a robot was in motion last
-
-  OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
-    system.on_order_status([this](const msg::OrderStatus& status) {
-      statuses[status.robot()] = status;
-      if (status.order_state() == msg::OrderState::ORDER_ARRIVED) arrived.insert(status.order_number());
-    });
-    system.on_truth([this](const msg::GroundTruth& truth) {
-      const auto moves = [](const msg::TrueRobotState& robot) {
-        return std::hypot(robot.vx_mps(), robot.vy_mps()) > kAtRest_mps;
-      };
-      if (std::ranges::any_of(truth.robots(), moves)) moved_at = time_from_ns(truth.valid_at_ns());
-    });
-    system.on_order_answer(
-        [this](const msg::OrderAnswer& answer) { answers[answer.order_number()] = answer.result(); });
-  }
-  OrderNumber send(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
-    number = std::max(number + 1, static_cast<OrderNumber>(to_ns(system.now())));
-    system.send({kind, robot, client, number, std::move(goals)});
-    return number;
-  }
-  template <typename Condition>
-  bool run_until(Duration limit, Condition condition) {
-    const Time end = system.now() + limit;
-    while (!condition() && system.now() < end) system.run_for(milliseconds(5));
-    return condition();
-  }
-  double max_speed_mps() {
-    double max_mps = 0;
-    for (const RobotProgress& row : system.metrics().progress()) max_mps = std::max(max_mps, row.speed_mps);
-    return max_mps;
-  }
-  void require_safe() {
-    const Report report = system.metrics().report();
-    REQUIRE(report.contacts == 0);
-    REQUIRE(report.firmware_violations == 0);
-    for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
-    REQUIRE(report.audit->violations == 0);
-  }
-};
 
 TEST_CASE("robots without goals wait, and go where they are ordered, pose by pose") {
   OrderedSystem run(waiting_robots(4), 1);

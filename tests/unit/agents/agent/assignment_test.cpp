@@ -145,4 +145,41 @@ TEST_CASE("a robot is held as the orders say") {
   CHECK_FALSE(r.assignment.is_held());
 }
 
+TEST_CASE("zones are known until they are removed, and only their changes count as changes") {
+  Robot r;
+  RememberedOrder zone{{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient, 5}};
+  zone.order.zone.corners_m = {{1, 1}};
+  r.hear(memory({zone}));
+  CHECK(r.assignment.zones().size() == 1);
+  const auto revision = r.assignment.zone_revision();
+  r.hear(memory({zone, go(kClient, 6, {{4, 0}})}));
+  CHECK(r.assignment.zone_revision() == revision);
+  r.hear(change({{msg::OrderKind::ORDER_REMOVE_ZONE, kAllRobots, kClient, 7}}));
+  CHECK(r.assignment.zones().empty());
+  CHECK(r.assignment.zone_revision() > revision);
+}
+
+TEST_CASE("an agent knows whether another robot is held, and where it still has to go") {
+  Robot r;
+  const auto of_other = [](RememberedOrder order) {
+    order.order.robot = 8;
+    return order;
+  };
+  RememberedOrder drive = of_other(go(kClient, 5, {{4, 0}, {6, 0}}));
+  drive.progress = {msg::OrderState::ORDER_DRIVING, 1};
+  r.hear(memory({drive, of_kind(msg::OrderKind::ORDER_HOLD, kClient, 6)}));
+  CHECK_FALSE(r.assignment.other(8).is_held);
+  CHECK(r.assignment.other(8).has_to_go);
+  CHECK(r.assignment.other(8).goal_m == Vec2(6, 0));
+  CHECK_FALSE(r.assignment.other(9).has_to_go);
+  r.hear(change(of_other(of_kind(msg::OrderKind::ORDER_HOLD, kOperator, 7))));
+  CHECK(r.assignment.other(8).is_held);
+  drive.progress.state = msg::OrderState::ORDER_ARRIVED;
+  r.hear(change(drive));
+  CHECK_FALSE(r.assignment.other(8).has_to_go);
+  r.hear(change(of_other(scenario_order())));
+  CHECK(r.assignment.other(8).has_to_go);
+  CHECK_FALSE(r.assignment.other(8).goal_m);
+}
+
 }  // namespace sidestep::assignment_test

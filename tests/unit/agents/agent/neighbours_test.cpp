@@ -138,8 +138,10 @@ TEST_CASE("the nearest robots whose versions have all come to rest are found as 
   receive(neighbours, page_of(0, 1, versions));
   const auto places = neighbours.find_stationary(kNow + std::chrono::seconds(1), {0, 0}, 2);
   REQUIRE(places.size() == 2);
-  CHECK(places[0] == Vec2(1.5, 0));
-  CHECK(places[1] == Vec2(1, 0));
+  CHECK(places[0].position_m == Vec2(1.5, 0));
+  CHECK(places[0].robot == 3);
+  CHECK(places[0].intent == nullptr);
+  CHECK(places[1].position_m == Vec2(1, 0));
 }
 
 }  // namespace sidestep::neighbours_test

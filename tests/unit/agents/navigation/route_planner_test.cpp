@@ -12,6 +12,8 @@ namespace sidestep::route_planner_test {
 constexpr double kRadius_m = 0.09, kMargin_m = 0.02;
 const Field kField{4, 4};
 
+std::vector<Shape> shapes_of(const std::vector<Circle>& circles) { return {circles.begin(), circles.end()}; }
+
 /// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm, whose paths are at most 8.3 % longer
 /// than the shortest.
 double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal,
@@ -68,7 +70,7 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
     obstacles.push_back({{x, y}, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
-  RoutePlanner planner(obstacles, kField, kRadius_m, kMargin_m, 0, goal);
+  RoutePlanner planner(shapes_of(obstacles), kField, kRadius_m, kMargin_m, 0, goal);
   const double reference = grid_length(obstacles, start, goal, kRadius_m + kMargin_m + 0.02);
   REQUIRE(reference < 20);
   Vec2 here = start;
@@ -91,15 +93,91 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
   CHECK(travelled == Approx(promised));
 }
 
-TEST_CASE("there is no route to an enclosed goal") {
-  std::vector<Circle> ring;
-  for (int i = 0; i < 12; ++i) ring.push_back({0.5 * Vec2(std::cos(i * 0.5236), std::sin(i * 0.5236)), 0.15});
-  RoutePlanner planner(ring, kField, kRadius_m, kMargin_m, 0, {0, 0});
-  CHECK_FALSE(planner.route_from({1.5, 0}));
+/// The smallest distance from the goal of a position on a grid of 2 cm that the start is connected to.
+double nearest_on_grid(const std::vector<Shape>& obstacles, const Vec2& start, const Vec2& goal,
+                       double clearance) {
+  const auto is_free = [&](const Vec2& p) {
+    return kField.contains(p, kRadius_m) && std::ranges::all_of(obstacles, [&](const Shape& shape) {
+             return signed_distance(p, shape) > clearance;
+           });
+  };
+  constexpr int kCells = 200;
+  const auto position = [](int x, int y) { return Vec2(-2 + 0.02 * x, -2 + 0.02 * y); };
+  std::vector<bool> seen(kCells * kCells);
+  std::vector<std::pair<int, int>> open{
+      {static_cast<int>((start.x() + 2) / 0.02), static_cast<int>((start.y() + 2) / 0.02)}};
+  double nearest = std::numeric_limits<double>::infinity();
+  while (!open.empty()) {
+    const auto [x, y] = open.back();
+    open.pop_back();
+    if (x < 0 || y < 0 || x >= kCells || y >= kCells) continue;
+    const auto cell = static_cast<std::size_t>(x * kCells + y);
+    if (seen[cell] || !is_free(position(x, y))) continue;
+    seen[cell] = true;
+    nearest = std::min(nearest, (position(x, y) - goal).norm());
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      open.emplace_back(x + dx, y + dy);
+  }
+  return nearest;
+}
+
+TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to it as the robot can get") {
+  int enclosed = 0, covered = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Rng rng(seed);
+    // A ring, with or without a gap, around a goal that may be covered, among other obstacles.
+    std::vector<Shape> obstacles;
+    const double ring_y = rng.uniform(-0.8, 0.8), ring_x = rng.uniform(-0.8, 0.8);
+    const Vec2 middle(ring_x, ring_y), start(-1.8, -1.8);
+    for (int i = rng.below(4) == 0 ? 2 : 0; i < 12; ++i)
+      obstacles.emplace_back(Circle{middle + rotated({0.5, 0}, i * 0.5236), 0.1});
+    if (rng.below(2) == 0)
+      obstacles.emplace_back(Circle{middle + rotated({0.1, 0}, rng.uniform(0, 6)), 0.12});
+    for (int i = 0; i < 4; ++i) {
+      const double y = rng.uniform(-1.5, 1.5), x = rng.uniform(-1.3, 1.5);
+      obstacles.emplace_back(Box{{x, y}, {x + rng.uniform(0.1, 0.4), y + rng.uniform(0.1, 0.4)}});
+    }
+    CAPTURE(seed, middle.transpose());
+    const double clearance = kRadius_m + kMargin_m;
+    RoutePlanner planner(obstacles, kField, kRadius_m, kMargin_m, 0, middle);
+    const double reference = nearest_on_grid(obstacles, start, middle, clearance + 0.005);
+    REQUIRE(reference < 4);
+    const auto route = planner.route_from(start);
+    REQUIRE(route);
+    CHECK(route->reaches_goal == (route->end_m == middle));
+    CHECK((route->end_m - middle).norm() <= reference + 0.03);
+    if (route->reaches_goal) continue;
+    ++(planner.obstacle_on_goal() ? covered : enclosed);
+    // The whole route is free, and is kept.
+    Vec2 here = start;
+    for (int leg = 0; leg < 50 && (here - route->end_m).norm() > 1e-9; ++leg) {
+      const auto next = planner.route_from(here);
+      REQUIRE(next);
+      CHECK(next->end_m == route->end_m);
+      for (int k = 0; k <= 100; ++k) {
+        for (const Shape& shape : obstacles)
+          REQUIRE(signed_distance(here + k / 100.0 * (next->waypoint_m - here), shape) >= clearance - 1e-9);
+      }
+      here = next->waypoint_m;
+    }
+    CHECK((here - route->end_m).norm() < 1e-9);
+  }
+  CHECK(enclosed > 5);
+  CHECK(covered > 5);
+}
+
+TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
+  const Vec2 goal(0, 0.2 + kRadius_m + kMargin_m + 0.01);
+  RoutePlanner planner({Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
+  const auto route = planner.route_from({0, -1});
+  REQUIRE(route);
+  CHECK(route->reaches_goal);
+  CHECK(route->end_m == goal);
+  CHECK_FALSE(planner.obstacle_on_goal());
 }
 
 TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
-  RoutePlanner planner({{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
+  RoutePlanner planner({Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);
   const auto route = planner.route_from(near);
   REQUIRE(route);
@@ -130,7 +208,7 @@ TEST_CASE("of two equally long routes the robot keeps one while it drifts sidewa
 }
 
 TEST_CASE("a robot that was pushed off its route replans") {
-  RoutePlanner planner({{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  RoutePlanner planner({Circle{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   const auto above = planner.route_from({-0.5, 0.3});
   REQUIRE(above);
   CHECK(above->waypoint_m.y() > 0);
@@ -142,7 +220,7 @@ TEST_CASE("a robot that was pushed off its route replans") {
 TEST_CASE("routes keep the extra clearance where it exists and do without where it does not") {
   const double extra_clearance = 0.05;
   const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
-  RoutePlanner generous(pair, kField, kRadius_m, kMargin_m, extra_clearance, {1.5, 0.3});
+  RoutePlanner generous(shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance, {1.5, 0.3});
   const auto wide_route = generous.route_from({-1.5, 0.3});
   REQUIRE(wide_route);
   CHECK((wide_route->waypoint_m - pair[0].centre_m).norm() >= 0.2 + kRadius_m + kMargin_m + extra_clearance);
@@ -155,11 +233,22 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
   const double gap = 2 * (0.45 + 0.08 - 0.3);
   REQUIRE(gap / 2 > kRadius_m + kMargin_m);
   REQUIRE(gap / 2 < kRadius_m + kMargin_m + 0.15);
-  RoutePlanner wall_planner(wall, kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
+  RoutePlanner wall_planner(shapes_of(wall), kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
   const auto narrow_route = wall_planner.route_from({-1.5, 0.2});
   REQUIRE(narrow_route);
   for (const Circle& disc : wall)
     CHECK((narrow_route->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
+}
+
+TEST_CASE("a start in obstacles that overlap is left towards the nearest free position") {
+  // On the line between both centres, every way out of one leads deeper into the other at first.
+  RoutePlanner planner({Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,
+                       kRadius_m, kMargin_m, 0, {0, 0});
+  const auto route = planner.route_from({0, 0});
+  REQUIRE(route);
+  CHECK_FALSE(route->reaches_goal);
+  CHECK(std::abs(route->end_m.x()) < 0.01);
+  CHECK(route->end_m.y() == Approx(std::sqrt(0.51 * 0.51 - 0.25 * 0.25)).margin(0.01));
 }
 
 }  // namespace sidestep::route_planner_test

@@ -136,4 +136,58 @@ TEST_CASE("scenarios only send robots to their own goals, and coordinators only 
   CHECK_FALSE(page_with({msg::OrderKind::ORDER_HOLD, 3, 20000, 1}));
 }
 
+TEST_CASE("what an agent does with its order survives encoding and decoding") {
+  OrderReport report{3, kClient, 17, {msg::OrderState::ORDER_DRIVING, 2}};
+  report.is_held = true;
+  report.blockage = Blockage{msg::BlockReason::BLOCK_ROBOT, 5, {1, 2}, {3, 4}};
+  msg::OrderStatus message = encode(report);
+  message.header().sender(3);
+  CHECK(message.order_state() == msg::OrderState::ORDER_BLOCKED);
+  const auto decoded = decode(message);
+  REQUIRE(decoded);
+  CHECK(decoded->client == kClient);
+  CHECK(decoded->number == 17);
+  CHECK(decoded->progress.state == msg::OrderState::ORDER_DRIVING);
+  CHECK(decoded->progress.goal_index == 2);
+  CHECK(decoded->is_held);
+  REQUIRE(decoded->blockage);
+  CHECK(decoded->blockage->reason == msg::BlockReason::BLOCK_ROBOT);
+  CHECK(decoded->blockage->blocker == 5);
+  CHECK(decoded->blockage->blocker_m == Vec2(1, 2));
+  CHECK(decoded->blockage->nearest_m == Vec2(3, 4));
+  CHECK_FALSE(decoded->remaining_s);
+  // A robot that has arrived, and has to leave a zone, has still arrived.
+  report.progress.state = msg::OrderState::ORDER_ARRIVED;
+  CHECK(encode(report).order_state() == msg::OrderState::ORDER_ARRIVED);
+  report.blockage.reset();
+  report.remaining_s = 2.5;
+  message = encode(report);
+  message.header().sender(3);
+  CHECK(decode(message)->remaining_s == 2.5);
+  CHECK_FALSE(decode(message)->blockage);
+}
+
+TEST_CASE("an agent's report with a value out of range, or of another robot, is refused") {
+  OrderReport report{3, kClient, 17, {msg::OrderState::ORDER_DRIVING, 2}};
+  report.blockage = Blockage{};
+  msg::OrderStatus good = encode(report);
+  good.header().sender(3);
+  REQUIRE(decode(good));
+  const auto is_refused_with = [&](auto change) {
+    msg::OrderStatus message = good;
+    change(message);
+    return !decode(message);
+  };
+  CHECK(is_refused_with([](auto& m) { m.header().sender(4); }));
+  CHECK(is_refused_with([](auto& m) { m.order_state(static_cast<msg::OrderState>(5)); }));
+  CHECK(is_refused_with([](auto& m) { m.block_reason(static_cast<msg::BlockReason>(5)); }));
+  CHECK(is_refused_with([](auto& m) { m.block_reason(msg::BlockReason::BLOCK_NONE); }));
+  CHECK(is_refused_with([](auto& m) { m.blocker_x_m(kNan); }));
+  CHECK(is_refused_with([](auto& m) { m.blocker_y_m(1e5); }));
+  CHECK(is_refused_with([](auto& m) { m.nearest_x_m(-1e5); }));
+  CHECK(is_refused_with([](auto& m) { m.nearest_y_m(kNan); }));
+  CHECK(is_refused_with([](auto& m) { m.remaining_s(kNan); }));
+  CHECK(is_refused_with([](auto& m) { m.remaining_s(1e10); }));
+}
+
 }  // namespace sidestep::order_codec_test

@@ -40,4 +40,25 @@ TEST_CASE("orders on the command line are checked before anything is sent") {
   CHECK_THAT(usage_error(many), ContainsSubstring("at most 64"));
 }
 
+TEST_CASE("zones on the command line are checked before anything is sent") {
+  CHECK(usage_error({"zone", "1", "0,0", "1,0", "1,1"}).empty());
+  CHECK(usage_error({"zone", "1", "-1,-0.5", "--radius", "0.3", "--speed", "0.5"}).empty());
+  CHECK(usage_error({"zone", "4294967295", "0,0", "1,0", "--radius", "0.3", "--client", "ball"}).empty());
+  CHECK(usage_error({"zone", "1", "--remove"}).empty());
+  CHECK_THAT(usage_error({"zone"}), ContainsSubstring("NUMBER"));
+  CHECK_THAT(usage_error({"zone", "-1", "--remove"}), ContainsSubstring("NUMBER"));
+  CHECK_THAT(usage_error({"zone", "4294967296", "--remove"}), ContainsSubstring("NUMBER"));
+  CHECK_THAT(usage_error({"zone", "1"}), ContainsSubstring("CORNER is missing"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0"}), ContainsSubstring("--radius"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--radius", "-1"}), ContainsSubstring("--radius"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--radius", "nan"}), ContainsSubstring("--radius"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--radius", "1e5"}), ContainsSubstring("--radius"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--radius", "1", "--speed", "0"}),
+             ContainsSubstring("--speed"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--radius", "1", "--speed", "101"}),
+             ContainsSubstring("--speed"));
+  CHECK_THAT(usage_error({"zone", "1", "0,0", "--remove"}), ContainsSubstring("--remove"));
+  CHECK_THAT(usage_error({"zone", "1", "--remove", "--speed", "1"}), ContainsSubstring("--remove"));
+}
+
 }  // namespace sidestep::order_command_test
