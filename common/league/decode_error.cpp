@@ -25,6 +25,8 @@ std::string_view describe(DecodeError error) {
       return "a time is not finite or out of range";
     case DecodeError::kText:
       return "a text is too long";
+    case DecodeError::kCommand:
+      return "a command of the referee is unknown";
   }
   return "?";
 }

@@ -19,9 +19,10 @@ enum class DecodeError : std::uint8_t {
   kCamera,     ///< a camera id out of range
   kRobot,      ///< a robot id or team out of range
   kTime,       ///< a time that is not finite or out of range
-  kText        ///< a text that is too long
+  kText,       ///< a text that is too long
+  kCommand     ///< a command of the referee that is unknown
 };
-inline constexpr std::size_t kDecodeErrors = 10;
+inline constexpr std::size_t kDecodeErrors = 11;
 
 /// A description for messages, e.g. "a camera id is out of range".
 std::string_view describe(DecodeError error);

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "common/camera/overhead_camera.hpp"
+#include "common/geometry/field_marking.hpp"
 #include "common/motion/rolling_ball.hpp"
-#include "simulator/world/field_marking.hpp"
 
 namespace sidestep {
 namespace {

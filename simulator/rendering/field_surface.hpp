@@ -6,10 +6,10 @@
 #include "common/camera/camera_model.hpp"
 #include "common/geometry/box.hpp"
 #include "common/geometry/field.hpp"
+#include "common/geometry/field_marking.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/rendering/canvas.hpp"
 #include "simulator/rendering/render_spec.hpp"
-#include "simulator/world/field_marking.hpp"
 
 namespace sidestep {
 

@@ -13,7 +13,7 @@
 namespace sidestep::fuzz {
 namespace {
 
-enum Reader : unsigned { kVision, kTracked, kLog, kClock, kReaders };
+enum Reader : unsigned { kVision, kTracked, kReferee, kLog, kClock, kReaders };
 
 #define SIDESTEP_REQUIRE(condition)                                                      \
   do {                                                                                   \
@@ -74,6 +74,19 @@ void try_tracked(std::span<const std::byte> bytes) {
   }
   const auto again = league::decode_tracked(encode(*decoded.packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
+}
+
+void try_referee(std::span<const std::byte> bytes) {
+  const auto decoded = league::decode_referee(bytes);
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
+  if (!decoded.packet) return;
+  const league::RefereePacket& packet = *decoded.packet;
+  SIDESTEP_REQUIRE(packet.sent >= Duration{0} && packet.commanded >= Duration{0});
+  SIDESTEP_REQUIRE(!name_of(packet.command).empty());
+  SIDESTEP_REQUIRE(!packet.designated_position_m || is_within(*packet.designated_position_m, 100));
+  const auto again = league::decode_referee(encode(packet));
+  SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kNumber);
+  SIDESTEP_REQUIRE(!again.packet || again.packet->command == packet.command);
 }
 
 std::size_t read_to_end(league::LogReader& reader) {
@@ -138,6 +151,8 @@ void try_league_input(std::span<const std::byte> input) {
       return try_vision(rest);
     case kTracked:
       return try_tracked(rest);
+    case kReferee:
+      return try_referee(rest);
     case kLog:
       return try_log(rest);
     default:
@@ -161,6 +176,7 @@ std::vector<std::vector<std::byte>> league_seeds(std::uint64_t seed) {
     const auto vision = encode(league::test::random_vision_packet(rng));
     add(kVision, vision);
     add(kTracked, encode(league::test::random_tracked_packet(rng)));
+    add(kReferee, encode(league::test::random_referee_packet(rng)));
     if (i < 4) {
       const std::size_t size = vision.size();
       append(std::string("\0\0\0\0\x40\0\0\0\0\0\0\4\0\0", 14) + static_cast<char>(size >> 8) +

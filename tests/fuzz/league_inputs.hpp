@@ -9,8 +9,8 @@
 namespace sidestep::fuzz {
 
 /// Passes an input to code that reads bytes from the network or from files. The first byte selects the
-/// decoder of vision packets, the decoder of tracked packets, the log reader, or the clock that converts
-/// frame times. Aborts the program if one of them accepts an invalid input.
+/// decoder of vision packets, of tracked packets or of the referee's packets, the log reader, or the clock
+/// that converts frame times. Aborts the program if one of them accepts an invalid input.
 void try_league_input(std::span<const std::byte> input);
 
 /// Valid inputs of every kind, as initial corpus.

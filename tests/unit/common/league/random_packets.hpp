@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/league/referee_packet.hpp"
 #include "common/league/tracked_packet.hpp"
 #include "common/league/vision_packet.hpp"
 #include "common/random/rng.hpp"
@@ -142,6 +143,16 @@ inline TrackedPacket random_tracked_packet(Rng& rng) {
     frame.robots.push_back(robot);
   }
   packet.frame = frame;
+  return packet;
+}
+
+inline RefereePacket random_referee_packet(Rng& rng) {
+  RefereePacket packet;
+  packet.sent = from_seconds(rng.uniform(0, 1.8e9));
+  packet.command = static_cast<RefereeCommand>(rng.below(kRefereeCommands));
+  packet.command_counter = random_u32(rng);
+  packet.commanded = from_seconds(rng.uniform(0, 1.8e9));
+  packet.designated_position_m = maybe(rng, [&] { return random_vec2(rng, 10); });
   return packet;
 }
 

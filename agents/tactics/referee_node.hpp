@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "agents/tactics/referee_rules.hpp"
+#include "agents/tactics/referee_stream.hpp"
+#include "common/client/order_client.hpp"
+#include "common/config/scenario.hpp"
+#include "common/log/log_event.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/time/rate_limit.hpp"
+
+namespace sidestep {
+
+/// Turns the referee's commands into orders to all robots. HALT is ordered at once, and everything else in
+/// steps of kPeriod, so that no packets can cause a flood of orders. Without packets, what the last one
+/// demanded stays in force, and the zone around the ball still follows it; if the ball is lost, the zone
+/// stays where the ball was seen last.
+class RefereeNode {
+ public:
+  RefereeNode(Bus& bus, const Scenario& scenario, const RefereeSettings& settings);
+  RefereeNode(const RefereeNode&) = delete;
+  RefereeNode& operator=(const RefereeNode&) = delete;
+
+  /// Takes an untrusted datagram.
+  void on_datagram(std::span<const std::byte> bytes, const league::Endpoint& from);
+  /// Calls back for each event of at least this level.
+  void on_event(LogLevel min_level, OnLogEvent listener) {
+    events_.set_listener(min_level, std::move(listener));
+  }
+
+  static constexpr Duration kPeriod{50'000'000};
+  /// How long the referee may be silent before the log says so.
+  static constexpr Duration kSilenceTimeout{2'000'000'000};
+
+ private:
+  void on_world(const msg::WorldState& world);
+  void update_periodically();
+  void report_silence();
+  /// Orders what differs from what was ordered last.
+  void update();
+  void update_zone(std::uint32_t number, const RefereeDemands& demands);
+  void warn(Time now, const std::string& text);
+
+  Bus& bus_;
+  RefereeRules rules_;
+  RefereeStream stream_;
+  OrderClient client_;
+  std::optional<league::RefereePacket> packet_;  ///< the last one that counts
+  std::optional<BallState> ball_;
+  std::optional<bool> is_held_;                         ///< as ordered; nullopt: nothing was ordered
+  std::map<std::uint32_t, std::optional<Zone>> zones_;  ///< as ordered; nullopt: removed
+  Time heard_at_;                                       ///< or started
+  bool is_silent_ = false;
+  RateLimit warnings_{5, std::chrono::seconds(10)};
+  EventReporter events_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/geometry/vec2.hpp"
+#include "common/league/decode_error.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep::league {
+
+/// The referee's commands, with their numbers on the wire.
+enum class RefereeCommand : std::uint8_t {
+  kHalt,
+  kStop,
+  kNormalStart,
+  kForceStart,
+  kPrepareKickoffYellow,
+  kPrepareKickoffBlue,
+  kPreparePenaltyYellow,
+  kPreparePenaltyBlue,
+  kDirectFreeYellow,
+  kDirectFreeBlue,
+  kIndirectFreeYellow,  ///< in logs of earlier years, as the goals
+  kIndirectFreeBlue,
+  kTimeoutYellow,
+  kTimeoutBlue,
+  kGoalYellow,
+  kGoalBlue,
+  kBallPlacementYellow,
+  kBallPlacementBlue
+};
+inline constexpr std::size_t kRefereeCommands = 18;
+
+/// The league's name of a command, e.g. "FORCE_START".
+std::string_view name_of(RefereeCommand command);
+
+/// The team that a command concerns; nullopt: both.
+std::optional<Team> team_of(RefereeCommand command);
+
+/// Referee: what navigation needs of it.
+struct RefereePacket {
+  Duration sent{0};  ///< by the sender's clock, as DetectionFrame::captured
+  RefereeCommand command = RefereeCommand::kHalt;
+  std::uint32_t command_counter = 0;               ///< of the commands since the referee's start
+  Duration commanded{0};                           ///< when the command was given, by the sender's clock
+  std::optional<Vec2> designated_position_m = {};  ///< of ball placement
+};
+
+/// The payload of a datagram, with teams without names. Precondition: the numbers are finite and in the
+/// ranges that decode_referee() accepts.
+std::vector<std::byte> encode(const RefereePacket& packet);
+
+/// Rejects a packet as a whole if its command is unknown, its position beyond 100 m, or a time beyond 2^33 s.
+Decoded<RefereePacket> decode_referee(std::span<const std::byte> bytes);
+
+}  // namespace sidestep::league
