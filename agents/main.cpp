@@ -17,16 +17,15 @@ int main(int argc, char** argv) {
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   program.process = [&] { return robot; };
-  program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
+  program.start = [&](Bus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
     if (!find_robot(scenario, robot)) {
       throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
                                   std::to_string(robot));
     }
-    const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
     auto node = std::make_shared<AgentNode>(bus, scenario, robot, incarnation,
                                             std::make_shared<PlanningScratch>(scenario));
     log_events_of(*node);
-    return node;
+    return {node, [&node = *node] { return node.uses_clock(); }};
   };
   return run_process(argc, argv, program);
 }

@@ -26,11 +26,12 @@ int main(int argc, char** argv) {
     return own_number() == 0 ? program.name : "coordinator-" + std::to_string(own_number());
   };
   program.process = [&] { return static_cast<std::uint32_t>(Sender::kCoordinator) + own_number(); };
-  program.start = [&](Bus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
-    const CoordinatorIdentity self{own_number(), static_cast<Incarnation>(to_ns(bus.now()))};
+  program.clock_reference = ClockReference::kRobots;
+  program.start = [&](Bus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
+    const CoordinatorIdentity self{own_number(), incarnation};
     auto node = std::make_shared<CoordinatorNode>(bus, scenario, self, is_standby);
     log_events_of(*node);
-    return node;
+    return {node, {}};
   };
   return run_process(argc, argv, program);
 }

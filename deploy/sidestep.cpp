@@ -7,6 +7,7 @@
 
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "deploy/clock/clock_command.hpp"
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
 #include "deploy/evaluation/planning/plan_command.hpp"

@@ -52,12 +52,11 @@ int main(int argc, char** argv) {
       "Simulates the floor: robot bodies and their firmware, the ball, opponents, and the cameras above.";
   program.add_options = [&options](const sidestep::CliCommand& app) { sidestep::add_options(app, options); };
   program.process = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
-  program.start = [&options](sidestep::Bus& bus,
-                             const sidestep::Scenario& scenario) -> std::shared_ptr<void> {
-    auto nodes = std::make_shared<sidestep::Nodes>(
-        bus, scenario, options, static_cast<sidestep::Incarnation>(sidestep::to_ns(bus.now())));
+  program.start = [&options](sidestep::Bus& bus, const sidestep::Scenario& scenario,
+                             sidestep::Incarnation incarnation) -> sidestep::RunningNodes {
+    auto nodes = std::make_shared<sidestep::Nodes>(bus, scenario, options, incarnation);
     sidestep::log_events_of(nodes->simulator);
-    return nodes;
+    return {nodes, [&nodes = *nodes] { return nodes.simulator.is_commanded(); }};
   };
   return sidestep::run_process(argc, argv, program);
 }

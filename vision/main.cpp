@@ -27,11 +27,10 @@ int run_service(int argc, char** argv) {
         "POINTS, replay FILE, record FILE.");
   };
   program.process = [] { return static_cast<std::uint32_t>(Sender::kVision); };
-  program.start = [&options](DdsBus& bus, const Scenario& scenario) -> std::shared_ptr<void> {
-    const auto incarnation = static_cast<Incarnation>(to_ns(bus.now()));
+  program.start = [&options](DdsBus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
     auto service = std::make_shared<VisionService>(bus, scenario, incarnation, options);
     log_events_of(*service);
-    return service;
+    return {service, {}};
   };
   return run_process(argc, argv, program);
 }

@@ -69,6 +69,11 @@ class Bus {
     on_refused_ = std::move(on_refused);
   }
 
+  /// From now on, `watcher` gets the topic and header of every message that a subscription gets.
+  void watch_headers(std::function<void(const TopicInfo&, const msg::Header&)> watcher) {
+    header_watcher_ = std::move(watcher);
+  }
+
   /// Counts something that this process has dropped, other than for a reason that its node counts.
   void count_drop(DropReason reason) { drops_.count(reason); }
   /// Adds what this bus, or its process outside the node, has dropped.
@@ -88,7 +93,9 @@ class Bus {
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
             [this, info = TopicInfo(topic), callback = std::move(callback)](const Message& message) mutable {
-              if (has_same_rules(info, message.header())) callback(message);
+              if (!has_same_rules(info, message.header())) return;
+              if (header_watcher_) header_watcher_(info, message.header());
+              callback(message);
             });
   }
   template <typename Message, typename Callback>
@@ -120,7 +127,7 @@ class Bus {
   }
 
   std::uint64_t rules_ = 0;
-  std::function<void(const TopicInfo&, const msg::Header&)> on_refused_;
+  std::function<void(const TopicInfo&, const msg::Header&)> on_refused_, header_watcher_;
   DropCounters drops_;
 };
 

@@ -25,6 +25,7 @@ inline std::string process_name(std::uint32_t id) {
   if (is(Sender::kVision)) return "vision";
   if (is(Sender::kSimulator)) return "simulator";
   if (is(Sender::kOperator)) return "operator";
+  if (is(Sender::kReferee)) return "referee";
   if (is_coordinator(id))
     return coordinator_process(static_cast<int>(id - static_cast<std::uint32_t>(Sender::kCoordinator)));
   return "process " + std::to_string(id);

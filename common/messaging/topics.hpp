@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/messaging/cdr.hpp"
+#include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
@@ -142,6 +143,12 @@ inline constexpr Topic<msg::Disturbance> kDisturbance{
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
     {"network_fault", "fault", Qos::kEvent, false, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
+inline constexpr Topic<msg::ClockProbe> kClockProbe{
+    {"clock_probe", "clock", Qos::kState, false, false,
+     message_type<msg::ClockProbe>("sidestep::msg::ClockProbe")}};
+inline constexpr Topic<msg::ClockReading> kClockReading{
+    {"clock_reading", "any process", Qos::kState, false, false,
+     message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_HOST_NAME)}};
 /// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", "simulator", Qos::kState, false, true,

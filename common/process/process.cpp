@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/process/process.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <fmt/core.h>
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/log/log.hpp"
-#include "common/messaging/rules_exchange.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
-#include "common/process/network_faults.hpp"
-#include "common/process/stop_signals.hpp"
+#include "common/process/process_run.hpp"
 
 namespace sidestep {
 namespace {
@@ -34,6 +33,11 @@ int run_reporting(const std::function<int()>& work, const std::function<void(con
 }
 
 }  // namespace
+
+Incarnation next_incarnation(Incarnation previous, Time now) {
+  const auto reading = static_cast<Incarnation>(to_ns(now));
+  return is_plausible(previous + 1, now) ? std::max(reading, previous + 1) : reading;
+}
 
 void add_dds_options(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99").check(in_range(0, 99)).show_default();
@@ -63,18 +67,7 @@ int run_process(int argc, char** argv, const Program& program) {
   dds.participant = program.participant ? program.participant() : program.name;
   set_up_log(dds.participant, log_level);
   const auto work = [&] {
-    const Scenario scenario = load_scenario(scenario_file);
-    DdsBus bus(dds);
-    const StopSignals stop_signals([&bus] { bus.stop(); });
-    const RulesExchange rules(
-        bus, program.process(), SharedRules(scenario),
-        [](const RulesMismatch& mismatch) { log(LogLevel::kWarning, describe(mismatch)); });
-    const std::shared_ptr<void> nodes = program.start(bus, scenario);
-    if (dds.faults) apply_network_faults(bus, program.process());
-    log(LogLevel::kInfo, fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(),
-                                     dds.domain, bus.locators()));
-    log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
-    bus.run();
+    run_program(program, load_scenario(scenario_file), dds);
     return 0;
   };
   return run_reporting(work, [](const std::string& problem) { log(LogLevel::kError, problem); });

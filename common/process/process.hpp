@@ -10,10 +10,20 @@
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/process/host_clock_watch.hpp"
 
 namespace sidestep {
+
+/// The nodes of a process on a bus.
+struct RunningNodes {
+  std::shared_ptr<void> nodes;
+  /// Whether the process works by its clock with others, so that it must keep it when the host's clock is
+  /// set. Empty: never.
+  std::function<bool()> uses_clock;
+};
 
 /// The parts of a program that differ from the others; run_process() provides the rest.
 struct Program {
@@ -27,14 +37,20 @@ struct Program {
   /// The process id (common/messaging/senders.hpp); called after the options are parsed.
   std::function<std::uint32_t()> process;
   /// Creates the nodes on the bus; run_process() keeps the result until the bus has stopped. May throw;
-  /// std::invalid_argument for an option that does not fit the scenario.
-  std::function<std::shared_ptr<void>(DdsBus&, const Scenario&)> start;
+  /// std::invalid_argument for an option that does not fit the scenario. Called again, with a higher
+  /// incarnation on a new bus, if the process begins anew by its host's clock.
+  std::function<RunningNodes(DdsBus&, const Scenario&, Incarnation)> start;
+  ClockReference clock_reference = ClockReference::kCoordinators;
 };
 
 /// The main function of a process on DDS: parses the options, loads the scenario, starts the program and runs
 /// until SIGINT or SIGTERM. Returns the exit code. The log of the process is on stderr, in the name of the
 /// participant.
 int run_process(int argc, char** argv, const Program& program);
+
+/// The incarnation of a process that begins now: a clock reading, above that of its previous run, unless
+/// others would refuse the latter because it is too far ahead of the clock.
+[[nodiscard]] Incarnation next_incarnation(Incarnation previous, Time now);
 
 /// Adds --domain and --interface.
 void add_dds_options(const CliCommand& app, DdsSettings& settings);

@@ -121,6 +121,13 @@ void SimulatorNode::count_drops(DropCounters& drops) const {
   for (const auto& source : drop_sources_) source(drops);
 }
 
+bool SimulatorNode::is_commanded() const {
+  for (std::size_t i = 0; i < world_.robot_count(); ++i) {
+    if (world_.firmware(i).obeyed_incarnation() != 0) return true;
+  }
+  return false;
+}
+
 void SimulatorNode::watch_start(std::size_t robot, Time now) {
   const Time start = world_.next_start(robot);
   if (start == watched_start_[robot] || start - now > kMaxTimerAhead) return;

@@ -38,6 +38,9 @@ class SimulatorNode {
   }
   void count_drops(DropCounters& drops) const;
 
+  /// Whether a robot obeys an agent. A robot must not forget whom it obeys.
+  bool is_commanded() const;
+
   const World& world() const { return world_; }
   const Cameras& cameras() const { return cameras_; }
   /// Sets a callback for the moment at which a camera captures a frame; the world is then in the captured

@@ -20,8 +20,8 @@ std::int64_t now_ns(clockid_t clock) {
 
 }  // namespace
 
-extern "C" int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
-                                       const timespec* until) noexcept {
+extern "C" [[gnu::visibility("default")]] int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
+                                                                      const timespec* until) noexcept {
   const std::int64_t until_ns = in_ns(*until) - now_ns(clock) + now_ns(CLOCK_REALTIME);
   const timespec real_until{until_ns / kSecond_ns, until_ns % kSecond_ns};
   return pthread_mutex_timedlock(mutex, &real_until);

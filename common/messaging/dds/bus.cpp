@@ -43,10 +43,14 @@ DdsBus::DdsBus(const DdsSettings& settings) : impl_(std::make_unique<Impl>(setti
 DdsBus::~DdsBus() = default;
 
 Time DdsBus::now() const { return EventLoop::now(); }
+Time DdsBus::clock() { return EventLoop::now(); }
+Duration DdsBus::host_clock_ahead() { return EventLoop::host_clock_ahead(); }
+void DdsBus::adopt_host_clock() { EventLoop::adopt_host_clock(); }
 void DdsBus::at(Time when, std::function<void()> callback) { impl_->loop.at(when, std::move(callback)); }
 void DdsBus::watch(int descriptor, std::function<void()> readable) {
   impl_->loop.watch(descriptor, std::move(readable));
 }
+void DdsBus::post(std::function<void()> callback) { impl_->loop.post(std::move(callback)); }
 void DdsBus::run() { impl_->loop.run_until(Time::max()); }
 void DdsBus::run_until(Time when) { impl_->loop.run_until(when); }
 void DdsBus::stop() { impl_->loop.stop(); }

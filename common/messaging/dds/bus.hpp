@@ -33,11 +33,19 @@ class DdsBus : public Bus {
   DdsBus& operator=(const DdsBus&) = delete;
 
   Time now() const override;
+  /// As EventLoop's functions; precondition of the last: there is no bus.
+  static Time clock();
+  static Duration host_clock_ahead();
+  static void adopt_host_clock();
   void at(Time when, std::function<void()> callback) override;
 
   /// Calls back whenever the descriptor, e.g. a socket, is readable. It must stay open until the bus has
   /// stopped.
   void watch(int descriptor, std::function<void()> readable);
+
+  /// Calls back soon, in the thread that runs the bus; callbacks are made in the order of the calls.
+  /// Thread-safe.
+  void post(std::function<void()> callback);
 
   /// Makes callbacks until stop().
   void run();

@@ -39,6 +39,12 @@ Duration host_clock_offset() {
   return ahead;
 }
 
+/// The process's clock - steady clock.
+std::atomic<Duration::rep>& process_clock_offset_ns() {
+  static std::atomic<Duration::rep> offset_ns{host_clock_offset().count()};
+  return offset_ns;
+}
+
 }  // namespace
 
 EventLoop::EventLoop() : event_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
@@ -50,9 +56,15 @@ EventLoop::EventLoop() : event_fd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
 EventLoop::~EventLoop() { close(event_fd_); }
 
 Time EventLoop::now() {
-  static const Duration ahead = host_clock_offset();
+  const Duration ahead{process_clock_offset_ns().load(std::memory_order_relaxed)};
   return Time{} + ahead + read_clock(kSteady);
 }
+
+Duration EventLoop::host_clock_ahead() {
+  return host_clock_offset() - Duration{process_clock_offset_ns().load(std::memory_order_relaxed)};
+}
+
+void EventLoop::adopt_host_clock() { process_clock_offset_ns().store(host_clock_offset().count()); }
 
 void EventLoop::at(Time when, std::function<void()> callback) {
   timers_.push_back({when, order_++, std::move(callback)});
@@ -66,6 +78,12 @@ void EventLoop::notify(Source& source) {
   if (std::exchange(sleeping_, false)) wake();
 }
 
+void EventLoop::post(std::function<void()> callback) {
+  const std::lock_guard lock(mutex_);
+  posted_.push_back(std::move(callback));
+  if (std::exchange(sleeping_, false)) wake();
+}
+
 void EventLoop::watch(int descriptor, std::function<void()> readable) {
   polled_.push_back({descriptor, POLLIN, 0});
   readable_.push_back(std::move(readable));
@@ -74,6 +92,7 @@ void EventLoop::watch(int descriptor, std::function<void()> readable) {
 void EventLoop::run_until(Time when) {
   while (!stopped()) {
     const bool more = drain_ready();
+    call_posted();
     serve_watched();
     fire_due();
     if (now() >= when) return;
@@ -106,6 +125,18 @@ bool EventLoop::drain_ready() {
   return more;
 }
 
+void EventLoop::call_posted() {
+  std::vector<std::function<void()>> callbacks;
+  {
+    const std::lock_guard lock(mutex_);
+    callbacks.swap(posted_);
+  }
+  for (const auto& callback : callbacks) {
+    if (stopped()) return;
+    callback();
+  }
+}
+
 void EventLoop::serve_watched() {
   if (polled_.size() == 1 || stopped() || poll(polled_.data(), polled_.size(), 0) <= 0) return;
   for (std::size_t i = 1; i < polled_.size() && !stopped(); ++i) {
@@ -133,7 +164,7 @@ void EventLoop::sleep_until(Time when) {
   constexpr Duration kMaxSleep{1'000'000'000};
   {
     const std::lock_guard lock(mutex_);
-    if (!ready_.empty()) return;
+    if (!ready_.empty() || !posted_.empty()) return;
     sleeping_ = true;
   }
   const Time from = now();

@@ -35,15 +35,22 @@ class EventLoop {
   EventLoop(const EventLoop&) = delete;
   EventLoop& operator=(const EventLoop&) = delete;
 
-  /// The process's clock, the same for all its loops: the host's clock at the first call, plus the time that
-  /// has passed since. Setting the host's clock does not affect it.
+  /// The process's clock, the same for all its loops: the host's clock at the first call, or at the last
+  /// adopt_host_clock(), plus the time that has passed since. Setting the host's clock does not affect it.
   static Time now();
+  /// The host's clock - the process's. It changes only when the host's clock is set: a time daemon that slews
+  /// the host's clock slews both.
+  static Duration host_clock_ahead();
+  /// Sets the process's clock to the host's. Precondition: there is no loop, whose timers would be wrong.
+  static void adopt_host_clock();
 
   /// Calls back once at or after `when`; callbacks for equal times are made in the order of scheduling. Call
   /// it in the loop's thread, or before the loop runs.
   void at(Time when, std::function<void()> callback);
   /// Reports that the source is ready. Thread-safe.
   void notify(Source& source);
+  /// Calls back soon; callbacks are made in the order of the calls. Thread-safe.
+  void post(std::function<void()> callback);
   /// Calls back in every iteration in which the descriptor is readable. It must stay open until the loop's
   /// last iteration. Call it in the loop's thread, or before the loop runs.
   void watch(int descriptor, std::function<void()> readable);
@@ -67,6 +74,7 @@ class EventLoop {
   };
 
   bool drain_ready();
+  void call_posted();
   void serve_watched();
   void fire_due();
   void sleep_until(Time when);
@@ -81,6 +89,7 @@ class EventLoop {
   std::vector<Source*> draining_;                ///< used by the loop's thread only
   std::mutex mutex_;                             ///< guards the members below
   std::vector<Source*> ready_;
+  std::vector<std::function<void()>> posted_;
   bool sleeping_ = false;
 };
 

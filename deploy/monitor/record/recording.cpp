@@ -165,6 +165,8 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kTruth);
   subscribe(topics::kRules);
   subscribe(topics::kCounters);
+  subscribe(topics::kClockProbe);
+  subscribe(topics::kClockReading);
 }
 
 PlaybackBus::PlaybackBus(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
@@ -33,6 +34,8 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::OrderStatus& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::AgentStatus& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Counters& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::ClockProbe& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::ClockReading& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::GroundTruth& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Disturbance& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::NetworkFault& m);

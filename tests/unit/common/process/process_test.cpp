@@ -34,16 +34,16 @@ Program test_program() {
   program.name = "sidestep-test";
   program.description = "A program under test.";
   program.process = [] { return std::uint32_t{1}; };
-  program.start = [](Bus&, const Scenario&) { return nullptr; };
+  program.start = [](DdsBus&, const Scenario&, Incarnation) { return RunningNodes{}; };
   return program;
 }
 
 TEST_CASE("wrong usage and an invalid scenario exit with 2, --help exits with 0, and nothing starts") {
   Program program = test_program();
   bool started = false;
-  program.start = [&](Bus&, const Scenario&) {
+  program.start = [&](DdsBus&, const Scenario&, Incarnation) {
     started = true;
-    return nullptr;
+    return RunningNodes{};
   };
   CHECK(run(program, {}).exit_code == kExitUsage);
   CHECK(run(program, {"--scenario"}).exit_code == kExitUsage);
@@ -58,9 +58,9 @@ TEST_CASE("wrong usage and an invalid scenario exit with 2, --help exits with 0,
 
 TEST_CASE("a program prints its safety budget at start") {
   Program program = test_program();
-  program.start = [](Bus& bus, const Scenario&) {
-    static_cast<DdsBus&>(bus).stop();
-    return nullptr;
+  program.start = [](DdsBus& bus, const Scenario&, Incarnation) {
+    bus.stop();
+    return RunningNodes{};
   };
   const Outcome outcome = run(program, good_arguments());
   CHECK(outcome.exit_code == 0);
@@ -72,7 +72,7 @@ TEST_CASE("a program prints its safety budget at start") {
 
 TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") {
   Program program = test_program();
-  program.start = [](Bus&, const Scenario&) -> std::shared_ptr<void> {
+  program.start = [](DdsBus&, const Scenario&, Incarnation) -> RunningNodes {
     throw std::runtime_error("no such robot");
   };
   const Outcome outcome = run(program, good_arguments());
@@ -112,13 +112,15 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   std::size_t robots_in_scenario = 0;
   bool is_node_destroyed = false;
-  program.start = [&](Bus& bus, const Scenario& scenario) {
+  program.start = [&](DdsBus& bus, const Scenario& scenario, Incarnation) {
     robots_in_scenario = scenario.robots.size();
     bus.at(bus.now(), [=] { kill(getpid(), signal_number); });
-    return std::shared_ptr<void>(&bus, [&](void* address) {
-      static_cast<Bus*>(address)->now();
-      is_node_destroyed = true;
-    });
+    return RunningNodes{std::shared_ptr<void>(&bus,
+                                              [&](void* address) {
+                                                static_cast<DdsBus*>(address)->now();
+                                                is_node_destroyed = true;
+                                              }),
+                        {}};
   };
   std::vector<std::string> arguments = good_arguments();
   arguments.insert(arguments.end(), {"--robot", "3"});
@@ -129,6 +131,17 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   CHECK(robots_in_scenario > 0);
   CHECK(is_node_destroyed);
   CHECK_THAT(outcome.err, ContainsSubstring("agent-3: Fast DDS " + fast_dds_version() + ", domain "));
+}
+
+TEST_CASE("a later run of a process has a higher incarnation, unless others would refuse that") {
+  const Time now = time_from_ns(1'000'000'000'000'000);
+  const auto reading = static_cast<Incarnation>(to_ns(now)), minute = Incarnation{60'000'000'000};
+  CHECK(next_incarnation(0, now) == reading);
+  CHECK(next_incarnation(reading - minute, now) == reading);
+  CHECK(next_incarnation(reading, now) == reading + 1);
+  CHECK(next_incarnation(reading + 59 * minute, now) == reading + 59 * minute + 1);
+  CHECK(next_incarnation(reading + 60 * minute, now) == reading);
+  CHECK(next_incarnation(reading + 24 * 60 * minute, now) == reading);
 }
 
 }  // namespace sidestep::process_test

@@ -8,6 +8,7 @@
 #include <fastcdr/FastBuffer.h>
 #include <span>
 
+#include "idl/clockCdrAux.hpp"
 #include "idl/disturbanceCdrAux.hpp"
 #include "idl/monitorCdrAux.hpp"
 #include "idl/negotiationCdrAux.hpp"

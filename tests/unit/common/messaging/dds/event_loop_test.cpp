@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/event_loop.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <signal.h>
@@ -96,6 +97,40 @@ TEST_CASE("a source that never runs dry does not starve timers") {
   EventLoop loop;
   Counter source([] { return true; });
   loop.notify(source);
+  bool fired = false;
+  loop.at(loop.now() + kMillisecond, [&] {
+    fired = true;
+    loop.stop();
+  });
+  loop.run_until(loop.now() + kLong);
+  CHECK(fired);
+}
+
+TEST_CASE("calls posted by other threads wake the loop, and are made in its thread and in order") {
+  EventLoop loop;
+  std::vector<int> made;
+  std::vector<std::thread::id> threads;
+  constexpr int kCalls = 1000;
+  std::thread poster([&] {
+    for (int i = 0; i < kCalls; ++i) {
+      loop.post([&, i] {
+        made.push_back(i);
+        threads.push_back(std::this_thread::get_id());
+        if (i + 1 == kCalls) loop.stop();
+      });
+    }
+  });
+  loop.run_until(loop.now() + kLong);
+  poster.join();
+  REQUIRE(made.size() == kCalls);
+  CHECK(std::ranges::is_sorted(made));
+  CHECK(std::ranges::count(threads, std::this_thread::get_id()) == kCalls);
+}
+
+TEST_CASE("a call that is always posted again does not starve timers") {
+  EventLoop loop;
+  std::function<void()> again = [&] { loop.post(again); };
+  loop.post(again);
   bool fired = false;
   loop.at(loop.now() + kMillisecond, [&] {
     fired = true;
@@ -222,6 +257,25 @@ TEST_CASE("setting the host's clock does not affect a running process") {
   CHECK(fired);
   CHECK(end >= begin + 3 * kMillisecond);
   CHECK(end < begin + kLong);
+}
+
+TEST_CASE("a process notices that its host's clock is set, and adopts it only when told to") {
+  const long step_s = GENERATE(-86400, -1, 1, 86400);
+  CAPTURE(step_s);
+  const Duration step = std::chrono::seconds(step_s);
+  const auto is_near = [](Duration a, Duration b) { return a - b < kMillisecond && b - a < kMillisecond; };
+  EventLoop::adopt_host_clock();
+  CHECK(is_near(EventLoop::host_clock_ahead(), Duration{0}));
+  const Time before = EventLoop::now();
+  host_clock_step_s = step_s;
+  CHECK(is_near(EventLoop::host_clock_ahead(), step));
+  CHECK(EventLoop::now() - before < kLong);
+  EventLoop::adopt_host_clock();
+  CHECK(is_near(EventLoop::host_clock_ahead(), Duration{0}));
+  CHECK(EventLoop::now() - before >= step);
+  CHECK(EventLoop::now() - before < step + kLong);
+  host_clock_step_s = 0;
+  EventLoop::adopt_host_clock();
 }
 
 TEST_CASE("the process's clock never runs backwards, across threads and loops") {

@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 
 std::string idl_text() {
   std::ostringstream text;
-  for (const char* name :
-       {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor", "order"}) {
+  for (const char* name : {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor",
+                           "order", "clock"}) {
     std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
     REQUIRE(file);
     text << file.rdbuf();
@@ -126,6 +126,8 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   CHECK(keys(describe(memory)["orders"].at(0)) == idl_members(idl, "RememberedOrder"));
   CHECK(keys(describe(memory)["poses"].at(0)) == idl_members(idl, "OrderPose"));
   CHECK(keys(describe(msg::OrderStatus())) == idl_members(idl, "OrderStatus"));
+  CHECK(keys(describe(msg::ClockProbe())) == idl_members(idl, "ClockProbe"));
+  CHECK(keys(describe(msg::ClockReading())) == idl_members(idl, "ClockReading"));
   CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
   CHECK(keys(describe(counters)) == idl_members(idl, "Counters"));
   CHECK(keys(describe(counters)["counts"].at(0)) == idl_members(idl, "Counter"));

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/clock_codec.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kMaxClockBound_s = 1;
+
+bool has_clock(std::uint32_t process) {
+  return process < kMaxRobots || is_coordinator(process) ||
+         process == static_cast<std::uint32_t>(Sender::kVision) ||
+         process == static_cast<std::uint32_t>(Sender::kSimulator) ||
+         process == static_cast<std::uint32_t>(Sender::kReferee);
+}
+
+bool is_reading(std::int64_t ns) { return ns >= 0 && ns <= to_ns(kMaxTime); }
+
+}  // namespace
+
+std::optional<ClockAnswer> decode(const msg::ClockReading& message) {
+  const std::int64_t answered_ns = message.header().stamp_ns(), ahead_ns = message.host_ahead_ns();
+  const double bound_s = message.clock_bound_s();
+  if (!has_clock(message.process()) || message.header().sender() != message.process()) return std::nullopt;
+  if (!is_reading(answered_ns) || !is_reading(message.probe_sent_ns()) ||
+      !is_reading(message.probe_received_ns()) || message.probe_received_ns() > answered_ns)
+    return std::nullopt;
+  if (ahead_ns > to_ns(kMaxTime) || ahead_ns < -to_ns(kMaxTime)) return std::nullopt;
+  if (!(bound_s >= 0 && bound_s <= kMaxClockBound_s)) return std::nullopt;
+  return ClockAnswer{message.process(),
+                     message.header().incarnation(),
+                     message.client(),
+                     time_from_ns(message.probe_sent_ns()),
+                     time_from_ns(message.probe_received_ns()),
+                     time_from_ns(answered_ns),
+                     Duration{ahead_ns},
+                     bound_s,
+                     printable_host({message.host().begin(), message.host().end()})};
+}
+
+std::string printable_host(std::string name) {
+  if (name.size() > msg::MAX_HOST_NAME) name.resize(msg::MAX_HOST_NAME);
+  std::ranges::replace_if(
+      name, [](char c) { return c <= ' ' || c > '~'; }, '?');
+  return name;
+}
+
+}  // namespace sidestep

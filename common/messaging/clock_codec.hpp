@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/motion/version.hpp"
+#include "idl/clock.hpp"
+
+namespace sidestep {
+
+/// A process's answer to a clock probe; see ClockReading in idl/clock.idl.
+struct ClockAnswer {
+  std::uint32_t process = 0;
+  Incarnation incarnation = 0;
+  std::uint32_t client = 0;
+  Time probe_sent;                ///< by the client's clock
+  Time probe_received, answered;  ///< by the process's clock
+  Duration host_ahead{0};         ///< the host's clock - the process's
+  double clock_bound_s = 0;
+  std::string host;  ///< printable ASCII
+};
+
+/// nullopt unless the message is of an agent, a coordinator, vision, the simulator or the referee, and every
+/// value is within its bounds. The process's clock may be arbitrarily wrong.
+[[nodiscard]] std::optional<ClockAnswer> decode(const msg::ClockReading& message);
+
+/// Replaces whatever is not printable ASCII, and cuts the name to the bound of the message.
+[[nodiscard]] std::string printable_host(std::string name);
+
+}  // namespace sidestep

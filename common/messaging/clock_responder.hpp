@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+#include "common/time/rate_limit.hpp"
+
+namespace sidestep {
+
+/// Answers `sidestep clock`: when its probe arrived, and when the answer was sent, by this process's clock.
+/// Several commands at the same time share the rate of answers; probes beyond it are ignored, so that nobody
+/// can occupy the process with them.
+class ClockResponder {
+ public:
+  /// What an answer tells of the process besides its clock.
+  struct Identity {
+    std::uint32_t process = 0;
+    Incarnation incarnation = 0;
+    double clock_bound_s = 0;
+    std::string host;
+  };
+  /// Answers at once, and one per kPeriod in the long run.
+  static constexpr int kBurst = 20;
+  static constexpr Duration kPeriod{10'000'000};
+
+  /// `host_ahead` reads how far the host's clock is ahead of the process's.
+  ClockResponder(Bus& bus, Identity identity, std::function<Duration()> host_ahead);
+  ClockResponder(const ClockResponder&) = delete;
+  ClockResponder& operator=(const ClockResponder&) = delete;
+
+ private:
+  void answer(const msg::ClockProbe& probe);
+
+  Bus& bus_;
+  const std::function<Duration()> host_ahead_;
+  RateLimit limit_{kBurst, kPeriod};
+  Writer<msg::ClockReading> writer_;
+  msg::ClockReading reading_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/process_run.hpp"
+
+#include <atomic>
+#include <fmt/core.h>
+
+#include "common/log/log.hpp"
+#include "common/messaging/clock_responder.hpp"
+#include "common/messaging/rules_exchange.hpp"
+#include "common/process/host_name.hpp"
+#include "common/process/network_faults.hpp"
+#include "common/process/stop_signals.hpp"
+
+namespace sidestep {
+namespace {
+
+/// Stops the current bus from a signal handler.
+struct StopRequest {
+  void make() {
+    is_made = true;
+    if (DdsBus* const current = bus) current->stop();
+  }
+  std::atomic<bool> is_made{false};
+  std::atomic<DdsBus*> bus{nullptr};
+};
+
+/// Names the bus in a request for the lifetime of the object.
+class StoppableBus {
+ public:
+  StoppableBus(StopRequest& request, DdsBus& bus) : request_(request) {
+    request_.bus = &bus;
+    if (request_.is_made) bus.stop();
+  }
+  ~StoppableBus() { request_.bus = nullptr; }
+  StoppableBus(const StoppableBus&) = delete;
+  StoppableBus& operator=(const StoppableBus&) = delete;
+
+ private:
+  StopRequest& request_;
+};
+
+void log_step(Duration host_ahead) {
+  log(LogLevel::kWarning,
+      fmt::format(
+          "the host's clock has been set, it is {:+.3f} s ahead of this process's, which stays as it is",
+          to_seconds(host_ahead)));
+}
+
+/// Runs the program on one bus. Returns whether it begins anew by the host's clock.
+bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSettings& dds,
+                Incarnation incarnation, StopRequest& stop) {
+  DdsBus bus(dds);
+  const StoppableBus stoppable(stop, bus);
+  const std::uint32_t process = program.process();
+  const RulesExchange rules(bus, process, SharedRules(scenario), [](const RulesMismatch& mismatch) {
+    log(LogLevel::kWarning, describe(mismatch));
+  });
+  const RunningNodes running = program.start(bus, scenario, incarnation);
+  const ClockResponder responder(bus, {process, incarnation, scenario.clock_bound_s, host_name()},
+                                 DdsBus::host_clock_ahead);
+  bool adopts = false;
+  const auto adopt = [&] {
+    adopts = true;
+    bus.stop();
+  };
+  const auto is_in_use = [&] { return running.uses_clock && running.uses_clock(); };
+  const HostClockWatch watch(bus, program.clock_reference,
+                             {DdsBus::host_clock_ahead, is_in_use, adopt, log_step});
+  if (dds.faults) apply_network_faults(bus, process);
+  log(LogLevel::kInfo,
+      fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(), dds.domain, bus.locators()));
+  log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
+  bus.run();
+  return adopts && !stop.is_made;
+}
+
+}  // namespace
+
+void run_program(const Program& program, const Scenario& scenario, const DdsSettings& dds) {
+  StopRequest stop;
+  const StopSignals stop_signals([&stop] { stop.make(); });
+  Incarnation incarnation = next_incarnation(0, DdsBus::clock());
+  while (run_on_bus(program, scenario, dds, incarnation, stop)) {
+    const double by_s = to_seconds(DdsBus::host_clock_ahead());
+    DdsBus::adopt_host_clock();
+    log(LogLevel::kWarning,
+        fmt::format(
+            "begins anew: the host's clock has been set by {:+.3f} s, and others agree with it only now",
+            by_s));
+    incarnation = next_incarnation(incarnation, DdsBus::clock());
+  }
+}
+
+}  // namespace sidestep

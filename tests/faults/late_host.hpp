@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// A host of a run on this machine whose clock a test can set. The other host of the run has the right clock.
+class LateHost {
+ public:
+  /// `processes`: what runs on this host, as in a hosts file, e.g. "processes: [vision], agents: [0-3]";
+  /// `others`: what runs on the other host. `ahead` is how far its clock is ahead at the start.
+  LateHost(const std::string& processes, const std::string& others, Duration ahead);
+  ~LateHost();
+  LateHost(const LateHost&) = delete;
+  LateHost& operator=(const LateHost&) = delete;
+
+  std::string hosts_file() const { return (folder_ / "hosts.yaml").string(); }
+  /// Sets the host's clock; it is then this far ahead.
+  void set_clock(Duration ahead) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace sidestep
