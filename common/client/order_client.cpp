@@ -13,14 +13,26 @@ constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
 
+/// Whether an order of this kind is in force after it was accepted, so that coordinators must not forget it.
+bool lasts(const Order& order) { return drives(order) || order.kind == msg::OrderKind::ORDER_ZONE; }
+
+bool stops(const Order& order) { return order.kind == msg::OrderKind::ORDER_HOLD; }
+
+/// Whether nothing remains of an order after a later one of the same client.
+bool replaces(const Order& later, const Order& earlier) {
+  const auto is_drive = [](const Order& o) { return drives(o) || o.kind == msg::OrderKind::ORDER_CANCEL; };
+  const auto is_hold = [](const Order& o) { return stops(o) || o.kind == msg::OrderKind::ORDER_RESUME; };
+  const bool covers = later.robot == earlier.robot || later.robot == kAllRobots;
+  return covers && ((is_drive(later) && is_drive(earlier)) || (is_hold(later) && is_hold(earlier)));
+}
+
 OrderPhase phase_of(const OrderProgress& progress) {
   switch (progress.state) {
     case msg::OrderState::ORDER_ACCEPTED:
       return OrderPhase::kAccepted;
     case msg::OrderState::ORDER_DRIVING:
-      return OrderPhase::kDriving;
     case msg::OrderState::ORDER_BLOCKED:
-      return OrderPhase::kBlocked;
+      return OrderPhase::kDriving;
     case msg::OrderState::ORDER_ARRIVED:
     case msg::OrderState::ORDER_LEFT:
       break;
@@ -34,7 +46,7 @@ bool is_refused(msg::OrderResult result) {
 
 /// Whether there is nothing more to hear about an order.
 bool is_closed(const SentOrder& sent) {
-  return is_final(sent.phase) || (!drives(sent.order) && sent.phase == OrderPhase::kAccepted);
+  return is_final(sent.phase) || (!lasts(sent.order) && sent.phase == OrderPhase::kAccepted);
 }
 
 }  // namespace
@@ -53,7 +65,44 @@ OrderHandle OrderClient::go(RobotId robot, std::vector<Goal> goals) {
   return send(std::move(order));
 }
 
+OrderHandle OrderClient::zone(std::uint32_t number, Zone zone) {
+  Order order{msg::OrderKind::ORDER_ZONE, kAllRobots};
+  order.zone_number = number;
+  order.zone = std::move(zone);
+  return send_zone(std::move(order));
+}
+
+OrderHandle OrderClient::remove_zone(std::uint32_t number) {
+  Order order{msg::OrderKind::ORDER_REMOVE_ZONE, kAllRobots};
+  order.zone_number = number;
+  return send_zone(std::move(order));
+}
+
+OrderHandle OrderClient::send_zone(Order order) {
+  const auto is_same_zone = [&](const auto& entry) {
+    const Order& earlier = entry.second.order;
+    return (earlier.kind == msg::OrderKind::ORDER_ZONE ||
+            earlier.kind == msg::OrderKind::ORDER_REMOVE_ZONE) &&
+           earlier.zone_number == order.zone_number;
+  };
+  const auto earlier = std::ranges::find_if(sent_, is_same_zone);  // each of them has forgotten the last
+  if (earlier != sent_.end()) forget(earlier);
+  return send(std::move(order));
+}
+
+void OrderClient::replace_unanswered(const Order& later) {
+  std::vector<OrderHandle> replaced;
+  for (const auto& [handle, sent] : sent_) {
+    if (sent.phase == OrderPhase::kSent && replaces(later, sent.order)) replaced.push_back(handle);
+  }
+  for (const OrderHandle handle : replaced) {
+    const auto sent = sent_.find(handle);
+    if (sent != sent_.end()) update(sent->second, OrderPhase::kReplaced, sent->second.goal_index);
+  }
+}
+
 OrderHandle OrderClient::send(Order order) {
+  replace_unanswered(order);
   newest_ = std::max(newest_ + 1, static_cast<OrderNumber>(to_ns(bus_.now())));
   order.client = client_;
   order.number = newest_;
@@ -68,12 +117,18 @@ SentOrder* OrderClient::find_number(OrderNumber number) {
   return handle == by_number_.end() ? nullptr : &sent_.at(handle->second);
 }
 
+bool OrderClient::is_followed_by_hold(const SentOrder& resume) const {
+  return std::any_of(sent_.upper_bound(resume.handle), sent_.end(),
+                     [](const auto& entry) { return stops(entry.second.order); });
+}
+
 bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
   const bool is_behind = answer.newest_number() > sent.order.number && newest_ >= answer.newest_number();
   const bool is_affected = answer.result() == msg::OrderResult::RESULT_REPLACED ||
                            sent.order.kind == msg::OrderKind::ORDER_HOLD ||
                            sent.order.kind == msg::OrderKind::ORDER_RESUME;
   if (sent.is_renumbered || !is_behind || !is_affected || is_refused(answer.result())) return false;
+  if (sent.order.kind == msg::OrderKind::ORDER_RESUME && is_followed_by_hold(sent)) return false;
   sent.is_renumbered = true;
   by_number_.erase(sent.order.number);
   sent.order.number = ++newest_;
@@ -103,13 +158,20 @@ void OrderClient::update(SentOrder& sent, OrderPhase phase, std::size_t goal_ind
   if (is_closed(sent) || (phase == sent.phase && goal_index == sent.goal_index)) return;
   sent.phase = phase;
   sent.goal_index = goal_index;
-  if (is_closed(sent)) missing_.erase(sent.handle);
-  if (on_change_) on_change_(sent);
-  if (!is_closed(sent) || ++final_count_ <= kMaxFinal) return;
-  const auto oldest = std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); });
-  by_number_.erase(oldest->second.order.number);
-  sent_.erase(oldest);
-  --final_count_;
+  if (is_closed(sent)) {
+    missing_.erase(sent.handle);
+    ++closed_count_;
+  }
+  if (on_change_) on_change_(sent);  // may send orders, and so forget this one
+  if (closed_count_ > kMaxFinal)
+    forget(std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); }));
+}
+
+void OrderClient::forget(std::map<OrderHandle, SentOrder>::iterator sent) {
+  if (is_closed(sent->second)) --closed_count_;
+  by_number_.erase(sent->second.order.number);
+  missing_.erase(sent->first);
+  sent_.erase(sent);
 }
 
 void OrderClient::on_answer(const msg::OrderAnswer& answer) {
@@ -132,10 +194,13 @@ void OrderClient::on_answer(const msg::OrderAnswer& answer) {
 void OrderClient::on_status(const msg::OrderStatus& status) {
   const auto report = decode(status);
   if (!report) return;
-  statuses_[report->robot] = status;
+  reports_[report->robot] = *report;
   SentOrder* const found = find_number(report->number);
   if (!found || report->client != client_ || found->order.robot != report->robot) return;
-  update(*found, phase_of(report->progress), report->progress.goal_index);
+  found->blockage = report->blockage;
+  const OrderPhase phase = phase_of(report->progress);
+  update(*found, report->blockage && !is_final(phase) ? OrderPhase::kBlocked : phase,
+         report->progress.goal_index);
 }
 
 void OrderClient::on_memory(const msg::OrderMemory& memory) {
@@ -151,23 +216,26 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
 void OrderClient::compare(const OrderBook& remembered) {
   std::vector<OrderHandle> open;
   for (const auto& [handle, sent] : sent_) {
-    if (drives(sent.order) && !is_closed(sent)) open.push_back(handle);
+    if (lasts(sent.order) && !is_closed(sent)) open.push_back(handle);
   }
   for (const OrderHandle handle : open) {
-    SentOrder& sent = sent_.at(handle);
-    const OrderNumber number = sent.order.number;
-    const RememberedOrder* known = remembered.drive_order(sent.order.robot, rank_of(client_));
-    if (known && known->order.number == number && known->order.client == client_) {
-      missing_.erase(handle);
-      // The robot's status is more recent, unless it was lost.
-      if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
-        update(sent, phase_of(known->progress), known->progress.goal_index);
-    } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
-      update(sent, OrderPhase::kReplaced, sent.goal_index);
-    } else if (sent.phase != OrderPhase::kSent && ++missing_[handle] >= kRoundsUntilForgotten) {
-      missing_.erase(handle);
-      update(sent, OrderPhase::kSent, 0);  // and is repeated
-    }
+    const auto sent = sent_.find(handle);
+    if (sent != sent_.end()) compare(sent->second, remembered.in_place_of(sent->second.order));
+  }
+}
+
+void OrderClient::compare(SentOrder& sent, const RememberedOrder* known) {
+  const OrderNumber number = sent.order.number;
+  if (known && known->order.number == number && known->order.client == client_) {
+    missing_.erase(sent.handle);
+    // The robot's status is more recent, unless it was lost.
+    if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
+      update(sent, phase_of(known->progress), known->progress.goal_index);
+  } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
+    update(sent, OrderPhase::kReplaced, sent.goal_index);
+  } else if (sent.phase != OrderPhase::kSent && ++missing_[sent.handle] >= kRoundsUntilForgotten) {
+    missing_.erase(sent.handle);
+    update(sent, OrderPhase::kSent, 0);  // and is repeated
   }
 }
 

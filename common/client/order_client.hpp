@@ -16,7 +16,7 @@ namespace sidestep {
 /// What has become of an order.
 enum class OrderPhase : std::uint8_t {
   kSent,      ///< no coordinator has answered yet
-  kAccepted,  ///< coordinators remember it; cancel, hold and resume are complete then
+  kAccepted,  ///< coordinators remember it; orders other than to drive are complete then
   kDriving,
   kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can
   kArrived,   ///< at the last goal
@@ -37,12 +37,13 @@ struct SentOrder {
   OrderPhase phase = OrderPhase::kSent;
   msg::OrderResult refusal = msg::OrderResult::RESULT_REMEMBERED;  ///< if it is refused
   std::size_t goal_index = 0;                                      ///< of the goal that the robot drives to
+  std::optional<Blockage> blockage{};                              ///< if it is blocked
 };
 
 /// Sends orders, repeats them until a coordinator has answered and whenever all coordinators have forgotten
 /// them, and follows what becomes of them. If this client's clock is behind those of others, an order is
 /// numbered again, above all that the coordinators know: otherwise an earlier order of another client would
-/// count as later.
+/// count as later. That never moves an order behind a later one of this client.
 class OrderClient {
  public:
   OrderClient(Bus& bus, ClientId client);
@@ -55,11 +56,17 @@ class OrderClient {
   /// `robot` may be kAllRobots.
   OrderHandle hold(RobotId robot) { return send({msg::OrderKind::ORDER_HOLD, robot}); }
   OrderHandle resume(RobotId robot) { return send({msg::OrderKind::ORDER_RESUME, robot}); }
+  /// Sets this client's zone of this number. The client forgets its earlier orders about this zone, so that
+  /// a zone may move often. Precondition: 1 to kMaxZoneCorners corners.
+  OrderHandle zone(std::uint32_t number, Zone zone);
+  /// Removes this client's zone of this number, if there is one.
+  OrderHandle remove_zone(std::uint32_t number);
 
-  /// nullptr: unknown, or forgotten because it is final and kMaxFinal others are too.
+  /// nullptr: unknown, or forgotten: because a later order of this client about the same zone was sent, or
+  /// because nothing more can become of it and of kMaxFinal others.
   const SentOrder* find(OrderHandle handle) const;
-  /// The robots' latest statuses.
-  const std::map<RobotId, msg::OrderStatus>& statuses() const { return statuses_; }
+  /// The latest report of each robot.
+  const std::map<RobotId, OrderReport>& reports() const { return reports_; }
   /// Calls back whenever the phase or goal of an order has changed.
   void on_change(std::function<void(const SentOrder&)> callback) { on_change_ = std::move(callback); }
 
@@ -72,6 +79,10 @@ class OrderClient {
     OrderBook book;
   };
   OrderHandle send(Order order);
+  OrderHandle send_zone(Order order);
+  /// Stops repeating the orders that this one makes meaningless.
+  void replace_unanswered(const Order& later);
+  bool is_followed_by_hold(const SentOrder& resume) const;
   void publish(const Order& order);
   /// nullptr: no order of this client has this number.
   SentOrder* find_number(OrderNumber number);
@@ -83,6 +94,8 @@ class OrderClient {
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
   void compare(const OrderBook& remembered);
+  void compare(SentOrder& sent, const RememberedOrder* known);
+  void forget(std::map<OrderHandle, SentOrder>::iterator sent);
   void update(SentOrder& sent, OrderPhase phase, std::size_t goal_index);
 
   Bus& bus_;
@@ -91,9 +104,9 @@ class OrderClient {
   OrderHandle last_handle_ = 0;
   std::map<OrderHandle, SentOrder> sent_;
   std::map<OrderNumber, OrderHandle> by_number_;  // current numbers
-  std::size_t final_count_ = 0;
+  std::size_t closed_count_ = 0;
   std::map<OrderHandle, int> missing_;  // whole memories in a row that lack the order
-  std::map<RobotId, msg::OrderStatus> statuses_;
+  std::map<RobotId, OrderReport> reports_;
   std::map<std::uint32_t, Round> rounds_;  // by coordinator
   std::function<void(const SentOrder&)> on_change_;
   Writer<msg::Order> writer_;

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/client/order_client.hpp"
+
+#include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::order_client_test {
+
+using namespace std::chrono_literals;
+
+constexpr ClientId kClient = 1'000'001;
+constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
+
+/// A client, and a process that answers as a coordinator does.
+struct System {
+  SimNetwork network{1, time_from_ns(1'000'000'000'000), NetworkSpec{}};
+  SimBus client_bus{network}, coordinator_bus{network};
+  OrderClient client{client_bus, kClient};
+  Writer<msg::OrderAnswer> answers = coordinator_bus.advertise(topics::kOrderAnswer);
+  Writer<msg::OrderMemory> memory = coordinator_bus.advertise(topics::kOrderMemory);
+  OrderBook book;
+  std::vector<Order> received;
+  std::vector<OrderPhase> phases;  ///< that the client has reported
+  bool answers_orders = true;
+
+  System() {
+    client.on_change([this](const SentOrder& sent) { phases.push_back(sent.phase); });
+    coordinator_bus.subscribe(topics::kOrder, [this](const msg::Order& message) {
+      const auto order = decode(message, coordinator_bus.now());
+      REQUIRE(order);
+      received.push_back(*order);
+      if (answers_orders) answer(*order);
+    });
+  }
+  void answer(const Order& order) {
+    const bool is_replaced = book.merge({order}) == OrderBook::Outcome::kReplaced;
+    msg::OrderAnswer message;
+    message.header().sender(kCoordinator);
+    message.client(order.client);
+    message.order_number(order.number);
+    message.result(is_replaced ? msg::OrderResult::RESULT_REPLACED : msg::OrderResult::RESULT_REMEMBERED);
+    message.newest_number(book.newest_number());
+    answers.publish(message, coordinator_bus.now());
+  }
+  void tell_memory() {
+    for (msg::OrderMemory& page : encode(book.all(), true, false)) {
+      page.process(kCoordinator);
+      page.header().sender(kCoordinator);
+      memory.publish(page, coordinator_bus.now());
+    }
+    run_for(10ms);
+  }
+  void run_for(Duration duration) { network.run_until(network.now() + duration); }
+};
+
+Zone disc(double x_m) { return {{{x_m, 0}}, 0.5}; }
+
+TEST_CASE(
+    "zones are for all robots, numbered by the client, and complete when a coordinator remembers them") {
+  System system;
+  const OrderHandle first = system.client.zone(1, disc(1)), second = system.client.zone(2, disc(2));
+  system.run_for(1s);
+  REQUIRE(system.received.size() == 2);
+  CHECK(system.received[0].kind == msg::OrderKind::ORDER_ZONE);
+  CHECK(system.received[0].robot == kAllRobots);
+  CHECK(system.received[0].zone_number == 1);
+  CHECK(system.received[0].zone.corners_m[0] == Vec2(1, 0));
+  CHECK(system.received[1].zone_number == 2);
+  CHECK(system.client.find(first)->phase == OrderPhase::kAccepted);
+  CHECK(system.client.find(second)->phase == OrderPhase::kAccepted);
+  CHECK(system.book.zones().size() == 2);
+  const OrderHandle removal = system.client.remove_zone(1);
+  system.run_for(1s);
+  CHECK(system.client.find(removal)->phase == OrderPhase::kAccepted);
+  CHECK(system.client.find(first) == nullptr);
+  CHECK(system.book.zones().size() == 1);
+}
+
+TEST_CASE("a zone that the client moves is not reported as replaced") {
+  System system;
+  for (int i = 0; i < 100; ++i) {
+    system.client.zone(1, disc(0.01 * i));
+    system.run_for(3ms);
+  }
+  system.run_for(1s);
+  CHECK(std::ranges::count(system.phases, OrderPhase::kReplaced) == 0);
+  REQUIRE(system.book.zones().size() == 1);
+  CHECK(system.book.zones()[0].zone.corners_m[0] == Vec2(0.99, 0));
+}
+
+TEST_CASE("of a zone that moves while nobody answers only the last position is repeated") {
+  System system;
+  system.answers_orders = false;
+  OrderHandle last = 0;
+  for (int i = 0; i < 600; ++i) {
+    last = system.client.zone(1, disc(0.01 * i));
+    system.run_for(10ms);
+  }
+  system.received.clear();
+  system.answers_orders = true;
+  system.run_for(1s);
+  REQUIRE(system.received.size() == 1);
+  CHECK(system.received[0].zone.corners_m[0] == Vec2(5.99, 0));
+  CHECK(system.client.find(last)->phase == OrderPhase::kAccepted);
+}
+
+TEST_CASE("a zone in force is not forgotten in favour of later orders, whose number is bounded") {
+  System system;
+  const OrderHandle standing = system.client.zone(7, disc(1));
+  std::vector<OrderHandle> handles;
+  for (int i = 0; i < 6000; ++i) {
+    handles.push_back(system.client.zone(1, disc(0.001 * i)));
+    handles.push_back(system.client.hold(0));
+    system.run_for(5ms);
+  }
+  const auto is_known = [&](OrderHandle handle) { return system.client.find(handle) != nullptr; };
+  CHECK(static_cast<std::size_t>(std::ranges::count_if(handles, is_known)) == OrderClient::kMaxFinal + 1);
+  CHECK(is_known(standing));
+  CHECK(is_known(handles.back()));
+}
+
+TEST_CASE("a zone that all coordinators have forgotten is sent again") {
+  System system;
+  const OrderHandle zone = system.client.zone(1, disc(1)), removed = system.client.zone(2, disc(2));
+  system.client.remove_zone(2);
+  system.run_for(1s);
+  system.tell_memory();
+  CHECK(system.client.find(zone)->phase == OrderPhase::kAccepted);
+  system.book = {};
+  system.received.clear();
+  for (int i = 0; i < 5; ++i) {
+    system.tell_memory();
+    system.run_for(1s);
+  }
+  REQUIRE(system.received.size() == 1);
+  CHECK(system.received[0].zone_number == 1);
+  CHECK(system.client.find(zone)->phase == OrderPhase::kAccepted);
+  CHECK(system.client.find(removed) == nullptr);
+}
+
+TEST_CASE("a client whose clock is behind its earlier orders still moves its zone") {
+  System system;
+  Order earlier{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient};
+  earlier.number = static_cast<OrderNumber>(to_ns(system.client_bus.now() + 20s));
+  earlier.zone_number = 1;
+  earlier.zone = disc(1);
+  system.book.merge({earlier});
+  const OrderHandle zone = system.client.zone(1, disc(2));
+  system.run_for(1s);
+  CHECK(system.client.find(zone)->phase == OrderPhase::kAccepted);
+  CHECK(system.book.zones()[0].zone.corners_m[0] == Vec2(2, 0));
+}
+
+TEST_CASE("a zone that another process of the same name sets is reported as replaced") {
+  System system;
+  const OrderHandle zone = system.client.zone(1, disc(1));
+  system.run_for(1s);
+  SimBus other_bus(system.network);
+  OrderClient other(other_bus, kClient);
+  system.run_for(1s);
+  other.zone(1, disc(2));
+  system.run_for(1s);
+  system.tell_memory();
+  CHECK(system.client.find(zone)->phase == OrderPhase::kReplaced);
+}
+
+TEST_CASE("a client may send the next position of a zone when it hears of the last") {
+  System system;
+  int sent = 1;
+  system.client.on_change([&](const SentOrder&) {
+    if (sent < 2000) system.client.zone(1, disc(0.001 * ++sent));
+  });
+  system.client.zone(1, disc(0));
+  system.run_for(20s);
+  CHECK(sent == 2000);
+  CHECK(system.book.zones()[0].zone.corners_m[0].x() == Approx(2));
+}
+
+TEST_CASE("a resume that was lost is not repeated after the next hold") {
+  System system;
+  system.answers_orders = false;
+  const OrderHandle resume = system.client.resume(kAllRobots);
+  system.run_for(500ms);
+  system.client.hold(kAllRobots);
+  CHECK(system.client.find(resume)->phase == OrderPhase::kReplaced);
+  system.received.clear();
+  system.answers_orders = true;
+  system.run_for(1s);
+  REQUIRE(system.received.size() == 1);
+  CHECK(system.received[0].kind == msg::OrderKind::ORDER_HOLD);
+  CHECK(system.book.is_held(3));
+}
+
+TEST_CASE("a resume of all robots that was lost does not end a later hold of one") {
+  System system;
+  system.answers_orders = false;
+  system.client.resume(kAllRobots);
+  system.run_for(500ms);
+  const OrderHandle hold = system.client.hold(3);
+  system.run_for(10ms);
+  system.answer(system.client.find(hold)->order);
+  system.answers_orders = true;
+  system.run_for(1s);
+  CHECK(system.book.is_held(3));
+  CHECK_FALSE(system.book.is_held(4));
+}
+
+TEST_CASE("a robot goes where it was ordered last, although the order before was lost") {
+  System system;
+  system.answers_orders = false;
+  const OrderHandle first = system.client.go(0, {{{1, 0}}});
+  system.run_for(500ms);
+  const OrderHandle second = system.client.go(0, {{{2, 0}}});
+  system.answers_orders = true;
+  system.run_for(1s);
+  CHECK(system.client.find(first)->phase == OrderPhase::kReplaced);
+  CHECK(system.client.find(second)->phase == OrderPhase::kAccepted);
+  CHECK(system.book.drive_order(0, Rank::kClient)->order.goals[0].position_m == Vec2(2, 0));
+}
+
+}  // namespace sidestep::order_client_test
