@@ -20,8 +20,8 @@
 #include "deploy/monitor/record/record_command.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/order/order_command.hpp"
-#include "deploy/simulate/simulate_command.hpp"
 #include "deploy/order/referee_command.hpp"
+#include "deploy/simulate/simulate_command.hpp"
 
 namespace {
 
@@ -55,9 +55,9 @@ int main(int argc, char** argv) {
   add_test_command(app, action);
   add_attest_command(app, action);
   add_order_commands(app, action);
-  add_audit_command(app, action);
   add_clock_command(app, action);
   add_referee_command(app, action);
+  add_audit_command(app, action);
   add_record_command(app, action);
   add_plan_command(app, action);
   add_frame_command(app, action);
