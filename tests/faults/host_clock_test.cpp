@@ -36,8 +36,9 @@ void check_recovery(const LateStart& start) {
   host.set_clock(0s);
   for (const std::string& process : start.late_processes)
     CHECK(run.wait_until([&] { return run.logged(process + kBeginsAnew); }));
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);

@@ -24,15 +24,16 @@ std::string figures(const nlohmann::json& report) {
 
 }  // namespace
 
-TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without contact") {
+TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without contact", "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));
   for (const char* host : {"floor", "east", "west"}) {
     const std::string name = "sidestep-" + std::to_string(run->pid()) + "-" + host;
     REQUIRE(run->command({"fault", "link", name, "--loss", "0.05"}) == "exit code 0");
   }
-  CHECK(run->wait_for_end() == "exit code 0");
+  const std::string ended = run->wait_for_end();
   INFO(run->output());
+  CHECK(ended == "exit code 0");
   const auto report = run->report();
   require_no_violations(report);
   CHECK(report["arrived"] == 22);
@@ -41,7 +42,7 @@ TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without cont
   WARN("22 robots, three hosts, 5 % loss: " << figures(report));
 }
 
-TEST_CASE("vision finds the robots in images of cameras on another host") {
+TEST_CASE("vision finds the robots in images of cameras on another host", "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
   std::string hosts = shipped("launch/hosts/three-namespaces.yaml");
   for (const auto& [from, to] : {std::pair<std::string, std::string>("simulator, vision, ", "simulator, "),
@@ -53,15 +54,17 @@ TEST_CASE("vision finds the robots in images of cameras on another host") {
       std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << hosts;
   const auto run = LaunchedRun::on_namespaces(crossing_images(), {"--seconds", "120"}, file.string());
-  CHECK(run->wait_for_end() == "exit code 0");
+  const std::string ended = run->wait_for_end();
   INFO(run->output());
+  CHECK(ended == "exit code 0");
   const auto report = run->report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
   std::filesystem::remove(file);
 }
 
-TEST_CASE("the robots of a host that is cut off for five seconds rest, the others drive on, all arrive") {
+TEST_CASE("the robots of a host that is cut off for five seconds rest, the others drive on, all arrive",
+          "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));
   REQUIRE(run->wait_until([&] { return run->max_speed_mps() > 0.5; }));
@@ -88,8 +91,9 @@ TEST_CASE("the robots of a host that is cut off for five seconds rest, the other
   }));
   CHECK(max_cut_off_mps < 0.05);
   CHECK(max_others_mps > 0.3);
-  CHECK(run->wait_for_end() == "exit code 0");
+  const std::string ended = run->wait_for_end();
   INFO(run->output());
+  CHECK(ended == "exit code 0");
   require_no_violations(run->report());
   CHECK(run->report()["arrived"] == 22);
   WARN("one of three hosts cut off for 5 s: " << figures(run->report()));

@@ -179,8 +179,9 @@ TEST_CASE("the launcher passes league options on to the simulator and vision") {
   LaunchedRun run(shipped_scenario("crossing"), {"--simulator=--ssl-vision " + endpoints.text(0),
                                                  "--vision=--source ssl --ssl-vision " + endpoints.text(0) +
                                                      " --tracked " + endpoints.text(1)});
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   CHECK(run.report()["arrived"] == 8);
   int frames = 0;
   receiver.receive([&](std::span<const std::byte> datagram, const league::Endpoint&) {

@@ -51,8 +51,9 @@ double drive_and_kill_coordinator(const std::string& hosts) {
   const Time killed_at = run->bus().now();
   REQUIRE(kill(run->pid_of(active), SIGKILL) == 0);
   const bool has_taken_over = run->wait_until([&] { return watch.moving(1).has_value(); });
-  CHECK(run->wait_for_end() == "exit code 0");
+  const std::string ended = run->wait_for_end();
   INFO(run->output());
+  CHECK(ended == "exit code 0");
   REQUIRE(has_taken_over);
   require_no_violations(run->report());
   CHECK(run->report()["arrived"] == 22);

@@ -29,8 +29,9 @@ TEST_CASE("all robots arrive although messages are lost in bursts, delayed, dupl
     const std::string text = std::string(process) + ": network fault: 10 % lost in bursts of 3";
     CHECK(run.wait_until([&] { return run.logged(text); }));
   }
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
@@ -44,8 +45,9 @@ TEST_CASE("all robots stop while the coordinator is cut off, and drive on when t
   REQUIRE(run.command(fault(run, {"network", "--target", "coordinator", "--cut"})) == "exit code 0");
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
   REQUIRE(run.command(fault(run, {"network", "--target", "coordinator", "--clear"})) == "exit code 0");
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -75,8 +77,9 @@ TEST_CASE("a robot that is pushed reports that it is off its reference, drives o
                       }));
   REQUIRE(run.command(fault(run, {"push", "2", "--velocity", "0,0.4"})) == "exit code 0");
   CHECK(run.wait_until([&] { return is_off_reference; }));
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -129,8 +132,9 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return !facts[5].is_lifted() && facts[5].executing().version_number() != 0; }));
   CHECK(run.wait_until([&] { return run.speed_mps(3) > 0.5 && run.speed_mps(5) > 0.5; }));
 
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   REQUIRE(report.is_object());
   CHECK(report["contacts"] == report["audit"]["excused_contacts"]);

@@ -16,6 +16,8 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kPerSecond = 10'000;
+// A process that stored the orders of the shortest flood would need three times as much.
+constexpr double kMaxGrowth_mb = 6;
 
 std::string waiting_robots() {
   std::string text =
@@ -81,7 +83,7 @@ void check_flood(Duration duration) {
   for (const auto& [process, usage] : before) {
     const double growth_mb = after.at(process).memory_mb - usage.memory_mb;
     WARN(process << ": " << usage.memory_mb << " MB, grown by " << growth_mb << " MB");
-    CHECK(growth_mb < 3);
+    CHECK(growth_mb < kMaxGrowth_mb);
   }
   WARN(sent << " orders; answers: " << results[msg::OrderResult::RESULT_REMEMBERED] << " remembered, "
             << results[msg::OrderResult::RESULT_REPLACED] << " replaced, "
@@ -99,7 +101,7 @@ void check_flood(Duration duration) {
   CHECK(run.report()["audit"]["violations"] == 0);
 }
 
-TEST_CASE("ten thousand orders a second over DDS are answered, and fill no memory") {
+TEST_CASE("ten thousand orders a second over DDS are answered, and fill no memory", "[both-cores]") {
   check_flood(seconds(8));
 }
 

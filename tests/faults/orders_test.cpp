@@ -90,8 +90,9 @@ void check_random_goals(Duration duration) {
   }
   CHECK(run.wait_until([&] { return client.is_over(); }));
   REQUIRE(kill(run.pid(), SIGINT) == 0);
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   WARN(client.sent() << " orders, " << client.arrived() << " arrived, "
                      << client.sent() - client.arrived() - client.refused() << " replaced, "
                      << client.refused() << " refused; " << kills << " processes killed");

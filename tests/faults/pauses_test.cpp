@@ -36,9 +36,9 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
     REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), std::chrono::seconds(2));
   }
-  const std::string end = run.wait_for_end();
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
-  CHECK(end == "exit code 0");
+  CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
@@ -54,20 +54,21 @@ TEST_CASE(
     REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
     pause(run, run.pid_of(process), until_forgotten);
   }
-  const std::string end = run.wait_for_end();
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
-  check_sound(run, end);
+  check_sound(run, ended);
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("a process with cameras that pauses until it is forgotten is found again, and its images too") {
+TEST_CASE("a process with cameras that pauses until it is forgotten is found again, and its images too",
+          "[both-cores]") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   pause(run, run.pid_of("simulator"), kSilenceLimit + std::chrono::seconds(2));
-  const std::string end = run.wait_for_end();
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
-  check_sound(run, end);
+  check_sound(run, ended);
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
   CHECK(run.report()["counters"].dump().find("forgotten_peer") != std::string::npos);
@@ -83,9 +84,9 @@ TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arri
     REQUIRE(kill(before, SIGKILL) == 0);
     REQUIRE(run.wait_until([&] { return run.pid_of(process) != before; }));
   }
-  const std::string end = run.wait_for_end();
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
-  CHECK(end == "exit code 0");
+  CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);
   CHECK(run.report()["deaths"].size() == 3);
@@ -95,8 +96,9 @@ TEST_CASE("kill -9 of the simulator: the run ends and reports its death") {
   LaunchedRun run(shuttles(8, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   REQUIRE(kill(run.pid_of("simulator"), SIGKILL) == 0);
-  CHECK(run.wait_for_end() == "exit code 1");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 1");
   CHECK(run.printed("failed: simulator died"));
   require_no_violations(run.report());
 }
@@ -114,9 +116,9 @@ TEST_CASE("of two living agents of one robot the later one drives it, without co
   CHECK(run.wait_until([&] { return obeyed.size() == 2; }));
   CHECK(is_running(run.pid_of("agent 3")));
   CHECK(is_running(twin));
-  const std::string end = run.wait_for_end();
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
-  CHECK(end == "exit code 0");
+  CHECK(ended == "exit code 0");
   CHECK_FALSE(run.exit_reason("twin"));
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 8);

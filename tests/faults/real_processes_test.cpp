@@ -9,8 +9,9 @@ using namespace sidestep;
 
 TEST_CASE("robots as processes cross the field over DDS and arrive without contact") {
   LaunchedRun run(shipped_scenario("crossing"));
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
@@ -20,8 +21,9 @@ TEST_CASE("robots as processes cross the field over DDS and arrive without conta
 
 TEST_CASE("with --log-level debug, the log of a run names each registration, with time, level and process") {
   LaunchedRun run(shipped_scenario("crossing"), {"--log-level", "debug"});
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   for (int robot = 0; robot < 8; ++robot) {
     CAPTURE(robot);
     CHECK(run.logged("debug   sidestep-coordinator: robot " + std::to_string(robot) +
@@ -36,10 +38,11 @@ TEST_CASE("with --log-level debug, the log of a run names each registration, wit
   CHECK(report["epochs"][0]["reason"] == "started");
 }
 
-TEST_CASE("robots detected in camera images cross the field and arrive without contact") {
+TEST_CASE("robots detected in camera images cross the field and arrive without contact", "[both-cores]") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
@@ -52,8 +55,9 @@ TEST_CASE(
   REQUIRE(run.wait_until([&] { return run.speed_mps(2) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 2"), SIGKILL) == 0);
   CHECK(run.wait_until([&] { return run.speed_mps(2) < 0.02; }));
-  CHECK(run.wait_for_end() == "exit code 1");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 1");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 7);
@@ -73,8 +77,9 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their go
   WARN("all robots at rest " << stopped_s << " s after the kill; v/D + one cycle is "
                              << max_mps / 5 + 1.0 / 60
                              << " s, plus versions in flight and the lag of bodies and ground truth");
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
@@ -115,8 +120,9 @@ TEST_CASE("all robots arrive after an agent and vision die and are restarted") {
   REQUIRE(run.wait_until([&] { return run.speed_mps(5) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 5"), SIGKILL) == 0);
   REQUIRE(kill(run.pid_of("vision"), SIGKILL) == 0);
-  CHECK(run.wait_for_end() == "exit code 0");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["deaths"].size() == 2);
 }
@@ -199,8 +205,9 @@ TEST_CASE(
   CHECK(run.printed("\"other_rules\""));
   REQUIRE(kill(run.pid_of("coordinator"), SIGKILL) == 0);
   CHECK(run.wait_until([&] { return run.max_speed_mps() < 0.03; }));
-  CHECK(run.wait_for_end() == "exit code 1");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 1");
   require_no_violations(run.report());
   CHECK(run.report()["failure"].dump().find("coordinator died") != std::string::npos);
   CHECK(run.report()["mismatches"].contains("coordinator 1"));

@@ -33,8 +33,9 @@ TEST_CASE("the standby takes over twenty times while robots move, without contac
     half_ms.push_back(to_seconds(*watch.moving(4) - killed_at) * 1e3);
   }
   REQUIRE(kill(run.pid(), SIGINT) == 0);
-  CHECK(run.wait_for_end() == "exit code 1");
+  const std::string ended = run.wait_for_end();
   INFO(run.output());
+  CHECK(ended == "exit code 1");
   require_no_violations(run.report());
   CHECK(run.report()["deaths"].size() == kKills);
   const auto [min, max] = std::minmax_element(first_ms.begin(), first_ms.end());
