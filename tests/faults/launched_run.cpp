@@ -203,12 +203,13 @@ std::string shipped(const std::string& file) {
 
 std::string shipped_scenario(const std::string& name) { return shipped("scenarios/" + name + ".yaml"); }
 
-std::string crossing_images() {
+std::string crossing_images(int rate_hz) {
   std::string text = shipped_scenario("crossing-images");
-  if (!kIsSanitized) return text;
   const std::string key = "vision: {images: {";
   REQUIRE(text.find(key) != std::string::npos);
-  text.replace(text.find(key), key.size(), "vision: {rate_hz: 10, images: {width_px: 390, height_px: 290");
+  const std::string size = kIsSanitized ? "width_px: 390, height_px: 290" : "";
+  text.replace(text.find(key), key.size(),
+               "vision: {rate_hz: " + std::to_string(kIsSanitized ? 10 : rate_hz) + ", images: {" + size);
   return text;
 }
 

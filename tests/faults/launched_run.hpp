@@ -106,7 +106,7 @@ std::string shipped(const std::string& file);
 std::string shipped_scenario(const std::string& name);
 /// The scenario crossing-images. With a sanitizer, which slows rendering down many times, frames are fewer
 /// and smaller.
-std::string crossing_images();
+std::string crossing_images(int rate_hz = 60);
 /// A scenario with six robots that shuttle along their own lanes and two that cross all lanes, each `times`
 /// times. `extra_keys` are added to the scenario.
 std::string shuttles(int times, const std::string& extra_keys);

@@ -54,9 +54,11 @@ void SimBus::become_observer() { instance_->is_observer = true; }
 void SimBus::hide_from_observers() { network_.hidden_.insert(instance_->process); }
 
 void SimBus::pause(Time until, std::size_t max_queued) {
-  instance_->paused_until = until;
-  instance_->queued = 0;
-  instance_->max_queued = max_queued;
+  SimProcessInstance& instance = *instance_;
+  const bool is_paused = instance.paused_until > network_.now();
+  instance.paused_until = is_paused ? std::max(instance.paused_until, until) : until;
+  if (!is_paused) instance.queued = 0;
+  instance.max_queued = max_queued;
 }
 
 SimNetwork::Channel& SimBus::channel_named(const std::string& name) {

@@ -41,7 +41,7 @@ class SimBus : public Bus {
   void hide_from_observers();
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
   /// queued. Further ones are lost, as when a socket buffer is full. At the end, all queued messages and
-  /// timers are delivered at the same time.
+  /// timers are delivered at the same time. A pause within another one can only prolong it.
   void pause(Time until, std::size_t max_queued);
 
  protected:

@@ -55,12 +55,17 @@ void SimNetwork::release(std::uint32_t sent) {
 
 void SimNetwork::postpone(const Event& event) {
   SimProcessInstance& instance = *event.subscription->instance;
+  if (instance.queued_until <= now_) {
+    // The pause begins, or goes on after the first of two: all events that are due now follow in their order.
+    instance.queued_until = instance.paused_until;
+    instance.queued = 0;
+  }
   if (event.is_droppable && instance.queued++ >= instance.max_queued) {
     ++instance.overflowed;
     drop(event);
     return;
   }
-  events_.push(instance.paused_until, event);
+  events_.push(instance.queued_until, event);
 }
 
 Duration SimNetwork::sample_delay() {

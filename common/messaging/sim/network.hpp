@@ -27,6 +27,8 @@ struct SimProcessInstance {
   bool is_alive = true;
   bool is_observer = false;
   Time paused_until = Time::min();
+  Time queued_until =
+      Time::min();  ///< when queued events are due; earlier than the above after a second pause
   std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
   std::uint64_t lost = 0;                  ///< messages to it that the network has lost
   std::uint64_t overflowed = 0;            ///< messages to it that found its queue full

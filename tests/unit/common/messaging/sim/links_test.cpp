@@ -134,6 +134,18 @@ TEST_CASE("a paused process does nothing, then handles everything at once and in
   CHECK(rig.near_received.size() == 50);
 }
 
+TEST_CASE("a pause within another neither ends it nor changes the order of messages") {
+  const bool is_longer = GENERATE(false, true);
+  CAPTURE(is_longer);
+  Rig rig;
+  rig.far.pause(kBegin + 300ms, 1000);
+  rig.sender.at(kBegin + 20ms, [&] { rig.far.pause(kBegin + (is_longer ? 500ms : 200ms), 1000); });
+  rig.sender.at(kBegin + (is_longer ? 499ms : 299ms), [&] { CHECK(rig.far_received.empty()); });
+  rig.send(50);
+  REQUIRE(rig.far_received.size() == 50);
+  CHECK(std::ranges::is_sorted(rig.far_received));
+}
+
 TEST_CASE("a paused process queues a limited number of messages, and a restarted one is not paused") {
   Rig rig;
   rig.far.pause(kBegin + 500ms, 10);
