@@ -125,8 +125,12 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
     else if (has_right_of_way(version->robot, robot_.id, start, settings_.right_of_way_period))
       steering.add_moving(state, *intent, separation);
   }
-  for (const Circle& obstacle : rules_.obstacles)
-    steering.add_stationary(obstacle.centre_m, obstacle.radius_m + required_separation_m());
+  for (const Shape& obstacle : rules_.obstacles) {
+    const Circle disc = disc_facing(at_start.position_m, obstacle);
+    const bool is_far = (disc.centre_m - at_start.position_m).norm() > page_horizon_m();
+    if (disc.radius_m > 0 || !is_far)
+      steering.add_stationary(disc.centre_m, disc.radius_m + required_separation_m());
+  }
   for (const Circle& zone : zones_.seen_from(at_start.position_m))
     steering.add_stationary(zone.centre_m, zone.radius_m + required_separation_m());
   const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));

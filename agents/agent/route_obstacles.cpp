@@ -3,12 +3,12 @@
 
 namespace sidestep {
 
-RouteObstacles::RouteObstacles(std::span<const Circle> fixed, const ZoneMap& zones,
+RouteObstacles::RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones,
                                std::span<const TemporaryObstacle> temporary) {
   using enum msg::BlockReason;
-  for (const Circle& circle : fixed) {
-    shapes_.emplace_back(circle);
-    blockages_.push_back({BLOCK_OBSTACLE, 0, circle.centre_m});
+  for (const Shape& shape : fixed) {
+    shapes_.push_back(shape);
+    blockages_.push_back({BLOCK_OBSTACLE, 0, centre_m(shape)});
   }
   for (const TemporaryObstacle& obstacle : temporary) {
     shapes_.emplace_back(obstacle.circle);

@@ -20,7 +20,7 @@ struct TemporaryObstacle {
 /// Everything that routes lead around.
 class RouteObstacles {
  public:
-  RouteObstacles(std::span<const Circle> fixed, const ZoneMap& zones,
+  RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones,
                  std::span<const TemporaryObstacle> temporary);
 
   const std::vector<Shape>& shapes() const { return shapes_; }

@@ -14,16 +14,6 @@ namespace {
 // Corners of the polygon around a circle.
 constexpr int kCircleCorners = 24;
 
-Vec2 nearest_edge_point(const Vec2& p, const std::vector<Vec2>& corners) {
-  Vec2 nearest = corners.front();
-  for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
-    const Segment edge{corners[last], corners[i]};
-    const Vec2 point = edge.from_m + nearest_offset(p, edge);
-    if ((point - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = point;
-  }
-  return nearest;
-}
-
 }  // namespace
 
 Shape outline_of(const Zone& zone) {
@@ -55,12 +45,8 @@ ZoneMap::ZoneMap(std::span<const Order> orders) {
 std::vector<Circle> ZoneMap::seen_from(const Vec2& position) const {
   std::vector<Circle> circles;
   for (const Shape& zone : keep_outs_) {
-    if (const auto* circle = std::get_if<Circle>(&zone))
-      circles.push_back(*circle);
-    else if (const auto* polygon = std::get_if<ConvexPolygon>(&zone))
-      circles.push_back({nearest_edge_point(position, polygon->corners_m), 0});
-    else if (const auto* segment = std::get_if<Segment>(&zone))
-      circles.push_back({segment->from_m + nearest_offset(position, *segment), 0});
+    const auto* circle = std::get_if<Circle>(&zone);
+    circles.push_back(circle ? *circle : Circle{nearest_boundary_point(position, zone), 0});
   }
   return circles;
 }

@@ -45,7 +45,7 @@ double deviation_per_mps2(const SearchQuery& query, const MotionLimits& limits) 
 
 bool SafetySearch::Other::is_clear(const Trajectory& candidate) const {
   return trajectory ? sidestep::is_clear(candidate, *trajectory, min_separation_m)
-                    : sidestep::is_clear(candidate, centre_m, min_separation_m);
+                    : sidestep::is_clear(candidate, *obstacle, min_separation_m);
 }
 
 SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settings,
@@ -54,8 +54,8 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
       settings_(settings),
       candidates_(settings.samples, rules.limits, kernels),
       lanes_(kernels) {
-  for (const Circle& obstacle : rules.obstacles)
-    obstacles_.push_back(trajectory_bounds(Trajectory::resting(Time{}, obstacle.centre_m)));
+  for (const Shape& obstacle : rules.obstacles)
+    obstacles_.push_back(trajectory_bounds(Trajectory::resting(Time{}, centre_m(obstacle))));
   constexpr std::size_t kTypicalCount = 64;
   found_indices_.reserve(kTypicalCount);
   others_.reserve(kTypicalCount);
@@ -114,17 +114,25 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
     const Version& version = others.version(index);
     if (query.robot == version.robot) continue;
     lanes_.add(others.bounds(index), separation + version.inflation_m);
-    others_.push_back({&version.trajectory, Vec2(0, 0), separation + version.inflation_m});
+    others_.push_back({&version.trajectory, nullptr, separation + version.inflation_m});
   }
+  edges_.clear();
+  const double clearance = rules_.radius_m + rules_.margin_m + query.inflation_m;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const Circle& obstacle = rules_.obstacles[i];
-    const double clearance = obstacle.radius_m + rules_.radius_m + rules_.margin_m + query.inflation_m;
-    const double max_distance = disc.radius_m + clearance + kRounding_m;
-    if ((obstacle.centre_m - disc.centre_m).squaredNorm() > max_distance * max_distance) continue;
+    const Shape& obstacle = rules_.obstacles[i];
+    const auto* circle = std::get_if<Circle>(&obstacle);
+    if (!circle) {
+      if (signed_distance(disc.centre_m, obstacle) <= disc.radius_m + clearance + kRounding_m)
+        edges_.push_back({nullptr, &obstacle, clearance});
+      continue;
+    }
+    const double from_centre = circle->radius_m + clearance,
+                 max_distance = disc.radius_m + from_centre + kRounding_m;
+    if ((circle->centre_m - disc.centre_m).squaredNorm() > max_distance * max_distance) continue;
     TrajectoryBounds bounds = obstacles_[i];
     bounds.start = query.start;
-    lanes_.add(bounds, clearance);
-    others_.push_back({nullptr, obstacle.centre_m, clearance});
+    lanes_.add(bounds, from_centre);
+    others_.push_back({nullptr, &obstacle, clearance});
   }
   const double half_x = rules_.field.length_m / 2 - rules_.radius_m - disc.radius_m;
   const double half_y = rules_.field.width_m / 2 - rules_.radius_m - disc.radius_m;
@@ -179,8 +187,9 @@ void SafetySearch::compare(const SearchQuery& query, const TrajectoryBounds& des
 
 bool SafetySearch::is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const {
   if (is_near_border_ && !stays_on(rules_.field, rules_.radius_m, trajectory)) return false;
-  const auto& uncertain = is_certainly_clear ? exact_ : nearby_;
-  return std::ranges::all_of(uncertain, [&](const Other& other) { return other.is_clear(trajectory); });
+  const auto is_clear = [&](const Other& other) { return other.is_clear(trajectory); };
+  return std::ranges::all_of(is_certainly_clear ? exact_ : nearby_, is_clear) &&
+         std::ranges::all_of(edges_, is_clear);
 }
 
 }  // namespace sidestep

@@ -70,11 +70,11 @@ class SafetySearch {
   [[nodiscard]] SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
  private:
-  /// A trajectory or a static obstacle that a candidate may come near to.
+  /// A trajectory or a static obstacle that a candidate may come near to; one of them is null.
   struct Other {
-    const Trajectory* trajectory;  // nullptr for an obstacle
-    Vec2 centre_m;
-    double min_separation_m;
+    const Trajectory* trajectory;
+    const Shape* obstacle;
+    double min_separation_m;  // of an obstacle: from its edge
     bool is_clear(const Trajectory& candidate) const;
   };
   /// Collects everything that a candidate within the disc may come near to.
@@ -87,11 +87,12 @@ class SafetySearch {
 
   FloorRules rules_;
   SearchSettings settings_;
-  std::vector<TrajectoryBounds> obstacles_;  // as rules_.obstacles
+  std::vector<TrajectoryBounds> obstacles_;  // as rules_.obstacles; of a circle: at rest at its centre
   CandidateSet candidates_;
   std::vector<std::uint32_t> found_indices_;
   batch::Lanes lanes_;         // lane i: others_[i]
-  std::vector<Other> others_;  // all that may be near
+  std::vector<Other> others_;  // all trajectories and circles that may be near
+  std::vector<Other> edges_;   // all other obstacles that may be near
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;

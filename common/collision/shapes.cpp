@@ -30,6 +30,13 @@ void check_corners(const std::vector<Vec2>& corners) {
 
 }  // namespace
 
+std::vector<Circle> circles_of(std::span<const Shape> shapes) {
+  std::vector<Circle> circles;
+  for (const Shape& shape : shapes)
+    if (const auto* circle = std::get_if<Circle>(&shape)) circles.push_back(*circle);
+  return circles;
+}
+
 void check(const Shape& shape) {
   const auto* polygon = std::get_if<ConvexPolygon>(&shape);
   require(polygon == nullptr || polygon->corners_m.size() >= 3, "a polygon has fewer than three corners");
@@ -64,6 +71,11 @@ Box bounds(const Shape& shape) {
   return box;
 }
 
+Vec2 centre_m(const Shape& shape) {
+  const Box box = bounds(shape);
+  return (box.min_m + box.max_m) / 2;
+}
+
 Shape moved(Shape shape, const Vec2& by) {
   if (auto* circle = std::get_if<Circle>(&shape)) {
     circle->centre_m += by;
@@ -83,6 +95,25 @@ double signed_distance(const Vec2& p, const Shape& shape) {
   if (const auto* box = std::get_if<Box>(&shape)) return signed_distance(p, *box);
   if (const auto* segment = std::get_if<Segment>(&shape)) return std::sqrt(squared_distance(p, *segment));
   return signed_distance(p, std::get<ConvexPolygon>(shape).corners_m);
+}
+
+Vec2 nearest_boundary_point(const Vec2& p, const Shape& shape) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    const Vec2 offset = p - circle->centre_m;
+    return circle->centre_m +
+           circle->radius_m * (offset.isZero(0) ? Vec2(1, 0) : Vec2(offset.stableNormalized()));
+  }
+  if (const auto* segment = std::get_if<Segment>(&shape))
+    return segment->from_m + nearest_offset(p, *segment);
+  if (const auto* box = std::get_if<Box>(&shape)) return nearest_edge_point(p, corners_of(*box));
+  return nearest_edge_point(p, std::get<ConvexPolygon>(shape).corners_m);
+}
+
+Circle disc_facing(const Vec2& p, const Shape& shape) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) return *circle;
+  const Vec2 nearest = nearest_boundary_point(p, shape), inwards = p - nearest;
+  if (signed_distance(p, shape) >= 0) return {nearest, 0};
+  return {p + inwards, 2 * inwards.norm()};
 }
 
 double squared_distance(const Segment& s, const Shape& shape) {

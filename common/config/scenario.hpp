@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/circle.hpp"
+#include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
 #include "common/image/image.hpp"
 #include "common/motion/floor_rules.hpp"
@@ -94,7 +94,7 @@ struct Scenario {
   std::string name;
   Field field;
   std::vector<RobotSpec> robots;  ///< ascending by id
-  std::vector<Circle> obstacles;
+  std::vector<Shape> obstacles;
   std::vector<OpponentSpec> opponents;
   double max_opponent_speed_mps = 1.5;  ///< upper bound that agents assume
   std::optional<BallSpec> ball;

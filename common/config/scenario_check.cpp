@@ -23,17 +23,17 @@ struct PlacementCheck {
                       point.x(), point.y(), scenario.field.length_m / 2 - scenario.radius_m,
                       scenario.field.width_m / 2 - scenario.radius_m));
     }
-    for (const Circle& obstacle : scenario.obstacles) {
-      const double distance = (point - obstacle.centre_m).norm();
-      const double min_distance = obstacle.radius_m + scenario.radius_m + scenario.margin_m;
+    for (const Shape& obstacle : scenario.obstacles) {
+      const double distance = signed_distance(point, obstacle);
+      const double min_distance = scenario.radius_m + scenario.margin_m;
       if (distance >= min_distance - kRounding_m) continue;
+      const Vec2 centre = centre_m(obstacle);
       throw ConfigError(
           file, line,
           fmt::format(
-              "{} ({}, {}) is inside the obstacle at ({}, {}): distance {:.4f} m, expected at least {:.4f} "
-              "(obstacle + robot radius + margin)",
-              what, point.x(), point.y(), obstacle.centre_m.x(), obstacle.centre_m.y(), distance,
-              min_distance));
+              "{} ({}, {}) is inside the obstacle at ({:g}, {:g}), or too near: distance from its edge "
+              "{:.4f} m, expected at least {:.4f} (robot radius + margin)",
+              what, point.x(), point.y(), centre.x(), centre.y(), distance, min_distance));
     }
   }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "common/config/obstacle_list.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -11,23 +13,6 @@ constexpr Range kSpeed_mps{0.01, 20};
 constexpr std::size_t kMaxObstacles = 1000;
 constexpr std::size_t kMaxOpponents = 1000;
 constexpr std::size_t kMaxWaypoints = 1000;
-
-void read_obstacles(YamlMap& map, Scenario& scenario) {
-  const YAML::Node node = map.find("obstacles");
-  if (!node.IsDefined()) return;
-  for (const YAML::Node& element : list_from(node, map.location_of("obstacles"), kMaxObstacles)) {
-    YamlMap inner(
-        element,
-        map.location_of("obstacles").of(element, fmt::format("obstacles[{}]", scenario.obstacles.size())));
-    Circle circle;
-    inner.require("centre_m");
-    inner.require("radius_m");
-    inner.read("centre_m", kCoordinate_m, circle.centre_m);
-    inner.read("radius_m", {0.001, 1000}, circle.radius_m);
-    inner.finish();
-    scenario.obstacles.push_back(circle);
-  }
-}
 
 OpponentSpec read_opponent(YamlMap& map, double max_speed_mps) {
   OpponentSpec opponent;
@@ -76,7 +61,7 @@ void read_ball(YamlMap& map, Scenario& scenario) {
 }  // namespace
 
 void read_floor(YamlMap& map, Scenario& scenario) {
-  read_obstacles(map, scenario);
+  scenario.obstacles = read_obstacles(map, kMaxObstacles);
   read_opponents(map, scenario);
   read_ball(map, scenario);
 }

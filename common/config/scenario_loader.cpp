@@ -94,9 +94,11 @@ void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
   });
 }
 
-/// Two robots of a team with the same pattern cannot be distinguished in images.
-void check_patterns(YamlMap& map, const Scenario& scenario) {
+/// Images show circles only, and two robots of a team with the same pattern cannot be distinguished in them.
+void check_images(YamlMap& map, const Scenario& scenario) {
   if (!scenario.vision.images) return;
+  if (circles_of(scenario.obstacles).size() != scenario.obstacles.size())
+    map.location_of("vision").fail("images: cannot show obstacles other than circles");
   try {
     require_unique_numbers(scenario);
   } catch (const std::invalid_argument& error) {
@@ -182,7 +184,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   map.find("streams");
   map.finish();
   read_robots(map, scenario);
-  check_patterns(map, scenario);
+  check_images(map, scenario);
   return scenario;
 }
 

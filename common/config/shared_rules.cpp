@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "common/config/obstacle_list.hpp"
 #include "idl/rules.hpp"
 
 namespace sidestep {
@@ -45,9 +46,9 @@ std::string numbers_of(const Scenario& scenario, Team team) {
 
 std::string obstacles_of(const Scenario& scenario) {
   std::string text;
-  for (const Circle& obstacle : scenario.obstacles) {
-    text += fmt::format("{}({}, {}) radius {}", text.empty() ? "" : "; ", obstacle.centre_m.x(),
-                        obstacle.centre_m.y(), obstacle.radius_m);
+  for (const Shape& obstacle : scenario.obstacles) {
+    if (!text.empty()) text += "; ";
+    text += obstacle_text(obstacle);
   }
   if (scenario.obstacles.size() > kMaxListedObstacles)
     return fmt::format("{} with fingerprint {:016x}", scenario.obstacles.size(), hash(text));

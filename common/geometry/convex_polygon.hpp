@@ -26,6 +26,17 @@ inline double signed_distance(const Vec2& p, std::span<const Vec2> corners) {
   return inside ? -std::sqrt(nearest2) : std::sqrt(nearest2);
 }
 
+/// The point of the polygon's boundary that is nearest to a point.
+inline Vec2 nearest_edge_point(const Vec2& p, std::span<const Vec2> corners) {
+  Vec2 nearest = corners.front();
+  for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
+    const Segment edge{corners[last], corners[i]};
+    const Vec2 point = edge.from_m + nearest_offset(p, edge);
+    if ((point - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = point;
+  }
+  return nearest;
+}
+
 /// The squared distance from a segment to the convex polygon with these corners, 0 inside. The polygon may be
 /// degenerate (without area).
 inline double squared_distance(const Segment& s, std::span<const Vec2> corners) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace sidestep {
 namespace {
@@ -167,6 +168,77 @@ double min_squared_distance(const Trajectory& a, const Trajectory& b, double far
   return minimum;
 }
 
+/// The minimum squared distance of a motion from an edge while it moves parallel to it, and 0 if it crosses
+/// the edge. The caller handles the ends of the motion and of the edge.
+double min_squared_distance(const RelativeMotion& motion, const Segment& edge) {
+  const Vec2 along = edge.to_m - edge.from_m;
+  const Vec2 normal(-along.y(), along.x());
+  // Distance from the edge's line, times the edge's length: q0 + q1 t + q2 t^2.
+  const double q0 = normal.dot(motion.d - edge.from_m), q1 = normal.dot(motion.v),
+               q2 = 0.5 * normal.dot(motion.a);
+  double minimum = std::numeric_limits<double>::infinity();
+  const auto add = [&](double t) {
+    if (!(t > 0 && t < motion.seconds)) return;
+    const Vec2 position = motion.d + t * (motion.v + (0.5 * t) * motion.a);
+    minimum = std::min(minimum, squared_distance(position, edge));
+  };
+  if (q2 != 0) add(-q1 / (2 * q2));
+  const double discriminant = q1 * q1 - 4 * q2 * q0;
+  if (discriminant < 0) return minimum;
+  const double q = -0.5 * (q1 + std::copysign(std::sqrt(discriminant), q1));
+  if (q2 != 0) add(q / q2);
+  if (q != 0) add(q0 / q);
+  return minimum;
+}
+
+/// The minimum squared distance from a trajectory to the boundary of a polygon that it begins outside of,
+/// or to a segment, which has two corners. Ends early when `stop(squared distance)` is true.
+template <typename Stop>
+double min_squared_distance(const Trajectory& a, std::span<const Vec2> corners, double far_m, Stop stop) {
+  TrajectoryCursor cursor(a, a.start());
+  double minimum = std::numeric_limits<double>::infinity();
+  const auto add_position = [&] {
+    for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++)
+      minimum =
+          std::min(minimum, squared_distance(cursor.state().position_m, Segment{corners[last], corners[i]}));
+  };
+  add_position();
+  while (!stop(minimum) && cursor.remaining() != kForever) {
+    const Duration step = cursor.remaining();
+    RelativeMotion motion{cursor.state().position_m, cursor.state().velocity_mps, cursor.acceleration(),
+                          to_seconds(step)};
+    for (std::size_t i = 0, last = corners.size() - 1; i < corners.size(); last = i++) {
+      minimum = std::min(minimum, min_squared_distance(motion, Segment{corners[last], corners[i]}));
+      RelativeMotion from_corner = motion;
+      from_corner.d -= corners[i];
+      if (may_come_within(from_corner, far_m)) minimum = std::min(minimum, min_squared_distance(from_corner));
+    }
+    cursor.advance(step);
+    add_position();
+  }
+  return minimum;
+}
+
+/// The corners of any shape but a circle.
+struct Corners {
+  explicit Corners(const Shape& shape) {
+    if (const auto* box = std::get_if<Box>(&shape)) {
+      few = corners_of(*box);
+      all = few;
+    } else if (const auto* segment = std::get_if<Segment>(&shape)) {
+      few = {segment->from_m, segment->to_m};
+      all = std::span(few).first(2);
+    } else {
+      all = std::get<ConvexPolygon>(shape).corners_m;
+    }
+  }
+  Corners(const Corners&) = delete;
+  Corners& operator=(const Corners&) = delete;
+
+  std::array<Vec2, 4> few;
+  std::span<const Vec2> all;
+};
+
 }  // namespace
 
 double clearance_m(const Trajectory& a, const Trajectory& b, double min_separation_m) {
@@ -188,6 +260,34 @@ double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separat
 
 bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m) {
   return is_clear(a, Trajectory::resting(a.start(), centre_m), min_separation_m);
+}
+
+double clearance_m(const Trajectory& a, const Shape& shape, double min_separation_m) {
+  if (const auto* circle = std::get_if<Circle>(&shape))
+    return clearance_m(a, circle->centre_m, circle->radius_m + min_separation_m);
+  if (signed_distance(a.at_start().position_m, shape) <= 0) return -std::numeric_limits<double>::infinity();
+  const Corners corners(shape);
+  const double squared = min_squared_distance(a, corners.all, std::numeric_limits<double>::infinity(),
+                                              [](double) { return false; });
+  const double distance_m = std::sqrt(squared) - kClearanceTolerance_m;
+  return distance_m > 0 ? distance_m - min_separation_m : -std::numeric_limits<double>::infinity();
+}
+
+bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    const double separation_m = circle->radius_m + min_separation_m;
+    const double far_m = separation_m + kClearanceTolerance_m + reach_m(a);
+    return (circle->centre_m - a.at_start().position_m).squaredNorm() > far_m * far_m ||
+           is_clear(a, circle->centre_m, separation_m);
+  }
+  const double far_m = std::max(min_separation_m, 0.0) + kClearanceTolerance_m;
+  const double distance_m = signed_distance(a.at_start().position_m, shape);
+  if (distance_m <= 0) return false;
+  if (distance_m >= far_m + reach_m(a)) return true;
+  const Corners corners(shape);
+  const double min_squared = far_m * far_m;
+  return min_squared_distance(a, corners.all, far_m, [=](double squared) { return squared < min_squared; }) >=
+         min_squared;
 }
 
 }  // namespace sidestep

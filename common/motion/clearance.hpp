@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/collision/shapes.hpp"
 #include "common/motion/trajectory.hpp"
 
 namespace sidestep {
@@ -24,5 +25,12 @@ double clearance_m(const Trajectory& a, const Trajectory& b, double min_separati
 /// The clearance of a trajectory from a static disc.
 double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
 [[nodiscard]] bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
+
+/// The clearance of a trajectory from a static shape: its minimum distance to the boundary, less
+/// `min_separation_m`; minus infinity if it enters the shape, except for circles, whose boundary has a
+/// distance inside too.
+double clearance_m(const Trajectory& a, const Shape& shape, double min_separation_m);
+/// Whether clearance_m(a, shape, min_separation_m) >= 0.
+[[nodiscard]] bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m);
 
 }  // namespace sidestep

@@ -58,13 +58,12 @@ Validity check_workspace_with_escape(const Version& version, const Trajectory& b
   relaxed.field.length_m = std::max(relaxed.field.length_m, 2 * (extent.x() + edge_distance_m));
   relaxed.field.width_m = std::max(relaxed.field.width_m, 2 * (extent.y() + edge_distance_m));
   const double min_separation_m = relaxed.radius_m + relaxed.margin_m;
-  for (Circle& obstacle : relaxed.obstacles) {
-    const double relaxed_m = relaxed_separation_m(remaining, remaining.start(),
-                                                  Trajectory::resting(remaining.start(), obstacle.centre_m),
-                                                  min_separation_m + obstacle.radius_m);
-    obstacle.radius_m = relaxed_m - min_separation_m;
-  }
-  return check_workspace(version.trajectory, relaxed);
+  if (!stays_on(relaxed.field, relaxed.radius_m, version.trajectory)) return Validity::kOutsideField;
+  const bool is_clear_of_all = std::ranges::all_of(rules.obstacles, [&](const Shape& obstacle) {
+    const double base_m = clearance_m(remaining, obstacle, 0) - kClearanceTolerance_m;
+    return is_clear(version.trajectory, obstacle, std::min(min_separation_m, base_m));
+  });
+  return is_clear_of_all ? Validity::kValid : Validity::kObstacle;
 }
 
 }  // namespace sidestep

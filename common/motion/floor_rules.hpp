@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/geometry/circle.hpp"
+#include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
 #include "common/motion/limits.hpp"
 
@@ -12,7 +12,7 @@ namespace sidestep {
 /// The constraints that every version has to satisfy regardless of the other robots.
 struct FloorRules {
   Field field;
-  std::vector<Circle> obstacles;
+  std::vector<Shape> obstacles;
   MotionLimits limits;
   double radius_m = 0.09;
   double margin_m = 0.014;

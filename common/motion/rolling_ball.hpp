@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/geometry/circle.hpp"
+#include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
 #include "common/motion/trajectory.hpp"
 
@@ -23,8 +23,10 @@ class RollingBall {
   void roll(double duration_s);
   /// Resolves contact with the walls around the field.
   void bounce_off_walls(const Field& field);
-  /// Resolves contact with a static disc.
-  void bounce_off(const Circle& obstacle) { bounce_off(obstacle, {0, 0}, settings_.wall_restitution); }
+  /// Resolves contact with a static obstacle.
+  void bounce_off(const Shape& obstacle) {
+    bounce_off(disc_facing(state_.position_m, obstacle), {0, 0}, settings_.wall_restitution);
+  }
   /// Resolves contact with a robot, whose motion is not affected.
   void bounce_off_robot(const Circle& robot, const Vec2& velocity_mps) {
     bounce_off(robot, velocity_mps, settings_.robot_restitution);

@@ -47,14 +47,11 @@ Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits) 
 
 Validity check_workspace(const Trajectory& trajectory, const FloorRules& rules) {
   if (!stays_on(rules.field, rules.radius_m, trajectory)) return Validity::kOutsideField;
-  const double reach = reach_m(trajectory);
-  for (const Circle& obstacle : rules.obstacles) {
-    const double min_separation_m = obstacle.radius_m + rules.radius_m + rules.margin_m;
-    const double far = reach + min_separation_m + kClearanceTolerance_m;
-    if ((obstacle.centre_m - trajectory.at_start().position_m).squaredNorm() > far * far) continue;
-    if (!is_clear(trajectory, obstacle.centre_m, min_separation_m)) return Validity::kObstacle;
-  }
-  return Validity::kValid;
+  const double min_separation_m = rules.radius_m + rules.margin_m;
+  const bool is_clear_of_all = std::ranges::all_of(rules.obstacles, [&](const Shape& obstacle) {
+    return is_clear(trajectory, obstacle, min_separation_m);
+  });
+  return is_clear_of_all ? Validity::kValid : Validity::kObstacle;
 }
 
 bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "deploy/shape_picture.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -15,8 +17,7 @@ const char* colour_of(Team team) { return team == Team::kBlue ? "#1f6feb" : "#e0
 
 /// SVG's y axis points down.
 std::string circle(const Vec2& centre_m, double radius_m, const std::string& style) {
-  return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", kPixelsPerMetre * centre_m.x(),
-                     -kPixelsPerMetre * centre_m.y(), kPixelsPerMetre * radius_m, style);
+  return svg_disc(centre_m, radius_m, style, kPixelsPerMetre);
 }
 
 /// Opponents follow their paths regardless of the robots, so their paths are drawn as specified.
@@ -81,9 +82,7 @@ std::string RunPicture::svg() const {
       "stroke='#8b949e' stroke-width='4'/>\n",
       -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2,
       width, height);
-  for (const Circle& obstacle : scenario_.obstacles) {
-    svg += circle(obstacle.centre_m, obstacle.radius_m, "fill='#57606a'");
-  }
+  for (const Shape& obstacle : scenario_.obstacles) svg += svg_obstacle(obstacle, kPixelsPerMetre);
   for (const OpponentSpec& opponent : scenario_.opponents) svg += path_of(opponent);
   std::string ends;
   for (const RobotSpec& robot : scenario_.robots) {

@@ -23,7 +23,7 @@ FloorScene floor_scene(const Scenario& scenario) {
   for (const RobotSpec& robot : scenario.robots) {
     if (!robot.is_absent) floor.robots.push_back(scene_robot(robot));
   }
-  for (const Circle& circle : scenario.obstacles) floor.cylinders.push_back({circle});
+  for (const Circle& circle : circles_of(scenario.obstacles)) floor.cylinders.push_back({circle});
   for (const OpponentSpec& spec : scenario.opponents)
     floor.cylinders.push_back(opponent({spec.path_m.front(), spec.radius_m}));
   if (scenario.ball) floor.ball = ball(scenario.ball->position_m, scenario.ball->velocity_mps);
@@ -42,7 +42,7 @@ FloorScene floor_scene(const Scenario& scenario, const World& world) {
     robot.angular_radps = body.angular_radps();
     floor.robots.push_back(robot);
   }
-  for (const Circle& circle : scenario.obstacles) floor.cylinders.push_back({circle});
+  for (const Circle& circle : circles_of(scenario.obstacles)) floor.cylinders.push_back({circle});
   for (const Circle& disc : world.opponents().discs()) floor.cylinders.push_back(opponent(disc));
   if (world.ball()) floor.ball = ball(world.ball()->state().position_m, world.ball()->state().velocity_mps);
   return floor;

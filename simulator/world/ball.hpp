@@ -15,7 +15,7 @@ class Ball {
   Ball(const State& state, const BallSettings& settings) : ball_(state, settings) {}
 
   /// Advances by kPhysicsStep. Robots are discs of robot_radius_m.
-  void step(const Field& field, std::span<const Circle> obstacles, std::span<const Body> robots,
+  void step(const Field& field, std::span<const Shape> obstacles, std::span<const Body> robots,
             double robot_radius_m);
 
   const State& state() const { return ball_.state(); }

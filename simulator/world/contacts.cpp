@@ -13,7 +13,7 @@ constexpr double kMaxPush_m = 0.02;  // how far contacts may push a pair togethe
 
 }  // namespace
 
-Contacts::Contacts(std::span<const Circle> obstacles, double robot_radius_m, double speed_limit_mps)
+Contacts::Contacts(std::span<const Shape> obstacles, double robot_radius_m, double speed_limit_mps)
     : obstacles_(obstacles.begin(), obstacles.end()),
       radius_m_(robot_radius_m),
       speed_limit_mps_(speed_limit_mps) {}
@@ -71,18 +71,16 @@ void Contacts::find_near_pairs(std::span<const Body> bodies) {
   for (std::uint32_t robot = 0; robot < count; ++robot) {
     if (!bodies[robot].is_on_floor()) continue;
     for (std::uint32_t k = 0; k < obstacles_.size(); ++k) {
-      const double limit = obstacles_[k].radius_m + radius_m_ + near_m;
-      if ((bodies[robot].position_m() - obstacles_[k].centre_m).squaredNorm() <= limit * limit) {
+      if (signed_distance(bodies[robot].position_m(), obstacles_[k]) <= radius_m_ + near_m)
         add(robot, count + k);
-      }
     }
   }
 }
 
 void Contacts::check_pair(Pair& pair, std::span<const Body> bodies) {
-  const bool is_robot = pair.second < bodies.size();
-  const Circle other = is_robot ? Circle{bodies[pair.second].position_m(), radius_m_}
-                                : obstacles_[pair.second - bodies.size()];
+  const Circle other = pair.second < bodies.size() ? Circle{bodies[pair.second].position_m(), radius_m_}
+                                                   : disc_facing(bodies[pair.first].position_m(),
+                                                                 obstacles_[pair.second - bodies.size()]);
   const Vec2 offset = bodies[pair.first].position_m() - other.centre_m;
   const double radii = radius_m_ + other.radius_m;
   const double max_distance_m = radii + std::max(totals_.min_clearance_m, 0.0);

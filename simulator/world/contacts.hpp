@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/circle.hpp"
+#include "common/collision/shapes.hpp"
 #include "idl/monitor.hpp"
 #include "simulator/world/body.hpp"
 
@@ -30,7 +30,7 @@ struct ContactTotals {
 /// Between two searches for neighbours, only pairs near enough to meet before the next search are checked.
 class Contacts {
  public:
-  Contacts(std::span<const Circle> obstacles, double robot_radius_m, double speed_limit_mps);
+  Contacts(std::span<const Shape> obstacles, double robot_radius_m, double speed_limit_mps);
 
   /// Checks the bodies after a physics step and separates those that touch, without restitution.
   void step(std::span<Body> bodies);
@@ -58,7 +58,7 @@ class Contacts {
   void check_pair(Pair& pair, std::span<const Body> bodies);
   static void separate(const Overlap& overlap, std::span<Body> bodies);
 
-  std::vector<Circle> obstacles_;
+  std::vector<Shape> obstacles_;
   double radius_m_;
   double speed_limit_mps_;
   std::vector<Pair> near_pairs_;

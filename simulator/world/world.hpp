@@ -130,7 +130,7 @@ class World {
   Odometry measure(std::size_t robot);
 
   Field field_;
-  std::vector<Circle> obstacles_;
+  std::vector<Shape> obstacles_;
   double radius_m_;
   double velocity_noise_mps_;
   Duration clock_bound_;

@@ -43,7 +43,8 @@ FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& 
         projected_disc(camera, DetectorSettings{}.ball, {position_m.x(), position_m.y(), radius_m}, radius_m);
     if (disc) labels.discs.push_back(*disc);
   }
-  for (const Circle& obstacle : scenario.obstacles) add_cylinder(camera, obstacle, labels.ignored);
+  for (const Circle& obstacle : circles_of(scenario.obstacles))
+    add_cylinder(camera, obstacle, labels.ignored);
   for (const OpponentSpec& opponent : scenario.opponents)
     add_cylinder(camera, {opponent.path_m.front(), opponent.radius_m}, labels.ignored);
   return labels;

@@ -159,7 +159,7 @@ State Tracker::ball_at(Time t, const msg::WorldState& world) const {
     const double step_s = std::min(remaining_s, kStep_s);
     remaining_s -= step_s;
     ball.roll(step_s);
-    for (const Circle& obstacle : settings_.floor_obstacles) ball.bounce_off(obstacle);
+    for (const Shape& obstacle : settings_.floor_obstacles) ball.bounce_off(obstacle);
     for (const msg::TrackedRobot& robot : world.robots()) {
       const Vec2 velocity_mps(robot.vx_mps(), robot.vy_mps());
       const Vec2 position_m = Vec2(robot.x_m(), robot.y_m()) - remaining_s * velocity_mps;

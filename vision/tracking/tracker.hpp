@@ -22,7 +22,7 @@ struct TrackerSettings {
   ObstacleTrackerSettings obstacles;
   // The ball bounces off the field's walls, these obstacles, and robots of this radius.
   Field field;
-  std::vector<Circle> floor_obstacles;
+  std::vector<Shape> floor_obstacles;
   double robot_radius_m = 0.09;
 
   /// A ball has no heading, rolls with friction, and changes velocity abruptly when it is kicked.

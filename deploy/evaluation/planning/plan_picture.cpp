@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "deploy/shape_picture.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr double kPixelsPerMetre = 100;
 double x_of(const Vec2& p) { return kPixelsPerMetre * p.x(); }
 /// SVG's y axis points down.
 double y_of(const Vec2& p) { return -kPixelsPerMetre * p.y(); }
-
-std::string points_of(const std::vector<Vec2>& path) {
-  std::string points;
-  for (const Vec2& p : path) points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(p));
-  return points;
-}
 
 std::string line(const Segment& s) {
   return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x_of(s.from_m), y_of(s.from_m), x_of(s.to_m),
@@ -31,26 +27,11 @@ std::string lines(const std::vector<Segment>& segments, const char* colour) {
 }
 
 std::string disc(const Vec2& centre, double radius_m, const char* style) {
-  return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", x_of(centre), y_of(centre),
-                     kPixelsPerMetre * radius_m, style);
-}
-
-std::string picture_of(const Circle& circle) {
-  return disc(circle.centre_m, circle.radius_m, "fill='#57606a'");
-}
-std::string picture_of(const ConvexPolygon& polygon) {
-  return fmt::format("<polygon points='{}' fill='#57606a'/>\n", points_of(polygon.corners_m));
-}
-std::string picture_of(const Box& box) {
-  return picture_of(
-      ConvexPolygon{{box.min_m, {box.max_m.x(), box.min_m.y()}, box.max_m, {box.min_m.x(), box.max_m.y()}}});
-}
-std::string picture_of(const Segment& segment) {
-  return fmt::format("<path d='{}' stroke='#57606a' stroke-width='4'/>\n", line(segment));
+  return svg_disc(centre, radius_m, style, kPixelsPerMetre);
 }
 
 std::string polyline(const std::vector<Vec2>& path, const char* style) {
-  return fmt::format("<polyline points='{}' fill='none' {}/>\n", points_of(path), style);
+  return fmt::format("<polyline points='{}' fill='none' {}/>\n", svg_points(path, kPixelsPerMetre), style);
 }
 
 }  // namespace
@@ -64,9 +45,8 @@ std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const P
       -width / 2, -height / 2, width, height, -width / 2, -height / 2, width, height);
   for (const ConvexPolygon& cell : drawing.cells)
     svg += fmt::format("<polygon points='{}' fill='#dafbe1' stroke='#2da44e' stroke-width='0.5'/>\n",
-                       points_of(cell.corners_m));
-  for (const Shape& shape : world.obstacles)
-    svg += std::visit([](const auto& s) { return picture_of(s); }, shape);
+                       svg_points(cell.corners_m, kPixelsPerMetre));
+  for (const Shape& shape : world.obstacles) svg += svg_obstacle(shape, kPixelsPerMetre);
   svg += lines(drawing.tree, "#1f6feb") + lines(drawing.goal_tree, "#bf8700");
   for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
   svg += polyline(path_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");

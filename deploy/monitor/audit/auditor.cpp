@@ -40,6 +40,7 @@ void advance_periodically(Bus& bus, Auditor& auditor) {
 
 Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
     : scenario_(scenario),
+      obstacles_(scenario.obstacles.begin(), scenario.obstacles.end()),
       input_(input),
       tracking_bound_m_(scenario.tracking_bound_m),
       clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),

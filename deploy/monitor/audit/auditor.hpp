@@ -14,6 +14,7 @@
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/audit/audit_shape.hpp"
 #include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/monitor/audit/audited_robot.hpp"
 #include "deploy/monitor/audit/disturbances.hpp"
@@ -197,6 +198,7 @@ class Auditor {
   static Evidence evidence_of(const KnownVersion& known);
 
   Scenario scenario_;
+  std::vector<AuditShape> obstacles_;  // as scenario_.obstacles
   AuditInput input_;
   double tracking_bound_m_;
   std::int64_t clock_bound_ns_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "common/config/obstacle_list.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 
 namespace sidestep {
@@ -82,24 +83,20 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
 
 void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
   const KnownVersion* base = robot.find(known.version.base());
-  for (const Circle& obstacle : scenario_.obstacles) {
-    const double required_m =
-        obstacle.radius_m + scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
-    const double reach_m = required_m + known.path.reach_m();
-    if (std::hypot(known.version.x_m() - obstacle.centre_m.x(), known.version.y_m() - obstacle.centre_m.y()) >
-        reach_m)
+  const double required_m = scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    const AuditShape& obstacle = obstacles_[i];
+    if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
       continue;
-    const ClosestApproach near =
-        closest_approach(known.path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m);
+    const ClosestApproach near = closest_approach(known.path, obstacle, required_m);
     if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) continue;
     const bool was_near =
         base && base->has_content &&
-        closest_approach(base->path, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m).distance_m <=
-            near.distance_m + 1e-6;
+        closest_approach(base->path, obstacle, required_m).distance_m <= near.distance_m + 1e-6;
     if (was_near) continue;
     report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
-           fmt::format("{:.6f} m from the centre of the obstacle at ({:.3f}, {:.3f}) m, {:.6f} m required",
-                       near.distance_m, obstacle.centre_m.x(), obstacle.centre_m.y(), required_m));
+           fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,
+                       obstacle_text(scenario_.obstacles[i]), required_m));
   }
 }
 

@@ -64,8 +64,10 @@ void Auditor::on_world(const msg::WorldState& world, Time now) {
         contact.second ? std::optional(robots_[*contact.second].id) : std::nullopt;
     if (is_excused_contact(first, second, at)) continue;
     report(AuditRule::kContact, first, nullptr, 0,
-           fmt::format("touches {}, as vision shows: {:.6f} m between the centres",
-                       second ? fmt::format("robot {}", *second) : "an obstacle", contact.distance_m));
+           second ? fmt::format("touches robot {}, as vision shows: {:.6f} m between the centres", *second,
+                                contact.distance_m)
+                  : fmt::format("touches an obstacle, as vision shows: its centre is {:.6f} m from the edge",
+                                contact.distance_m));
   }
   check_sights(world);
   disturbances_.update(at, observed_);

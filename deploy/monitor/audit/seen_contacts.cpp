@@ -23,7 +23,7 @@ double position_error_m(const VisionSpec& vision) {
 
 SeenContacts::SeenContacts(const Scenario& scenario)
     : radius_m_(scenario.radius_m),
-      obstacles_(scenario.obstacles),
+      obstacles_(scenario.obstacles.begin(), scenario.obstacles.end()),
       position_error_m_(position_error_m(scenario.vision)),
       acceleration_mps2_(std::max(scenario.limits.acceleration_mps2, scenario.limits.deceleration_mps2)),
       guaranteed_m_(scenario.margin_m - 2 * scenario.tracking_bound_m),
@@ -62,8 +62,8 @@ std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) 
     }
     const double allowance_m = std::max(0.0, position_error_m_ - guaranteed_to_obstacle_m_);
     for (std::size_t k = 0; a.is_new && k < obstacles_.size(); ++k) {
-      const double distance_m = (a.position_m - obstacles_[k].centre_m).norm();
-      if (observe({i, sights.size() + k}, distance_m, radius_m_ + obstacles_[k].radius_m, allowance_m))
+      const double distance_m = obstacles_[k].distance_m(a.position_m.x(), a.position_m.y());
+      if (observe({i, sights.size() + k}, distance_m, radius_m_, allowance_m))
         began.push_back({i, std::nullopt, distance_m});
     }
   }

@@ -11,6 +11,7 @@
 
 #include "common/config/scenario.hpp"
 #include "common/geometry/vec2.hpp"
+#include "deploy/monitor/audit/audit_shape.hpp"
 
 namespace sidestep {
 
@@ -26,7 +27,7 @@ struct Sight {
 struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
   std::optional<std::size_t> second;  ///< nullopt: an obstacle
-  double distance_m = 0;              ///< between the centres
+  double distance_m = 0;              ///< between the centres, or from the obstacle's edge
 };
 
 /// Finds contacts in what vision shows: robots at a distance below the sum of their radii. The protocol keeps
@@ -47,7 +48,7 @@ class SeenContacts {
   double robot_allowance_m(double time_difference_s) const;
 
   double radius_m_;
-  std::vector<Circle> obstacles_;
+  std::vector<AuditShape> obstacles_;
   double position_error_m_;
   double acceleration_mps2_;
   double guaranteed_m_, guaranteed_to_obstacle_m_;

@@ -30,7 +30,7 @@ const std::vector<OtherRule>& other_rules() {
       {"field.width_m", [](Scenario& s) { s.field.width_m += 1; }},
       {"max_opponent_speed_mps", [](Scenario& s) { s.max_opponent_speed_mps *= 0.7; }},
       {"obstacles", [](Scenario& s) {
-         s.obstacles.push_back({{0.5, 0.5}, 0.05});
+         s.obstacles.push_back(Circle{{0.5, 0.5}, 0.05});
        }}};
   return rules;
 }

@@ -14,15 +14,42 @@ namespace {
 
 constexpr std::size_t kGoals = 150;
 
+Shape sample_obstacle(const Field& field, Rng& rng) {
+  enum Kind { kCircle, kBox, kPolygon, kWall, kKinds };
+  const double y = rng.uniform(-0.4, 0.4) * field.width_m, x = rng.uniform(-0.4, 0.4) * field.length_m;
+  const Vec2 centre(x, y);
+  const double max_radius_m = std::min(0.4, field.width_m / 6);
+  const double first_m = rng.uniform(0.05, max_radius_m), second_m = rng.uniform(0.05, max_radius_m);
+  switch (static_cast<Kind>(rng.below(kKinds))) {
+    case kBox:
+      return Box{centre - Vec2(first_m, second_m), centre + Vec2(first_m, second_m)};
+    case kPolygon: {
+      ConvexPolygon polygon;
+      const std::uint64_t corners = 3 + rng.below(4);
+      for (std::uint64_t i = 0; i < corners; ++i) {
+        const double turns = (static_cast<double>(i) + rng.uniform(0, 0.6)) / static_cast<double>(corners);
+        polygon.corners_m.push_back(centre + rotated(Vec2(first_m, 0), 2 * std::numbers::pi * turns));
+      }
+      return polygon;
+    }
+    case kWall: {
+      const double half_length_m = rng.uniform(0.1, 0.3) * field.width_m;
+      const Vec2 along = rotated(Vec2(half_length_m, 0), rng.uniform(0, std::numbers::pi));
+      const Vec2 aside = 0.02 * Vec2(-along.y(), along.x()) / half_length_m;
+      return ConvexPolygon{
+          {centre - along - aside, centre + along - aside, centre + along + aside, centre - along + aside}};
+    }
+    default:
+      return Circle{centre, first_m};
+  }
+}
+
 void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
   const double area_m2 = static_cast<double>(robots) * 0.5 * std::pow(6, rng.uniform());
   const double aspect = rng.uniform(1, 2);
   scenario.field = {std::sqrt(area_m2 * aspect), std::sqrt(area_m2 / aspect)};
   for (std::uint64_t left = rng.chance(0.5) ? rng.below(6) : 0; left > 0; --left) {
-    const double max_radius_m = std::min(0.4, scenario.field.width_m / 6);
-    scenario.obstacles.push_back(
-        {{rng.uniform(-0.4, 0.4) * scenario.field.length_m, rng.uniform(-0.4, 0.4) * scenario.field.width_m},
-         rng.uniform(0.05, max_radius_m)});
+    scenario.obstacles.push_back(sample_obstacle(scenario.field, rng));
   }
 }
 

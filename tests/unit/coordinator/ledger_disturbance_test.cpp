@@ -159,7 +159,7 @@ TEST_CASE("robots in conflict may move apart but not closer together") {
 
 TEST_CASE("a robot pushed too close to an obstacle or off the field may move out but not farther in") {
   FloorRules rules = floor_for_tests();
-  rules.obstacles.push_back({{2, 0}, 0.5});
+  rules.obstacles.push_back(Circle{{2, 0}, 0.5});
   Ledger ledger(rules, {1});
   Version in = rest_version(1, {1.45, 0}), out = rest_version(1, {9.95, 3});
   ledger.register_robot(1, {&in, 1});

@@ -43,7 +43,7 @@ TEST_CASE("the counter counts an allocation") {
 TEST_CASE("a search allocates nothing once warm, with any neighbours") {
   Rng rng(1);
   FloorRules rules;
-  rules.obstacles = {{{0.5, 0.5}, 0.1}};
+  rules.obstacles = {Circle{{0.5, 0.5}, 0.1}};
   SafetySearch search(rules, {});
   TrajectoryIndex index;
   std::vector<std::vector<Version>> scenes(60);

@@ -14,7 +14,7 @@ constexpr Duration kHoldTime{50'000'000};
 FloorRules test_rules() {
   FloorRules rules;
   rules.field = {4, 4};
-  rules.obstacles.push_back({{1, 1}, 0.3});
+  rules.obstacles.push_back(Circle{{1, 1}, 0.3});
   return rules;
 }
 

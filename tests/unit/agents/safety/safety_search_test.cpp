@@ -92,7 +92,8 @@ TEST_CASE(
   Rng rng(seed);
   FloorRules rules;
   rules.field = {6, 6};
-  rules.obstacles = {{{0.5, 0.5}, 0.1}, {{-0.6, 0.2}, 0.15}};
+  rules.obstacles = {Circle{{0.5, 0.5}, 0.1}, Circle{{-0.6, 0.2}, 0.15}, Box{{0.4, -0.7}, {0.6, -0.5}},
+                     Segment{{-0.7, -0.6}, {-0.4, -0.8}}};
   SafetySearch search(rules, {});
   TrajectoryIndex index;
   std::size_t found = 0, blocked = 0;
@@ -129,7 +130,8 @@ TEST_CASE("the search finds the same candidates as a slow reference, on every in
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   FloorRules rules;
   rules.field = {2.2, 2.6};
-  rules.obstacles = {{{0.5, 0.5}, 0.1}, {{-0.6, 0.2}, 0.15}};
+  rules.obstacles = {Circle{{0.5, 0.5}, 0.1}, Circle{{-0.6, 0.2}, 0.15}, Box{{0.4, -0.7}, {0.6, -0.5}},
+                     Segment{{-0.7, -0.6}, {-0.4, -0.8}}};
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(seed, kernels.name);
     SafetySearch search(rules, {}, kernels);

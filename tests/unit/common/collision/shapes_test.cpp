@@ -59,6 +59,24 @@ TEST_CASE("the distance to a shape is the distance to the nearest point of its b
   }
 }
 
+TEST_CASE("the nearest point of the boundary and the facing disc are as far away as the shape") {
+  Rng rng(2);
+  int inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Shape shape = random_shape(rng, 2, 1);
+    const double y = rng.uniform(-2, 2), x = rng.uniform(-2, 2);
+    const Vec2 p(x, y), nearest = nearest_boundary_point(p, shape);
+    const double distance = signed_distance(p, shape);
+    inside += distance < 0;
+    CAPTURE(i, distance);
+    REQUIRE((nearest - p).norm() == Approx(std::abs(distance)).margin(1e-12));
+    REQUIRE(std::abs(signed_distance(nearest, shape)) < 1e-12);
+    const Circle facing = disc_facing(p, shape);
+    REQUIRE((facing.centre_m - p).norm() - facing.radius_m == Approx(distance).margin(1e-12));
+  }
+  CHECK(inside > 50);
+}
+
 TEST_CASE("the distance between a segment and a shape is the smallest over its points") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);

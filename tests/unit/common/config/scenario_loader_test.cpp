@@ -139,7 +139,7 @@ robots:
   REQUIRE(s.ball);
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
   REQUIRE(s.obstacles.size() == 1);
-  CHECK(s.obstacles[0].radius_m == 0.5);
+  CHECK(std::get<Circle>(s.obstacles[0]).radius_m == 0.5);
   CHECK(s.max_opponent_speed_mps == 2.5);
   REQUIRE(s.opponents.size() == 2);
   CHECK(s.opponents[0].radius_m == 0.3);

@@ -27,7 +27,7 @@ TEST_CASE("the rules are listed as keys and values of the scenario") {
         "robots.yellow: 6\n"
         "field.length_m: 9\n"
         "field.width_m: 6\n"
-        "obstacles: (0, 2) radius 0.25\n"
+        "obstacles: circle: {centre_m: [0, 2], radius_m: 0.25}\n"
         "limits.acceleration_mps2: 3\n"
         "limits.deceleration_mps2: 5\n"
         "limits.speed_mps: 2\n"
@@ -84,7 +84,7 @@ TEST_CASE("the largest roster and the most obstacles fit, and each obstacle coun
   Scenario scenario = scenario_of(text);
   const SharedRules rules(scenario);
   CHECK(rules.text().size() < msg::MAX_RULES_TEXT);
-  scenario.obstacles[700].radius_m += 1e-9;
+  std::get<Circle>(scenario.obstacles[700]).radius_m += 1e-9;
   const auto differences = rules.differences(SharedRules(scenario));
   REQUIRE(differences.size() == 1);
   CHECK(differences.front().key == "obstacles");

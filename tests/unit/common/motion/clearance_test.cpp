@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tests/catch.hpp"
+#include "tests/unit/common/collision/random_world.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::clearance_test {
@@ -148,6 +149,43 @@ TEST_CASE("a static disc equals a robot at rest") {
     REQUIRE(clearance_m(a, centre, 0.2) == clearance_m(a, resting, 0.2));
     REQUIRE(is_clear(a, centre, 0.2) == is_clear(a, resting, 0.2));
   }
+}
+
+TEST_CASE("the clearance from a shape equals the minimum of a dense search") {
+  const std::uint64_t seed = GENERATE(41u, 42u, 43u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  int entered = 0, clear = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Shape shape = random_shape(rng, 1, 0.4);
+    const Trajectory a = random_trajectory(rng);
+    const double seconds = to_seconds(a.end() - a.start());
+    const auto distance_at = [&](double t) {
+      return signed_distance(a.state_at(a.start() + from_seconds(t)).position_m, shape);
+    };
+    double smallest = distance_at(seconds);
+    constexpr int kSamples = 400;
+    for (int k = 0; k <= kSamples; ++k) smallest = std::min(smallest, distance_at(k * seconds / kSamples));
+    CAPTURE(i, smallest);
+    // Between two samples, a robot below 6 m/s comes nearer by less than this.
+    const double between_m = 6 * seconds / kSamples / 2;
+    const double computed = clearance_m(a, shape, 0);
+    const double separation = rng.uniform(0, 0.5);
+    if (smallest <= 0 && !std::holds_alternative<Circle>(shape)) {
+      ++entered;
+      REQUIRE(computed <= 0);
+      REQUIRE_FALSE(is_clear(a, shape, separation));
+      REQUIRE_FALSE(is_clear(a, shape, -1e9));
+      continue;
+    }
+    REQUIRE(computed <= smallest);
+    if (std::isfinite(computed)) REQUIRE(computed >= smallest - between_m - 2 * kClearanceTolerance_m);
+    if (!std::isfinite(computed)) REQUIRE(smallest <= between_m + 2 * kClearanceTolerance_m);
+    REQUIRE(is_clear(a, shape, separation) == (clearance_m(a, shape, separation) >= 0));
+    clear += is_clear(a, shape, separation) ? 1 : 0;
+  }
+  CHECK(entered > 100);
+  CHECK(clear > 100);
 }
 
 }  // namespace sidestep::clearance_test

@@ -13,7 +13,7 @@ const MotionLimits kLimits;
 TEST_CASE("violations of limits, rest and workspace are detected") {
   FloorRules rules;
   rules.field = {4, 3};
-  rules.obstacles = {{{1, 0}, 0.1}};
+  rules.obstacles = {Circle{{1, 0}, 0.1}};
   const Time t = time_from_ns(1'000'000'000);
   const auto stop_from = [&](Vec2 p, Vec2 v, Vec2 a, double seconds) {
     Trajectory trajectory(t, {p, v});

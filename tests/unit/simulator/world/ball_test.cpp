@@ -7,7 +7,7 @@
 
 namespace sidestep::ball_test {
 
-void roll(Ball& ball, int steps, const Field& field, std::span<const Circle> obstacles = {},
+void roll(Ball& ball, int steps, const Field& field, std::span<const Shape> obstacles = {},
           std::span<const Body> robots = {}) {
   for (int i = 0; i < steps; ++i) ball.step(field, obstacles, robots, 0.09);
 }
@@ -37,7 +37,8 @@ TEST_CASE("a ball bounces off every wall with less speed and never leaves the fi
 }
 
 TEST_CASE("a ball bounces off an obstacle") {
-  const Circle obstacle{{1, 0}, 0.1};
+  const Shape obstacle = GENERATE(Shape(Circle{{1, 0}, 0.1}), Shape(Box{{0.9, -1}, {1, 1}}),
+                                  Shape(ConvexPolygon{{{0.9, -1}, {2, 0}, {0.9, 1}}}));
   Ball ball({{0, 0}, {2, 0}}, {});
   roll(ball, 1000, {9, 6}, {&obstacle, 1});
   CHECK(ball.state().velocity_mps.x() < 0);

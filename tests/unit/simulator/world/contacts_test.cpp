@@ -14,7 +14,7 @@ constexpr double kRadius_m = 0.09;
 
 // Checks every pair in every step.
 struct BruteForce {
-  std::vector<Circle> obstacles;
+  std::vector<Shape> obstacles;
   ContactTotals totals;
   std::map<std::pair<std::size_t, std::size_t>, bool> touching;
 
@@ -36,8 +36,7 @@ struct BruteForce {
         check(a, b, (bodies[a].position_m() - bodies[b].position_m()).norm() - 2 * kRadius_m);
       }
       for (std::size_t k = 0; k < obstacles.size(); ++k) {
-        check(a, bodies.size() + k,
-              (bodies[a].position_m() - obstacles[k].centre_m).norm() - kRadius_m - obstacles[k].radius_m);
+        check(a, bodies.size() + k, signed_distance(bodies[a].position_m(), obstacles[k]) - kRadius_m);
       }
     }
   }
@@ -60,7 +59,12 @@ TEST_CASE("contacts, penetration and clearance match a check of every pair in ev
     const Vec2 p(x, y);
     if (is_free(p)) bodies.emplace_back(p, 0.0, BodySettings{});
   }
-  BruteForce slow{{{{side, side}, 0.2}, {{-side / 2 - 0.5, 0}, 0.3}}, {}, {}};
+  const double beside = side / 2 + 0.6;
+  BruteForce slow{{Circle{{side, side}, 0.2}, Circle{{-beside, 0}, 0.3}, Box{{beside, -1}, {beside + 0.3, 1}},
+                   ConvexPolygon{{{-1, beside}, {0.5, beside + 0.1}, {0, beside + 0.5}}},
+                   Segment{{-1, -beside}, {1, -beside - 0.3}}},
+                  {},
+                  {}};
   Contacts contacts(slow.obstacles, kRadius_m, BodySettings{}.speed_mps);
   std::vector<Vec2> desired_accelerations(bodies.size(), Vec2(0, 0));
   for (int step = 0; step < 3000; ++step) {
@@ -116,7 +120,8 @@ TEST_CASE("robots that separate and meet again touch twice") {
 }
 
 TEST_CASE("an obstacle stops a robot and does not move") {
-  const Circle obstacle{{1, 0}, 0.25};
+  const Shape obstacle = GENERATE(Shape(Circle{{1, 0}, 0.25}), Shape(Box{{0.75, -1}, {1, 1}}),
+                                  Shape(Segment{{0.75, -1}, {0.75, 1}}));
   std::vector<Body> bodies{Body({0, 0}, 0, {})};
   Contacts contacts({&obstacle, 1}, kRadius_m, BodySettings{}.speed_mps);
   for (int step = 0; step < 3000; ++step) {

@@ -80,13 +80,13 @@ TEST_CASE("the robots in each camera's image are found at their positions") {
 
 TEST_CASE("unknown obstacles are reported and the scenario's are not") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
-  scenario.obstacles = {{{-1, -1}, 0.2}, {{-2.2, 1.2}, 0.15}, {{-0.6, 1.2}, 0.1}};
+  const Circle unknown{{-2.2, 1.2}, 0.15};
+  scenario.obstacles = {Circle{{-1, -1}, 0.2}, unknown, Circle{{-0.6, 1.2}, 0.1}};
   const msg::CameraImage image = image_of(scenario, 0);
   msg::DetectionFrame frame;
   ImageReader all_known = image_reader(scenario, {});
   REQUIRE(all_known.read(image, kNow, {}, frame));
   CHECK(frame.obstacle_count() == 0);
-  const Circle unknown = scenario.obstacles[1];
   scenario.obstacles.erase(scenario.obstacles.begin() + 1);
   ImageReader one_unknown = image_reader(scenario, {});
   REQUIRE(one_unknown.read(image, kNow, {}, frame));

@@ -101,7 +101,7 @@ TEST_CASE("every wrong grant is reported under its rule") {
   SECTION("through an obstacle") {
     require_violation(AuditRule::kObstacle, [](History& h) {
       const Switch s = example_switch(h);
-      const Vec2 centre_m = h.scenario.obstacles.front().centre_m;
+      const Vec2 centre_m = sidestep::centre_m(h.scenario.obstacles.front());
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
     });
   }

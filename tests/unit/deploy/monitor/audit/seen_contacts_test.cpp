@@ -12,7 +12,7 @@ constexpr std::int64_t kFrame_ns = 16'666'667;
 Scenario scenario(double noise_m) {
   Scenario s;
   s.vision.position_noise_m = noise_m;
-  s.obstacles.push_back({Vec2(0, 3), 0.1});
+  s.obstacles.push_back(Circle{Vec2(0, 3), 0.1});
   return s;
 }
 

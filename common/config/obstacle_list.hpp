@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/collision/shapes.hpp"
+#include "common/config/yaml_map.hpp"
+
+namespace sidestep {
+
+/// Reads the optional list `obstacles` of a scenario or of a world of `sidestep plan`; see
+/// deploy/scenarios/README.md. A wall becomes a rectangle for each of its pieces. Throws ConfigError for the
+/// first error.
+[[nodiscard]] std::vector<Shape> read_obstacles(YamlMap& map, std::size_t max_count);
+
+/// An element of that list: "circle: {centre_m: [0, 0], radius_m: 1}".
+[[nodiscard]] std::string obstacle_text(const Shape& shape);
+
+}  // namespace sidestep
