@@ -32,6 +32,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       assignment_(robot, robot_.goals),
       desired_heading_rad_(robot_.start_heading_rad),
+      planner_(make_driving_planner(robot_.planner.empty() ? scenario.planner : robot_.planner)),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
 }

@@ -173,7 +173,8 @@ class Agent {
   bool robot_has_moved_ = false;  // ever, by a granted version
   double desired_heading_rad_;
   ZoneMap zones_;
-  std::optional<RoutePlanner> route_planner_;  // to route_target_m_
+  NamedPlanner planner_;
+  std::optional<RoutePlanner> route_planner_;  // to route_target_m_; uses planner_
   Vec2 route_target_m_{0, 0};
   std::vector<TemporaryObstacle> temporary_obstacles_;  // of route_planner_
   std::optional<RouteObstacles> route_obstacles_;       // of route_planner_

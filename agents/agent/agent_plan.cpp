@@ -87,7 +87,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const State at_start = base.trajectory.state_at(start);
   update_route_planner(target, now);
   const Route straight{target, (target - at_start.position_m).norm(), target};
-  const Route route = route_planner_->route_from(at_start.position_m).value_or(straight);
+  const Route route = route_planner_->route_from(at_start.position_m, rng_).value_or(straight);
   route_length_m_ = route.length_m;
   update_blockage(route, now);
   if (!route.reaches_goal && ends_at(route.end_m)) return std::nullopt;

@@ -63,7 +63,7 @@ void Agent::update_route_planner(const Vec2& target, Time now) {
   temporary_obstacles_ = std::move(found);
   route_target_m_ = target;
   route_obstacles_.emplace(rules_.obstacles, zones_, temporary_obstacles_);
-  route_planner_.emplace(route_obstacles_->shapes(), rules_.field, rules_.radius_m, rules_.margin_m,
+  route_planner_.emplace(planner_, route_obstacles_->shapes(), rules_.field, rules_.radius_m, rules_.margin_m,
                          settings_.extra_clearance_m, target);
 }
 

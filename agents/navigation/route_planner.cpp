@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "agents/planning/domain/nearest_reachable.hpp"
-#include "agents/planning/robust.hpp"
 
 namespace sidestep {
 namespace {
@@ -24,20 +23,23 @@ Budget cycle_budget() {
 
 }  // namespace
 
-RoutePlanner::RoutePlanner(std::vector<Shape> obstacles, const Field& field, double radius_m, double margin_m,
-                           double extra_clearance_m, const Vec2& goal_m)
+RoutePlanner::RoutePlanner(const NamedPlanner& planner, std::vector<Shape> obstacles, const Field& field,
+                           double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
     : world_(std::move(obstacles)),
       field_(field),
       radius_m_(radius_m),
       required_m_(radius_m + margin_m),
       preferred_m_(required_m_ + extra_clearance_m),
       clearance_m_(preferred_m_),
-      goal_m_(goal_m) {}
+      goal_m_(goal_m),
+      planner_(&planner),
+      domain_settings_(planner.domain_settings(field, radius_m)) {}
 
 /// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
 DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
   const double extra = 2 * (clearance_m_ - radius_m_);
-  return {world_, {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal};
+  return {world_,          {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal,
+          domain_settings_};
 }
 
 bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
@@ -50,31 +52,45 @@ std::optional<std::size_t> RoutePlanner::obstacle_on_goal() const {
   return static_cast<std::size_t>(nearest.obstacle);
 }
 
-bool RoutePlanner::follow(const Plan<Vec2>& plan) {
+bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
   next_waypoint_ = 0;
   waypoints_.clear();
-  if (plan.arrives()) waypoints_.assign(plan.states.begin() + 1, plan.states.end());
+  if (!plan.arrives()) return false;
+  const auto take = [this](const Plan<Vec2>& path) {
+    waypoints_.assign(path.states.begin() + 1, path.states.end());
+  };
+  if (planner_->is_shortest) {
+    take(plan);
+  } else {
+    Plan<Vec2> smoothed = plan;
+    LeaderFollower<DiscDomain>().smooth(domain, smoothed);
+    take(smoothed);
+  }
   return !waypoints_.empty();
 }
 
-bool RoutePlanner::replan(const Vec2& start, double clearance) {
+bool RoutePlanner::replan(const Vec2& start, double clearance, Rng& rng) {
   clearance_m_ = clearance;
-  return follow(plan_robustly(planner_, domain(start, goal_m_), start, cycle_budget(), rng_));
+  const DiscDomain here = domain(start, goal_m_);
+  return follow(here, planner_->plan(here, start, cycle_budget(), rng));
 }
 
-bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance) {
+bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& rng) {
   clearance_m_ = clearance;
   const DiscDomain here = domain(start, goal_m_);
   const std::optional<Vec2> nearest = nearest_reachable(here, start, goal_m_);
-  return nearest && follow(planner_.plan(here.with_goal_at(*nearest), start, cycle_budget(), rng_));
+  if (!nearest) return false;
+  const DiscDomain there = here.with_goal_at(*nearest);
+  return follow(there, planner_->plan(there, start, cycle_budget(), rng));
 }
 
-std::optional<Route> RoutePlanner::route_from(const Vec2& start) {
+std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   if (auto route = continued_from(start)) return route;
   // The goal may be nearer to an obstacle than preferred.
   const bool is_near = world_.nearest(goal_m_).distance_m <= preferred_m_ && !obstacle_on_goal();
-  const bool is_found = (!is_near && replan(start, preferred_m_)) || replan(start, required_m_) ||
-                        replan_to_nearest(start, preferred_m_) || replan_to_nearest(start, required_m_);
+  const bool is_found = (!is_near && replan(start, preferred_m_, rng)) || replan(start, required_m_, rng) ||
+                        replan_to_nearest(start, preferred_m_, rng) ||
+                        replan_to_nearest(start, required_m_, rng);
   if (!is_found) return way_out(start);
   min_remaining_m_ = remaining_length_m(start);
   return route(min_remaining_m_);

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "agents/planning/visibility/lazy_visibility.hpp"
+#include "agents/planning/named_planner.hpp"
+#include "agents/planning/smoothing/leader_follower.hpp"
 #include "common/collision/obstacle_world.hpp"
 #include "common/random/rng.hpp"
 
@@ -19,7 +20,7 @@ struct Route {
   bool is_way_out = false;  ///< leads straight out of several obstacles, whatever lies between
 };
 
-/// Plans shortest routes around obstacles to one goal, once per control cycle. A route is kept while it is
+/// Plans routes around obstacles to one goal, once per control cycle. A route is kept while it is
 /// free and its remaining length does not grow, so that the robot does not alternate between two routes of
 /// equal length. If obstacles cover or enclose the goal, routes lead to the nearest place that can be
 /// reached.
@@ -29,14 +30,15 @@ class RoutePlanner {
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
   /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, and `extra_clearance_m` more
-  /// where a route with that clearance exists.
-  RoutePlanner(std::vector<Shape> obstacles, const Field& field, double radius_m, double margin_m,
-               double extra_clearance_m, const Vec2& goal_m);
+  /// where a route with that clearance exists. The planner of the paths, one of kDrivingPlanners, has
+  /// to outlive this object; it may have planned for others before.
+  RoutePlanner(const NamedPlanner& planner, std::vector<Shape> obstacles, const Field& field, double radius_m,
+               double margin_m, double extra_clearance_m, const Vec2& goal_m);
 
   /// Returns nullopt if no route is found within the sample budget of a cycle. A start that is too near an
   /// obstacle may be left on a straight line away from it. If several obstacles leave no such line, the route
   /// leads straight to the nearest free position.
-  [[nodiscard]] std::optional<Route> route_from(const Vec2& start_m);
+  [[nodiscard]] std::optional<Route> route_from(const Vec2& start_m, Rng& rng);
   /// Whether the straight line between two points is free for the robot, in the world of the last route. A
   /// line that leads out of an obstacle counts as free.
   [[nodiscard]] bool is_line_free(const Vec2& from_m, const Vec2& to_m) const;
@@ -47,10 +49,10 @@ class RoutePlanner {
   DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
   /// Plans a new route that keeps this distance from obstacles. Returns whether one leads to the goal or, if
   /// an obstacle covers it, to the nearest place.
-  bool replan(const Vec2& start_m, double clearance_m);
+  bool replan(const Vec2& start_m, double clearance_m, Rng& rng);
   /// Plans a new route to the nearest place that can be reached.
-  bool replan_to_nearest(const Vec2& start_m, double clearance_m);
-  bool follow(const Plan<Vec2>& plan);
+  bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
+  bool follow(const DiscDomain& domain, const Plan<Vec2>& plan);
   /// The straight line from a blocked start to the nearest free position.
   std::optional<Route> way_out(const Vec2& start_m);
   /// The rest of the last route, if that is still free and not longer.
@@ -64,8 +66,8 @@ class RoutePlanner {
   double required_m_, preferred_m_;  // distance of the robot's centre from obstacles
   double clearance_m_;               // of the last route
   Vec2 goal_m_;
-  LazyVisibility planner_;
-  Rng rng_{0};                   // required by the planner interface; never sampled
+  const NamedPlanner* planner_;
+  DiscDomainSettings domain_settings_;
   std::vector<Vec2> waypoints_;  // of the last route
   std::size_t next_waypoint_ = 0;
   double min_remaining_m_ = 0;  // smallest remaining length of the last route so far

@@ -24,8 +24,9 @@ struct RobotSpec {
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;     ///< visited in order; may be empty
-  Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
+  std::vector<Goal> goals;   ///< visited in order; may be empty
+  std::string planner;       ///< of its routes, see agents/planning/named_planner.hpp; empty: the scenario's
+  Duration clock_offset{0};  ///< robot's clock - host's clock, at the start
   double clock_drift_ppm = 0;  ///< by which the robot's clock gains on the host's
   bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate
 };
@@ -104,6 +105,7 @@ struct Scenario {
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   double clock_bound_s = SafetyBudget{}.clock_bound_s;
   Duration cycle{16'666'667};
+  std::string planner = "lazy-visibility";  ///< of the routes of all robots
   double goal_tolerance_m = 0.02;
   double time_limit_s = 60;  ///< for all robots to arrive, counted from when the coordinator starts to grant
   VisionSpec vision;

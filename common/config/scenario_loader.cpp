@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "common/config/planner_names.hpp"
 #include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
 #include "common/config/yaml_document.hpp"
@@ -175,6 +176,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   read_network(map, scenario.network);
   read_restart(map, scenario.restart);
   map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
+  map.read("planner", kDrivingPlanners, scenario.planner);
   // `sidestep test` reads these (deploy/fault/plan).
   for (const char* key : {"faults", "expect"})
     scenario.has_test_keys = map.find(key).IsDefined() || scenario.has_test_keys;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "common/config/planner_names.hpp"
 #include "common/config/scenario_check.hpp"
 
 namespace sidestep {
@@ -39,6 +40,7 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
   map.read("heading_rad", kAngle_rad, robot.start_heading_rad);
   map.read_ms("clock_offset_ms", kClockOffset_ms, robot.clock_offset);
   map.read("absent", robot.is_absent);
+  map.read("planner", kDrivingPlanners, robot.planner);
 
   const YamlLocation goals = map.location_of("goals_m");
   const YAML::Node goal_list = map.find("goals_m");

@@ -158,6 +158,16 @@ void YamlMap::read(const std::string& key, Range range, Vec2& value) {
   value = {numbers[0], numbers[1]};
 }
 
+void YamlMap::read(const std::string& key, std::span<const std::string_view> names, std::string& value) {
+  const YAML::Node node = find(key);
+  if (!node.IsDefined()) return;
+  const YamlLocation location = location_of(key);
+  const std::string name = text_from(node, location);
+  if (std::ranges::find(names, name) == names.end())
+    location.fail(fmt::format("expected one of {}, got \"{}\"", fmt::join(names, ", "), name.substr(0, 40)));
+  value = name;
+}
+
 void YamlMap::read(const std::string& key, bool& value) {
   const YAML::Node node = find(key);
   if (!node.IsDefined()) return;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 #include <yaml-cpp/yaml.h>
 
@@ -51,6 +53,8 @@ class YamlMap {
   void read(const std::string& key, Range range, double& value);
   void read(const std::string& key, Range range, int& value);
   void read(const std::string& key, Range range, Vec2& value);
+  /// One of these names.
+  void read(const std::string& key, std::span<const std::string_view> names, std::string& value);
   /// true or false.
   void read(const std::string& key, bool& value);
   /// For keys that end in _ms.

@@ -101,12 +101,20 @@ int finish(const SimulateOptions& options, Report& report, const RunPicture& pic
   return exit_code(report.verdict());
 }
 
+Scenario scenario_of(const SimulateOptions& options) {
+  Scenario scenario = load_scenario(options.scenario_file);
+  if (options.planner.empty()) return scenario;
+  scenario.planner = options.planner;
+  for (RobotSpec& robot : scenario.robots) robot.planner.clear();
+  return scenario;
+}
+
 }  // namespace
 
 int simulate_trial(const SimulateOptions& options, bool has_faults) {
   const auto begin = steady_clock::now();
   std::optional<Scenario> scenario;
-  if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
+  if (!options.scenario_file.empty()) scenario = scenario_of(options);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
   const Trial trial = sample_trial(options.seed, duration, scenario, has_faults);
   fmt::print("commit {}\n{}\n", kBuildCommit, scene_summary(trial.scenario));
@@ -128,7 +136,7 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
 }
 
 int simulate(const SimulateOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario_file);
+  const Scenario scenario = scenario_of(options);
   fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
   if (scenario.has_test_keys)
     fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",

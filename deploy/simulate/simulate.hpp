@@ -17,6 +17,7 @@ struct SimulateOptions {
   std::uint64_t seed = 1;
   LogLevel log_level = LogLevel::kWarning;  ///< of the simulated processes, on stderr
   std::optional<double> seconds;            ///< overrides the scenario's time limit
+  std::string planner;                      ///< of all robots' paths; empty: the scenario's
 };
 
 /// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the

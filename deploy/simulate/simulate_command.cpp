@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
@@ -56,6 +57,10 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
       .add_option("--seconds", run.seconds,
                   "time limit [the scenario's]; with --faults: duration of a run [60]")
       .check(positive());
+  command
+      .add_option("--planner", run.planner, "planner of all robots' paths [the scenario's]")
+      .check(one_of({kDrivingPlanners.begin(), kDrivingPlanners.end()}))
+      .needs(scenario);
   const Option faults =
       command
           .add_option("--faults", options->faults,

@@ -48,7 +48,7 @@ int plan(const PlanOptions& options) {
   const ObstacleWorld obstacles(world.obstacles);
   const NamedPlanner planner = make_planner(options.planner);
   const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m,
-                          planner.domain_settings(world));
+                          planner.domain_settings(world.field, world.radius_m));
   Rng rng(options.seed);
   const Budget budget{.until = now() + from_seconds(options.milliseconds * 1e-3), .clock = now};
   const Time begin = now();

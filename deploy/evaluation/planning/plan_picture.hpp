@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "deploy/evaluation/planning/named_planner.hpp"
+#include "agents/planning/named_planner.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 
 namespace sidestep {

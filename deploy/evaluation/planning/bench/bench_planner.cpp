@@ -7,10 +7,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "agents/planning/named_planner.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "deploy/evaluation/planning/bench/ompl_planner.hpp"
 #include "deploy/evaluation/planning/cpu_clock.hpp"
-#include "deploy/evaluation/planning/named_planner.hpp"
 
 namespace sidestep {
 namespace {
@@ -31,7 +31,7 @@ class OwnPlanner {
   OwnPlanner(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed)
       : world_(world),
         planner_(make_planner(name)),
-        domain_settings_(planner_.domain_settings(world.world)),
+        domain_settings_(planner_.domain_settings(world.world.field, world.world.radius_m)),
         rng_(seed) {}
 
   /// Limited only by time, as the peers are, except for anytime planners. Making the domain is part of the

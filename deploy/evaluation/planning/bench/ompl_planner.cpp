@@ -17,9 +17,9 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
+#include "agents/planning/named_planner.hpp"
 #include "deploy/evaluation/planning/bench/free_fraction.hpp"
 #include "deploy/evaluation/planning/cpu_clock.hpp"
-#include "deploy/evaluation/planning/named_planner.hpp"
 
 namespace sidestep {
 namespace {
@@ -156,7 +156,7 @@ OmplPlanner::OmplPlanner(const std::string& name, const BenchmarkWorld& world, s
   }
   space->setBounds(bounds);
   parts_->name = name;
-  parts_->range_m = namesake_range_m(world.world);
+  parts_->range_m = namesake_range_m(world.world.field, world.world.radius_m);
   parts_->cell_m = Vec2(half_m[0], half_m[1]) / 10;
   parts_->space = space;
   parts_->information = std::make_shared<ob::SpaceInformation>(space);

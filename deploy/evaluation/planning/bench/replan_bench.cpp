@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <numeric>
 
+#include "agents/planning/named_planner.hpp"
 #include "deploy/evaluation/planning/cpu_clock.hpp"
 #include "deploy/evaluation/planning/distribution.hpp"
-#include "deploy/evaluation/planning/named_planner.hpp"
 #include "deploy/evaluation/planning/replan_course.hpp"
 
 namespace sidestep {
@@ -33,7 +33,7 @@ std::vector<Row> rows_of(const std::vector<std::string>& names, std::uint64_t se
 
 void replan(const ReplanCourse& course, Row& row) {
   // The settings depend only on the field and the radius, whose defaults are those of the benchmark's worlds.
-  const DiscDomainSettings settings = row.planner.domain_settings(PlanWorld{});
+  const DiscDomainSettings settings = row.planner.domain_settings(PlanWorld{}.field, PlanWorld{}.radius_m);
   const double begin_us = cpu_us();
   const DiscDomain domain = course.domain(settings);
   const Plan<Vec2>& plan = row.planner.plan(domain, course.start_m(), kReplanBudget, row.rng);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <queue>
 
+#include "common/config/planner_names.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
@@ -11,6 +12,15 @@ namespace sidestep::route_planner_test {
 
 constexpr double kRadius_m = 0.09, kMargin_m = 0.02;
 const Field kField{4, 4};
+
+const NamedPlanner& shortest() {
+  static const NamedPlanner planner = make_driving_planner("lazy-visibility");
+  return planner;
+}
+Rng& random() {
+  static Rng rng(1);
+  return rng;
+}
 
 std::vector<Shape> shapes_of(const std::vector<Circle>& circles) { return {circles.begin(), circles.end()}; }
 
@@ -53,8 +63,8 @@ double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, cons
 }
 
 TEST_CASE("without obstacles the route is straight") {
-  RoutePlanner planner({}, kField, kRadius_m, kMargin_m, 0, {1, 1});
-  const auto route = planner.route_from({-1, -1});
+  RoutePlanner planner(shortest(), {}, kField, kRadius_m, kMargin_m, 0, {1, 1});
+  const auto route = planner.route_from({-1, -1}, random());
   REQUIRE(route);
   CHECK(route->waypoint_m == Vec2(1, 1));
   CHECK(route->length_m == Approx(2 * std::sqrt(2.0)));
@@ -70,17 +80,17 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
     obstacles.push_back({{x, y}, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
-  RoutePlanner planner(shapes_of(obstacles), kField, kRadius_m, kMargin_m, 0, goal);
+  RoutePlanner planner(shortest(), shapes_of(obstacles), kField, kRadius_m, kMargin_m, 0, goal);
   const double reference = grid_length(obstacles, start, goal, kRadius_m + kMargin_m + 0.02);
   REQUIRE(reference < 20);
   Vec2 here = start;
   double travelled = 0;
-  auto route = planner.route_from(here);
+  auto route = planner.route_from(here, random());
   REQUIRE(route);
   CHECK(route->length_m <= reference);
   const double promised = route->length_m;
   for (int leg = 0; leg < 50 && (here - goal).norm() > 1e-9; ++leg) {
-    route = planner.route_from(here);
+    route = planner.route_from(here, random());
     REQUIRE(route);
     for (int k = 0; k <= 100; ++k) {
       const Vec2 p = here + k / 100.0 * (route->waypoint_m - here);
@@ -139,10 +149,10 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
     }
     CAPTURE(seed, middle.transpose());
     const double clearance = kRadius_m + kMargin_m;
-    RoutePlanner planner(obstacles, kField, kRadius_m, kMargin_m, 0, middle);
+    RoutePlanner planner(shortest(), obstacles, kField, kRadius_m, kMargin_m, 0, middle);
     const double reference = nearest_on_grid(obstacles, start, middle, clearance + 0.005);
     REQUIRE(reference < 4);
-    const auto route = planner.route_from(start);
+    const auto route = planner.route_from(start, random());
     REQUIRE(route);
     CHECK(route->reaches_goal == (route->end_m == middle));
     CHECK((route->end_m - middle).norm() <= reference + 0.03);
@@ -151,7 +161,7 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
     // The whole route is free, and is kept.
     Vec2 here = start;
     for (int leg = 0; leg < 50 && (here - route->end_m).norm() > 1e-9; ++leg) {
-      const auto next = planner.route_from(here);
+      const auto next = planner.route_from(here, random());
       REQUIRE(next);
       CHECK(next->end_m == route->end_m);
       for (int k = 0; k <= 100; ++k) {
@@ -168,8 +178,8 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
 
 TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
   const Vec2 goal(0, 0.2 + kRadius_m + kMargin_m + 0.01);
-  RoutePlanner planner({Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
-  const auto route = planner.route_from({0, -1});
+  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
+  const auto route = planner.route_from({0, -1}, random());
   REQUIRE(route);
   CHECK(route->reaches_goal);
   CHECK(route->end_m == goal);
@@ -177,9 +187,9 @@ TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
 }
 
 TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
-  RoutePlanner planner({Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
+  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);
-  const auto route = planner.route_from(near);
+  const auto route = planner.route_from(near, random());
   REQUIRE(route);
   CHECK(route->waypoint_m != Vec2(1, 0));
   CHECK((route->waypoint_m - near).dot(near) >= 0);
@@ -187,15 +197,15 @@ TEST_CASE("a robot too near an obstacle may leave it but not drive through it") 
 
 TEST_CASE("of two equally long routes the robot keeps one while it drifts sideways") {
   const Circle middle{{0, 0}, 0.3};
-  RoutePlanner planner({middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  RoutePlanner planner(shortest(), {middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   Vec2 here(-1.5, 1e-3);
-  const auto first = planner.route_from(here);
+  const auto first = planner.route_from(here, random());
   REQUIRE(first);
   const double side = first->waypoint_m.y();
   REQUIRE(side != 0);
   double length = first->length_m;
   while ((here - Vec2(1.5, 0)).norm() > 0.05) {
-    const auto route = planner.route_from(here);
+    const auto route = planner.route_from(here, random());
     REQUIRE(route);
     CHECK(route->waypoint_m.y() * side >= 0);
     CHECK(route->length_m < length + 0.05);
@@ -208,11 +218,11 @@ TEST_CASE("of two equally long routes the robot keeps one while it drifts sidewa
 }
 
 TEST_CASE("a robot that was pushed off its route replans") {
-  RoutePlanner planner({Circle{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
-  const auto above = planner.route_from({-0.5, 0.3});
+  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  const auto above = planner.route_from({-0.5, 0.3}, random());
   REQUIRE(above);
   CHECK(above->waypoint_m.y() > 0);
-  const auto below = planner.route_from({-0.5, -0.3});
+  const auto below = planner.route_from({-0.5, -0.3}, random());
   REQUIRE(below);
   CHECK(below->waypoint_m.y() < 0);
 }
@@ -220,8 +230,9 @@ TEST_CASE("a robot that was pushed off its route replans") {
 TEST_CASE("routes keep the extra clearance where it exists and do without where it does not") {
   const double extra_clearance = 0.05;
   const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
-  RoutePlanner generous(shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance, {1.5, 0.3});
-  const auto wide_route = generous.route_from({-1.5, 0.3});
+  RoutePlanner generous(shortest(), shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance,
+                        {1.5, 0.3});
+  const auto wide_route = generous.route_from({-1.5, 0.3}, random());
   REQUIRE(wide_route);
   CHECK((wide_route->waypoint_m - pair[0].centre_m).norm() >= 0.2 + kRadius_m + kMargin_m + extra_clearance);
 
@@ -233,8 +244,8 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
   const double gap = 2 * (0.45 + 0.08 - 0.3);
   REQUIRE(gap / 2 > kRadius_m + kMargin_m);
   REQUIRE(gap / 2 < kRadius_m + kMargin_m + 0.15);
-  RoutePlanner wall_planner(shapes_of(wall), kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
-  const auto narrow_route = wall_planner.route_from({-1.5, 0.2});
+  RoutePlanner wall_planner(shortest(), shapes_of(wall), kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
+  const auto narrow_route = wall_planner.route_from({-1.5, 0.2}, random());
   REQUIRE(narrow_route);
   for (const Circle& disc : wall)
     CHECK((narrow_route->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
@@ -242,13 +253,44 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
 
 TEST_CASE("a start in obstacles that overlap is left towards the nearest free position") {
   // On the line between both centres, every way out of one leads deeper into the other at first.
-  RoutePlanner planner({Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,
-                       kRadius_m, kMargin_m, 0, {0, 0});
-  const auto route = planner.route_from({0, 0});
+  RoutePlanner planner(shortest(), {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}},
+                       kField, kRadius_m, kMargin_m, 0, {0, 0});
+  const auto route = planner.route_from({0, 0}, random());
   REQUIRE(route);
   CHECK_FALSE(route->reaches_goal);
   CHECK(std::abs(route->end_m.x()) < 0.01);
   CHECK(route->end_m.y() == Approx(std::sqrt(0.51 * 0.51 - 0.25 * 0.25)).margin(0.01));
+}
+
+TEST_CASE("by every planner, a robot that follows its route gets around obstacles to its goal") {
+  const auto name = std::string(GENERATE(from_range(kDrivingPlanners.begin(), kDrivingPlanners.end())));
+  CAPTURE(name);
+  const NamedPlanner named = make_driving_planner(name);
+  Rng rng(3);
+  for (int scene = 0; scene < 5; ++scene) {
+    std::vector<Shape> obstacles;
+    for (int i = 0; i < 6; ++i)
+      obstacles.emplace_back(Circle{{rng.uniform(-0.8, 0.8), rng.uniform(-1.5, 1.5)}, rng.uniform(0.1, 0.3)});
+    obstacles.emplace_back(Box{{-0.1, -1}, {0.1, 1}});
+    const Vec2 goal(1.6, rng.uniform(-1.5, 1.5));
+    const ObstacleWorld world(obstacles);
+    RoutePlanner planner(named, obstacles, kField, kRadius_m, kMargin_m, 0.02, goal);
+    Vec2 here(-1.6, rng.uniform(-1.5, 1.5));
+    int steps = 0;
+    while ((here - goal).norm() > 0.01 && steps < 500) {
+      const auto route = planner.route_from(here, rng);
+      REQUIRE(route);
+      REQUIRE(route->reaches_goal);
+      const Vec2 next = here + std::min(0.05, (route->waypoint_m - here).norm()) *
+                                   (route->waypoint_m - here).stableNormalized();
+      REQUIRE_FALSE(world.touches(here, next, kRadius_m + kMargin_m - 1e-9));
+      here = next;
+      ++steps;
+    }
+    CAPTURE(scene, steps);
+    CHECK((here - goal).norm() <= 0.01);
+    CHECK(steps < 200);
+  }
 }
 
 }  // namespace sidestep::route_planner_test

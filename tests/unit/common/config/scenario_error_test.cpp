@@ -138,6 +138,9 @@ TEST_CASE("numbers that are out of range, infinite or NaN are rejected with thei
                  "expected at least delay_min_ms");
   check_rejected(kRobot + "coordinators: 0\n", 2, "expected 1 to 8, got 0");
   check_rejected(kRobot + "coordinators: 9\n", 2, "expected 1 to 8, got 9");
+  check_rejected(kRobot + "planner: dijkstra\n", 2, "expected one of lazy-visibility, errt");
+  check_rejected(kRobot + "planner: prm\n", 2, "got \"prm\"");
+  check_rejected(kRobot + "planner: [errt]\n", 2, "expected text");
   check_rejected(kRobot + "ball: {position_m: [5, 0]}\n", 2,
                  "ball.position_m: expected a position on the field");
   check_rejected("robots:\n- id: 1024\n  start_m: [0, 0]\n  goals_m: [[1, 0]]\n", 2,

@@ -87,6 +87,7 @@ command_loss: 0.25
 network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
 restart: [agents, vision]
 coordinators: 3
+planner: errt
 ball: {position_m: [1, 2], velocity_mps: [-1, 0.5]}
 obstacles: [{centre_m: [3, 3], radius_m: 0.5}]
 opponents:
@@ -94,7 +95,7 @@ opponents:
   - {radius_m: 0.2, speed_mps: 2.5, path_m: [[-4, 0]]}
 max_opponent_speed_mps: 2.5
 robots:
-  - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, clock_offset_ms: -1.25, absent: true, goals_m: [[2, 2], [-2, 2, -0.5]]}
+  - {id: 7, team: yellow, start_m: [1, -2], heading_rad: 1.5, clock_offset_ms: -1.25, absent: true, planner: grid-a-star, goals_m: [[2, 2], [-2, 2, -0.5]]}
   - {id: 3, start_m: [0, 0], goals_m: [[1, 1]]}
 )",
                                     "x.yaml");
@@ -135,6 +136,7 @@ robots:
   CHECK(s.network.delay_min == Duration{0});
   CHECK(s.network.delay_max == std::chrono::milliseconds(150));
   CHECK(s.coordinators == 3);
+  CHECK(s.planner == "errt");
   CHECK((s.restart.agents && s.restart.vision && !s.restart.coordinator));
   REQUIRE(s.ball);
   CHECK(s.ball->velocity_mps == Vec2(-1, 0.5));
@@ -149,6 +151,8 @@ robots:
   CHECK(s.robots[0].id == 3);
   CHECK_FALSE(s.robots[0].is_absent);
   CHECK(s.robots[1].is_absent);
+  CHECK(s.robots[0].planner.empty());
+  CHECK(s.robots[1].planner == "grid-a-star");
   CHECK(s.robots[1].clock_offset == -std::chrono::microseconds(1250));
   const RobotSpec* seven = find_robot(s, 7);
   REQUIRE(seven != nullptr);

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "agents/planning/named_planner.hpp"
 #include "deploy/evaluation/planning/bench/ompl_planner.hpp"
 #include "deploy/evaluation/planning/bench/query_bench.hpp"
-#include "deploy/evaluation/planning/named_planner.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::bench_planner_test {

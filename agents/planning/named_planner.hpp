@@ -7,7 +7,9 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/domain/plan.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "common/collision/shapes.hpp"
+#include "common/geometry/field.hpp"
+#include "common/random/rng.hpp"
 
 namespace sidestep {
 
@@ -34,19 +36,24 @@ struct NamedPlanner {
   /// Valid until the planner's next plan.
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
   std::function<PlanDrawing()> draw;
-  std::function<DiscDomainSettings(const PlanWorld&)> domain_settings;
+  std::function<DiscDomainSettings(const Field&, double radius_m)> domain_settings;
+  bool is_shortest = false;  ///< its paths cannot be shortened
 };
 
 /// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.
 inline constexpr double kNamesakeGoalBias = 0.05;
 /// A fifth of the diagonal of the rectangle of the robot's possible positions: OMPL's default range
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
-[[nodiscard]] double namesake_range_m(const PlanWorld& world);
+[[nodiscard]] double namesake_range_m(const Field& field, double radius_m);
 
 /// The names that make_planner knows, in the order of the benchmark's table.
 const std::vector<std::string>& planner_names();
 
 /// Throws std::invalid_argument for another name.
 [[nodiscard]] NamedPlanner make_planner(const std::string& name);
+
+/// One of kDrivingPlanners. Throws std::invalid_argument for another name: planners that keep a graph of one
+/// world, or use up all time, cannot drive a robot among others.
+[[nodiscard]] NamedPlanner make_driving_planner(const std::string& name);
 
 }  // namespace sidestep

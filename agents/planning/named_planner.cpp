@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/evaluation/planning/named_planner.hpp"
+#include "agents/planning/named_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
+#include "common/config/planner_names.hpp"
 
 namespace sidestep {
 namespace {
@@ -73,18 +75,18 @@ PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cell
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 
 /// The settings that the agents use.
-DiscDomainSettings shipped_domain(const PlanWorld&) { return {}; }
+DiscDomainSettings shipped_domain(const Field&, double) { return {}; }
 /// Settings that match OMPL: its range, and uniform samples only.
-DiscDomainSettings namesake_domain(const PlanWorld& world) {
-  return {.step_m = namesake_range_m(world), .contact_probability = 0};
+DiscDomainSettings namesake_domain(const Field& field, double radius) {
+  return {.step_m = namesake_range_m(field, radius), .contact_probability = 0};
 }
-DiscDomainSettings border_sampling_domain(const PlanWorld& world) {
-  DiscDomainSettings settings = namesake_domain(world);
+DiscDomainSettings border_sampling_domain(const Field& field, double radius) {
+  DiscDomainSettings settings = namesake_domain(field, radius);
   settings.contact_probability = DiscDomainSettings{}.contact_probability;
   return settings;
 }
 
-using DomainSettings = DiscDomainSettings (*)(const PlanWorld&);
+using DomainSettings = DiscDomainSettings (*)(const Field&, double);
 using Factory = std::function<NamedPlanner()>;
 
 template <typename Planner, typename... Arguments>
@@ -98,6 +100,7 @@ Factory factory(DomainSettings domain_settings, Arguments... arguments) {
     };
     named.draw = [planner] { return drawing_of(*planner); };
     named.domain_settings = domain_settings;
+    named.is_shortest = std::is_same_v<Planner, LazyVisibility> || std::is_same_v<Planner, FullVisibility>;
     return named;
   };
 }
@@ -189,11 +192,15 @@ const std::vector<Entry>& entries() {
   return all;
 }
 
+[[noreturn]] void refuse(const std::string& name, const std::vector<std::string>& expected) {
+  throw std::invalid_argument(
+      fmt::format("planner: expected one of {}, got \"{}\"", fmt::join(expected, ", "), name));
+}
+
 }  // namespace
 
-double namesake_range_m(const PlanWorld& world) {
-  return 0.2 *
-         std::hypot(world.field.length_m - 2 * world.radius_m, world.field.width_m - 2 * world.radius_m);
+double namesake_range_m(const Field& field, double radius) {
+  return 0.2 * std::hypot(field.length_m - 2 * radius, field.width_m - 2 * radius);
 }
 
 const std::vector<std::string>& planner_names() {
@@ -206,16 +213,19 @@ const std::vector<std::string>& planner_names() {
 }
 
 NamedPlanner make_planner(const std::string& name) {
-  for (const Entry& entry : entries()) {
-    if (entry.name != name) continue;
-    NamedPlanner planner = entry.make();
-    planner.name = name;
-    planner.kind = entry.kind;
-    planner.baseline = entry.baseline;
-    return planner;
-  }
-  throw std::invalid_argument(
-      fmt::format("planner: expected one of {}, got \"{}\"", fmt::join(planner_names(), ", "), name));
+  const auto entry = std::ranges::find(entries(), name, &Entry::name);
+  if (entry == entries().end()) refuse(name, planner_names());
+  NamedPlanner planner = entry->make();
+  planner.name = name;
+  planner.kind = entry->kind;
+  planner.baseline = entry->baseline;
+  return planner;
+}
+
+NamedPlanner make_driving_planner(const std::string& name) {
+  if (!std::ranges::count(kDrivingPlanners, name))
+    refuse(name, {kDrivingPlanners.begin(), kDrivingPlanners.end()});
+  return make_planner(name);
 }
 
 }  // namespace sidestep

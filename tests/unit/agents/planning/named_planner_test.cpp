@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/evaluation/planning/named_planner.hpp"
+#include "agents/planning/named_planner.hpp"
 
 #include <algorithm>
 
+#include "common/config/planner_names.hpp"
 #include "deploy/evaluation/planning/plan_picture.hpp"
 #include "tests/catch.hpp"
 
@@ -22,7 +23,7 @@ class Planning {
 
   Plan<Vec2> plan(const PlanQuery& query) {
     const DiscDomain domain(obstacles_, world_.field, world_.radius_m, query.start_m, query.goal_m,
-                            planner_.domain_settings(world_));
+                            planner_.domain_settings(world_.field, world_.radius_m));
     return planner_.plan(domain, query.start_m, {}, rng_);
   }
   PlanDrawing draw() const { return planner_.draw(); }
@@ -74,12 +75,21 @@ TEST_CASE("a planner with another name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 
+TEST_CASE("planners that keep a graph of one world, or use up all time, cannot drive a robot") {
+  for (const std::string_view name : kDrivingPlanners)
+    CHECK(make_driving_planner(std::string(name)).kind == PlannerKind::kForAnyWorld);
+  CHECK(make_driving_planner("errt").name == "errt");
+  CHECK_THROWS_WITH(make_driving_planner("prm"), ContainsSubstring("prm") && ContainsSubstring("errt"));
+  CHECK_THROWS_AS(make_driving_planner("anytime"), std::invalid_argument);
+  CHECK_THROWS_AS(make_driving_planner("dijkstra"), std::invalid_argument);
+}
+
 TEST_CASE("OMPL's namesakes sample uniformly, remember nothing and do not try the straight line") {
   const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
   CAPTURE(name);
   const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);
-  CHECK(make_planner(name).domain_settings(u).contact_probability == 0);
-  CHECK(make_planner(name).domain_settings(u).step_m == Approx(0.2 * 9.8 * std::sqrt(2.0)));
+  CHECK(make_planner(name).domain_settings(u.field, u.radius_m).contact_probability == 0);
+  CHECK(make_planner(name).domain_settings(u.field, u.radius_m).step_m == Approx(0.2 * 9.8 * std::sqrt(2.0)));
   CHECK(count_straight(name, empty) < 10);
   Planning planning(name, u);
   for (const PlanQuery& query : u.queries) planning.plan(query);
@@ -93,9 +103,9 @@ TEST_CASE("each addition to a namesake is a row of its own") {
   CHECK(count_straight(name + "+straight-line", empty) == 20);
   CHECK(count_straight(name + "+border-samples", empty) < 10);
   CHECK(count_straight(name + "+cache", empty) < 10);
-  CHECK(make_planner(name + "+border-samples").domain_settings(u).contact_probability > 0);
-  CHECK(make_planner(name + "+cache").domain_settings(u).contact_probability == 0);
-  CHECK(make_planner(name + "+straight-line").domain_settings(u).contact_probability == 0);
+  CHECK(make_planner(name + "+border-samples").domain_settings(u.field, u.radius_m).contact_probability > 0);
+  CHECK(make_planner(name + "+cache").domain_settings(u.field, u.radius_m).contact_probability == 0);
+  CHECK(make_planner(name + "+straight-line").domain_settings(u.field, u.radius_m).contact_probability == 0);
   Planning cached(name + "+cache", u), straight(name + "+straight-line", u);
   for (const PlanQuery& query : u.queries) {
     cached.plan(query);
