@@ -78,6 +78,7 @@ void Agent::on_orders(std::shared_ptr<const OrderPage> page) {
   if (assignment_.zone_revision() == zone_revision) return;
   zones_ = ZoneMap(assignment_.zones());
   route_planner_.reset();
+  has_route_ = false;
 }
 
 void Agent::choose_order() {
@@ -89,7 +90,7 @@ void Agent::choose_order() {
 void Agent::begin_if_changed(std::uint64_t revision) {
   if (assignment_.revision() == revision) return;
   arrived_ = false;
-  route_planner_.reset();
+  has_route_ = false;
   blockage_.reset();
   blocked_since_.reset();
   if (assignment_.goal()) desired_heading_rad_ = goal().heading_rad.value_or(robot_.start_heading_rad);
@@ -199,7 +200,7 @@ OrderReport Agent::order_report() const {
 }
 
 std::optional<double> Agent::remaining_s() const {
-  if (!assignment_.goal() || blocked_since_ || (!route_planner_ && !arrived_)) return std::nullopt;
+  if (!assignment_.goal() || blocked_since_ || (!has_route_ && !arrived_)) return std::nullopt;
   if (assignment_.report().progress.is_finished()) return 0;
   double length_m = route_length_m_, seconds = 0;
   Vec2 from = goal().position_m;

@@ -174,12 +174,11 @@ class Agent {
   double desired_heading_rad_;
   ZoneMap zones_;
   NamedPlanner planner_;
-  std::optional<RoutePlanner> route_planner_;  // to route_target_m_; uses planner_
-  Vec2 route_target_m_{0, 0};
-  std::vector<TemporaryObstacle> temporary_obstacles_;  // of route_planner_
-  std::optional<RouteObstacles> route_obstacles_;       // of route_planner_
-  double route_length_m_ = 0;                           // of the last route
-  std::optional<Blockage> blockage_;                    // of the target
+  std::optional<RouteObstacles> route_obstacles_;
+  std::optional<RoutePlanner> route_planner_;  // by planner_, around route_obstacles_
+  bool has_route_ = false;                     // since the target or zones have changed
+  double route_length_m_ = 0;                  // of the last route
+  std::optional<Blockage> blockage_;           // of the target
   std::optional<Time> blocked_since_;
   Time last_plan_{};
   DeadlockRecovery recovery_;

@@ -86,7 +86,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   }
   const State at_start = base.trajectory.state_at(start);
   update_route_planner(target, now);
-  const Route straight{target, (target - at_start.position_m).norm(), target};
+  const Route straight{target, target, (target - at_start.position_m).norm(), target};
   const Route route = route_planner_->route_from(at_start.position_m, rng_).value_or(straight);
   route_length_m_ = route.length_m;
   update_blockage(route, now);
@@ -135,7 +135,11 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
     steering.add_stationary(zone.centre_m, zone.radius_m + required_separation_m());
   const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));
   last_steered_start_ = start;
-  return steering.choose(at_start, route.waypoint_m, route.end_m, elapsed_s, last_choice_);
+  // On an open floor, the rest of the way is as short from anywhere. Walls would lie between.
+  const bool is_open = std::ranges::all_of(
+      rules_.obstacles, [](const Shape& obstacle) { return std::holds_alternative<Circle>(obstacle); });
+  return steering.choose(at_start, route.waypoint_m, is_open ? route.end_m : route.following_m, elapsed_s,
+                         last_choice_);
 }
 
 AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route,

@@ -53,18 +53,14 @@ std::vector<TemporaryObstacle> Agent::temporary_obstacles(const Vec2& target, Ti
 }
 
 void Agent::update_route_planner(const Vec2& target, Time now) {
-  std::vector<TemporaryObstacle> found = temporary_obstacles(target, now);
-  const auto is_same = [](const TemporaryObstacle& a, const TemporaryObstacle& b) {
-    return a.circle.centre_m == b.circle.centre_m && a.circle.radius_m == b.circle.radius_m &&
-           a.robot == b.robot;
-  };
-  if (route_planner_ && target == route_target_m_ && std::ranges::equal(found, temporary_obstacles_, is_same))
-    return;
-  temporary_obstacles_ = std::move(found);
-  route_target_m_ = target;
-  route_obstacles_.emplace(rules_.obstacles, zones_, temporary_obstacles_);
-  route_planner_.emplace(planner_, route_obstacles_->shapes(), rules_.field, rules_.radius_m, rules_.margin_m,
-                         settings_.extra_clearance_m, target);
+  if (!route_planner_) {
+    route_obstacles_.emplace(rules_.obstacles, zones_);
+    route_planner_.emplace(planner_, route_obstacles_->world(), rules_.field, rules_.radius_m,
+                           rules_.margin_m, settings_.extra_clearance_m);
+  }
+  const bool has_changed = route_obstacles_->set_temporary(temporary_obstacles(target, now));
+  if (has_changed || !has_route_ || target != route_planner_->goal_m()) route_planner_->begin(target);
+  has_route_ = true;
 }
 
 void Agent::update_blockage(const Route& route, Time now) {
@@ -73,7 +69,7 @@ void Agent::update_blockage(const Route& route, Time now) {
     blocked_since_.reset();
     return;
   }
-  const std::optional<std::size_t> obstacle = route_planner_->obstacle_on_goal();
+  const std::optional<ObstacleId> obstacle = route_planner_->obstacle_on_goal();
   blockage_ = obstacle ? route_obstacles_->blockage(*obstacle) : Blockage{};
   blockage_->nearest_m = route.end_m;
   if (!blocked_since_) blocked_since_ = now;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "agents/navigation/zone_map.hpp"
-#include "common/collision/shapes.hpp"
+#include "common/collision/obstacle_world.hpp"
 #include "common/protocol/order.hpp"
 
 namespace sidestep {
@@ -17,19 +18,27 @@ struct TemporaryObstacle {
   std::optional<RobotId> robot{};
 };
 
-/// Everything that routes lead around.
+/// Everything that routes lead around. Temporary obstacles are moved; the world is not built again.
 class RouteObstacles {
  public:
-  RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones,
-                 std::span<const TemporaryObstacle> temporary);
+  RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones);
 
-  const std::vector<Shape>& shapes() const { return shapes_; }
-  /// What the obstacle with this index in shapes() is, if it covers a goal. Without the nearest place.
-  Blockage blockage(std::size_t index) const { return blockages_[index]; }
+  /// Replaces the temporary obstacles. Returns whether any has changed.
+  bool set_temporary(std::span<const TemporaryObstacle> obstacles);
+
+  const ObstacleWorld& world() const { return world_; }
+  /// What the obstacle is, if it covers a goal. Without the nearest place.
+  Blockage blockage(ObstacleId obstacle) const;
 
  private:
-  std::vector<Shape> shapes_;
-  std::vector<Blockage> blockages_;
+  struct Temporary {
+    TemporaryObstacle obstacle;
+    ObstacleId id;
+  };
+
+  ObstacleWorld world_;
+  std::map<ObstacleId, Blockage> zones_;
+  std::vector<Temporary> temporary_;
 };
 
 }  // namespace sidestep

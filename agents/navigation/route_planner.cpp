@@ -2,7 +2,6 @@
 #include "agents/navigation/route_planner.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "agents/planning/domain/nearest_reachable.hpp"
 
@@ -23,22 +22,28 @@ Budget cycle_budget() {
 
 }  // namespace
 
-RoutePlanner::RoutePlanner(const NamedPlanner& planner, std::vector<Shape> obstacles, const Field& field,
-                           double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
-    : world_(std::move(obstacles)),
+RoutePlanner::RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
+                           double radius_m, double margin_m, double extra_clearance_m)
+    : world_(&obstacles),
       field_(field),
       radius_m_(radius_m),
       required_m_(radius_m + margin_m),
       preferred_m_(required_m_ + extra_clearance_m),
       clearance_m_(preferred_m_),
-      goal_m_(goal_m),
       planner_(&planner),
       domain_settings_(planner.domain_settings(field, radius_m)) {}
+
+void RoutePlanner::begin(const Vec2& goal_m) {
+  goal_m_ = goal_m;
+  clearance_m_ = preferred_m_;
+  waypoints_.clear();
+  next_waypoint_ = 0;
+}
 
 /// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
 DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
   const double extra = 2 * (clearance_m_ - radius_m_);
-  return {world_,          {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal,
+  return {*world_,         {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal,
           domain_settings_};
 }
 
@@ -46,10 +51,10 @@ bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
   return domain(from, to).check(from, to);
 }
 
-std::optional<std::size_t> RoutePlanner::obstacle_on_goal() const {
-  const Nearest nearest = world_.nearest(goal_m_);
+std::optional<ObstacleId> RoutePlanner::obstacle_on_goal() const {
+  const Nearest nearest = world_->nearest(goal_m_);
   if (nearest.distance_m > required_m_) return std::nullopt;
-  return static_cast<std::size_t>(nearest.obstacle);
+  return nearest.obstacle;
 }
 
 bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
@@ -87,7 +92,7 @@ bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& r
 std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   if (auto route = continued_from(start)) return route;
   // The goal may be nearer to an obstacle than preferred.
-  const bool is_near = world_.nearest(goal_m_).distance_m <= preferred_m_ && !obstacle_on_goal();
+  const bool is_near = world_->nearest(goal_m_).distance_m <= preferred_m_ && !obstacle_on_goal();
   const bool is_found = (!is_near && replan(start, preferred_m_, rng)) || replan(start, required_m_, rng) ||
                         replan_to_nearest(start, preferred_m_, rng) ||
                         replan_to_nearest(start, required_m_, rng);
@@ -103,7 +108,12 @@ std::optional<Route> RoutePlanner::way_out(const Vec2& start) {
   if (!here.start_is_blocked()) return std::nullopt;
   const std::vector<Vec2> positions = here.free_positions_near_goal();
   if (positions.empty()) return std::nullopt;
-  return Route{positions.front(), (positions.front() - start).norm(), positions.front(), false, true};
+  return Route{positions.front(),
+               positions.front(),
+               (positions.front() - start).norm(),
+               positions.front(),
+               false,
+               true};
 }
 
 std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
@@ -125,7 +135,9 @@ double RoutePlanner::remaining_length_m(const Vec2& start) const {
 }
 
 Route RoutePlanner::route(double length) const {
-  return {waypoints_[next_waypoint_], length, waypoints_.back(), waypoints_.back() == goal_m_, false};
+  const Vec2& following = waypoints_[std::min(next_waypoint_ + 1, waypoints_.size() - 1)];
+  return {waypoints_[next_waypoint_],   following, length, waypoints_.back(),
+          waypoints_.back() == goal_m_, false};
 }
 
 }  // namespace sidestep

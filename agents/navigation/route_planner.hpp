@@ -14,13 +14,14 @@ namespace sidestep {
 /// The next waypoint of a route.
 struct Route {
   Vec2 waypoint_m{0, 0};
-  double length_m = 0;  ///< of the remaining route
-  Vec2 end_m{0, 0};     ///< the goal, or the nearest place that can be reached
+  Vec2 following_m{0, 0};  ///< where the route leads from the waypoint
+  double length_m = 0;     ///< of the remaining route
+  Vec2 end_m{0, 0};        ///< the goal, or the nearest place that can be reached
   bool reaches_goal = true;
   bool is_way_out = false;  ///< leads straight out of several obstacles, whatever lies between
 };
 
-/// Plans routes around obstacles to one goal, once per control cycle. A route is kept while it is
+/// Plans routes around obstacles, once per control cycle. A route is kept while it is
 /// free and its remaining length does not grow, so that the robot does not alternate between two routes of
 /// equal length. If obstacles cover or enclose the goal, routes lead to the nearest place that can be
 /// reached.
@@ -30,10 +31,14 @@ class RoutePlanner {
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
   /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, and `extra_clearance_m` more
-  /// where a route with that clearance exists. The planner of the paths, one of kDrivingPlanners, has
-  /// to outlive this object; it may have planned for others before.
-  RoutePlanner(const NamedPlanner& planner, std::vector<Shape> obstacles, const Field& field, double radius_m,
-               double margin_m, double extra_clearance_m, const Vec2& goal_m);
+  /// where a route with that clearance exists. The planner of the paths, one of kDrivingPlanners, and the
+  /// obstacles have to outlive this object.
+  RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
+               double radius_m, double margin_m, double extra_clearance_m);
+
+  /// Gives up the last route: for another goal, or when obstacles have changed. Call it before all others.
+  void begin(const Vec2& goal_m);
+  const Vec2& goal_m() const { return goal_m_; }
 
   /// Returns nullopt if no route is found within the sample budget of a cycle. A start that is too near an
   /// obstacle may be left on a straight line away from it. If several obstacles leave no such line, the route
@@ -42,8 +47,8 @@ class RoutePlanner {
   /// Whether the straight line between two points is free for the robot, in the world of the last route. A
   /// line that leads out of an obstacle counts as free.
   [[nodiscard]] bool is_line_free(const Vec2& from_m, const Vec2& to_m) const;
-  /// The index of the obstacle that covers the goal most deeply; nullopt if none does.
-  [[nodiscard]] std::optional<std::size_t> obstacle_on_goal() const;
+  /// The obstacle that covers the goal most deeply; nullopt if none does.
+  [[nodiscard]] std::optional<ObstacleId> obstacle_on_goal() const;
 
  private:
   DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
@@ -60,12 +65,12 @@ class RoutePlanner {
   double remaining_length_m(const Vec2& start_m) const;
   Route route(double length_m) const;
 
-  ObstacleWorld world_;
+  const ObstacleWorld* world_;
   Field field_;
   double radius_m_;
   double required_m_, preferred_m_;  // distance of the robot's centre from obstacles
   double clearance_m_;               // of the last route
-  Vec2 goal_m_;
+  Vec2 goal_m_{0, 0};
   const NamedPlanner* planner_;
   DiscDomainSettings domain_settings_;
   std::vector<Vec2> waypoints_;  // of the last route

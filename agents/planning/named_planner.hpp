@@ -52,8 +52,7 @@ const std::vector<std::string>& planner_names();
 /// Throws std::invalid_argument for another name.
 [[nodiscard]] NamedPlanner make_planner(const std::string& name);
 
-/// One of kDrivingPlanners. Throws std::invalid_argument for another name: planners that keep a graph of one
-/// world, or use up all time, cannot drive a robot among others.
+/// One of kDrivingPlanners. Throws std::invalid_argument for another name.
 [[nodiscard]] NamedPlanner make_driving_planner(const std::string& name);
 
 }  // namespace sidestep

@@ -25,7 +25,7 @@ struct RobotSpec {
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
   std::vector<Goal> goals;   ///< visited in order; may be empty
-  std::string planner;       ///< of its routes, see agents/planning/named_planner.hpp; empty: the scenario's
+  std::string planner{};     ///< of its routes, see agents/planning/named_planner.hpp; empty: the scenario's
   Duration clock_offset{0};  ///< robot's clock - host's clock, at the start
   double clock_drift_ppm = 0;  ///< by which the robot's clock gains on the host's
   bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate

@@ -22,6 +22,18 @@ Rng& random() {
   return rng;
 }
 
+struct World {
+  ObstacleWorld world;
+};
+struct PlannerInWorld : World, RoutePlanner {
+  PlannerInWorld(const NamedPlanner& named, const std::vector<Shape>& obstacles, const Field& field,
+                 double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
+      : World{ObstacleWorld(obstacles)},
+        RoutePlanner(named, world, field, radius_m, margin_m, extra_clearance_m) {
+    begin(goal_m);
+  }
+};
+
 std::vector<Shape> shapes_of(const std::vector<Circle>& circles) { return {circles.begin(), circles.end()}; }
 
 /// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm, whose paths are at most 8.3 % longer
@@ -63,7 +75,7 @@ double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, cons
 }
 
 TEST_CASE("without obstacles the route is straight") {
-  RoutePlanner planner(shortest(), {}, kField, kRadius_m, kMargin_m, 0, {1, 1});
+  PlannerInWorld planner(shortest(), {}, kField, kRadius_m, kMargin_m, 0, {1, 1});
   const auto route = planner.route_from({-1, -1}, random());
   REQUIRE(route);
   CHECK(route->waypoint_m == Vec2(1, 1));
@@ -80,7 +92,7 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
     obstacles.push_back({{x, y}, rng.uniform(0.05, 0.25)});
   }
   const Vec2 start(-1.8, -1.8), goal(1.8, 1.8);
-  RoutePlanner planner(shortest(), shapes_of(obstacles), kField, kRadius_m, kMargin_m, 0, goal);
+  PlannerInWorld planner(shortest(), shapes_of(obstacles), kField, kRadius_m, kMargin_m, 0, goal);
   const double reference = grid_length(obstacles, start, goal, kRadius_m + kMargin_m + 0.02);
   REQUIRE(reference < 20);
   Vec2 here = start;
@@ -149,7 +161,7 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
     }
     CAPTURE(seed, middle.transpose());
     const double clearance = kRadius_m + kMargin_m;
-    RoutePlanner planner(shortest(), obstacles, kField, kRadius_m, kMargin_m, 0, middle);
+    PlannerInWorld planner(shortest(), obstacles, kField, kRadius_m, kMargin_m, 0, middle);
     const double reference = nearest_on_grid(obstacles, start, middle, clearance + 0.005);
     REQUIRE(reference < 4);
     const auto route = planner.route_from(start, random());
@@ -178,7 +190,7 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
 
 TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
   const Vec2 goal(0, 0.2 + kRadius_m + kMargin_m + 0.01);
-  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
+  PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
   const auto route = planner.route_from({0, -1}, random());
   REQUIRE(route);
   CHECK(route->reaches_goal);
@@ -187,7 +199,7 @@ TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
 }
 
 TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
-  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
+  PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);
   const auto route = planner.route_from(near, random());
   REQUIRE(route);
@@ -197,7 +209,7 @@ TEST_CASE("a robot too near an obstacle may leave it but not drive through it") 
 
 TEST_CASE("of two equally long routes the robot keeps one while it drifts sideways") {
   const Circle middle{{0, 0}, 0.3};
-  RoutePlanner planner(shortest(), {middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  PlannerInWorld planner(shortest(), {middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   Vec2 here(-1.5, 1e-3);
   const auto first = planner.route_from(here, random());
   REQUIRE(first);
@@ -218,7 +230,7 @@ TEST_CASE("of two equally long routes the robot keeps one while it drifts sidewa
 }
 
 TEST_CASE("a robot that was pushed off its route replans") {
-  RoutePlanner planner(shortest(), {Circle{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
+  PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.3}}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   const auto above = planner.route_from({-0.5, 0.3}, random());
   REQUIRE(above);
   CHECK(above->waypoint_m.y() > 0);
@@ -230,8 +242,8 @@ TEST_CASE("a robot that was pushed off its route replans") {
 TEST_CASE("routes keep the extra clearance where it exists and do without where it does not") {
   const double extra_clearance = 0.05;
   const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
-  RoutePlanner generous(shortest(), shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance,
-                        {1.5, 0.3});
+  PlannerInWorld generous(shortest(), shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance,
+                          {1.5, 0.3});
   const auto wide_route = generous.route_from({-1.5, 0.3}, random());
   REQUIRE(wide_route);
   CHECK((wide_route->waypoint_m - pair[0].centre_m).norm() >= 0.2 + kRadius_m + kMargin_m + extra_clearance);
@@ -244,7 +256,7 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
   const double gap = 2 * (0.45 + 0.08 - 0.3);
   REQUIRE(gap / 2 > kRadius_m + kMargin_m);
   REQUIRE(gap / 2 < kRadius_m + kMargin_m + 0.15);
-  RoutePlanner wall_planner(shortest(), shapes_of(wall), kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
+  PlannerInWorld wall_planner(shortest(), shapes_of(wall), kField, kRadius_m, kMargin_m, 0.15, {1.5, 0.2});
   const auto narrow_route = wall_planner.route_from({-1.5, 0.2}, random());
   REQUIRE(narrow_route);
   for (const Circle& disc : wall)
@@ -253,8 +265,9 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
 
 TEST_CASE("a start in obstacles that overlap is left towards the nearest free position") {
   // On the line between both centres, every way out of one leads deeper into the other at first.
-  RoutePlanner planner(shortest(), {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}},
-                       kField, kRadius_m, kMargin_m, 0, {0, 0});
+  PlannerInWorld planner(shortest(),
+                         {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,
+                         kRadius_m, kMargin_m, 0, {0, 0});
   const auto route = planner.route_from({0, 0}, random());
   REQUIRE(route);
   CHECK_FALSE(route->reaches_goal);
@@ -274,7 +287,7 @@ TEST_CASE("by every planner, a robot that follows its route gets around obstacle
     obstacles.emplace_back(Box{{-0.1, -1}, {0.1, 1}});
     const Vec2 goal(1.6, rng.uniform(-1.5, 1.5));
     const ObstacleWorld world(obstacles);
-    RoutePlanner planner(named, obstacles, kField, kRadius_m, kMargin_m, 0.02, goal);
+    PlannerInWorld planner(named, obstacles, kField, kRadius_m, kMargin_m, 0.02, goal);
     Vec2 here(-1.6, rng.uniform(-1.5, 1.5));
     int steps = 0;
     while ((here - goal).norm() > 0.01 && steps < 500) {

@@ -75,7 +75,7 @@ TEST_CASE("a planner with another name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 
-TEST_CASE("planners that keep a graph of one world, or use up all time, cannot drive a robot") {
+TEST_CASE("planners that keep a graph of one world, or use up all time, cannot drive robots") {
   for (const std::string_view name : kDrivingPlanners)
     CHECK(make_driving_planner(std::string(name)).kind == PlannerKind::kForAnyWorld);
   CHECK(make_driving_planner("errt").name == "errt");
