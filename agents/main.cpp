@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "agents/agent/agent_node.hpp"
+#include "common/config/planner_names.hpp"
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -9,15 +10,20 @@
 int main(int argc, char** argv) {
   using namespace sidestep;
   RobotId robot = 0;
+  std::string planner;
   Program program;
   program.name = "sidestep-agent";
   program.description = "Drives one robot: plans its route and negotiates every motion with the coordinator.";
   program.add_options = [&](const CliCommand& app) {
     app.add_option("--robot", robot, "id of the robot in the scenario").required();
+    app.add_option("--planner", planner, "planner of the robot's paths [the scenario's]")
+        .check(one_of(driving_planners()));
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };
   program.process = [&] { return robot; };
-  program.start = [&](Bus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
+  program.start = [&](Bus& bus, const Scenario& given, Incarnation incarnation) -> RunningNodes {
+    Scenario scenario = given;
+    use_planner(scenario, planner);
     if (!find_robot(scenario, robot)) {
       throw std::invalid_argument("--robot: scenario " + scenario.name + " has no robot " +
                                   std::to_string(robot));

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace sidestep {
+
+struct Scenario;
 
 /// The planners that can drive robots, for the key `planner` of scenarios. agents/planning/named_planner.hpp
 /// makes them. The others are for comparison: they keep a graph of one world, use up all time, or examine the
@@ -12,5 +16,13 @@ namespace sidestep {
 inline constexpr std::array<std::string_view, 10> kDrivingPlanners{
     "lazy-visibility", "errt",        "bi-errt",     "rrt",       "rrt-connect",
     "one-shot-prm",    "dynamic-prm", "grid-a-star", "quad-tree", "trapezoids"};
+
+/// The same, for options of programs.
+inline std::vector<std::string> driving_planners() {
+  return {kDrivingPlanners.begin(), kDrivingPlanners.end()};
+}
+
+/// Lets all robots use this planner; empty: those that the scenario gives.
+void use_planner(Scenario& scenario, const std::string& planner);
 
 }  // namespace sidestep

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "common/config/planner_names.hpp"
+
 namespace sidestep {
 
 FloorRules floor_rules(const Scenario& scenario) {
@@ -43,6 +45,12 @@ void require_unique_numbers(const Scenario& scenario) {
         "robots {} and {} both have number {} (the id modulo 16) in the {} team, expected different numbers",
         first->id, robot.id, number_of(robot.id), robot.team == Team::kBlue ? "blue" : "yellow"));
   }
+}
+
+void use_planner(Scenario& scenario, const std::string& planner) {
+  if (planner.empty()) return;
+  scenario.planner = planner;
+  for (RobotSpec& robot : scenario.robots) robot.planner.clear();
 }
 
 }  // namespace sidestep

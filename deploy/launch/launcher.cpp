@@ -168,7 +168,9 @@ void Launcher::start_core() {
 void Launcher::start_due_agents() {
   if (agents_started_ == scenario_.robots.size() || bus_.now() < last_start_ + kStartInterval) return;
   const RobotId robot = scenario_.robots[agents_started_++].id;
-  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, {"--robot", std::to_string(robot)});
+  std::vector<std::string> arguments{"--robot", std::to_string(robot)};
+  if (!options_.planner.empty()) arguments.insert(arguments.end(), {"--planner", options_.planner});
+  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, arguments);
 }
 
 void Launcher::handle(const ChildEvent& event) {

@@ -24,6 +24,7 @@ struct RunOptions {
   bool until_idle = false;                        ///< see run()
   bool faults = false;                            ///< processes accept `sidestep fault network`
   std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
+  std::string planner;                            ///< of all robots' paths; empty: the scenario's
   LogLevel log_level = LogLevel::kInfo;           ///< of all processes
   bool is_quiet = false;                          ///< prints nothing; the log contains everything
 };

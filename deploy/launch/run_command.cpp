@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
 #include "common/process/process.hpp"
@@ -25,6 +26,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
   command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
   command.add_flag("--until-idle", options->until_idle,
                    "if clients give the goals: end when all robots have finished their orders");
+  command.add_option("--planner", options->planner, "planner of all robots' paths [the scenario's]")
+      .check(one_of(driving_planners()));
   add_dds_options(command, options->dds);
   add_log_option(command, options->log_level);
   command.add_flag("--faults", options->faults,

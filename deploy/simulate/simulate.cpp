@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
@@ -103,9 +104,7 @@ int finish(const SimulateOptions& options, Report& report, const RunPicture& pic
 
 Scenario scenario_of(const SimulateOptions& options) {
   Scenario scenario = load_scenario(options.scenario_file);
-  if (options.planner.empty()) return scenario;
-  scenario.planner = options.planner;
-  for (RobotSpec& robot : scenario.robots) robot.planner.clear();
+  use_planner(scenario, options.planner);
   return scenario;
 }
 

@@ -57,9 +57,8 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
       .add_option("--seconds", run.seconds,
                   "time limit [the scenario's]; with --faults: duration of a run [60]")
       .check(positive());
-  command
-      .add_option("--planner", run.planner, "planner of all robots' paths [the scenario's]")
-      .check(one_of({kDrivingPlanners.begin(), kDrivingPlanners.end()}))
+  command.add_option("--planner", run.planner, "planner of all robots' paths [the scenario's]")
+      .check(one_of(driving_planners()))
       .needs(scenario);
   const Option faults =
       command
