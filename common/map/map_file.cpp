@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/map_file.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+
+#include "common/config/yaml_document.hpp"
+#include "common/config/yaml_map.hpp"
+#include "common/file/write_file.hpp"
+#include "common/map/map_image.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kExpectedMap = "a map";
+/// A probability this near its threshold counts as unknown: the brightness is rounded.
+constexpr double kTie = 1e-9;
+constexpr char kBlockedPixel = 0, kFreePixel = static_cast<char>(254);
+
+/// How a pixel's brightness tells whether its cell is free.
+struct Interpretation {
+  enum class Mode { kTrinary, kScale, kRaw };
+  Mode mode = Mode::kTrinary;
+  bool is_negated = false;
+  double occupied_above = 0, free_below = 0;
+
+  /// Trinary and scale differ only for cells that are not free.
+  bool is_free(double brightness) const {
+    if (mode == Mode::kRaw) return std::round(255 * brightness) / 100 < free_below - kTie;
+    const double occupied = is_negated ? brightness : 1 - brightness;
+    return occupied < free_below - kTie && !(occupied > occupied_above);
+  }
+};
+
+double required_number(YamlMap& map, const std::string& key, Range range) {
+  return number_from(map.require(key), map.location_of(key), range);
+}
+
+Interpretation::Mode read_mode(YamlMap& map) {
+  const YAML::Node node = map.find("mode");
+  if (!node.IsDefined()) return Interpretation::Mode::kTrinary;
+  const std::string name = text_from(node, map.location_of("mode"));
+  if (name == "trinary") return Interpretation::Mode::kTrinary;
+  if (name == "scale") return Interpretation::Mode::kScale;
+  if (name == "raw") return Interpretation::Mode::kRaw;
+  map.location_of("mode").fail("expected trinary, scale or raw, got \"" + name.substr(0, 40) + "\"");
+}
+
+/// 0 or 1, or false or true.
+bool read_negate(YamlMap& map) {
+  const YAML::Node node = map.require("negate");
+  if (node.IsScalar() && (node.Scalar() == "true" || node.Scalar() == "false")) {
+    bool value = false;
+    map.read("negate", value);
+    return value;
+  }
+  return integer_from(node, map.location_of("negate"), {0, 1}) == 1;
+}
+
+Interpretation read_interpretation(YamlMap& map) {
+  Interpretation result;
+  result.mode = read_mode(map);
+  result.is_negated = read_negate(map);
+  result.occupied_above = required_number(map, "occupied_thresh", {0, 1});
+  result.free_below = required_number(map, "free_thresh", {0, 1});
+  if (result.free_below > result.occupied_above)
+    map.location_of("free_thresh").fail("expected at most occupied_thresh");
+  return result;
+}
+
+Vec2 read_origin(YamlMap& map) {
+  const YamlLocation location = map.location_of("origin");
+  const std::vector<double> origin =
+      numbers_from(map.require("origin"), location, 3, 3, {-kMaxMapOrigin_m, kMaxMapOrigin_m});
+  if (origin[2] != 0) location.fail(fmt::format("the map is rotated by {} rad, expected yaw 0", origin[2]));
+  return {origin[0], origin[1]};
+}
+
+BitGrid read_image(YamlMap& map, const std::string& path, const Interpretation& interpretation) {
+  const YamlLocation location = map.location_of("image");
+  const std::string name = text_from(map.require("image"), location);
+  if (name.empty()) location.fail("expected the path of an image, got nothing");
+  const std::string image = (std::filesystem::path(path).parent_path() / name).string();
+  try {
+    return read_map_image(image, [&](double brightness) { return interpretation.is_free(brightness); });
+  } catch (const MapImageError& error) {
+    location.fail(fmt::format("{}: {}", image, error.what()));
+  }
+}
+
+}  // namespace
+
+OccupancyMap load_occupancy_map(const std::string& path) {
+  YamlMap map = document_map(read_yaml_file(path, kExpectedMap), path, kExpectedMap);
+  MapGrid grid;
+  grid.resolution_m = required_number(map, "resolution", {kMinResolution_m, kMaxResolution_m});
+  grid.origin_m = read_origin(map);
+  const Interpretation interpretation = read_interpretation(map);
+  (void)map.find("image");
+  map.finish();
+  BitGrid blocked = read_image(map, path, interpretation);
+  grid.columns = blocked.columns();
+  grid.rows = blocked.rows();
+  return {grid, std::move(blocked)};
+}
+
+void write_occupancy_map(const OccupancyMap& map, const std::string& path) {
+  const MapGrid& grid = map.grid();
+  std::string image = fmt::format("P5\n{} {}\n255\n", grid.columns, grid.rows);
+  image.reserve(image.size() + static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  for (int row = grid.rows - 1; row >= 0; --row)
+    for (int column = 0; column < grid.columns; ++column)
+      image += map.blocked().get(column, row) ? kBlockedPixel : kFreePixel;
+  write_file(path + ".pgm", image);
+  YAML::Emitter name;
+  name << YAML::DoubleQuoted << std::filesystem::path(path).filename().string() + ".pgm";
+  // Numbers are written so that reading them gives the same ones.
+  write_file(path + ".yaml",
+             fmt::format("image: {}\nresolution: {}\norigin: [{}, {}, 0]\nnegate: 0\n"
+                         "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+                         name.c_str(), grid.resolution_m, grid.origin_m.x(), grid.origin_m.y()));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/geometry/box.hpp"
+
+namespace sidestep {
+
+/// A cell of a map, counted from the lower left one, which is (0, 0).
+struct Cell {
+  int column = 0, row = 0;
+
+  friend bool operator==(const Cell&, const Cell&) = default;
+};
+
+/// Cells from `first` to `last`, both included; empty if first exceeds last on an axis.
+struct CellRange {
+  Cell first, last;
+};
+
+inline constexpr int kMaxMapSide = 16'384;
+inline constexpr long kMaxMapCells = 64L << 20;
+inline constexpr double kMinResolution_m = 0.001, kMaxResolution_m = 10;
+inline constexpr double kMaxMapOrigin_m = 1e6;
+
+/// How a map's cells lie in the plane: square cells, with sides along x (columns) and y (rows).
+struct MapGrid {
+  int columns = 1, rows = 1;   ///< 1 to kMaxMapSide each, and at most kMaxMapCells cells
+  double resolution_m = 0.05;  ///< side of a cell, kMinResolution_m to kMaxResolution_m
+  Vec2 origin_m{0, 0};         ///< the lower left corner, within ±kMaxMapOrigin_m
+
+  /// The border between a column and its left neighbour. The same rounded number for both cells: cells
+  /// neither overlap nor leave a gap.
+  double x_m(int column) const { return origin_m.x() + column * resolution_m; }
+  double y_m(int row) const { return origin_m.y() + row * resolution_m; }
+
+  Box box_of(const Cell& cell) const {
+    return {{x_m(cell.column), y_m(cell.row)}, {x_m(cell.column + 1), y_m(cell.row + 1)}};
+  }
+  Box extent() const { return {origin_m, {x_m(columns), y_m(rows)}}; }
+  bool has(const Cell& cell) const {
+    return cell.column >= 0 && cell.column < columns && cell.row >= 0 && cell.row < rows;
+  }
+  /// The cell that contains a point, with its left and lower border but without the others. A point outside
+  /// the map gets the nearest cell beyond the border: column -1 or `columns`, row -1 or `rows`.
+  Cell cell_at(const Vec2& p) const;
+  /// The cells of the map whose closed squares have a point in common with a closed box.
+  CellRange cells_that_meet(const Box& box) const;
+};
+
+/// Throws std::invalid_argument, with the reason, if a number is out of range.
+void check(const MapGrid& grid);
+
+}  // namespace sidestep

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/map/map_image.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <string_view>
+
+#include "common/map/pgm_image.hpp"
+#include "common/map/png_image.hpp"
+
+namespace sidestep {
+
+BitGrid read_map_image(const std::string& path, const IsFree& is_free) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
+    throw MapImageError("it is not a regular file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw MapImageError(fmt::format("cannot read it ({})", std::strerror(errno)));
+  char magic[2] = {};
+  file.read(magic, sizeof(magic));
+  const std::string_view begin(magic, sizeof(magic));
+  file.clear();
+  file.seekg(0);
+  if (begin == "P2" || begin == "P5") return read_pgm(file, is_free);
+  if (begin == "\x89P") return read_png(file, is_free);
+  throw MapImageError("it is neither a PGM image (P2 or P5) nor a PNG image");
+}
+
+}  // namespace sidestep

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <istream>
+
+#include "common/map/map_image.hpp"
+
+namespace sidestep {
+
+/// Reads a PGM image (Netpbm's specification: plain "P2" and raw "P5") from a stream that can seek; see
+/// read_map_image.
+[[nodiscard]] BitGrid read_pgm(std::istream& file, const IsFree& is_free);
+
+}  // namespace sidestep

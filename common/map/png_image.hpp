@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <istream>
+
+#include "common/map/map_image.hpp"
+
+namespace sidestep {
+
+/// Reads a PNG image from a stream that can seek; see read_map_image. Samples are taken as they are stored:
+/// an image whose gamma would change them is rejected.
+[[nodiscard]] BitGrid read_png(std::istream& file, const IsFree& is_free);
+
+}  // namespace sidestep
