@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/domain/disc_domain.hpp"
+#include "agents/planning/grids/navigation/descent.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
@@ -48,6 +49,26 @@ TEST_CASE("warm planners do not allocate") {
               smoother.smooth(d, plan);
             },
             name) == 0);
+}
+
+TEST_CASE("warm navigation functions do not allocate") {
+  const CostGrid grid({.columns = 60, .rows = 50});
+  const GridLayout& layout = grid.layout();
+  EStar field(grid);
+  std::vector<Vec2> path;
+  std::size_t before = 0;
+  for (int round = 0; round < 3; ++round) {
+    before = allocation_count();
+    field.set_goal({1.25, 2.03});
+    field.propagate_until(layout.cell(40, 20));
+    field.propagate();
+    for (const float cost : {kBlocked, 5.0f, 1.0f}) {
+      for (std::uint32_t row = 10; row < 40; ++row) field.set_cost(layout.cell(25, row), cost);
+      field.propagate();
+      REQUIRE(trace(field, {5.7, 2.4}, path));
+    }
+  }
+  CHECK(allocation_count() - before == 0);
 }
 
 }  // namespace sidestep::allocation_test

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
+#include "agents/planning/grids/navigation/estar.hpp"
+#include "agents/planning/grids/navigation/line_of_sight.hpp"
+
+namespace sidestep {
+
+bool EStar::is_euclidean() const {
+  return settings_.kernel == GridKernel::kLsm || settings_.kernel == GridKernel::kSecondOrderLsm;
+}
+
+void EStar::set_goal(const Vec2& goal_m) {
+  const auto cell = layout_.cell_at(goal_m);
+  if (!cell) throw std::invalid_argument("the goal lies outside the grid");
+  goal_m_ = goal_m;
+  goal_ = *cell;
+  std::fill(values_.begin(), values_.end(), kBlocked);
+  if (unsupported_ > 0) std::fill(raised_from_.begin(), raised_from_.end(), kBlocked);
+  unsupported_ = 0;
+  queue_.clear();
+  changed_.clear();
+  const auto radius = static_cast<std::uint32_t>(settings_.exact_radius_cells);
+  const std::uint32_t column = goal_ % layout_.columns, row = goal_ / layout_.columns;
+  disc_.first_column = column - std::min(column, radius);
+  disc_.first_row = row - std::min(row, radius);
+  disc_.last_column = std::min(column + radius, layout_.columns - 1);
+  disc_.last_row = std::min(row + radius, layout_.rows - 1);
+  exact_begin_ = padded(layout_.cell(0, disc_.first_row));
+  exact_.assign(std::size_t{disc_.last_row - disc_.first_row + 1} * stride_, kBlocked);
+  compute_exact_values();
+}
+
+bool EStar::is_in_disc(GridCell cell) const {
+  const std::uint32_t column = cell % layout_.columns, row = cell / layout_.columns;
+  return column >= disc_.first_column && column <= disc_.last_column && row >= disc_.first_row &&
+         row <= disc_.last_row;
+}
+
+/// In cells, times the cost; infinite if the cell has no exact value.
+float EStar::exact_distance(GridCell cell) const {
+  const float cost_there = cost(goal_);
+  if (cost_there == kBlocked) return kBlocked;
+  if (cell == goal_ && !is_euclidean()) return 0;
+  const double distance = (layout_.centre_of(cell) - goal_m_).norm() / layout_.resolution_m;
+  if (cell != goal_) {
+    if (distance > settings_.exact_radius_cells) return kBlocked;
+    const auto is_alike = [&](GridCell other) { return cost(other) == cost_there; };
+    if (!sees(layout_, layout_.in_cells(goal_m_), layout_.in_cells(layout_.centre_of(cell)), is_alike))
+      return kBlocked;
+  }
+  return static_cast<float>(distance) * cost_there;
+}
+
+void EStar::compute_exact_values() {
+  exact_is_stale_ = false;
+  for (std::uint32_t row = disc_.first_row; row <= disc_.last_row; ++row) {
+    for (std::uint32_t column = disc_.first_column; column <= disc_.last_column; ++column) {
+      const GridCell cell = layout_.cell(column, row);
+      const float distance = exact_distance(cell);
+      float& stored = exact_[padded(cell) - exact_begin_];
+      if (distance == stored) continue;
+      stored = distance;
+      changed_.push_back(padded(cell));
+    }
+  }
+}
+
+}  // namespace sidestep
