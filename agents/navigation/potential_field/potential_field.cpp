@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/potential_field/potential_field.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sidestep {
+
+PotentialField::PotentialField(double robot_radius_m, const PotentialFieldSettings& settings)
+    : robot_radius_m_(robot_radius_m), settings_(settings) {
+  if (!(robot_radius_m >= 0) || !std::isfinite(robot_radius_m))
+    throw std::invalid_argument("a potential field's robot radius must not be negative");
+  if (!(settings.attraction > 0) || !(settings.repulsion >= 0) || !(settings.reach_m > 0) ||
+      !std::isfinite(settings.rotation))
+    throw std::invalid_argument("the gains and the reach of a potential field have to be positive");
+  if (!(settings.step_m > 0) || !(settings.arrival_m > 0) || settings.patience < 1)
+    throw std::invalid_argument(
+        "a potential field's step, arrival distance and patience have to be positive");
+}
+
+Vec2 PotentialField::force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const {
+  const Vec2 attractive = settings_.attraction * (goal_m - at_m);
+  const double gap = gap_m(free);
+  if (gap >= settings_.reach_m || gap <= 0) return attractive;
+  const double repulsive = settings_.repulsion * (1 / gap - 1 / settings_.reach_m) / (gap * gap);
+  return attractive + repulsive * (free.away + settings_.rotation * left_of(free.away));
+}
+
+double PotentialField::potential(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const {
+  const double gap = gap_m(free);
+  if (gap <= 0) return std::numeric_limits<double>::infinity();
+  const double nearness = std::max(0.0, 1 / gap - 1 / settings_.reach_m);
+  return settings_.attraction / 2 * (goal_m - at_m).squaredNorm() +
+         settings_.repulsion / 2 * nearness * nearness;
+}
+
+void PotentialField::begin(const Vec2& start_m) {
+  if (!start_m.allFinite()) throw std::invalid_argument("the start of a descent has to be finite");
+  descent_.end = DescentEnd::kStepsSpent;
+  descent_.path_m.assign(1, start_m);
+  is_touching_ = false;
+}
+
+bool PotentialField::makes_progress() const {
+  const auto patience = static_cast<std::size_t>(settings_.patience);
+  const std::vector<Vec2>& path = descent_.path_m;
+  if (path.size() <= patience) return true;
+  // A robot in a minimum steps to and fro across it.
+  constexpr double kProgress = 0.05;
+  const double advanced_m = (path.back() - path[path.size() - 1 - patience]).norm();
+  return advanced_m > kProgress * settings_.step_m * settings_.patience;
+}
+
+bool PotentialField::has_ended(const Vec2& goal_m, int max_steps) {
+  const std::vector<Vec2>& path = descent_.path_m;
+  if (is_touching_)
+    descent_.end = DescentEnd::kTouching;
+  else if ((goal_m - path.back()).norm() <= settings_.arrival_m)
+    descent_.end = DescentEnd::kArrived;
+  else if (!makes_progress())
+    descent_.end = DescentEnd::kLocalMinimum;
+  else
+    return path.size() > static_cast<std::size_t>(std::max(max_steps, 0));
+  return true;
+}
+
+void PotentialField::step(const Vec2& goal_m, const FreeDistance& free) {
+  if (gap_m(free) <= 0) {
+    is_touching_ = true;
+    return;
+  }
+  const Vec2 at = descent_.path_m.back(), pull = force(at, goal_m, free);
+  const double length = pull.norm();
+  // Half the gap at most: the path cannot step over an obstacle.
+  const double longest_m =
+      std::min({settings_.step_m, gap_m(free) / 2, std::max((goal_m - at).norm(), settings_.arrival_m)});
+  descent_.path_m.push_back(length > 0 ? Vec2(at + longest_m / length * pull) : at);
+}
+
+}  // namespace sidestep

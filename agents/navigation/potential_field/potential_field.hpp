@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "agents/navigation/free_space.hpp"
+
+namespace sidestep {
+
+struct PotentialFieldSettings {
+  double attraction = 1;    ///< k of U = k/2 rho², rho: the distance to the goal
+  double repulsion = 0.01;  ///< k of U = k/2 (1/rho - 1/rho0)², rho: the distance to the nearest obstacle
+  double reach_m = 0.5;     ///< rho0: obstacles farther away do not repel
+  /// Force around the nearest obstacle, as a fraction of the repulsive force; positive: counter-clockwise. It
+  /// leads out of some local minima, and has no potential.
+  double rotation = 0;
+  double step_m = 0.01;     ///< length of a step of descend()
+  double arrival_m = 0.02;  ///< distance from the goal that counts as there
+  int patience = 200;       ///< steps without progress after which a local minimum is reported
+};
+
+/// Why a descent ended.
+enum class DescentEnd {
+  kArrived,       ///< at the goal
+  kLocalMinimum,  ///< the forces cancel: the robot hardly moves, but is not at the goal
+  kTouching,      ///< within the robot's radius of an obstacle
+  kStepsSpent
+};
+
+struct Descent {
+  DescentEnd end = DescentEnd::kStepsSpent;
+  std::vector<Vec2> path_m;  ///< from the start on
+};
+
+/// The potential field of a goal and of obstacles (Khatib 1986; Latombe 1991, ch. 7): a force that pulls to
+/// the goal, one that pushes away from the nearest obstacle, and one that pushes around it. The method is
+/// local: it can get stuck in minima other than the goal, and reports them. `FreeSpace` is as for BubbleBand;
+/// nothing is masked. Distances to obstacles are those of the robot's outline, a disc.
+class PotentialField {
+ public:
+  /// Throws std::invalid_argument if the radius or a setting is out of range.
+  explicit PotentialField(double robot_radius_m, const PotentialFieldSettings& settings = {});
+
+  /// The force at a position with this free distance, in newtons per unit of the gains.
+  Vec2 force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
+  /// The potential, without that of rotation; infinite where the robot touches an obstacle.
+  double potential(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
+
+  /// Follows the force in steps until the robot arrives, touches an obstacle or makes no more progress. The
+  /// result belongs to this object and is valid until the next call.
+  template <typename FreeSpace>
+  const Descent& descend(const Vec2& start_m, const Vec2& goal_m, const FreeSpace& free, int max_steps) {
+    begin(start_m);
+    while (!has_ended(goal_m, max_steps)) {
+      const Vec2 at = descent_.path_m.back();
+      step(goal_m, free(at, 0));
+    }
+    return descent_;
+  }
+
+ private:
+  void begin(const Vec2& start_m);
+  bool has_ended(const Vec2& goal_m, int max_steps);
+  void step(const Vec2& goal_m, const FreeDistance& free);
+  bool makes_progress() const;
+  /// Between the robot's outline and the nearest obstacle.
+  double gap_m(const FreeDistance& free) const { return free.distance_m - robot_radius_m_; }
+
+  double robot_radius_m_;
+  PotentialFieldSettings settings_;
+  Descent descent_;
+  bool is_touching_ = false;
+};
+
+}  // namespace sidestep
