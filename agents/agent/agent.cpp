@@ -33,6 +33,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       assignment_(robot, robot_.goals),
       desired_heading_rad_(robot_.start_heading_rad),
       planner_(make_driving_planner(robot_.planner.empty() ? scenario.planner : robot_.planner)),
+      give_way_(rules_.field, rules_.radius_m, required_separation_m(), rules_.min_separation_m()),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
 }
@@ -93,6 +94,7 @@ void Agent::begin_if_changed(std::uint64_t revision) {
   has_route_ = false;
   blockage_.reset();
   blocked_since_.reset();
+  give_way_.restart(last_plan_);
   if (assignment_.goal()) desired_heading_rad_ = goal().heading_rad.value_or(robot_.start_heading_rad);
 }
 

@@ -15,6 +15,7 @@
 #include "agents/agent/planning_settings.hpp"
 #include "agents/agent/route_obstacles.hpp"
 #include "agents/navigation/deadlock_recovery.hpp"
+#include "agents/navigation/give_way.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/route_planner.hpp"
 #include "agents/navigation/zone_map.hpp"
@@ -147,8 +148,12 @@ class Agent {
   double search_horizon_m() const;
   /// As search_horizon_m(), plus the distance that robots drive while a ledger page ages.
   double page_horizon_m() const;
+  /// Leaves a passage to a robot with the right of way, if this robot makes no progress.
+  void decide_whether_to_give_way(Time now);
   /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
   Intent steer(const State& at_start, Time start, const Route& route);
+  /// Adds what a robot at a position would see of the map to the steering.
+  void add_walls(const Vec2& position_m);
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
                              double max_speed_mps) const;
   /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
@@ -177,11 +182,14 @@ class Agent {
   std::optional<RouteObstacles> route_obstacles_;
   std::optional<RoutePlanner> route_planner_;  // by planner_, around route_obstacles_
   bool has_route_ = false;                     // since the target or zones have changed
-  double route_length_m_ = 0;                  // of the last route
-  std::optional<Blockage> blockage_;           // of the target
+  bool is_route_outdated_ = false;             // obstacles have changed since routed_at_
+  Time routed_at_{};
+  double route_length_m_ = 0;         // of the last route
+  std::optional<Blockage> blockage_;  // of the target
   std::optional<Time> blocked_since_;
   Time last_plan_{};
   DeadlockRecovery recovery_;
+  GiveWay give_way_;
   bool is_escaping_ = false;  // the last search has found only an escape from a conflict
   bool arrived_ = false;
   State estimate_;                   // the robot's own

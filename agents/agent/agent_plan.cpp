@@ -2,9 +2,11 @@
 // The agent's planning: from the route to the goal to a proposal.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "agents/agent/agent.hpp"
+#include "common/map/ray_cast.hpp"
 
 namespace sidestep {
 namespace {
@@ -73,7 +75,9 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
   last_plan_ = now;
   const Version& base = negotiation_.base_at(start);
-  const Vec2 rest = base.trajectory.rest_position_m(), target = target_m(rest);
+  const Vec2 rest = base.trajectory.rest_position_m();
+  decide_whether_to_give_way(now);
+  const Vec2 target = give_way_.place_m().value_or(target_m(rest));
   const double inflation_m = inflation_from(base, start);
   const auto ends_at = [&](const Vec2& place) {
     return (rest - place).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
@@ -96,7 +100,8 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   max_speed_mps = std::min(
       max_speed_mps, zones_.max_speed_mps(at_start.position_m, at_start.velocity_mps.norm(), rules_.radius_m,
                                           cycle_ * (negotiation_.lead() + 1), rules_.limits));
-  const Intent intent = steer(at_start, start, route);
+  Intent intent = steer(at_start, start, route);
+  intent.target_m = target;
   const AccelerationCommand desired = follow(intent, at_start, route, max_speed_mps);
   SearchQuery query{start,        at_start,    desired.acceleration_mps2,
                     desired.hold, inflation_m, obstacles_.recent(now)};
@@ -107,6 +112,21 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   query.keep_outs = zones_.keep_outs();
   if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};
+}
+
+void Agent::decide_whether_to_give_way(Time now) {
+  const Vec2& position = estimate_.position_m;
+  if (!give_way_.is_due(now, position) || !route_obstacles_ || !assignment_.goal()) return;
+  std::vector<OtherRobot> others;
+  for (const Version* version : neighbours_.newest(position, page_horizon_m())) {
+    OtherRobot other{version->trajectory.rest_position_m(), {}, false};
+    if (version->intent && !assignment_.other(version->robot).is_held) {
+      other.goals_m = {version->intent->goal_m, version->intent->target_m};
+      other.has_right_of_way = has_right_of_way(version->robot, robot_.id, now, settings_.passage_period);
+    }
+    others.push_back(other);
+  }
+  give_way_.update(now, position, others, route_obstacles_->fixed_world(), rng_);
 }
 
 Intent Agent::steer(const State& at_start, Time start, const Route& route) {
@@ -131,15 +151,33 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
     if (disc.radius_m > 0 || !is_far)
       steering.add_stationary(disc.centre_m, disc.radius_m + required_separation_m());
   }
+  if (rules_.map) add_walls(at_start.position_m);
   for (const Circle& zone : zones_.seen_from(at_start.position_m))
     steering.add_stationary(zone.centre_m, zone.radius_m + required_separation_m());
   const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));
   last_steered_start_ = start;
   // On an open floor, the rest of the way is as short from anywhere. Walls would lie between.
-  const bool is_open = std::ranges::all_of(
-      rules_.obstacles, [](const Shape& obstacle) { return std::holds_alternative<Circle>(obstacle); });
+  const bool is_open = !rules_.map && std::ranges::all_of(rules_.obstacles, [](const Shape& obstacle) {
+    return std::holds_alternative<Circle>(obstacle);
+  });
   return steering.choose(at_start, route.waypoint_m, is_open ? route.end_m : route.following_m, elapsed_s,
                          last_choice_);
+}
+
+void Agent::add_walls(const Vec2& position_m) {
+  constexpr int kDirections = 32;
+  Steering& steering = scratch_->steering;
+  const double horizon_m = page_horizon_m();
+  if (const auto nearest = rules_.map->disc_facing(position_m, required_separation_m()))
+    steering.add_stationary(nearest->centre_m, nearest->radius_m + required_separation_m());
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle_rad = i * 2 * std::numbers::pi / kDirections;
+    const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
+    const double distance_m =
+        cast_ray(rules_.map->cells(), rules_.map->field(), position_m, direction, horizon_m);
+    if (std::isfinite(distance_m))
+      steering.add_stationary(position_m + distance_m * direction, required_separation_m());
+  }
 }
 
 AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route,

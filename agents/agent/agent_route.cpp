@@ -54,12 +54,19 @@ std::vector<TemporaryObstacle> Agent::temporary_obstacles(const Vec2& target, Ti
 
 void Agent::update_route_planner(const Vec2& target, Time now) {
   if (!route_planner_) {
-    route_obstacles_.emplace(rules_.obstacles, zones_);
+    route_obstacles_.emplace(rules_, zones_);
     route_planner_.emplace(planner_, route_obstacles_->world(), rules_.field, rules_.radius_m,
                            rules_.margin_m, settings_.extra_clearance_m);
   }
-  const bool has_changed = route_obstacles_->set_temporary(temporary_obstacles(target, now));
-  if (has_changed || !has_route_ || target != route_planner_->goal_m()) route_planner_->begin(target);
+  is_route_outdated_ |= route_obstacles_->set_temporary(temporary_obstacles(target, now));
+  const bool is_new = !has_route_ || target != route_planner_->goal_m();
+  // A route that is still free is kept for a while, although there may be a shorter one.
+  const bool is_old = std::chrono::abs(now - routed_at_) >= settings_.max_route_age;
+  if (is_new || (is_route_outdated_ && (is_old || !route_planner_->is_free_from(estimate_.position_m)))) {
+    route_planner_->begin(target);
+    routed_at_ = now;
+    is_route_outdated_ = false;
+  }
   has_route_ = true;
 }
 

@@ -16,6 +16,7 @@ struct PlanningSettings {
   // Routes around static obstacles, stationary robots and moving obstacles.
   double extra_clearance_m = 0.03;         ///< preferred clearance beyond the required one
   Duration stationary_after{500'000'000};  ///< a robot at rest for longer counts as an obstacle
+  Duration max_route_age{200'000'000};     ///< a free route is kept this long after obstacles have changed
   std::size_t max_stationary = 8;          ///< number of nearest stationary robots considered
   std::size_t max_moving = 4;              ///< number of nearest moving obstacles considered
   double moving_range_m = 1.5;             ///< moving obstacles farther away are ignored
@@ -36,7 +37,9 @@ struct PlanningSettings {
 
   // Right of way, and deadlocks.
   Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long
-  double standstill_mps = 0.01;                  ///< intended speeds below this count as standing still
+  /// The same for robots that cannot pass each other: long enough to leave a passage.
+  Duration passage_period{30'000'000'000};
+  double standstill_mps = 0.01;         ///< intended speeds below this count as standing still
   double waiting_speed_fraction = 0.5;  ///< intended speeds below this fraction of the limit count as waiting
   double recovery_clear_path_m = 0.5;   ///< length of free path that a recovery direction requires
   double recovery_hold_s = 0.3;         ///< how long the velocity of a recovery is held

@@ -2,12 +2,23 @@
 #include "agents/agent/route_obstacles.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace sidestep {
 
-RouteObstacles::RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones)
-    : world_(std::vector<Shape>(fixed.begin(), fixed.end())) {
+namespace {
+
+std::vector<Shape> fixed_obstacles(const FloorRules& rules) {
+  std::vector<Shape> shapes = rules.obstacles;
+  if (rules.map) std::ranges::copy(rules.map->boxes_on(rules.field), std::back_inserter(shapes));
+  return shapes;
+}
+
+}  // namespace
+
+RouteObstacles::RouteObstacles(const FloorRules& rules, const ZoneMap& zones)
+    : world_(fixed_obstacles(rules)) {
   for (std::size_t i = 0; i < zones.keep_outs().size(); ++i)
     zones_[world_.add(zones.keep_outs()[i])] = {msg::BlockReason::BLOCK_ZONE, zones.keep_out_numbers()[i]};
 }
@@ -34,6 +45,12 @@ bool RouteObstacles::set_temporary(std::span<const TemporaryObstacle> obstacles)
   }
   for (const Temporary& gone : before) world_.remove(gone.id);
   return true;
+}
+
+ObstacleWorld RouteObstacles::fixed_world() const {
+  ObstacleWorld world = world_;
+  for (const Temporary& temporary : temporary_) world.remove(temporary.id);
+  return world;
 }
 
 Blockage RouteObstacles::blockage(ObstacleId obstacle) const {

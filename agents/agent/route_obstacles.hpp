@@ -8,6 +8,7 @@
 
 #include "agents/navigation/zone_map.hpp"
 #include "common/collision/obstacle_world.hpp"
+#include "common/motion/floor_rules.hpp"
 #include "common/protocol/order.hpp"
 
 namespace sidestep {
@@ -21,12 +22,14 @@ struct TemporaryObstacle {
 /// Everything that routes lead around. Temporary obstacles are moved; the world is not built again.
 class RouteObstacles {
  public:
-  RouteObstacles(std::span<const Shape> fixed, const ZoneMap& zones);
+  RouteObstacles(const FloorRules& rules, const ZoneMap& zones);
 
   /// Replaces the temporary obstacles. Returns whether any has changed.
   bool set_temporary(std::span<const TemporaryObstacle> obstacles);
 
   const ObstacleWorld& world() const { return world_; }
+  /// The world without the temporary obstacles.
+  ObstacleWorld fixed_world() const;
   /// What the obstacle is, if it covers a goal. Without the nearest place.
   Blockage blockage(ObstacleId obstacle) const;
 

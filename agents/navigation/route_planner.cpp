@@ -51,6 +51,13 @@ bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
   return domain(from, to).check(from, to);
 }
 
+bool RoutePlanner::is_free_from(const Vec2& start) const {
+  if (next_waypoint_ >= waypoints_.size() || !is_line_free(start, waypoints_[next_waypoint_])) return false;
+  for (std::size_t i = next_waypoint_ + 1; i < waypoints_.size(); ++i)
+    if (!is_line_free(waypoints_[i - 1], waypoints_[i])) return false;
+  return true;
+}
+
 std::optional<ObstacleId> RoutePlanner::obstacle_on_goal() const {
   const Nearest nearest = world_->nearest(goal_m_);
   if (nearest.distance_m > required_m_) return std::nullopt;

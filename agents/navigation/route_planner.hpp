@@ -47,6 +47,8 @@ class RoutePlanner {
   /// Whether the straight line between two points is free for the robot, in the world of the last route. A
   /// line that leads out of an obstacle counts as free.
   [[nodiscard]] bool is_line_free(const Vec2& from_m, const Vec2& to_m) const;
+  /// Whether the last route is free from a position on it, in spite of obstacles that have changed.
+  [[nodiscard]] bool is_free_from(const Vec2& start_m) const;
   /// The obstacle that covers the goal most deeply; nullopt if none does.
   [[nodiscard]] std::optional<ObstacleId> obstacle_on_goal() const;
 

@@ -61,6 +61,8 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
   others_.reserve(kTypicalCount);
   nearby_.reserve(kTypicalCount);
   exact_.reserve(kTypicalCount);
+  edges_.reserve(kTypicalCount);
+  cells_.reserve(kTypicalCount);
   constexpr std::size_t kTypicalMovingCount = 512;
   moving_.reserve(kTypicalMovingCount);
 }
@@ -134,9 +136,21 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
     lanes_.add(bounds, from_centre);
     others_.push_back({nullptr, &obstacle, clearance});
   }
+  find_cells({disc.centre_m, disc.radius_m + clearance + kRounding_m});
+  for (const Shape& box : cells_) edges_.push_back({nullptr, &box, clearance});
   const double half_x = rules_.field.length_m / 2 - rules_.radius_m - disc.radius_m;
   const double half_y = rules_.field.width_m / 2 - rules_.radius_m - disc.radius_m;
   is_near_border_ = !(std::abs(disc.centre_m.x()) < half_x && std::abs(disc.centre_m.y()) < half_y);
+}
+
+void SafetySearch::find_cells(const Circle& disc) {
+  cells_.clear();
+  if (!rules_.map || rules_.map->field().lower_bound_m(disc.centre_m) > disc.radius_m) return;
+  const Vec2 half_m(disc.radius_m, disc.radius_m);
+  rules_.map->cells().for_each_box({disc.centre_m - half_m, disc.centre_m + half_m}, [&](const Box& box) {
+    if (signed_distance(disc.centre_m, box) <= disc.radius_m) cells_.emplace_back(box);
+    return true;
+  });
 }
 
 void SafetySearch::find_moving(const SearchQuery& query, const Circle& disc) {

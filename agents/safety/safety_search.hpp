@@ -79,6 +79,8 @@ class SafetySearch {
   };
   /// Collects everything that a candidate within the disc may come near to.
   void find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
+  /// Collects the blocked cells of the map that meet a disc.
+  void find_cells(const Circle& disc);
   /// Collects the moving obstacles that could reach a candidate within the disc before it is at rest.
   void find_moving(const SearchQuery& query, const Circle& disc);
   void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
@@ -93,6 +95,7 @@ class SafetySearch {
   batch::Lanes lanes_;         // lane i: others_[i]
   std::vector<Other> others_;  // all trajectories and circles that may be near
   std::vector<Other> edges_;   // all other obstacles that may be near
+  std::vector<Shape> cells_;   // blocked cells of the map that may be near, as few boxes; in edges_ too
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;

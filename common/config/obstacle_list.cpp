@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/obstacle_list.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <optional>
 #include <stdexcept>
+
+#include "common/map/map_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -125,6 +128,20 @@ std::vector<Shape> read_obstacles(YamlMap& map, std::size_t max_count) {
 
 std::string obstacle_text(const Shape& shape) {
   return std::visit([](const auto& s) { return text_of(s); }, shape);
+}
+
+std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map) {
+  const YAML::Node node = map.find("map");
+  if (!node.IsDefined()) return nullptr;
+  const YamlLocation location = map.location_of("map");
+  const std::string name = text_from(node, location);
+  if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");
+  const std::string path = (std::filesystem::path(location.file).parent_path() / name).string();
+  try {
+    return std::make_shared<const FloorMap>(load_occupancy_map(path), name);
+  } catch (const std::exception& error) {
+    location.fail(error.what());
+  }
 }
 
 }  // namespace sidestep

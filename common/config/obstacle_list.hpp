@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/collision/shapes.hpp"
 #include "common/config/yaml_map.hpp"
+#include "common/map/floor_map.hpp"
 
 namespace sidestep {
 
@@ -16,5 +18,9 @@ namespace sidestep {
 
 /// An element of that list: "circle: {centre_m: [0, 0], radius_m: 1}".
 [[nodiscard]] std::string obstacle_text(const Shape& shape);
+
+/// Reads the optional key `map` of the same files: the path of a map's YAML file, relative to the file that
+/// has the key. Throws ConfigError.
+[[nodiscard]] std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map);
 
 }  // namespace sidestep

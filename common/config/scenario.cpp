@@ -10,7 +10,8 @@
 namespace sidestep {
 
 FloorRules floor_rules(const Scenario& scenario) {
-  return {scenario.field, scenario.obstacles, scenario.limits, scenario.radius_m, scenario.margin_m};
+  return {scenario.field,    scenario.obstacles, scenario.limits,
+          scenario.radius_m, scenario.margin_m,  scenario.map};
 }
 
 std::vector<RobotId> roster_of(const Scenario& scenario) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,6 +97,7 @@ struct Scenario {
   Field field;
   std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Shape> obstacles;
+  std::shared_ptr<const FloorMap> map;  ///< further obstacles; null: none
   std::vector<OpponentSpec> opponents;
   double max_opponent_speed_mps = 1.5;  ///< upper bound that agents assume
   std::optional<BallSpec> ball;

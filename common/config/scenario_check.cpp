@@ -35,6 +35,18 @@ struct PlacementCheck {
               "{:.4f} m, expected at least {:.4f} (robot radius + margin)",
               what, point.x(), point.y(), centre.x(), centre.y(), distance, min_distance));
     }
+    check_map(point, line, what);
+  }
+
+  void check_map(const Vec2& point, int line, const std::string& what) const {
+    const double min_distance = scenario.radius_m + scenario.margin_m;
+    if (!scenario.map || !scenario.map->cells().touches(point, point, min_distance - kRounding_m)) return;
+    throw ConfigError(
+        file, line,
+        fmt::format("{} ({}, {}) is in blocked cells of the map, or too near: distance {:.4f} m, "
+                    "expected at least {:.4f} (robot radius + margin)",
+                    what, point.x(), point.y(), scenario.map->cells().distance_m(point, min_distance),
+                    min_distance));
   }
 
   void check_opponents(const Vec2& point, int line, const std::string& what) const {

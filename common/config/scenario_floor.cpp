@@ -62,6 +62,7 @@ void read_ball(YamlMap& map, Scenario& scenario) {
 
 void read_floor(YamlMap& map, Scenario& scenario) {
   scenario.obstacles = read_obstacles(map, kMaxObstacles);
+  scenario.map = read_floor_map(map);
   read_opponents(map, scenario);
   read_ball(map, scenario);
 }

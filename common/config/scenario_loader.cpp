@@ -98,7 +98,7 @@ void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
 /// Images show circles only, and two robots of a team with the same pattern cannot be distinguished in them.
 void check_images(YamlMap& map, const Scenario& scenario) {
   if (!scenario.vision.images) return;
-  if (circles_of(scenario.obstacles).size() != scenario.obstacles.size())
+  if (scenario.map || circles_of(scenario.obstacles).size() != scenario.obstacles.size())
     map.location_of("vision").fail("images: cannot show obstacles other than circles");
   try {
     require_unique_numbers(scenario);

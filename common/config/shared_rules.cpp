@@ -73,6 +73,8 @@ SharedRules::SharedRules(const Scenario& scenario) {
   add("field.length_m", scenario.field.length_m);
   add("field.width_m", scenario.field.width_m);
   rules_.push_back({"obstacles", obstacles_of(scenario)});
+  if (scenario.map)
+    rules_.push_back({"map", fmt::format("fingerprint {:016x}", scenario.map->fingerprint())});
   add("limits.acceleration_mps2", scenario.limits.acceleration_mps2);
   add("limits.deceleration_mps2", scenario.limits.deceleration_mps2);
   add("limits.speed_mps", scenario.limits.speed_mps);

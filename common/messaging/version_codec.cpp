@@ -18,14 +18,15 @@ std::optional<Intent> decode(const msg::Intent& message) {
   const Intent intent{{message.vx_mps(), message.vy_mps()},
                       message.velocity_duration_s(),
                       {message.via_x_m(), message.via_y_m()},
-                      {message.goal_x_m(), message.goal_y_m()}};
+                      {message.goal_x_m(), message.goal_y_m()},
+                      {message.target_x_m(), message.target_y_m()}};
   const auto is_position = [](const Vec2& p) {
     return within(p.x(), kMaxCoordinate_m) && within(p.y(), kMaxCoordinate_m);
   };
-  const bool is_valid = within(intent.velocity_mps.x(), kMaxSpeed_mps) &&
-                        within(intent.velocity_mps.y(), kMaxSpeed_mps) && intent.velocity_duration_s >= 0 &&
-                        intent.velocity_duration_s <= to_seconds(kMaxPhaseDuration) &&
-                        is_position(intent.waypoint_m) && is_position(intent.goal_m);
+  const bool is_valid =
+      within(intent.velocity_mps.x(), kMaxSpeed_mps) && within(intent.velocity_mps.y(), kMaxSpeed_mps) &&
+      intent.velocity_duration_s >= 0 && intent.velocity_duration_s <= to_seconds(kMaxPhaseDuration) &&
+      is_position(intent.waypoint_m) && is_position(intent.goal_m) && is_position(intent.target_m);
   return is_valid ? std::optional(intent) : std::nullopt;
 }
 
@@ -38,6 +39,8 @@ msg::Intent encode(const Intent& intent) {
   message.via_y_m(static_cast<float>(intent.waypoint_m.y()));
   message.goal_x_m(static_cast<float>(intent.goal_m.x()));
   message.goal_y_m(static_cast<float>(intent.goal_m.y()));
+  message.target_x_m(static_cast<float>(intent.target_m.x()));
+  message.target_y_m(static_cast<float>(intent.target_m.y()));
   return message;
 }
 

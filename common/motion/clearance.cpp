@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "common/motion/trajectory_bounds.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -288,6 +290,20 @@ bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m) 
   const double min_squared = far_m * far_m;
   return min_squared_distance(a, corners.all, far_m, [=](double squared) { return squared < min_squared; }) >=
          min_squared;
+}
+
+Box region_around(const Trajectory& a, double distance_m) {
+  const Circle disc = disc_of(a);
+  const double half_m = disc.radius_m + distance_m;
+  return {disc.centre_m - Vec2(half_m, half_m), disc.centre_m + Vec2(half_m, half_m)};
+}
+
+bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m) {
+  const Circle disc = disc_of(a);
+  const double far_m = std::max(min_separation_m, 0.0) + 2 * kClearanceTolerance_m;
+  if (map.field().lower_bound_m(disc.centre_m) > disc.radius_m + far_m) return true;
+  return map.cells().for_each_box(region_around(a, far_m),
+                                  [&](const Box& box) { return is_clear(a, Shape(box), min_separation_m); });
 }
 
 }  // namespace sidestep

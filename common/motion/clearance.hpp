@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/collision/shapes.hpp"
+#include "common/map/floor_map.hpp"
 #include "common/motion/trajectory.hpp"
 
 namespace sidestep {
@@ -32,5 +33,11 @@ double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separat
 double clearance_m(const Trajectory& a, const Shape& shape, double min_separation_m);
 /// Whether clearance_m(a, shape, min_separation_m) >= 0.
 [[nodiscard]] bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m);
+
+/// A box that contains everything within a distance of the trajectory.
+[[nodiscard]] Box region_around(const Trajectory& a, double distance_m);
+/// Whether the trajectory keeps `min_separation_m` from all blocked cells of a map and from its outside, by
+/// the same comparison as with shapes.
+[[nodiscard]] bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m);
 
 }  // namespace sidestep

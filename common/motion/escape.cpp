@@ -59,11 +59,17 @@ Validity check_workspace_with_escape(const Version& version, const Trajectory& b
   relaxed.field.width_m = std::max(relaxed.field.width_m, 2 * (extent.y() + edge_distance_m));
   const double min_separation_m = relaxed.radius_m + relaxed.margin_m;
   if (!stays_on(relaxed.field, relaxed.radius_m, version.trajectory)) return Validity::kOutsideField;
-  const bool is_clear_of_all = std::ranges::all_of(rules.obstacles, [&](const Shape& obstacle) {
+  const auto is_clear_of = [&](const Shape& obstacle) {
     const double base_m = clearance_m(remaining, obstacle, 0) - kClearanceTolerance_m;
     return is_clear(version.trajectory, obstacle, std::min(min_separation_m, base_m));
-  });
-  return is_clear_of_all ? Validity::kValid : Validity::kObstacle;
+  };
+  if (!std::ranges::all_of(rules.obstacles, is_clear_of)) return Validity::kObstacle;
+  const bool is_clear_of_map =
+      !rules.map || is_clear(version.trajectory, *rules.map, min_separation_m) ||
+      rules.map->cells().for_each_box(
+          region_around(version.trajectory, min_separation_m + 2 * kClearanceTolerance_m),
+          [&](const Box& box) { return is_clear_of(box); });
+  return is_clear_of_map ? Validity::kValid : Validity::kObstacle;
 }
 
 }  // namespace sidestep

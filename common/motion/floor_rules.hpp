@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
+#include "common/map/floor_map.hpp"
 #include "common/motion/limits.hpp"
 
 namespace sidestep {
@@ -16,6 +18,7 @@ struct FloorRules {
   MotionLimits limits;
   double radius_m = 0.09;
   double margin_m = 0.014;
+  std::shared_ptr<const FloorMap> map{};  ///< further obstacles; null: none
 
   /// The minimum distance between the centres of two robots without inflation.
   double min_separation_m() const { return 2 * radius_m + margin_m; }

@@ -11,7 +11,8 @@ struct Intent {
   Vec2 velocity_mps{0, 0};
   double velocity_duration_s = 0;
   Vec2 waypoint_m{0, 0};
-  Vec2 goal_m{0, 0};
+  Vec2 goal_m{0, 0};    ///< the end of its route
+  Vec2 target_m{0, 0};  ///< where it is to go; differs from the goal if that cannot be reached now
 };
 
 }  // namespace sidestep

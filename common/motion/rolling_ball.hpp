@@ -3,6 +3,7 @@
 
 #include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
+#include "common/map/floor_map.hpp"
 #include "common/motion/trajectory.hpp"
 
 namespace sidestep {
@@ -26,6 +27,11 @@ class RollingBall {
   /// Resolves contact with a static obstacle.
   void bounce_off(const Shape& obstacle) {
     bounce_off(disc_facing(state_.position_m, obstacle), {0, 0}, settings_.wall_restitution);
+  }
+  /// Resolves contact with the blocked cells of a map.
+  void bounce_off(const FloorMap& map) {
+    if (const std::optional<Circle> disc = map.disc_facing(state_.position_m, settings_.radius_m))
+      bounce_off(*disc, {0, 0}, settings_.wall_restitution);
   }
   /// Resolves contact with a robot, whose motion is not affected.
   void bounce_off_robot(const Circle& robot, const Vec2& velocity_mps) {

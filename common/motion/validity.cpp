@@ -51,7 +51,9 @@ Validity check_workspace(const Trajectory& trajectory, const FloorRules& rules) 
   const bool is_clear_of_all = std::ranges::all_of(rules.obstacles, [&](const Shape& obstacle) {
     return is_clear(trajectory, obstacle, min_separation_m);
   });
-  return is_clear_of_all ? Validity::kValid : Validity::kObstacle;
+  if (!is_clear_of_all) return Validity::kObstacle;
+  const bool is_clear_of_map = !rules.map || is_clear(trajectory, *rules.map, min_separation_m);
+  return is_clear_of_map ? Validity::kValid : Validity::kObstacle;
 }
 
 bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory) {

@@ -83,6 +83,8 @@ std::string RunPicture::svg() const {
       -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2,
       width, height);
   for (const Shape& obstacle : scenario_.obstacles) svg += svg_obstacle(obstacle, kPixelsPerMetre);
+  if (scenario_.map)
+    for (const Box& cells : scenario_.map->rectangles()) svg += svg_obstacle(cells, kPixelsPerMetre);
   for (const OpponentSpec& opponent : scenario_.opponents) svg += path_of(opponent);
   std::string ends;
   for (const RobotSpec& robot : scenario_.robots) {

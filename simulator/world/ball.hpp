@@ -14,9 +14,9 @@ class Ball {
  public:
   Ball(const State& state, const BallSettings& settings) : ball_(state, settings) {}
 
-  /// Advances by kPhysicsStep. Robots are discs of robot_radius_m.
-  void step(const Field& field, std::span<const Shape> obstacles, std::span<const Body> robots,
-            double robot_radius_m);
+  /// Advances by kPhysicsStep. `map` may be null. Robots are discs of robot_radius_m.
+  void step(const Field& field, std::span<const Shape> obstacles, const FloorMap* map,
+            std::span<const Body> robots, double robot_radius_m);
 
   const State& state() const { return ball_.state(); }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -13,8 +14,10 @@ constexpr double kMaxPush_m = 0.02;  // how far contacts may push a pair togethe
 
 }  // namespace
 
-Contacts::Contacts(std::span<const Shape> obstacles, double robot_radius_m, double speed_limit_mps)
+Contacts::Contacts(std::span<const Shape> obstacles, std::shared_ptr<const FloorMap> map,
+                   double robot_radius_m, double speed_limit_mps)
     : obstacles_(obstacles.begin(), obstacles.end()),
+      map_(std::move(map)),
       radius_m_(robot_radius_m),
       speed_limit_mps_(speed_limit_mps) {}
 
@@ -70,19 +73,30 @@ void Contacts::find_near_pairs(std::span<const Body> bodies) {
   }
   for (std::uint32_t robot = 0; robot < count; ++robot) {
     if (!bodies[robot].is_on_floor()) continue;
-    for (std::uint32_t k = 0; k < obstacles_.size(); ++k) {
-      if (signed_distance(bodies[robot].position_m(), obstacles_[k]) <= radius_m_ + near_m)
-        add(robot, count + k);
-    }
+    const auto last = static_cast<std::uint32_t>(obstacles_.size());
+    for (std::uint32_t k = 0; k < last + (map_ ? 1 : 0); ++k)
+      if (facing(bodies[robot].position_m(), k, radius_m_ + near_m)) add(robot, count + k);
   }
 }
 
+std::optional<Circle> Contacts::facing(const Vec2& position_m, std::size_t obstacle, double near_m) const {
+  if (obstacle == obstacles_.size()) return map_->disc_facing(position_m, near_m);
+  if (signed_distance(position_m, obstacles_[obstacle]) > near_m) return std::nullopt;
+  return disc_facing(position_m, obstacles_[obstacle]);
+}
+
 void Contacts::check_pair(Pair& pair, std::span<const Body> bodies) {
-  const Circle other = pair.second < bodies.size() ? Circle{bodies[pair.second].position_m(), radius_m_}
-                                                   : disc_facing(bodies[pair.first].position_m(),
-                                                                 obstacles_[pair.second - bodies.size()]);
-  const Vec2 offset = bodies[pair.first].position_m() - other.centre_m;
-  const double radii = radius_m_ + other.radius_m;
+  const Vec2& position_m = bodies[pair.first].position_m();
+  const double farthest_m = radius_m_ + std::max(totals_.min_clearance_m, kContactHysteresis_m);
+  const std::optional<Circle> other = pair.second < bodies.size()
+                                          ? Circle{bodies[pair.second].position_m(), radius_m_}
+                                          : facing(position_m, pair.second - bodies.size(), farthest_m);
+  if (!other) {
+    pair.is_touching = false;
+    return;
+  }
+  const Vec2 offset = position_m - other->centre_m;
+  const double radii = radius_m_ + other->radius_m;
   const double max_distance_m = radii + std::max(totals_.min_clearance_m, 0.0);
   const double square = offset.squaredNorm();
   if (square >= max_distance_m * max_distance_m && !pair.is_touching) return;

@@ -3,16 +3,20 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/collision/shapes.hpp"
+#include "common/map/floor_map.hpp"
 #include "idl/monitor.hpp"
 #include "simulator/world/body.hpp"
 
 namespace sidestep {
 
-/// A body's index, and either another body's index or the number of bodies + an obstacle's index.
+/// A body's index, and either another body's index or the number of bodies + an obstacle's index. The map is
+/// one obstacle, behind all others.
 struct ContactPair {
   std::uint32_t first = 0, second = 0;
 };
@@ -30,7 +34,9 @@ struct ContactTotals {
 /// Between two searches for neighbours, only pairs near enough to meet before the next search are checked.
 class Contacts {
  public:
-  Contacts(std::span<const Shape> obstacles, double robot_radius_m, double speed_limit_mps);
+  /// `map` may be null.
+  Contacts(std::span<const Shape> obstacles, std::shared_ptr<const FloorMap> map, double robot_radius_m,
+           double speed_limit_mps);
 
   /// Checks the bodies after a physics step and separates those that touch, without restitution.
   void step(std::span<Body> bodies);
@@ -58,7 +64,12 @@ class Contacts {
   void check_pair(Pair& pair, std::span<const Body> bodies);
   static void separate(const Overlap& overlap, std::span<Body> bodies);
 
+  /// What a body has to keep its own radius from, as a disc; nullopt if it is an obstacle farther than
+  /// `near_m`.
+  std::optional<Circle> facing(const Vec2& position_m, std::size_t obstacle, double near_m) const;
+
   std::vector<Shape> obstacles_;
+  std::shared_ptr<const FloorMap> map_;
   double radius_m_;
   double speed_limit_mps_;
   std::vector<Pair> near_pairs_;

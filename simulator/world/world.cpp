@@ -34,12 +34,13 @@ double approximately_normal(Rng& rng) {
 World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
     : field_(scenario.field),
       obstacles_(scenario.obstacles),
+      map_(scenario.map),
       radius_m_(scenario.radius_m),
       velocity_noise_mps_(scenario.odometry.velocity_noise_mps),
       clock_bound_(from_seconds(scenario.clock_bound_s)),
       tracking_bound_m_(scenario.tracking_bound_m),
       time_(begin),
-      contacts_(scenario.obstacles, scenario.radius_m, BodySettings{}.speed_mps),
+      contacts_(scenario.obstacles, scenario.map, scenario.radius_m, BodySettings{}.speed_mps),
       opponents_(scenario.opponents, scenario.radius_m, BodySettings{}.speed_mps) {
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
@@ -81,7 +82,7 @@ void World::step() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].step(robots_[i].actuation);
   contacts_.step(bodies_);
   if (!opponents_.empty()) opponents_.step(bodies_);
-  if (ball_) ball_->step(field_, obstacles_, bodies_, radius_m_);
+  if (ball_) ball_->step(field_, obstacles_, map_.get(), bodies_, radius_m_);
   if (!active_disturbances_.empty()) end_disturbances();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];

@@ -131,6 +131,7 @@ class World {
 
   Field field_;
   std::vector<Shape> obstacles_;
+  std::shared_ptr<const FloorMap> map_;
   double radius_m_;
   double velocity_noise_mps_;
   Duration clock_bound_;

@@ -79,6 +79,7 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   settings.obstacles.max_speed_mps = scenario.max_opponent_speed_mps;
   settings.field = scenario.field;
   settings.floor_obstacles = scenario.obstacles;
+  settings.map = scenario.map;
   settings.robot_radius_m = scenario.radius_m;
   return settings;
 }
@@ -160,6 +161,7 @@ State Tracker::ball_at(Time t, const msg::WorldState& world) const {
     remaining_s -= step_s;
     ball.roll(step_s);
     for (const Shape& obstacle : settings_.floor_obstacles) ball.bounce_off(obstacle);
+    if (settings_.map) ball.bounce_off(*settings_.map);
     for (const msg::TrackedRobot& robot : world.robots()) {
       const Vec2 velocity_mps(robot.vx_mps(), robot.vy_mps());
       const Vec2 position_m = Vec2(robot.x_m(), robot.y_m()) - remaining_s * velocity_mps;

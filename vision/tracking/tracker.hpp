@@ -20,9 +20,10 @@ struct TrackerSettings {
   TrackModel robot;
   TrackModel ball = ball_model();
   ObstacleTrackerSettings obstacles;
-  // The ball bounces off the field's walls, these obstacles, and robots of this radius.
+  // The ball bounces off the field's walls, these obstacles, the map, and robots of this radius.
   Field field;
   std::vector<Shape> floor_obstacles;
+  std::shared_ptr<const FloorMap> map;  // may be null
   double robot_radius_m = 0.09;
 
   /// A ball has no heading, rolls with friction, and changes velocity abruptly when it is kicked.

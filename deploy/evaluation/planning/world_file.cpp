@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/planning/world_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <iterator>
 
 #include "common/config/obstacle_list.hpp"
 #include "common/config/yaml_document.hpp"
@@ -51,6 +53,8 @@ PlanWorld parse_plan_world(const std::string& text, const std::string& file_name
   });
   map.read("radius_m", {0.001, 5}, world.radius_m);
   world.obstacles = read_obstacles(map, kMaxObstacles);
+  if (const auto floor = read_floor_map(map))
+    std::ranges::copy(floor->boxes_on(world.field), std::back_inserter(world.obstacles));
   read_queries(map, world);
   map.finish();
   return world;

@@ -133,6 +133,12 @@ class Auditor {
   void check_limits(const AuditedRobot& robot, const KnownVersion& known);
   void check_field(const AuditedRobot& robot, const KnownVersion& known);
   void check_obstacles(const AuditedRobot& robot, const KnownVersion& known);
+  void check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
+                      const Shape& shape);
+  /// Of the robot's centre from the edge of an obstacle.
+  double required_separation_m(const KnownVersion& known) const {
+    return scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
+  }
   void check_base(const AuditedRobot& robot, const KnownVersion& known);
   void check_granting_epoch(const AuditedRobot& robot, const KnownVersion& known,
                             const msg::Verdict& verdict);

@@ -82,22 +82,32 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
 }
 
 void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
+  for (std::size_t i = 0; i < obstacles_.size(); ++i)
+    check_obstacle(robot, known, obstacles_[i], scenario_.obstacles[i]);
+  if (!scenario_.map) return;
+  const double reach_m = known.path.reach_m() + required_separation_m(known);
+  const Vec2 start_m(known.version.x_m(), known.version.y_m()), reach(reach_m, reach_m);
+  scenario_.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
+    check_obstacle(robot, known, AuditShape(cells), cells);
+    return true;
+  });
+}
+
+void Auditor::check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
+                             const Shape& shape) {
   const KnownVersion* base = robot.find(known.version.base());
-  const double required_m = scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const AuditShape& obstacle = obstacles_[i];
-    if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
-      continue;
-    const ClosestApproach near = closest_approach(known.path, obstacle, required_m);
-    if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) continue;
-    const bool was_near =
-        base && base->has_content &&
-        closest_approach(base->path, obstacle, required_m).distance_m <= near.distance_m + 1e-6;
-    if (was_near) continue;
-    report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
-           fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,
-                       obstacle_text(scenario_.obstacles[i]), required_m));
-  }
+  const double required_m = required_separation_m(known);
+  if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
+    return;
+  const ClosestApproach near = closest_approach(known.path, obstacle, required_m);
+  if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) return;
+  const bool was_near =
+      base && base->has_content &&
+      closest_approach(base->path, obstacle, required_m).distance_m <= near.distance_m + 1e-6;
+  if (was_near) return;
+  report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
+         fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,
+                     obstacle_text(shape), required_m));
 }
 
 void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {

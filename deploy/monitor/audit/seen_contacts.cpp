@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sidestep {
 namespace {
@@ -24,6 +25,7 @@ double position_error_m(const VisionSpec& vision) {
 SeenContacts::SeenContacts(const Scenario& scenario)
     : radius_m_(scenario.radius_m),
       obstacles_(scenario.obstacles.begin(), scenario.obstacles.end()),
+      map_(scenario.map),
       position_error_m_(position_error_m(scenario.vision)),
       acceleration_mps2_(std::max(scenario.limits.acceleration_mps2, scenario.limits.deceleration_mps2)),
       guaranteed_m_(scenario.margin_m - 2 * scenario.tracking_bound_m),
@@ -32,6 +34,16 @@ SeenContacts::SeenContacts(const Scenario& scenario)
 double SeenContacts::robot_allowance_m(double time_difference_s) const {
   const double extrapolation_m = acceleration_mps2_ / 2 * time_difference_s * time_difference_s;
   return std::max(0.0, std::sqrt(2.0) * position_error_m_ + extrapolation_m - guaranteed_m_);
+}
+
+double SeenContacts::distance_from_map_m(const Vec2& position_m) const {
+  const Vec2 reach = Vec2::Constant(radius_m_ + 2 * kEndOfContact_m);
+  double nearest_m = std::numeric_limits<double>::infinity();
+  map_->cells().for_each_box({position_m - reach, position_m + reach}, [&](const Box& cells) {
+    nearest_m = std::min(nearest_m, AuditShape(cells).distance_m(position_m.x(), position_m.y()));
+    return true;
+  });
+  return nearest_m;
 }
 
 bool SeenContacts::observe(const Pair& pair, double distance_m, double contact_distance_m,
@@ -61,8 +73,10 @@ std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) 
         began.push_back({i, j, distance_m});
     }
     const double allowance_m = std::max(0.0, position_error_m_ - guaranteed_to_obstacle_m_);
-    for (std::size_t k = 0; a.is_new && k < obstacles_.size(); ++k) {
-      const double distance_m = obstacles_[k].distance_m(a.position_m.x(), a.position_m.y());
+    for (std::size_t k = 0; a.is_new && k < obstacles_.size() + (map_ ? 1 : 0); ++k) {
+      const double distance_m = k < obstacles_.size()
+                                    ? obstacles_[k].distance_m(a.position_m.x(), a.position_m.y())
+                                    : distance_from_map_m(a.position_m);
       if (observe({i, sights.size() + k}, distance_m, radius_m_, allowance_m))
         began.push_back({i, std::nullopt, distance_m});
     }

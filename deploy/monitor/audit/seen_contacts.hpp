@@ -41,14 +41,19 @@ class SeenContacts {
   [[nodiscard]] std::vector<SeenContact> update(const std::vector<Sight>& sights);
 
  private:
-  using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle;
+                                                     ///< the map is the last obstacle
 
   /// Whether a contact begins.
   bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m);
   double robot_allowance_m(double time_difference_s) const;
 
   double radius_m_;
+  /// Distance from the nearest blocked cell of the map; infinite if none is near enough to matter.
+  double distance_from_map_m(const Vec2& position_m) const;
+
   std::vector<AuditShape> obstacles_;
+  std::shared_ptr<const FloorMap> map_;
   double position_error_m_;
   double acceleration_mps2_;
   double guaranteed_m_, guaranteed_to_obstacle_m_;

@@ -47,10 +47,15 @@ Json phase(const msg::MotionPhase& m) {
 }
 
 Json intent(const msg::Intent& m) {
-  return {
-      {"vx_mps", m.vx_mps()},    {"vy_mps", m.vy_mps()},   {"velocity_duration_s", m.velocity_duration_s()},
-      {"via_x_m", m.via_x_m()},  {"via_y_m", m.via_y_m()}, {"goal_x_m", m.goal_x_m()},
-      {"goal_y_m", m.goal_y_m()}};
+  return {{"vx_mps", m.vx_mps()},
+          {"vy_mps", m.vy_mps()},
+          {"velocity_duration_s", m.velocity_duration_s()},
+          {"via_x_m", m.via_x_m()},
+          {"via_y_m", m.via_y_m()},
+          {"goal_x_m", m.goal_x_m()},
+          {"goal_y_m", m.goal_y_m()},
+          {"target_x_m", m.target_x_m()},
+          {"target_y_m", m.target_y_m()}};
 }
 
 Json version(const msg::Version& m) {

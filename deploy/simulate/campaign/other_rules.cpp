@@ -29,8 +29,17 @@ const std::vector<OtherRule>& other_rules() {
       {"field.length_m", [](Scenario& s) { s.field.length_m += 1; }},
       {"field.width_m", [](Scenario& s) { s.field.width_m += 1; }},
       {"max_opponent_speed_mps", [](Scenario& s) { s.max_opponent_speed_mps *= 0.7; }},
-      {"obstacles", [](Scenario& s) {
+      {"obstacles",
+       [](Scenario& s) {
          s.obstacles.push_back(Circle{{0.5, 0.5}, 0.05});
+       }},
+      {"map", [](Scenario& s) {
+         MapGrid grid;
+         grid.resolution_m = 1;
+         grid.columns = static_cast<int>(s.field.length_m) + 4,
+         grid.rows = static_cast<int>(s.field.width_m) + 4;
+         grid.origin_m = -0.5 * Vec2(grid.columns, grid.rows);
+         s.map = std::make_shared<const FloorMap>(OccupancyMap(grid, BitGrid(grid.columns, grid.rows)));
        }}};
   return rules;
 }

@@ -14,9 +14,10 @@ constexpr double kExtraClearance_m = 0.01;
 bool PositionSampler::is_free(const Vec2& p) const {
   const double clearance_m = scenario_.radius_m + scenario_.margin_m + kExtraClearance_m;
   return scenario_.field.contains(p, clearance_m) &&
-         std::ranges::none_of(scenario_.obstacles, [&](const Shape& obstacle) {
-           return signed_distance(p, obstacle) < clearance_m;
-         });
+         std::ranges::none_of(
+             scenario_.obstacles,
+             [&](const Shape& obstacle) { return signed_distance(p, obstacle) < clearance_m; }) &&
+         !(scenario_.map && scenario_.map->cells().touches(p, p, clearance_m));
 }
 
 bool PositionSampler::is_apart(const Vec2& p, const std::vector<Vec2>& others) const {

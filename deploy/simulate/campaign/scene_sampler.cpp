@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/config/scenario_check.hpp"
+#include "deploy/simulate/campaign/building_sampler.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
 
 namespace sidestep {
@@ -51,6 +52,10 @@ void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
   for (std::uint64_t left = rng.chance(0.5) ? rng.below(6) : 0; left > 0; --left) {
     scenario.obstacles.push_back(sample_obstacle(scenario.field, rng));
   }
+  constexpr double kMinWidth_m = 3, kMinAreaPerRobot_m2 = 1.5;  // for rooms
+  if (rng.chance(0.3) && scenario.field.width_m > kMinWidth_m &&
+      area_m2 > kMinAreaPerRobot_m2 * static_cast<double>(robots))
+    scenario.map = sample_building(scenario.field, scenario.radius_m, rng);
 }
 
 void sample_sensors(Scenario& scenario, Rng& rng) {
@@ -139,15 +144,15 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
 
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {} obstacles, {} opponents, {} coordinators; at most {:.2f} m/s; "
+      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} opponents, {} coordinators; at most {:.2f} m/s; "
       "command loss "
       "{:.1f} %, "
       "vision delay {:.1f} ms, missed detections {:.1f} %, ghosts {:.1f} % robots and {:.1f} % obstacles",
-      scenario.robots.size(), scenario.field.length_m, scenario.field.width_m, scenario.obstacles.size(),
-      scenario.opponents.size(), scenario.coordinators, scenario.limits.speed_mps,
-      100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
-      100 * scenario.vision.miss_probability, 100 * scenario.vision.ghost_probability,
-      100 * scenario.vision.ghost_obstacle_probability);
+      scenario.robots.size(), scenario.field.length_m, scenario.field.width_m,
+      scenario.map ? "a building, " : "", scenario.obstacles.size(), scenario.opponents.size(),
+      scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
+      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.miss_probability,
+      100 * scenario.vision.ghost_probability, 100 * scenario.vision.ghost_obstacle_probability);
 }
 
 }  // namespace sidestep

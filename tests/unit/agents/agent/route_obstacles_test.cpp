@@ -26,11 +26,17 @@ std::vector<TemporaryObstacle> random_temporary(Rng& rng) {
   return obstacles;
 }
 
+FloorRules rules_with(const std::vector<Shape>& obstacles) {
+  FloorRules rules;
+  rules.obstacles = obstacles;
+  return rules;
+}
+
 TEST_CASE("the world of moved obstacles is that of new ones, and each covers a goal as what it is") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
-  RouteObstacles obstacles(kFixed, one_zone());
+  RouteObstacles obstacles(rules_with(kFixed), one_zone());
   for (int change = 0; change < 300; ++change) {
     const std::vector<TemporaryObstacle> temporary = random_temporary(rng);
     obstacles.set_temporary(temporary);
@@ -63,11 +69,30 @@ TEST_CASE("the world of moved obstacles is that of new ones, and each covers a g
 }
 
 TEST_CASE("obstacles of equal size keep their place in the world when they move") {
-  RouteObstacles obstacles(kFixed, ZoneMap{});
+  RouteObstacles obstacles(rules_with(kFixed), ZoneMap{});
   obstacles.set_temporary(std::vector<TemporaryObstacle>{{{{0, 0}, 0.1}}, {{{1, 0}, 0.1}}});
   const std::vector<ObstacleId> before = obstacles.world().obstacles();
   CHECK(obstacles.set_temporary(std::vector<TemporaryObstacle>{{{{0.1, 0}, 0.1}}, {{{1, 0.1}, 0.1}}}));
   CHECK(obstacles.world().obstacles() == before);
+}
+
+TEST_CASE("the blocked cells of a map are obstacles of routes, and robots and people are not fixed ones") {
+  MapGrid grid;
+  grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
+  BitGrid blocked(grid.columns, grid.rows);
+  for (int row = 10; row < 50; ++row) blocked.set(30, row);
+  FloorRules rules = rules_with({Circle{{2, 0}, 0.3}});
+  rules.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
+  RouteObstacles obstacles(rules, ZoneMap{});
+  obstacles.set_temporary(std::vector<TemporaryObstacle>{{{{-1, 0}, 0.2}, 3}});
+  CHECK(obstacles.world().touches({0.05, 1.9}, 0.05));
+  CHECK(obstacles.world().touches({-1, 0}, 0.05));
+  CHECK_FALSE(obstacles.world().touches({0.05, 2.2}, 0.05));
+  const ObstacleWorld fixed = obstacles.fixed_world();
+  CHECK(fixed.touches({0.05, 1.9}, 0.05));
+  CHECK(fixed.touches({2, 0}, 0.05));
+  CHECK_FALSE(fixed.touches({-1, 0}, 0.05));
+  CHECK(obstacles.world().touches({-1, 0}, 0.05));
 }
 
 }  // namespace sidestep::route_obstacles_test

@@ -6,6 +6,7 @@
 #include "common/motion/clearance.hpp"
 #include "common/motion/robot_model.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/common/map/random_map.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::safety_search_test {
@@ -160,6 +161,44 @@ TEST_CASE("the search finds the same candidates as a slow reference, on every in
     CHECK(found > 1000);
     CHECK(refused_desired > 1000);
   }
+}
+
+TEST_CASE("among the blocked cells of a map, the search finds the same candidates as a slow reference") {
+  const std::uint64_t seed = GENERATE(61u, 62u, 63u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  int found = 0, restricted = 0;
+  for (int i = 0; i < 60; ++i) {
+    FloorRules rules;
+    MapGrid grid;
+    grid.columns = grid.rows = 60, grid.resolution_m = 0.05, grid.origin_m = {-1.5, -1.5};
+    BitGrid blocked = test::noise(rng, grid.columns, grid.rows, 0.04);
+    for (int row = 26; row < 34; ++row) blocked.set_run(26, 34, row, false);  // around the robot
+    rules.map = std::make_shared<const FloorMap>(OccupancyMap(grid, std::move(blocked)));
+    SafetySearch search(rules, {});
+    for (int k = 0; k < 20; ++k) {
+      const Scene scene = random_scene(rng);
+      TrajectoryIndex index;
+      index.assign(scene.others);
+      Rng first = rng, second = rng;
+      const SearchResult result = search.search(scene.query, index, first);
+      const SearchResult expected = reference_search(rules, {}, scene.query, scene.others, second);
+      CAPTURE(i, k);
+      REQUIRE(result.count == expected.count);
+      for (std::size_t n = 0; n < result.count; ++n)
+        REQUIRE((result.candidates[n].rest_position_m() - expected.candidates[n].rest_position_m()).norm() <
+                1e-12);
+      found += result.count > 0 ? 1 : 0;
+      FloorRules open = rules;
+      open.map = nullptr;
+      Rng third = rng;
+      restricted +=
+          reference_search(open, {}, scene.query, scene.others, third).count != expected.count ? 1 : 0;
+      (void)rng.bits();
+    }
+  }
+  CHECK(found > 100);
+  CHECK(restricted > 100);
 }
 
 TEST_CASE("the same seed gives the same candidates") {

@@ -3,8 +3,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/config/scenario_loader.hpp"
 #include "common/random/rng.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
+#include "tests/unit/common/map/map_folder.hpp"
 
 namespace sidestep::scenario_error_test {
 
@@ -193,6 +195,37 @@ TEST_CASE("overlapping starts and last goals are rejected, the exact minimum dis
                  "starts of robots 0 and 1 overlap: distance 0.1930 m, expected at least 0.1940");
   check_rejected(pair(0.5, 0.193), 7, "last goals of robots 0 and 1 overlap");
   CHECK(error_of(pair(0.194, 0.194)) == "accepted");
+}
+
+TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are rejected") {
+  const test::MapFolder folder;
+  MapGrid grid;
+  grid.columns = grid.rows = 40, grid.resolution_m = 0.1, grid.origin_m = {-2, -2};
+  BitGrid blocked(grid.columns, grid.rows);
+  for (int row = 0; row < grid.rows; ++row) blocked.set(30, row);  // x from 1 m to 1.1 m
+  write_occupancy_map({grid, blocked}, folder / "hall");
+  const auto error = [&](const std::string& map, const char* start, const char* goal) -> std::string {
+    try {
+      (void)parse_scenario(
+          "map: " + map + "\nrobots:\n- id: 0\n  start_m: " + start + "\n  goals_m: [" + goal + "]\n",
+          folder / "scenario.yaml");
+    } catch (const ConfigError& caught) {
+      return caught.what();
+    }
+    return "accepted";
+  };
+  CHECK(error("hall.yaml", "[0, 0]", "[0.896, 0]") == "accepted");
+  CHECK(error(folder / "hall.yaml", "[0, 0]", "[0.896, 0]") == "accepted");
+  CHECK_THAT(
+      error("hall.yaml", "[0.897, 0]", "[0, 0]"),
+      ContainsSubstring("scenario.yaml:4: start of robot 0 (0.897, 0) is in blocked cells of the map"));
+  CHECK_THAT(error("hall.yaml", "[0, 0]", "[3, 0]"),
+             ContainsSubstring("scenario.yaml:5: goal of robot 0 (3, 0)"));
+  CHECK_THAT(error("none.yaml", "[0, 0]", "[1, 0]"),
+             ContainsSubstring("scenario.yaml:1: map: ") && ContainsSubstring("none.yaml"));
+  CHECK_THAT(error("hall.pgm", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
+  CHECK_THAT(error("\"\"", "[0, 0]", "[1, 0]"), ContainsSubstring("expected the path of a map's YAML file"));
+  CHECK_THAT(error("[1, 2]", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
 }
 
 TEST_CASE("starts and goals in an obstacle or outside the field are rejected") {

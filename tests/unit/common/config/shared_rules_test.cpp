@@ -48,6 +48,26 @@ TEST_CASE("goals, noise and the network are no rules") {
   CHECK(SharedRules(other).fingerprint() == rules.fingerprint());
 }
 
+TEST_CASE("maps that differ in one cell or in their place are different rules") {
+  const auto with_map = [](double origin_m, int column) {
+    MapGrid grid;
+    grid.columns = 300, grid.rows = 200, grid.origin_m = {origin_m, -5};
+    BitGrid blocked(grid.columns, grid.rows);
+    blocked.set(column, 199);
+    Scenario scenario = scenario_of(kRobots);
+    scenario.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
+    return SharedRules(scenario);
+  };
+  const SharedRules rules = with_map(-7, 10);
+  CHECK(with_map(-7, 10).fingerprint() == rules.fingerprint());
+  for (const SharedRules& other :
+       {with_map(-7, 11), with_map(-7.05, 10), SharedRules(scenario_of(kRobots))}) {
+    CHECK(other.fingerprint() != rules.fingerprint());
+    CHECK_FALSE(other.differences(rules).empty());
+    CHECK_FALSE(rules.differences(other).empty());
+  }
+}
+
 TEST_CASE("rules that have been sent are equal to their origin") {
   const SharedRules rules(scenario_of(kRobots));
   const auto received = SharedRules::parse(rules.text());

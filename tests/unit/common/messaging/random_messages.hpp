@@ -33,7 +33,11 @@ inline Version random_version(Rng& rng) {
     return static_cast<double>(static_cast<float>(rng.uniform(0, max)));
   };
   if (rng.chance(0.5))
-    version.intent = {{single(3), single(3)}, single(1), {single(9), single(9)}, {single(9), single(9)}};
+    version.intent = {{single(3), single(3)},
+                      single(1),
+                      {single(9), single(9)},
+                      {single(9), single(9)},
+                      {single(9), single(9)}};
   return version;
 }
 

@@ -98,7 +98,9 @@ TEST_CASE("a version with an implausible intent is refused") {
          {+[](msg::Intent&m, float v) { m.vx_mps(v); }, +[](msg::Intent&m, float v) { m.vy_mps(v); },
           +[](msg::Intent&m, float v) { m.velocity_duration_s(v); },
           +[](msg::Intent&m, float v) { m.via_x_m(v); }, +[](msg::Intent&m, float v) { m.via_y_m(v); },
-          +[](msg::Intent&m, float v) { m.goal_x_m(v); }, +[](msg::Intent&m, float v) { m.goal_y_m(v); }}) {
+          +[](msg::Intent&m, float v) { m.goal_x_m(v); }, +[](msg::Intent&m, float v) { m.goal_y_m(v); },
+          +[](msg::Intent&m, float v) { m.target_x_m(v); },
+          +[](msg::Intent&m, float v) { m.target_y_m(v); }}) {
       auto corrupted = good;
       set(corrupted.intent(), bad);
       CAPTURE(bad);

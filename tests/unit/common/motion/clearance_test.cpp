@@ -2,9 +2,12 @@
 #include "common/motion/clearance.hpp"
 
 #include <algorithm>
+#include <limits>
 
+#include "common/motion/trajectory_bounds.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
+#include "tests/unit/common/map/random_map.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::clearance_test {
@@ -186,6 +189,44 @@ TEST_CASE("the clearance from a shape equals the minimum of a dense search") {
   }
   CHECK(entered > 100);
   CHECK(clear > 100);
+}
+
+TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked cell and of the outside") {
+  const std::uint64_t seed = GENERATE(51u, 52u, 53u, 54u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  int clear = 0, clear_by_field = 0, near = 0;
+  for (int i = 0; i < 60; ++i) {
+    MapGrid grid;
+    grid.columns = 20 + static_cast<int>(rng.below(40)), grid.rows = 20 + static_cast<int>(rng.below(40));
+    grid.resolution_m = rng.uniform(0.05, 0.2);
+    grid.origin_m = random_vector(rng, 0.5) - 0.5 * grid.resolution_m * Vec2(grid.columns, grid.rows);
+    const FloorMap map({grid, test::noise(rng, grid.columns, grid.rows, rng.uniform(0, 0.03))});
+    std::vector<Box> cells = test::blocked_boxes(map.cells());
+    // The outside, as four boxes.
+    const Box inside = map.cells().extent(), all = inflated(inside, 1e3);
+    cells.push_back({all.min_m, {inside.min_m.x(), all.max_m.y()}});
+    cells.push_back({all.min_m, {all.max_m.x(), inside.min_m.y()}});
+    cells.push_back({{inside.max_m.x(), all.min_m.y()}, all.max_m});
+    cells.push_back({{all.min_m.x(), inside.max_m.y()}, all.max_m});
+    for (int k = 0; k < 40; ++k) {
+      const Trajectory a = random_trajectory(rng);
+      const double separation = rng.uniform(0, 0.3);
+      double clearance = std::numeric_limits<double>::infinity();
+      for (const Box& cell : cells) clearance = std::min(clearance, clearance_m(a, Shape(cell), separation));
+      CAPTURE(i, k, clearance);
+      // The edges of merged cells are rounded like those of the cells.
+      if (std::abs(clearance) > 1e-9) REQUIRE(is_clear(a, map, separation) == (clearance >= 0));
+      clear += clearance >= 0 ? 1 : 0;
+      near += std::abs(clearance) < 0.1 ? 1 : 0;
+      const Circle disc = disc_of(a);
+      clear_by_field += map.field().lower_bound_m(disc.centre_m) > disc.radius_m + separation + 1e-6 ? 1 : 0;
+    }
+  }
+  CHECK(clear > 100);
+  CHECK(clear < 2300);
+  CHECK(near > 100);
+  CHECK(clear_by_field > 10);
 }
 
 }  // namespace sidestep::clearance_test

@@ -53,4 +53,27 @@ TEST_CASE(
   CHECK(smaller > 50);
 }
 
+TEST_CASE("a robot that is too near a blocked cell may leave it, but not come nearer") {
+  MapGrid grid;
+  grid.columns = grid.rows = 40, grid.resolution_m = 0.1, grid.origin_m = {-2, -2};
+  BitGrid blocked(grid.columns, grid.rows);
+  for (int column = 20; column < 25; ++column)
+    for (int row = 18; row < 22; ++row) blocked.set(column, row);  // x from 0 to 0.5 m, y within 0.2 m
+  FloorRules rules;
+  rules.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
+  const double nearest_m = -(rules.radius_m + rules.margin_m) + 0.01;
+  const Trajectory base = Trajectory::resting(Time{}, {nearest_m, 0});
+  const auto validity = [&](const Vec2& velocity_mps) {
+    Version version;
+    version.trajectory = Trajectory(Time{} + std::chrono::milliseconds(10), {{nearest_m, 0}, velocity_mps});
+    append_stop(version.trajectory, 5);
+    return check_workspace_with_escape(version, base, rules);
+  };
+  CHECK(validity({0, 0}) == Validity::kValid);
+  CHECK(validity({-0.5, 0}) == Validity::kValid);
+  CHECK(validity({0, 0.3}) == Validity::kValid);
+  CHECK(validity({0.1, 0}) == Validity::kObstacle);
+  CHECK(check_workspace(base, rules) == Validity::kObstacle);
+}
+
 }  // namespace sidestep::escape_test

@@ -9,7 +9,7 @@ namespace sidestep::ball_test {
 
 void roll(Ball& ball, int steps, const Field& field, std::span<const Shape> obstacles = {},
           std::span<const Body> robots = {}) {
-  for (int i = 0; i < steps; ++i) ball.step(field, obstacles, robots, 0.09);
+  for (int i = 0; i < steps; ++i) ball.step(field, obstacles, nullptr, robots, 0.09);
 }
 
 TEST_CASE("a ball rolls v^2 / 2a and then rests") {
@@ -51,7 +51,7 @@ TEST_CASE("a robot pushes a ball ahead of it") {
   Ball ball({{0.3, 0}, {0, 0}}, settings);
   for (int i = 0; i < 600; ++i) {
     robots[0].step({Vec2(2, 0), 0});
-    ball.step({9, 6}, {}, robots, 0.09);
+    ball.step({9, 6}, {}, nullptr, robots, 0.09);
     const double apart = (ball.state().position_m - robots[0].position_m()).norm();
     REQUIRE(apart >= 0.09 + settings.radius_m - 1e-9);
   }
@@ -64,6 +64,23 @@ TEST_CASE("a ball exactly below a robot's centre is moved out on one side") {
   Ball ball({{0, 0}, {0, 0}}, {});
   roll(ball, 1, {9, 6}, {}, robots);
   CHECK(ball.state().position_m.norm() == Approx(0.09 + 0.0215));
+}
+
+TEST_CASE("a ball bounces off blocked cells of a map") {
+  const BallSettings settings;
+  MapGrid grid;
+  grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
+  BitGrid blocked(grid.columns, grid.rows);
+  for (int row = 20; row < 40; ++row) blocked.set(40, row);  // x from 1 m to 1.1 m
+  const FloorMap map(OccupancyMap(grid, blocked));
+  Ball ball({{0, 0}, {2, 0}}, settings);
+  double farthest_m = 0;
+  for (int i = 0; i < 3000; ++i) {
+    ball.step({9, 6}, {}, &map, {}, 0.09);
+    farthest_m = std::max(farthest_m, ball.state().position_m.x());
+  }
+  CHECK(farthest_m == Approx(1 - settings.radius_m).margin(0.003));
+  CHECK(ball.state().position_m.x() < 0.9);
 }
 
 }  // namespace sidestep::ball_test

@@ -105,6 +105,20 @@ TEST_CASE("every wrong grant is reported under its rule") {
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
     });
   }
+  SECTION("through a blocked cell of the map") {
+    require_violation(AuditRule::kObstacle, [](History& h) {
+      const Switch s = example_switch(h);
+      const Vec2 at_m(h.scenario.field.length_m / 4, h.scenario.field.width_m / 4);
+      MapGrid grid;
+      grid.columns = grid.rows = 400, grid.resolution_m = 0.05, grid.origin_m = {-10, -10};
+      BitGrid blocked(grid.columns, grid.rows);
+      const Cell cell = grid.cell_at(at_m);
+      blocked.set(cell.column, cell.row);
+      h.scenario.obstacles.clear();
+      h.scenario.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
+      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(at_m.x()), v.y_m(at_m.y()); });
+    });
+  }
   SECTION("inflation that the base does not have") {
     require_violation(AuditRule::kInflation, [](History& h) {
       const Switch s = example_switch(h);

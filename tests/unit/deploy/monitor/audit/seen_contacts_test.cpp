@@ -54,6 +54,27 @@ TEST_CASE("a robot that touches an obstacle is found") {
   CHECK(frames.show(Vec2(0, 2.82), Vec2(2, 2)) == 1);
 }
 
+TEST_CASE("a robot that touches a blocked cell of the map is found") {
+  Scenario s;
+  s.vision.position_noise_m = 0.0005;
+  MapGrid grid;
+  grid.columns = grid.rows = 80, grid.resolution_m = 0.1, grid.origin_m = {-4, -4};
+  BitGrid blocked(grid.columns, grid.rows);
+  blocked.set(40, 70);  // from (0, 3) to (0.1, 3.1)
+  s.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
+  SeenContacts contacts(s);
+  std::int64_t at_ns = 0;
+  const auto show = [&](double y_m) {
+    return contacts.update({{at_ns += kFrame_ns, Vec2(0.05, y_m), Vec2(0, 0), true}}).size();
+  };
+  CHECK(show(2.9) == 0);
+  CHECK(show(2.92) == 0);
+  CHECK(show(2.92) == 1);
+  CHECK(show(2.9) == 0);
+  CHECK(show(2.92) == 0);
+  CHECK(show(2.92) == 1);
+}
+
 TEST_CASE("positions of different times are compared at one time") {
   SeenContacts contacts(scenario(0.0005));
   // The second robot follows the first one at 2 m/s, 0.21 m behind, and is observed 19 ms later.

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/collision/shapes.hpp"
+#include "common/geometry/field.hpp"
+#include "common/map/distance_field.hpp"
+
+namespace sidestep {
+
+/// The map of a floor, and what is computed from it once. Const functions are thread-safe and do not
+/// allocate.
+class FloorMap {
+ public:
+  static constexpr std::size_t kMaxRectangles = 20'000;
+
+  /// `name` is that of the map's file, for people. Throws std::invalid_argument if the blocked cells form
+  /// more than kMaxRectangles rectangles: paths around them would take too long.
+  explicit FloorMap(OccupancyMap map, std::string name = "map");
+
+  const std::string& name() const { return name_; }
+  const OccupancyMap& cells() const { return cells_; }
+  const DistanceField& field() const { return field_; }
+  /// Rectangles that together cover exactly the blocked cells, without the outside. They overlap.
+  const std::vector<Box>& rectangles() const { return rectangles_; }
+  /// Boxes that cover the blocked cells, and the outside as far as it belongs to a field.
+  std::vector<Box> boxes_on(const Field& field) const;
+  /// Differs between maps whose cells differ in place or state.
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
+  /// A disc that is as far from a point as the nearest blocked cell or the outside, in the same direction, as
+  /// disc_facing(Vec2, Shape) gives it; nullopt if all are farther than `within_m`.
+  std::optional<Circle> disc_facing(const Vec2& p, double within_m) const;
+
+ private:
+  std::string name_;
+  OccupancyMap cells_;
+  DistanceField field_;
+  std::vector<Box> rectangles_;
+  std::uint64_t fingerprint_;
+};
+
+}  // namespace sidestep

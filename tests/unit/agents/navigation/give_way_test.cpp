@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/give_way.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::give_way_test {
+
+constexpr double kRadius_m = 0.09, kRequired_m = 0.104, kSeparation_m = 0.194;
+const Field kField{10, 4};
+
+Time at(double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); }
+
+/// A corridor along the x axis that is 0.3 m wide, with a bay above it at `bay_x_m`.
+ObstacleWorld corridor(double bay_x_m) {
+  return ObstacleWorld({Box{{-5, -2}, {5, -0.15}}, Box{{-5, 0.15}, {bay_x_m - 0.2, 2}},
+                        Box{{bay_x_m + 0.2, 0.15}, {5, 2}}, Box{{bay_x_m - 0.2, 0.5}, {bay_x_m + 0.2, 2}}});
+}
+
+OtherRobot coming_from(double x_m, double goal_x_m) {
+  return {{x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
+}
+
+struct Robot {
+  GiveWay give_way{kField, kRadius_m, kRequired_m, kSeparation_m};
+  Rng rng{1};
+
+  std::optional<Vec2> decide(double seconds, const Vec2& position_m, const std::vector<OtherRobot>& others,
+                             const ObstacleWorld& fixed) {
+    if (give_way.is_due(at(seconds), position_m))
+      give_way.update(at(seconds), position_m, others, fixed, rng);
+    return give_way.place_m();
+  }
+};
+
+TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, until the other has passed") {
+  const double bay_x_m = GENERATE(-3.0, -1.5, -0.6, 1.4);
+  CAPTURE(bay_x_m);
+  const ObstacleWorld fixed = corridor(bay_x_m);
+  Robot robot;
+  // A bay behind the other robot cannot be reached.
+  const bool is_reachable = bay_x_m < 0;
+  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
+  CHECK_FALSE(robot.decide(1.4, {0, 0}, facing, fixed));
+  std::optional<Vec2> place;
+  for (double t = 1.6; t < 6 && !place; t += 0.1) place = robot.decide(t, {0, 0}, facing, fixed);
+  REQUIRE(place.has_value() == is_reachable);
+  if (!is_reachable) return;
+  CHECK(std::abs(place->x() - bay_x_m) < 0.2);
+  CHECK(place->y() >= kSeparation_m);
+  CHECK_FALSE(fixed.touches(*place, kRequired_m));
+  // It stays as long as the other one is on its way, and goes on when that has passed.
+  CHECK(robot.decide(7, *place, {coming_from(bay_x_m + 0.5, -4.9)}, fixed) == place);
+  CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
+}
+
+TEST_CASE(
+    "a robot does not give way without being stuck, to one without the right of way, or off its route") {
+  const ObstacleWorld fixed = corridor(-1);
+  SECTION("it makes progress") {
+    Robot robot;
+    for (int i = 0; i < 50; ++i)
+      CHECK_FALSE(robot.decide(0.1 * i, {-4 + 0.02 * i, 0}, {coming_from(0.2, -4.9)}, fixed));
+  }
+  SECTION("the other one has to give way") {
+    Robot robot;
+    OtherRobot other = coming_from(0.2, -4.9);
+    other.has_right_of_way = false;
+    for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {other}, fixed));
+  }
+  SECTION("the other one drives away, or stays") {
+    Robot robot;
+    for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 4)}, fixed));
+    for (int i = 50; i < 99; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 0.2)}, fixed));
+  }
+}
+
+TEST_CASE("a robot that gives way to nobody in the end goes on after a while") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
+  const std::optional<Vec2> place = robot.decide(2, {0, 0}, facing, fixed);
+  REQUIRE(place);
+  CHECK(robot.decide(15, *place, facing, fixed) == place);
+  CHECK_FALSE(robot.decide(23, *place, facing, fixed));
+}
+
+TEST_CASE("another goal ends giving way") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
+  REQUIRE(robot.decide(2, {0, 0}, facing, fixed));
+  robot.give_way.restart(at(2.1));
+  CHECK_FALSE(robot.give_way.place_m());
+}
+
+TEST_CASE("a robot does not take a place that another robot covers") {
+  // The bay is occupied, and a third robot closes the way back.
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  OtherRobot in_bay{{-1, 0.3}, {}, false}, behind{{-1.6, 0}, {}, false};
+  const std::vector<OtherRobot> others{coming_from(0.2, -4.9), in_bay, behind};
+  for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
+}
+
+}  // namespace sidestep::give_way_test
