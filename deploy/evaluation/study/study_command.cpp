@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/process/command_line.hpp"
+#include "deploy/evaluation/study/clutter/clutter_study.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 #include "deploy/evaluation/study/vision/vision_study.hpp"
@@ -49,6 +50,12 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
       study, "planning",
       "Planners and collision structures: caches, trees, graphs, roadmaps, obstacles, terrain", *options);
   planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
+  const CliCommand clutter = add_study(
+      study, "clutter", "Every planner among obstacles and people: time, contacts, crashes", *options);
+  clutter.add_option("--jobs", options->jobs, "number of parallel processes")
+      .check(positive())
+      .show_default();
+  clutter.on_parsed([&action, options] { action = [options] { return study_clutter(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
-#include <functional>
-#include <map>
-#include <numeric>
-#include <sstream>
-#include <stdexcept>
 #include <vector>
 
 #include "deploy/evaluation/study/safety/search_time.hpp"
 #include "deploy/evaluation/study/safety/traversal.hpp"
-#include "deploy/simulate/campaign/worker_pool.hpp"
+#include "deploy/evaluation/study/table/experiment.hpp"
 
 namespace sidestep {
 namespace {
@@ -30,20 +24,6 @@ struct SafetySizes {
   int search_trials = 100;
 };
 SafetySizes quick_safety_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
-
-/// One run: the key of its row in the table, and how to measure it.
-struct Run {
-  std::string line;  ///< the line of the plot that shows this run; empty: none
-  double x = 0;
-  std::vector<std::string> key;          ///< the first columns
-  std::function<std::string()> columns;  ///< the others, the plotted one first
-};
-
-struct Experiment {
-  StudyTable table;
-  int jobs = 1;
-  std::vector<Run> runs;
-};
 
 std::string columns_of(const TraversalResult& r) {
   return fmt::format("{:.9f},{},{:.6f},{},{:.6f}", r.penetration_m_s, r.contacts, r.min_clearance_m,
@@ -141,45 +121,6 @@ Experiment search_times(const StudyOptions& options, const SafetySizes& sizes) {
   return experiment;
 }
 
-/// Measures all runs, each in a process of its own.
-std::vector<std::string> measure(const Experiment& experiment) {
-  const std::vector<Run>& runs = experiment.runs;
-  std::vector<std::string> results(runs.size());
-  std::string failure;
-  std::size_t done = 0;
-  StudyProgress progress(experiment.table.name);
-  WorkerPool pool(
-      experiment.jobs, [&](std::uint64_t job) { return runs[job].columns(); },
-      [&](std::uint64_t job, const std::string& line, const std::string& died) {
-        if (!died.empty()) failure = fmt::format("{}: {}", fmt::join(runs[job].key, ","), died);
-        results[job] = line;
-        progress(++done, runs.size());
-      });
-  std::vector<std::uint64_t> jobs(runs.size());
-  std::iota(jobs.begin(), jobs.end(), 0);
-  pool.run(jobs);
-  if (!failure.empty()) throw std::runtime_error("a run ended abnormally: " + failure);
-  return results;
-}
-
-void fill_in(Experiment& experiment, const std::vector<std::string>& results) {
-  std::vector<std::string> titles;
-  std::map<std::string, std::map<double, std::vector<double>>> values;
-  for (std::size_t i = 0; i < experiment.runs.size(); ++i) {
-    const Run& run = experiment.runs[i];
-    std::vector<std::string>& row = experiment.table.rows.emplace_back(run.key);
-    std::istringstream line(results[i]);
-    for (std::string cell; std::getline(line, cell, ',');) row.push_back(cell);
-    if (run.line.empty()) continue;
-    if (!values.contains(run.line)) titles.push_back(run.line);
-    values[run.line][run.x].push_back(std::stod(results[i]));
-  }
-  for (const std::string& title : titles) {
-    PlotLine& line = experiment.table.plots.front().lines.emplace_back(PlotLine{title, {}});
-    for (const auto& [x, trials] : values[title]) line.points.push_back(plot_point(x, trials));
-  }
-}
-
 }  // namespace
 
 int study_safety(const StudyOptions& options) {
@@ -187,7 +128,7 @@ int study_safety(const StudyOptions& options) {
   const SafetySizes sizes = options.is_quick ? quick_safety_sizes() : SafetySizes{};
   for (Experiment& experiment :
        std::vector{traversals(options, sizes), margins(options, sizes), search_times(options, sizes)}) {
-    fill_in(experiment, measure(experiment));
+    measure(experiment);
     write_study_table(experiment.table, "safety", options);
   }
   return 0;

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/clutter/clutter_scene.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "agents/planning/named_planner.hpp"
+#include "common/map/floor_plan.hpp"
+#include "deploy/simulate/campaign/position_sampler.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr double kPersonRadius_m = 0.25, kMaxPersonSpeed_mps = 1.2;
+constexpr int kGoalsPerRobot = 3, kWalks = 4, kHallObstacles = 10;
+constexpr double kTimeLimit_s = 300;
+// Robots begin this far from people at least.
+constexpr double kStartDistance_m = 1;
+
+void sample_building_floor(Scenario& scenario, Rng& rng) {
+  scenario.field = {14, 10};
+  MapGrid grid;
+  grid.columns = 280, grid.rows = 200, grid.origin_m = {-7, -5};
+  FloorPlanSettings plan;
+  plan.wall_m = 0.1;
+  plan.min_room_m = 2.5;
+  plan.max_room_m = 6;
+  plan.corridor_m = 1.4;
+  plan.shelf_m = 0.5;
+  plan.aisle_m = 1;
+  scenario.map = std::make_shared<const FloorMap>(make_floor_plan(rng.bits(), grid, plan));
+}
+
+void sample_hall(Scenario& scenario, Rng& rng) {
+  scenario.field = {16, 12};
+  for (int i = 0; i < kHallObstacles; ++i) {
+    const double y = rng.uniform(-4.5, 4.5), x = rng.uniform(-6.5, 6.5);
+    const double half_y = rng.uniform(0.2, 0.8), half_x = rng.uniform(0.2, 0.8);
+    const Vec2 centre(x, y), half(half_x, half_y);
+    if (rng.chance(0.5))
+      scenario.obstacles.emplace_back(Circle{centre, half_x});
+    else
+      scenario.obstacles.emplace_back(Box{centre - half, centre + half});
+  }
+}
+
+/// Plans around the obstacles of a scenario for discs of one radius.
+class WayFinder {
+ public:
+  WayFinder(const Scenario& scenario, double radius_m, Rng& rng)
+      : field_(scenario.field), radius_m_(radius_m), rng_(&rng), planner_(make_planner("lazy-visibility")) {
+    std::vector<Shape> shapes = scenario.obstacles;
+    if (scenario.map)
+      for (const Box& box : scenario.map->boxes_on(field_)) shapes.emplace_back(box);
+    world_ = ObstacleWorld(std::move(shapes));
+  }
+
+  Vec2 sample_free() {
+    while (true) {
+      const double y = rng_->uniform(-0.5, 0.5) * field_.width_m,
+                   x = rng_->uniform(-0.5, 0.5) * field_.length_m;
+      const Vec2 p(x, y);
+      if (field_.contains(p, radius_m_) && !world_.touches(p, radius_m_)) return p;
+    }
+  }
+
+  /// The shortest path, without its start; nullopt if there is none.
+  std::optional<std::vector<Vec2>> path(const Vec2& from_m, const Vec2& to_m) {
+    const DiscDomain domain(world_, field_, radius_m_, from_m, to_m,
+                            planner_.domain_settings(field_, radius_m_));
+    const Plan<Vec2>& plan = planner_.plan(domain, from_m, {}, *rng_);
+    if (!plan.arrives()) return std::nullopt;
+    return std::vector<Vec2>(plan.states.begin() + 1, plan.states.end());
+  }
+
+ private:
+  Field field_;
+  double radius_m_;
+  Rng* rng_;
+  NamedPlanner planner_;
+  ObstacleWorld world_;
+};
+
+void sample_people(Scenario& scenario, int count, Rng& rng) {
+  WayFinder finder(scenario, kPersonRadius_m, rng);
+  scenario.max_opponent_speed_mps = kMaxPersonSpeed_mps;
+  for (int i = 0; i < count; ++i) {
+    OpponentSpec person;
+    person.radius_m = kPersonRadius_m;
+    person.speed_mps = rng.uniform(0.3, 1) * kMaxPersonSpeed_mps;
+    person.path_m.push_back(finder.sample_free());
+    for (int walks = 0; walks < kWalks; ++walks)
+      if (const auto path = finder.path(person.path_m.back(), finder.sample_free()))
+        person.path_m.insert(person.path_m.end(), path->begin(), path->end());
+    scenario.opponents.push_back(std::move(person));
+  }
+}
+
+/// A robot at a free place away from others and from people, with goals that it can reach.
+void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>& lasts, Rng& rng) {
+  PositionSampler positions(scenario, rng);
+  WayFinder finder(scenario, scenario.radius_m + scenario.margin_m, rng);
+  const auto is_near_people = [&](const Vec2& p) {
+    return std::ranges::any_of(scenario.opponents, [&](const OpponentSpec& person) {
+      return (person.path_m.front() - p).norm() < kStartDistance_m;
+    });
+  };
+  RobotSpec robot;
+  robot.id = static_cast<RobotId>(scenario.robots.size());
+  do robot.start_m = positions.sample_apart(starts);
+  while (is_near_people(robot.start_m));
+  starts.push_back(robot.start_m);
+  while (robot.goals.size() < kGoalsPerRobot) {
+    const Vec2 goal = positions.sample_apart(lasts);
+    if (finder.path(robot.start_m, goal)) robot.goals.push_back({goal});
+  }
+  lasts.push_back(robot.goals.back().position_m);
+  scenario.robots.push_back(std::move(robot));
+}
+
+}  // namespace
+
+Scenario clutter_scene(const ClutterSettings& settings, std::uint64_t seed) {
+  Rng rng(seed);
+  Scenario scenario;
+  scenario.name = settings.is_building ? "building" : "hall";
+  scenario.planner = settings.planner;
+  scenario.time_limit_s = kTimeLimit_s;
+  settings.is_building ? sample_building_floor(scenario, rng) : sample_hall(scenario, rng);
+  sample_people(scenario, settings.people, rng);
+  std::vector<Vec2> starts, lasts;
+  for (int i = 0; i < settings.robots; ++i) add_robot(scenario, starts, lasts, rng);
+  return scenario;
+}
+
+ClutterResult run_clutter(const Scenario& scenario, std::uint64_t seed) {
+  SimSystem system(scenario, seed);
+  system.run_until_arrived(system.begin() + from_seconds(scenario.time_limit_s));
+  const Report report = system.metrics().report();
+  ClutterResult result;
+  result.robots = static_cast<int>(scenario.robots.size());
+  result.arrived = report.arrived;
+  result.seconds = report.makespan_s.value_or(scenario.time_limit_s);
+  result.contacts = report.contacts;
+  result.crashes = report.crashes;
+  result.crashes_in_motion = report.crashes_while_moving;
+  result.audit_passed = report.audit && report.audit->verdict() == AuditVerdict::kPassed;
+  return result;
+}
+
+}  // namespace sidestep
