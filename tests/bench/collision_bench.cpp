@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares our structures with their peers for swept discs among obstacles. Answers have to agree.
+// Compares our structures with textbook structures and other peers for swept discs among obstacles. Answers
+// have to agree.
 #include <algorithm>
 #include <fmt/core.h>
 #include <functional>
+#include <numeric>
 #include <string>
 
-#include "common/collision/obstacle_world.hpp"
+#include "common/collision/baselines/baseline_world.hpp"
+#include "common/collision/baselines/partition_tree.hpp"
+#include "common/collision/baselines/spatial_hash.hpp"
+#include "common/collision/baselines/sweep_and_prune.hpp"
+#include "common/random/rng.hpp"
+#include "deploy/evaluation/study/planning/collision_answers.hpp"
 #include "deploy/evaluation/study/planning/collision_problem.hpp"
 #include "deploy/evaluation/study/planning/fcl_tree.hpp"
 #include "tests/bench/collision_peers.hpp"
@@ -19,10 +26,8 @@ constexpr std::uint64_t kSeed = 1;
 
 /// A structure under comparison.
 struct MeasuredStructure {
-  std::string name;
+  CollisionAnswers answers;
   bool is_ours;
-  double tolerance_m;
-  std::vector<bool> answers;
   std::function<double()> count_ns, branch_ns;
   std::vector<double> counted_ns, branched_ns;
 };
@@ -33,8 +38,8 @@ MeasuredStructure measured_structure(std::string name, bool is_ours, const Colli
   const auto ask = [&world, radius_m = problem.radius_m](const Segment& path) {
     return world.touches(path.from_m, path.to_m, radius_m);
   };
-  MeasuredStructure result{std::move(name), is_ours, tolerance_m, {}, {}, {}, {}, {}};
-  for (const Segment& path : problem.motions) result.answers.push_back(ask(path));
+  MeasuredStructure result{{std::move(name), tolerance_m, {}}, is_ours, {}, {}, {}, {}};
+  for (const Segment& path : problem.motions) result.answers.touches.push_back(ask(path));
   result.count_ns = [&problem, ask] { return query_ns<AnswerUse::kCounted>(problem, ask); };
   result.branch_ns = [&problem, ask] { return query_ns<AnswerUse::kBranched>(problem, ask); };
   return result;
@@ -46,28 +51,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Counts wrong answers where structures disagree, except for paths within a structure's tolerance of
-/// contact.
-std::size_t count_wrong(const CollisionProblem& problem, const std::vector<MeasuredStructure>& structures) {
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < kQueries; ++i) {
-    const auto disagrees = [&](const MeasuredStructure& other) {
-      return other.answers[i] != structures[0].answers[i];
-    };
-    if (std::none_of(structures.begin(), structures.end(), disagrees)) continue;
-    double nearest2_m2 = 1;
-    for (const Shape& shape : problem.shapes)
-      nearest2_m2 = std::min(nearest2_m2, squared_distance(problem.motions[i], shape));
-    const double gap_m = std::sqrt(nearest2_m2) - problem.radius_m;
-    for (const MeasuredStructure& structure : structures) {
-      if (std::abs(gap_m) <= structure.tolerance_m || structure.answers[i] == (gap_m < 0)) continue;
-      fmt::print("{}: wrong answer for a path {:.3g} m from contact\n", structure.name, gap_m);
-      ++wrong;
-    }
-  }
-  return wrong;
-}
-
 void print(std::size_t count, const std::vector<MeasuredStructure>& structures) {
   double best_counted = 1e9, best_branched = 1e9;
   for (const MeasuredStructure& structure : structures) {
@@ -75,12 +58,12 @@ void print(std::size_t count, const std::vector<MeasuredStructure>& structures) 
     best_counted = std::min(best_counted, median(structure.counted_ns));
     best_branched = std::min(best_branched, median(structure.branched_ns));
   }
-  const auto hits =
-      static_cast<double>(std::count(structures[0].answers.begin(), structures[0].answers.end(), true));
+  const std::vector<bool>& touches = structures[0].answers.touches;
+  const auto hits = static_cast<double>(std::count(touches.begin(), touches.end(), true));
   for (const MeasuredStructure& structure : structures) {
     const double counted_ns = median(structure.counted_ns), branched_ns = median(structure.branched_ns);
     fmt::print("{:>6}  {:4.1f}  {:<24}{:10.1f}{:8.2f}{:10.1f}{:8.2f}\n", count, 100 * hits / kQueries,
-               structure.name, counted_ns, best_counted / counted_ns, branched_ns,
+               structure.answers.structure, counted_ns, best_counted / counted_ns, branched_ns,
                best_branched / branched_ns);
   }
 }
@@ -94,6 +77,14 @@ bool compare(std::size_t count, bool circles_only) {
   if (count <= 4096) structures.push_back(measured_structure("linear", true, problem, linear));
   structures.push_back(measured_structure("extent masks", true, problem, masks));
   structures.push_back(measured_structure("tree of boxes", true, problem, tree));
+  const baselines::BaselineWorld<baselines::SpatialHash> hash(problem.shapes);
+  const baselines::BaselineWorld<baselines::SweepAndPrune> sweep(problem.shapes);
+  const baselines::BaselineWorld<baselines::KdTree> kd_tree(problem.shapes);
+  const baselines::BaselineWorld<baselines::BspTree> bsp_tree(problem.shapes);
+  structures.push_back(measured_structure("spatial hash", false, problem, hash));
+  structures.push_back(measured_structure("sweep and prune", false, problem, sweep));
+  structures.push_back(measured_structure("K-D tree", false, problem, kd_tree));
+  structures.push_back(measured_structure("BSP tree", false, problem, bsp_tree));
   const peers::PlainArray plain(circles_only ? problem.shapes : std::vector<Shape>());
   const peers::BoostRTree boost(problem.shapes);
   FclTree fcl(problem.shapes);
@@ -104,14 +95,22 @@ bool compare(std::size_t count, bool circles_only) {
   if (circles_only || count <= 256)
     structures.push_back(
         measured_structure("FCL dynamic AABB tree", false, problem, fcl, circles_only ? 1e-9 : 1e-6));
+  Rng order(kSeed);
+  std::vector<std::size_t> sequence(structures.size());
+  std::iota(sequence.begin(), sequence.end(), 0u);
   for (std::size_t round = 0; round < kRounds; ++round) {
-    for (MeasuredStructure& structure : structures) {
-      structure.counted_ns.push_back(structure.count_ns());
-      structure.branched_ns.push_back(structure.branch_ns());
+    order.shuffle(sequence);
+    for (const std::size_t i : sequence) {
+      structures[i].counted_ns.push_back(structures[i].count_ns());
+      structures[i].branched_ns.push_back(structures[i].branch_ns());
     }
   }
   print(count, structures);
-  return count_wrong(problem, structures) == 0;
+  std::vector<CollisionAnswers> answers;
+  for (const MeasuredStructure& structure : structures) answers.push_back(structure.answers);
+  const std::vector<std::string> wrong = wrong_answers(problem, answers);
+  for (const std::string& line : wrong) fmt::print("{}\n", line);
+  return wrong.empty();
 }
 
 }  // namespace

@@ -15,6 +15,13 @@ Vec2 sample_position(Rng& rng) {
   return {x, y};
 }
 
+/// The centre of one of `count` equal squares.
+Vec2 grid_position(std::size_t i, std::size_t count) {
+  const auto columns = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
+  const Vec2 square(static_cast<double>(i % columns), static_cast<double>(i / columns));
+  return (square + Vec2(0.5, 0.5)) / static_cast<double>(columns);
+}
+
 /// A shape about as large as a circle with this radius.
 Shape sample_shape(Rng& rng, const Vec2& at, double radius_m) {
   const double half_m = 0.88 * radius_m;
@@ -36,13 +43,13 @@ Shape sample_shape(Rng& rng, const Vec2& at, double radius_m) {
 }  // namespace
 
 CollisionProblem::CollisionProblem(std::size_t obstacles, std::size_t motion_count, bool circles_only,
-                                   std::uint64_t seed) {
+                                   std::uint64_t seed, ObstacleLayout layout) {
   Rng rng(seed);
   const double spacing_m = 1 / std::sqrt(static_cast<double>(obstacles));
   const double mean_radius_m = spacing_m * std::sqrt(kCovered / 3.14159265 / (13.0 / 12.0));
   radius_m = 0.08 * spacing_m;
   for (std::size_t i = 0; i < obstacles; ++i) {
-    const Vec2 at = sample_position(rng);
+    const Vec2 at = layout == ObstacleLayout::kGrid ? grid_position(i, obstacles) : sample_position(rng);
     const double size_m = mean_radius_m * rng.uniform(0.5, 1.5);
     shapes.push_back(circles_only ? Circle{at, size_m} : sample_shape(rng, at, size_m));
   }

@@ -8,12 +8,19 @@
 
 namespace sidestep {
 
+/// Where the obstacles are.
+enum class ObstacleLayout {
+  kRandom,  ///< uniformly distributed
+  kGrid,    ///< at the centres of equal squares; their number is a square
+};
+
 /// Obstacles that cover a fifth of the unit square, and short straight motions of a small robot among them.
 /// All sizes scale with the spacing of the obstacles: with more obstacles the robot is smaller and its
 /// motions are shorter, so contacts are equally frequent.
 struct CollisionProblem {
   /// The obstacles are circles only, or also boxes, segments and pentagons.
-  CollisionProblem(std::size_t obstacles, std::size_t motions, bool circles_only, std::uint64_t seed);
+  CollisionProblem(std::size_t obstacles, std::size_t motions, bool circles_only, std::uint64_t seed,
+                   ObstacleLayout layout = ObstacleLayout::kRandom);
 
   static constexpr double kCovered = 0.2;
 

@@ -2,14 +2,11 @@
 #include "deploy/evaluation/study/planning/collision_structures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
-#include "common/collision/obstacle_world.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/evaluation/planning/distribution.hpp"
-#include "deploy/evaluation/study/planning/collision_problem.hpp"
-#include "deploy/evaluation/study/planning/fcl_tree.hpp"
+#include "deploy/evaluation/study/planning/collision_contenders.hpp"
 
 namespace sidestep {
 namespace {
@@ -17,30 +14,17 @@ namespace {
 // Marked in the plot: the number of obstacles in the domains of the thesis (Bruce 2006).
 constexpr double kMarkedObstacles = 64;
 
-constexpr std::array kCollisionStructures{"linear", "extent masks", "tree of boxes", "FCL tree of boxes"};
-
-/// A structure that holds the obstacles.
-struct CollisionContender {
-  std::function<double()> query_ns;
-  std::function<bool(const Segment&)> touches;
-  Distribution ns{};
-};
-
-template <typename World>
-CollisionContender contender(const CollisionProblem& problem, const std::shared_ptr<World>& world) {
-  const auto query = [&world = *world, radius_m = problem.radius_m](const Segment& motion) {
-    return world.touches(motion.from_m, motion.to_m, radius_m);
-  };
-  return {[&problem, world, query] { return query_ns<AnswerUse::kCounted>(problem, query); }, query};
-}
-
-/// In the order of their names.
-std::vector<CollisionContender> contenders_of(const CollisionProblem& problem) {
-  std::vector<CollisionContender> contenders;
-  for (const Structure structure : {Structure::kLinear, Structure::kMasks, Structure::kTree})
-    contenders.push_back(contender(problem, std::make_shared<ObstacleWorld>(problem.shapes, structure)));
-  contenders.push_back(contender(problem, std::make_shared<FclTree>(problem.shapes)));
-  return contenders;
+/// Times of each structure, by round: all structures get the same queries, in shuffled order.
+std::vector<Distribution> query_times(const std::vector<CollisionContender>& contenders, std::size_t rounds,
+                                      Rng& order) {
+  std::vector<Distribution> ns(contenders.size());
+  std::vector<std::size_t> sequence(contenders.size());
+  std::iota(sequence.begin(), sequence.end(), 0u);
+  for (std::size_t round = 0; round < rounds; ++round) {
+    order.shuffle(sequence);
+    for (const std::size_t i : sequence) ns[i].add(contenders[i].query_ns());
+  }
+  return ns;
 }
 
 }  // namespace
@@ -57,31 +41,26 @@ StudyTable collision_structures(const CollisionStructures& settings, std::uint64
                   .has_log_x = true,
                   .has_log_y = true,
                   .marked_x = kMarkedObstacles}};
-  for (const char* name : kCollisionStructures) table.plots[0].lines.push_back({name, {}});
-
+  std::vector<PlotLine>& lines = table.plots[0].lines;
   Rng order(seed);
   std::size_t done = 0;
   for (const std::size_t obstacles : settings.obstacles) {
     const CollisionProblem problem(obstacles, settings.queries, true, seed);
-    std::vector<CollisionContender> contenders = contenders_of(problem);
-    std::vector<std::size_t> sequence(contenders.size());
-    std::iota(sequence.begin(), sequence.end(), 0u);
-    for (std::size_t round = 0; round < settings.rounds; ++round) {
-      order.shuffle(sequence);
-      for (const std::size_t i : sequence) contenders[i].ns.add(contenders[i].query_ns());
-      progress(++done, settings.obstacles.size() * settings.rounds);
-    }
+    const std::vector<CollisionContender> contenders = collision_contenders(problem);
+    const std::vector<Distribution> ns = query_times(contenders, settings.rounds, order);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-      const CollisionContender& contender = contenders[i];
-      const auto touched = std::count_if(problem.motions.begin(), problem.motions.end(), contender.touches);
+      const auto touched =
+          std::count_if(problem.motions.begin(), problem.motions.end(), contenders[i].touches);
       const double touch_percent = 100 * static_cast<double>(touched) / static_cast<double>(settings.queries);
-      table.rows.push_back(
-          cells(obstacles, kCollisionStructures[i], settings.queries, fmt::format("{:.3f}", touch_percent),
-                fmt::format("{:.1f}", contender.ns.median()), fmt::format("{:.1f}", contender.ns.quantile(0)),
-                fmt::format("{:.1f}", contender.ns.quantile(1))));
-      table.plots[0].lines[i].points.push_back({static_cast<double>(obstacles), contender.ns.median(),
-                                                contender.ns.quantile(0), contender.ns.quantile(1)});
+      table.rows.push_back(cells(obstacles, contenders[i].name, settings.queries,
+                                 fmt::format("{:.3f}", touch_percent), fmt::format("{:.1f}", ns[i].median()),
+                                 fmt::format("{:.1f}", ns[i].quantile(0)),
+                                 fmt::format("{:.1f}", ns[i].quantile(1))));
+      if (i == lines.size()) lines.push_back({contenders[i].name, {}});
+      lines[i].points.push_back(
+          {static_cast<double>(obstacles), ns[i].median(), ns[i].quantile(0), ns[i].quantile(1)});
     }
+    progress(++done, settings.obstacles.size());
   }
   return table;
 }

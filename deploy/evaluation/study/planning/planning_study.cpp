@@ -4,6 +4,7 @@
 #include "deploy/evaluation/study/planning/bridges_and_extensions.hpp"
 #include "deploy/evaluation/study/planning/cache_replans.hpp"
 #include "deploy/evaluation/study/planning/cache_strategies.hpp"
+#include "deploy/evaluation/study/planning/collision_domains.hpp"
 #include "deploy/evaluation/study/planning/collision_structures.hpp"
 #include "deploy/evaluation/study/planning/errt_and_visibility.hpp"
 #include "deploy/evaluation/study/planning/roadmap_connections.hpp"
@@ -20,6 +21,7 @@ struct PlanningSizes {
   ErrtAndVisibility visibility;
   RoadmapConnections roadmaps;
   CollisionStructures collision;
+  CollisionDomains domains;
   TerrainStructures terrain;
 };
 PlanningSizes quick_planning_sizes() {
@@ -30,6 +32,7 @@ PlanningSizes quick_planning_sizes() {
   sizes.visibility = {.obstacles = {4, 64}, .worlds = 2, .queries = 5};
   sizes.roadmaps = {.sectors = {8}, .neighbours = {8}, .radii_m = {1.5}, .worlds = 2, .queries = 5};
   sizes.collision = {.obstacles = {4, 64, 1024}, .queries = 2000, .rounds = 3};
+  sizes.domains = {.queries = 100, .repetitions = 10, .rounds = 3};
   sizes.terrain = {.squares = {4, 16}, .queries = 200, .rounds = 3};
   return sizes;
 }
@@ -50,6 +53,7 @@ int study_planning(const StudyOptions& options) {
   run("visibility", errt_and_visibility, sizes.visibility);
   run("roadmaps", roadmap_connections, sizes.roadmaps);
   run("collision", collision_structures, sizes.collision);
+  run("domains", collision_domains, sizes.domains);
   run("terrain", terrain_structures, sizes.terrain);
   return 0;
 }

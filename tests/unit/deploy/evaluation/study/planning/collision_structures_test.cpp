@@ -3,7 +3,8 @@
 
 #include <set>
 
-#include "deploy/evaluation/study/planning/collision_problem.hpp"
+#include "deploy/evaluation/study/planning/collision_answers.hpp"
+#include "deploy/evaluation/study/planning/collision_domains.hpp"
 #include "deploy/evaluation/study/planning/fcl_tree.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
@@ -14,6 +15,42 @@ TEST_CASE("the experiment on collision structures depends on its seed alone") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return collision_structures({{4, 64}, 500, 2}, seed, advance);
   });
+}
+
+TEST_CASE("the experiment on domains depends on its seed alone") {
+  check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
+    return collision_domains({.obstacles = 64, .queries = 200, .repetitions = 2, .rounds = 2}, seed, advance);
+  });
+}
+
+TEST_CASE("the obstacles of a grid are at the centres of equal squares") {
+  const CollisionProblem problem(64, 10, true, 1, ObstacleLayout::kGrid);
+  std::set<std::pair<double, double>> centres;
+  for (const Shape& shape : problem.shapes) {
+    const Vec2 square = 8 * std::get<Circle>(shape).centre_m - Vec2(0.5, 0.5);
+    CHECK(square == Vec2(square.array().round()));
+    CHECK((square.minCoeff() == 0 || square.minCoeff() >= 1));
+    CHECK(square.maxCoeff() <= 7);
+    centres.emplace(square.x(), square.y());
+  }
+  CHECK(centres.size() == 64);
+}
+
+TEST_CASE("a wrong answer is found where structures disagree") {
+  const CollisionProblem problem(64, 200, true, 1);
+  CollisionAnswers right{"right", 1e-9, {}};
+  for (const Segment& motion : problem.motions)
+    right.touches.push_back(
+        std::any_of(problem.shapes.begin(), problem.shapes.end(), [&](const Shape& shape) {
+          return squared_distance(motion, shape) <= problem.radius_m * problem.radius_m;
+        }));
+  CollisionAnswers wrong = right;
+  wrong.structure = "wrong";
+  wrong.touches[17] = !wrong.touches[17];
+  CHECK(wrong_answers(problem, std::vector{right, right}).empty());
+  const std::vector<std::string> found = wrong_answers(problem, std::vector{right, wrong});
+  REQUIRE(found.size() == 1);
+  CHECK_THAT(found[0], StartsWith("wrong: wrong answer for a path"));
 }
 
 TEST_CASE("all collision structures of the study agree with an exact comparison") {
@@ -29,7 +66,7 @@ TEST_CASE("all collision structures of the study agree with an exact comparison"
     touched += std::any_of(problem.shapes.begin(), problem.shapes.end(), touches);
   }
   const auto rows = rows_of(collision_structures({{obstacles}, kMotions, 1}, seed, [](auto, auto) {}));
-  CHECK(rows.size() == 4);
+  CHECK(rows.size() == 8);
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("structure"));
     CHECK(std::stod(row.at("touch_percent")) == Approx(100.0 * double(touched) / kMotions));

@@ -14,7 +14,7 @@ TEST_CASE("the quick study of planning writes all its tables and pictures") {
   options.is_quick = true;
   REQUIRE(study_planning(options) == 0);
   for (const char* name :
-       {"cache", "strategies", "bridges", "visibility", "roadmaps", "collision", "terrain"}) {
+       {"cache", "strategies", "bridges", "visibility", "roadmaps", "collision", "domains", "terrain"}) {
     CAPTURE(name);
     CHECK(folder.table("planning", name, 7).size() >= 4);
     CHECK(folder.has_png(name));

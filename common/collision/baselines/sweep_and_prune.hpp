@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "common/collision/bodies.hpp"
+
+namespace sidestep::baselines {
+
+/// Obstacles sorted by the lower ends of their boxes on one axis (Baraff 1992; Cohen et al. 1995): a query
+/// compares those whose lower ends are between its own lower end, less the longest box, and its upper end.
+/// The axis is the one on which the obstacles are spread farther. A moved obstacle is sorted in by exchanges
+/// with its neighbours, which are few if it moves little.
+class SweepAndPrune {
+ public:
+  explicit SweepAndPrune(const Bodies& bodies);
+
+  void add(Slot slot, const Shape& shape);
+  void replace(Slot slot, const Shape& shape);
+  void remove(Slot slot);
+
+  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. Tests each at most once.
+  template <typename Test>
+  bool any_candidate(const Sweep& sweep, const Test& test) const {
+    const Box box = sweep.bounds();
+    const double low_m = box.min_m[axis_], high_m = box.max_m[axis_];
+    const double rounding_m = 0x1p-50 * (std::abs(low_m) + max_length_m_);
+    const auto first = std::lower_bound(lows_m_.begin(), lows_m_.end(), low_m - max_length_m_ - rounding_m);
+    for (auto i = static_cast<std::size_t>(first - lows_m_.begin());
+         i < lows_m_.size() && lows_m_[i] <= high_m; ++i)
+      if (overlap(boxes_[i], box) && test(slots_[i])) return true;
+    return false;
+  }
+
+ private:
+  /// Writes the obstacle at an index of the sorted arrays.
+  void put(std::size_t i, const Box& box, Slot slot);
+  /// Exchanges the obstacle at an index with its neighbours until it is in order.
+  void sort_in(std::size_t i);
+  void exchange(std::size_t i, std::size_t j);
+
+  Eigen::Index axis_ = 0;
+  double max_length_m_ = 0;     // of the boxes so far, on the axis
+  std::vector<double> lows_m_;  // in ascending order; boxes and slots in the same order
+  std::vector<Box> boxes_;
+  std::vector<Slot> slots_;
+  std::vector<std::size_t> indices_;  // by slot
+};
+
+}  // namespace sidestep::baselines
