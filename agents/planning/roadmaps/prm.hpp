@@ -17,9 +17,10 @@ struct PrmSettings {
 /// Builds a new roadmap for each query, which grows until there is a path.
 inline PrmSettings one_shot_prm() { return {.nodes = 40, .keep_roadmap = false}; }
 /// A roadmap for a world with moving obstacles, with radial connection (Dynamic PRM; Bruce 2006, section
-/// 4.4).
+/// 4.4). It keeps blocked motions, so that it uses the space that obstacles leave.
 inline PrmSettings dynamic_prm() {
-  return {.connection = {.method = Connection::kRadial, .neighbours = 8}, .is_dynamic = true};
+  return {.connection = {.method = Connection::kRadial, .neighbours = 8, .blocked_per_sector = 2},
+          .is_dynamic = true};
 }
 
 /// The probabilistic roadmap (Kavraki et al. 1996; Bruce 2006, section 4.4): random free states joined by
@@ -85,8 +86,11 @@ class Prm {
   bool query(const D& domain, const State& start) {
     map_.shrink(base_size_);
     const State goal = domain.goal(start);
-    const Node from = map_.add(domain, start, settings_.connection, version_);
-    const Node to = map_.add(domain, goal, settings_.connection, version_);
+    // The world does not change within a query.
+    ConnectionSettings connection = settings_.connection;
+    connection.blocked_per_sector = 0;
+    const Node from = map_.add(domain, start, connection, version_);
+    const Node to = map_.add(domain, goal, connection, version_);
     plan_.nodes = map_.size();
     const Node reached = search(domain, from, to);
     write_plan(from, reached);
@@ -116,13 +120,17 @@ class Prm {
       }
       for (const std::uint32_t edge : map_.edges_of(open.node)) {
         const Node next = map_.edges()[edge].other(open.node);
-        if (reached_by_[next] != kNone) continue;
+        if (reached_by_[next] != kNone || is_known_blocked(map_.edges()[edge])) continue;
         const double cost = open.cost + map_.edges()[edge].length;
         queue_.push_back({cost + domain.distance(map_[next], map_[to]), cost, next, edge});
         std::push_heap(queue_.begin(), queue_.end(), has_higher_estimate);
       }
     }
     return nearest;
+  }
+
+  bool is_known_blocked(const typename Roadmap<D>::Edge& edge) const {
+    return !edge.is_free && (edge.checked == version_ || !settings_.is_dynamic);
   }
 
   void write_plan(Node from, Node node) {

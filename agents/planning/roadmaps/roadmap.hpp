@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -23,20 +24,24 @@ struct ConnectionSettings {
   Connection method = Connection::kNearest;
   std::size_t neighbours = 10;  ///< number of nearest nodes, or of sectors for kRadial
   double radius = 1.5;          ///< for kRadius
+  /// For kRadial: number of blocked motions that are kept in each sector, to nodes nearer than the visible
+  /// one.
+  std::size_t blocked_per_sector = 0;
 };
 
-/// A graph of states and of motions between them that were free when added. New nodes can be removed again,
-/// last in first out.
+/// A graph of states and of motions between them that were free when added. Blocked motions can be kept too,
+/// for the time when they are free. New nodes can be removed again, last in first out.
 template <EuclideanDomain D>
 class Roadmap {
  public:
   using State = typename D::State;
   using Node = std::uint32_t;
 
+  /// A motion between two nodes. With a moving obstacle, it becomes blocked or free.
   struct Edge {
     Node a = 0, b = 0;
     double length = 0;
-    std::uint32_t checked = 0;  ///< version of the world for which is_free holds
+    std::uint32_t checked = 0;  ///< version of the world for which is_free is known
     bool is_free = false;
 
     Node other(Node node) const { return node == a ? b : a; }
@@ -57,18 +62,26 @@ class Roadmap {
     return e.is_free;
   }
 
-  /// Adds a state and joins it to neighbours by free motions.
+  /// Number of edges that were free when last checked.
+  std::size_t free_edge_count() const {
+    return static_cast<std::size_t>(std::count_if(edges_.begin(), edges_.end(), std::mem_fn(&Edge::is_free)));
+  }
+
+  /// Adds a state and joins it to neighbours by free motions, and by blocked ones if the settings keep them.
   Node add(const D& domain, const State& state, const ConnectionSettings& settings, std::uint32_t version) {
     const Node node = append(state);
     const bool is_radial = settings.method == Connection::kRadial;
     find_candidates(domain, node, settings);
-    sectors_.assign(settings.neighbours, false);
+    sectors_.assign(std::max<std::size_t>(1, settings.neighbours), {});
     for (const Neighbour& neighbour : candidates_) {
-      const std::size_t sector = is_radial ? sector_of(domain, node, neighbour.node) : 0;
-      if (is_radial && sectors_[sector]) continue;
-      if (!domain.check(states_[node], states_[neighbour.node])) continue;
-      if (is_radial) sectors_[sector] = true;
-      join(node, neighbour, version);
+      Sector& sector = sectors_[is_radial ? sector_of(domain, node, neighbour.node) : 0];
+      if (is_radial && sector.is_joined) continue;
+      const bool is_free = domain.check(states_[node], states_[neighbour.node]);
+      if (is_free)
+        sector.is_joined = true;
+      else if (!is_radial || sector.blocked++ >= settings.blocked_per_sector)
+        continue;
+      join(node, neighbour, version, is_free);
     }
     return node;
   }
@@ -87,6 +100,10 @@ class Roadmap {
 
  private:
   static constexpr std::size_t kCandidatesPerSector = 8;
+  struct Sector {
+    bool is_joined = false;
+    std::size_t blocked = 0;
+  };
   struct Neighbour {
     double distance;
     Node node;
@@ -101,10 +118,10 @@ class Roadmap {
     return static_cast<Node>(states_.size() - 1);
   }
 
-  void join(Node node, const Neighbour& neighbour, std::uint32_t version) {
+  void join(Node node, const Neighbour& neighbour, std::uint32_t version, bool is_free) {
     incident_edges_[node].push_back(static_cast<std::uint32_t>(edges_.size()));
     incident_edges_[neighbour.node].push_back(static_cast<std::uint32_t>(edges_.size()));
-    edges_.push_back({node, neighbour.node, neighbour.distance, version, true});
+    edges_.push_back({node, neighbour.node, neighbour.distance, version, is_free});
   }
 
   /// Writes the nodes that a node may be joined with to candidates_, nearest first.
@@ -134,7 +151,7 @@ class Roadmap {
   std::vector<std::vector<std::uint32_t>> incident_edges_;  // by node; may have unused entries at the end
   std::vector<Edge> edges_;
   std::vector<Neighbour> candidates_;
-  std::vector<bool> sectors_;
+  std::vector<Sector> sectors_;  // around the node that is being added
 };
 
 }  // namespace sidestep

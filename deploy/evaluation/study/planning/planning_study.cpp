@@ -30,7 +30,12 @@ PlanningSizes quick_planning_sizes() {
   sizes.strategies = {.waypoint_probabilities = {0, 0.4}, .courses = 1, .replans = 100};
   sizes.bridges = {.extensions = {1, 8}, .bridges = {1, 4}, .worlds = 2, .queries = 5};
   sizes.visibility = {.obstacles = {4, 64}, .worlds = 2, .queries = 5};
-  sizes.roadmaps = {.sectors = {8}, .neighbours = {8}, .radii_m = {1.5}, .worlds = 2, .queries = 5};
+  sizes.roadmaps = {.sectors = {8},
+                    .blocked_per_sector = {0, 2},
+                    .neighbours = {8},
+                    .radii_m = {1.5},
+                    .worlds = 2,
+                    .queries = 5};
   sizes.collision = {.obstacles = {4, 64, 1024}, .queries = 2000, .rounds = 3};
   sizes.domains = {.queries = 100, .repetitions = 10, .rounds = 3};
   sizes.terrain = {.squares = {4, 16}, .queries = 200, .rounds = 3};

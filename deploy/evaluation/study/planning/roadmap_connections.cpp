@@ -16,8 +16,7 @@ using Roadmaps = Prm<DiscDomain>;
 
 /// A connection method with its parameter, and its results.
 struct Variant {
-  const char* method;
-  std::string parameter;
+  std::string method, parameter;
   ConnectionSettings connection;
   Distribution edges_per_node{}, build_us{};
   std::vector<PlanStatistics> plans{};  // by displacement
@@ -25,8 +24,12 @@ struct Variant {
 
 std::vector<Variant> variants_of(const RoadmapConnections& settings) {
   std::vector<Variant> variants;
-  for (const std::size_t sectors : settings.sectors)
-    variants.push_back({"sectors", fmt::format("{}", sectors), {Connection::kRadial, sectors}});
+  for (const std::size_t blocked : settings.blocked_per_sector)
+    for (const std::size_t sectors : settings.sectors)
+      variants.push_back(
+          {blocked == 0 ? "sectors" : fmt::format("sectors keeping {}", blocked),
+           fmt::format("{}", sectors),
+           {.method = Connection::kRadial, .neighbours = sectors, .blocked_per_sector = blocked}});
   for (const std::size_t neighbours : settings.neighbours)
     variants.push_back({"nearest", fmt::format("{}", neighbours), {Connection::kNearest, neighbours}});
   for (const double radius_m : settings.radii_m)
@@ -59,7 +62,7 @@ Roadmaps build(const RoadmapConnections& settings, const BenchmarkWorld& world, 
   roadmap.build(domain, {}, rng);
   variant.build_us.add(cpu_us() - begin_us);
   const auto count = [](std::size_t size) { return static_cast<double>(size); };
-  variant.edges_per_node.add(count(roadmap.roadmap().edges().size()) / count(roadmap.roadmap().size()));
+  variant.edges_per_node.add(count(roadmap.roadmap().free_edge_count()) / count(roadmap.roadmap().size()));
   return roadmap;
 }
 

@@ -6,6 +6,7 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/evaluation/planning/distribution.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 #include "tests/catch.hpp"
 
@@ -87,6 +88,128 @@ TEST_CASE("a roadmap's path is its shortest also after obstacles moved") {
     ++compared;
   }
   CHECK(compared >= 10);
+}
+
+/// A wall with a gap and a passage at its end, and a box that closes the gap:
+///
+///     |    .    |
+///     |    #    |
+///     |    o    |
+///     |    #    |
+///     | s  #  g |
+///     |    #    |
+struct GapWorld {
+  static constexpr double kHalfGap_m = 0.6;
+  GapWorld() {
+    world.obstacles = {Box{{-0.1, kHalfGap_m}, {0.1, 4}}, Box{{-0.1, -5}, {0.1, -kHalfGap_m}}};
+    obstacles = ObstacleWorld(world.obstacles);
+    closing = obstacles.add(Box{{-0.1, -kHalfGap_m}, {0.1, kHalfGap_m}});
+  }
+  DiscDomain domain() const { return {obstacles, world.field, world.radius_m, start_m, goal_m}; }
+  void open() { obstacles.move(closing, {0, 20}); }
+
+  PlanWorld world;
+  ObstacleWorld obstacles;
+  ObstacleId closing{};
+  Vec2 start_m{-3, -3}, goal_m{3, -3};
+};
+
+bool goes_through_gap(const std::vector<Vec2>& path) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec2 &from = path[i - 1], &to = path[i];
+    if (from.x() > 0 || to.x() <= 0) continue;
+    const double y = from.y() + (to.y() - from.y()) * from.x() / (from.x() - to.x());
+    return std::abs(y) < GapWorld::kHalfGap_m;
+  }
+  return false;
+}
+
+/// The shortest path between the last two nodes on a new roadmap of the same nodes.
+double shortest_on_new(const Roadmap<DiscDomain>& old, const DiscDomain& domain) {
+  Roadmap<DiscDomain> fresh;
+  for (std::uint32_t node = 0; node < old.size(); ++node)
+    fresh.add(domain, old[node], {Connection::kRadial, 8}, 1);
+  return shortest_on(fresh, domain);
+}
+
+TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was built") {
+  Distribution same_nodes, new_nodes;  // length relative to that of a new roadmap
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    GapWorld gap;
+    Rng rng(seed);
+    Roadmaps planner(dynamic_prm());
+    const Plan<Vec2> closed = planner.plan(gap.domain(), gap.start_m, {}, rng);
+    REQUIRE(closed.arrives());
+    REQUIRE_FALSE(goes_through_gap(closed.states));
+    gap.open();
+    // With this budget, no node is added.
+    const Budget budget{.nodes = planner.roadmap().size()};
+    const Plan<Vec2> opened = planner.plan(gap.domain(), gap.start_m, budget, rng);
+    REQUIRE(opened.arrives());
+    REQUIRE(is_valid_path(gap.world, opened.states, 1e-9));
+    REQUIRE(goes_through_gap(opened.states));
+    REQUIRE(opened.length < 0.7 * closed.length);
+    same_nodes.add(opened.length / shortest_on_new(planner.roadmap(), gap.domain()));
+    Rng new_rng(seed);
+    Roadmaps new_planner(dynamic_prm());
+    const Plan<Vec2> fresh = new_planner.plan(gap.domain(), gap.start_m, {}, new_rng);
+    REQUIRE(fresh.arrives());
+    new_nodes.add(opened.length / fresh.length);
+  }
+  CAPTURE(same_nodes.median(), same_nodes.quantile(1), new_nodes.median(), new_nodes.quantile(1));
+  CHECK(same_nodes.median() < 1.01);
+  CHECK(same_nodes.quantile(1) < 1.1);
+  // A new roadmap can have nodes in the gap.
+  CHECK(new_nodes.median() < 1.1);
+  CHECK(new_nodes.quantile(1) < 1.25);
+}
+
+TEST_CASE(
+    "with all blocked motions, an old roadmap is as good as a new one of its nodes once obstacles leave") {
+  const auto seed = GENERATE(1u, 2u, 3u);
+  PlanWorld world = make_world("circles", 15, seed);
+  ObstacleWorld obstacles(world.obstacles);
+  const PrmSettings settings{
+      .connection = {.method = Connection::kRadial, .neighbours = 8, .blocked_per_sector = 100},
+      .is_dynamic = true};
+  Rng rng(seed);
+  Roadmaps planner(settings);
+  planner.build({obstacles, world.field, world.radius_m, {0, 0}, {0, 0}}, {}, rng);
+  const std::size_t nodes = planner.roadmap().size(), edges = planner.roadmap().free_edge_count();
+  for (std::uint32_t i = 0; i < obstacles.size(); i += 2) obstacles.move(ObstacleId{i}, {30, 0});
+  int compared = 0;
+  for (const PlanQuery& query : world.queries) {
+    CAPTURE(seed, query.start_m.transpose(), query.goal_m.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+    const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {.nodes = nodes}, rng);
+    if (plan.states.size() == 2) continue;
+    const double shortest_m = shortest_on_new(planner.roadmap(), domain);
+    if (shortest_m < std::numeric_limits<double>::infinity()) REQUIRE(plan.arrives());
+    if (plan.arrives()) REQUIRE(plan.length <= shortest_m * (1 + 1e-9));
+    ++compared;
+  }
+  CHECK(compared >= 8);
+  // Motions that are blocked in this world are edges, but not free ones.
+  CHECK(planner.roadmap().edges().size() > edges);
+}
+
+TEST_CASE("a roadmap of a world that does not change does not use blocked motions") {
+  const auto seed = GENERATE(1u, 2u);
+  const PlanWorld world = make_world("circles", 15, seed);
+  const ObstacleWorld obstacles(world.obstacles);
+  ConnectionSettings keeping{.method = Connection::kRadial, .neighbours = 8, .blocked_per_sector = 3};
+  const ConnectionSettings plain{.method = Connection::kRadial, .neighbours = 8};
+  Roadmaps with(PrmSettings{.connection = keeping}), without(PrmSettings{.connection = plain});
+  Rng with_rng(seed), without_rng(seed);
+  for (const PlanQuery& query : world.queries) {
+    CAPTURE(seed, query.start_m.transpose(), query.goal_m.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+    REQUIRE(with.plan(domain, query.start_m, {.nodes = 2000}, with_rng).states ==
+            without.plan(domain, query.start_m, {.nodes = 2000}, without_rng).states);
+  }
+  CHECK(with.roadmap().free_edge_count() == without.roadmap().edges().size());
+  CHECK(with.roadmap().edges().size() > without.roadmap().edges().size());
 }
 
 TEST_CASE("radial connection joins a node with one neighbour in each sector") {
