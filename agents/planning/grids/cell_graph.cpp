@@ -47,9 +47,12 @@ void CellSearch::index_portals(const CellGraph& graph) {
   }
 }
 
-/// The nearest visible cell. The entry point lies slightly inside it, so that rounding does not exclude it.
+/// The cell that contains the position, or else the nearest visible one. The entry point lies slightly inside
+/// it, so that rounding does not exclude it.
 std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const DiscDomain& domain,
-                                                   const Vec2& position) const {
+                                                   const Vec2& position,
+                                                   const std::optional<std::uint32_t>& location) const {
+  if (location) return Entry{*location, position};
   std::optional<Entry> best;
   double best_m = std::numeric_limits<double>::infinity();
   for (std::uint32_t cell = 0; cell < graph.cells.size(); ++cell) {
@@ -83,6 +86,7 @@ void CellSearch::expand(const CellGraph& graph, std::uint32_t cell, std::uint32_
 std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const Entry& from, const Entry& to,
                                                 const Budget& budget, Plan<Vec2>& plan) {
   came_from_.assign(graph.portals.size(), kNone);
+  leads_into_.resize(graph.portals.size());
   open_.clear();
   if (from.cell == to.cell) return kStart;
   expand(graph, from.cell, kStart, from.at_m, 0, to.at_m);
@@ -98,6 +102,7 @@ std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const En
     if (at.portal == kGoal) return at.from;
     if (came_from_[at.portal] != kNone) continue;
     came_from_[at.portal] = at.from;
+    leads_into_[at.portal] = at.cell;
     const Vec2& middle = graph.portals[at.portal].middle_m;
     if (at.cell == to.cell) {
       const double length_m = at.cost_m + (to.at_m - middle).norm();
@@ -111,25 +116,29 @@ std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const En
 }
 
 void CellSearch::plan(const CellGraph& graph, const DiscDomain& domain, const Vec2& start,
-                      const Budget& budget, Plan<Vec2>& plan) {
+                      const Budget& budget, Plan<Vec2>& plan, const CellLocations& locations) {
   plan.states.assign(1, start);
   plan.reason = PlanReason::kUnreachable;
   plan.nodes = graph.cells.size();
+  path_.steps.clear();
   index_portals(graph);
   const Vec2 goal = domain.goal(start);
-  const std::optional<Entry> from = entry(graph, domain, start), to = entry(graph, domain, goal);
+  const std::optional<Entry> from = entry(graph, domain, start, locations.start);
+  const std::optional<Entry> to = entry(graph, domain, goal, locations.goal);
   if (!from || !to) return;
   const auto last = search(graph, *from, *to,
                            {budget.nodes + plan.nodes, budget.samples, budget.until, budget.clock}, plan);
   if (!last) return;
   plan.reason = PlanReason::kSolved;
-  plan.states.assign(1, goal);
-  if (to->at_m != goal) plan.states.push_back(to->at_m);
+  path_.from_m = from->at_m;
+  path_.to_m = to->at_m;
   for (std::uint32_t portal = *last; portal != kStart; portal = came_from_[portal])
-    plan.states.push_back(graph.portals[portal].middle_m);
+    path_.steps.push_back({portal, leads_into_[portal]});
+  std::reverse(path_.steps.begin(), path_.steps.end());
   if (from->at_m != start) plan.states.push_back(from->at_m);
-  plan.states.push_back(start);
-  std::reverse(plan.states.begin(), plan.states.end());
+  for (const CellPath::Step& step : path_.steps) plan.states.push_back(graph.portals[step.portal].middle_m);
+  if (to->at_m != goal) plan.states.push_back(to->at_m);
+  plan.states.push_back(goal);
   plan.length = length_of(domain, plan.states);
 }
 

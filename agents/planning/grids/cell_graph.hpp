@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "agents/planning/domain/disc_domain.hpp"
@@ -23,13 +24,31 @@ struct CellGraph {
   std::vector<Portal> portals;
 };
 
+/// The cells that contain a query's start and goal, if that is known.
+struct CellLocations {
+  std::optional<std::uint32_t> start, goal;
+};
+
+/// A path from cell to cell.
+struct CellPath {
+  struct Step {
+    std::uint32_t portal;
+    std::uint32_t cell;  ///< that it leads into
+  };
+  Vec2 from_m{0, 0}, to_m{0, 0};  ///< in the first and in the last cell
+  std::vector<Step> steps;
+};
+
 /// Finds the shortest path from portal to portal (A*); straight motions within a cell are free. A start or
 /// goal outside all cells is joined to the nearest visible cell. Reuses its memory between queries.
 class CellSearch {
  public:
   /// Fills in the plan, except its blocked flags. PlanReason::kUnreachable refers to these cells.
   void plan(const CellGraph& graph, const DiscDomain& domain, const Vec2& start, const Budget& budget,
-            Plan<Vec2>& plan);
+            Plan<Vec2>& plan, const CellLocations& locations = {});
+
+  /// The path of the last plan, if it arrives.
+  const CellPath& path() const { return path_; }
 
  private:
   struct Open {
@@ -45,7 +64,8 @@ class CellSearch {
   };
 
   void index_portals(const CellGraph& graph);
-  std::optional<Entry> entry(const CellGraph& graph, const DiscDomain& domain, const Vec2& position) const;
+  std::optional<Entry> entry(const CellGraph& graph, const DiscDomain& domain, const Vec2& position,
+                             const std::optional<std::uint32_t>& location) const;
   void expand(const CellGraph& graph, std::uint32_t cell, std::uint32_t from, const Vec2& at, double cost_m,
               const Vec2& goal);
   std::optional<std::uint32_t> search(const CellGraph& graph, const Entry& from, const Entry& to,
@@ -53,8 +73,10 @@ class CellSearch {
 
   std::vector<std::uint32_t> first_portal_;  // by cell: its first entry in portals_by_cell_
   std::vector<std::uint32_t> portals_by_cell_;
-  std::vector<std::uint32_t> came_from_;  // previous portal, by portal
+  std::vector<std::uint32_t> came_from_;   // previous portal, by portal
+  std::vector<std::uint32_t> leads_into_;  // cell, by portal that has a previous one
   std::vector<Open> open_;
+  CellPath path_;
 };
 
 }  // namespace sidestep

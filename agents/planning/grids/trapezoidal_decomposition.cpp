@@ -2,6 +2,7 @@
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "agents/planning/visibility/tangent_arc.hpp"
@@ -9,40 +10,85 @@
 namespace sidestep {
 namespace {
 
-constexpr double kStandoff_m = 1e-6;
-constexpr double kMinWidth_m = 1e-9;  // narrower slabs and portals are ignored
+using Index = TrapezoidalMap::Index;
+
+constexpr std::int64_t kMargin = 16;      // of the box around the field, in units of the grid
+constexpr double kStandoff_m = 1e-6;      // or kStandoff, if that is longer
+constexpr double kStandoff = 4;           // in units; rounding moves boundaries by about one
+constexpr double kMinPortalHeight = 0.5;  // in units
+constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
+
+/// The part of a convex polygon where sign * coordinate <= limit.
+void clip(std::vector<Vec2>& vertices, Eigen::Index axis, double sign, double limit_m) {
+  std::vector<Vec2> clipped;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec2 &from = vertices[i], &to = vertices[(i + 1) % vertices.size()];
+    const double from_m = sign * from[axis] - limit_m, to_m = sign * to[axis] - limit_m;
+    if (from_m <= 0) clipped.push_back(from);
+    if ((from_m < 0 && to_m > 0) || (from_m > 0 && to_m < 0))
+      clipped.push_back(from + from_m / (from_m - to_m) * (to - from));
+  }
+  vertices = clipped;
+}
 
 }  // namespace
-
-double TrapezoidalDecomposition::Edge::y_at(double x) const {
-  const double fraction = (x - left_m.x()) / (right_m.x() - left_m.x());
-  return left_m.y() + fraction * (right_m.y() - left_m.y());
-}
 
 const Plan<Vec2>& TrapezoidalDecomposition::plan(const DiscDomain& domain, const Vec2& start,
                                                  const Budget& budget, Rng&) {
   begin_plan(domain, start, plan_);
   if (plan_straight(domain, start, plan_)) return plan_;
-  const double half_length_m = domain.field().length_m / 2 - domain.radius_m();
-  const double half_width_m = domain.field().width_m / 2 - domain.radius_m();
-  inflate_obstacles(domain);
-  find_cuts(half_length_m);
   graph_.cells.clear();
   graph_.portals.clear();
-  left_cells_.clear();
-  for (std::size_t i = 1; i < cuts_.size(); ++i) fill_slab(cuts_[i - 1], cuts_[i], half_width_m);
-  search_.plan(graph_, domain, start, budget, plan_);
+  walls_.clear();
+  cell_of_.clear();
+  if (choose_grid(domain)) {
+    add_boundaries(domain);
+    // Without a map, there are no cells: the goal is unreachable for this planner.
+    if (divider_.divide(boundaries_)) add_cells();
+  }
+  search_.plan(graph_, domain, start, budget, plan_, {cell_at(start), cell_at(domain.goal(start))});
+  if (plan_.arrives()) shorten(domain, start);
   return plan_;
 }
 
-void TrapezoidalDecomposition::inflate_obstacles(const DiscDomain& domain) {
-  edges_.clear();
+std::optional<std::uint32_t> TrapezoidalDecomposition::cell_at(const Vec2& position) const {
+  if (cell_of_.empty()) return std::nullopt;
+  const GridPoint point = rounded(position);
+  if (std::abs(point.x) > half_field_.x || std::abs(point.y) > half_field_.y) return std::nullopt;
+  const std::uint32_t cell = cell_of_[map_.locate(point).trapezoid];
+  return cell == TrapezoidalMap::kNone ? std::nullopt : std::optional(cell);
+}
+
+bool TrapezoidalDecomposition::choose_grid(const DiscDomain& domain) {
+  const Vec2 half_m(domain.field().length_m / 2 - domain.radius_m(),
+                    domain.field().width_m / 2 - domain.radius_m());
+  if (!(half_m.minCoeff() > 0)) return false;
+  unit_m_ = half_m.maxCoeff() / static_cast<double>(kMaxGridCoordinate - 2 * kMargin);
+  half_field_ = rounded(half_m);
+  return true;
+}
+
+GridPoint TrapezoidalDecomposition::rounded(const Vec2& position) const {
+  const auto coordinate = [&](double at_m) {
+    constexpr auto kMax = static_cast<double>(kMaxGridCoordinate);
+    return std::llround(std::clamp(at_m / unit_m_, -kMax, kMax));
+  };
+  return {coordinate(position.x()), coordinate(position.y())};
+}
+
+void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
+  boundaries_.clear();
+  // Clockwise: what lies outside is covered.
+  const auto [x, y] = half_field_;
+  CrossingDivider::append_boundary(std::array<GridPoint, 4>{GridPoint{-x, -y}, {-x, y}, {x, y}, {x, -y}},
+                                   boundaries_);
+  const double clearance_m = domain.radius_m() + std::max(kStandoff_m, kStandoff * unit_m_);
   std::vector<TangentArc> arcs;
   std::vector<Vec2> vertices;
   for (const ObstacleId id : domain.world().obstacles()) {
     arcs.clear();
     vertices.clear();
-    append_arcs(domain.world().shape(id), domain.radius_m() + kStandoff_m, arcs);
+    append_arcs(domain.world().shape(id), clearance_m, arcs);
     for (const TangentArc& arc : arcs) {
       // Counter-clockwise along the arc, from its first direction.
       const Vec2 from = arc.is_corner ? left_of(arc.first) : Vec2(0, 1);
@@ -54,76 +100,108 @@ void TrapezoidalDecomposition::inflate_obstacles(const DiscDomain& domain) {
   }
 }
 
-void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices) {
-  for (std::size_t i = 0, last = vertices.size() - 1; i < vertices.size(); last = i++) {
-    const Vec2 &from = vertices[last], &to = vertices[i];
-    // The polygon is counter-clockwise, so its lower edges lead to the right.
-    if (from.x() < to.x()) edges_.push_back({from, to, true});
-    if (to.x() < from.x()) edges_.push_back({to, from, false});
+/// Adds the part within a box slightly larger than the field.
+void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices_m) {
+  const Vec2 half_m = in_metres(half_field_.x + kMargin, static_cast<double>(half_field_.y + kMargin));
+  std::vector<Vec2> clipped = vertices_m;
+  for (const Eigen::Index axis : {0, 1})
+    for (const double sign : {-1.0, 1.0}) clip(clipped, axis, sign, half_m[axis]);
+  std::vector<GridPoint> corners;
+  for (const Vec2& vertex : clipped) corners.push_back(rounded(vertex));
+  CrossingDivider::append_boundary(corners, boundaries_);
+}
+
+void TrapezoidalDecomposition::add_cells() {
+  segments_.clear();
+  for (const WindingSegment& boundary : boundaries_) segments_.push_back(boundary.segment);
+  Rng order(settings_.seed);
+  map_.build(segments_, {half_field_.x + 2 * kMargin, half_field_.y + 2 * kMargin}, order);
+  count_covers();
+  cell_of_.assign(map_.trapezoids().size(), TrapezoidalMap::kNone);
+  for (Index i = 0; i < map_.trapezoids().size(); ++i)
+    if (covers_[i] == 0) add_cell(i);
+  for (Index i = 0; i < map_.trapezoids().size(); ++i)
+    if (cell_of_[i] != TrapezoidalMap::kNone) add_portals(i);
+}
+
+/// From the bottom of the box, which is outside the field, through neighbours and across segments.
+void TrapezoidalDecomposition::count_covers() {
+  above_.assign(map_.segments().size(), TrapezoidalMap::kNone);
+  below_.assign(map_.segments().size(), TrapezoidalMap::kNone);
+  for (Index i = 0; i < map_.trapezoids().size(); ++i) {
+    const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[i];
+    if (trapezoid.leaf == TrapezoidalMap::kNone) continue;
+    above_[trapezoid.bottom] = i;
+    below_[trapezoid.top] = i;
+  }
+  covers_.assign(map_.trapezoids().size(), kUnknown);
+  open_.clear();
+  cover(above_[map_.box_bottom()], 1);
+  while (!open_.empty()) {
+    const Index at = open_.back();
+    open_.pop_back();
+    const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[at];
+    const std::int32_t count = covers_[at];
+    for (const Index neighbour : trapezoid.left_neighbours) cover(neighbour, count);
+    for (const Index neighbour : trapezoid.right_neighbours) cover(neighbour, count);
+    if (trapezoid.top != map_.box_top())
+      cover(above_[trapezoid.top], count + boundaries_[trapezoid.top].winding);
+    if (trapezoid.bottom != map_.box_bottom())
+      cover(below_[trapezoid.bottom], count - boundaries_[trapezoid.bottom].winding);
   }
 }
 
-void TrapezoidalDecomposition::find_cuts(double half_length_m) {
-  cuts_.assign({-half_length_m, half_length_m});
-  const auto add = [&](double x) {
-    if (std::abs(x) < half_length_m) cuts_.push_back(x);
-  };
-  std::sort(edges_.begin(), edges_.end(),
-            [](const Edge& a, const Edge& b) { return a.left_m.x() < b.left_m.x(); });
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const Edge& a = edges_[i];
-    add(a.left_m.x());
-    add(a.right_m.x());
-    for (std::size_t j = i + 1; j < edges_.size() && edges_[j].left_m.x() < a.right_m.x(); ++j) {
-      const Edge& b = edges_[j];
-      const Vec2 along_a = a.right_m - a.left_m, along_b = b.right_m - b.left_m;
-      const double across = cross(along_a, along_b);
-      if (across == 0) continue;
-      const double part_a = cross(b.left_m - a.left_m, along_b) / across;
-      const double part_b = cross(b.left_m - a.left_m, along_a) / across;
-      if (part_a > 0 && part_a < 1 && part_b > 0 && part_b < 1) add(a.left_m.x() + part_a * along_a.x());
-    }
-  }
-  std::sort(cuts_.begin(), cuts_.end());
-  const auto is_same = [](double a, double b) { return b - a < kMinWidth_m; };
-  cuts_.erase(std::unique(cuts_.begin(), cuts_.end(), is_same), cuts_.end());
+/// No effect if it is known.
+void TrapezoidalDecomposition::cover(Index trapezoid, std::int32_t count) {
+  if (trapezoid == TrapezoidalMap::kNone || covers_[trapezoid] != kUnknown) return;
+  covers_[trapezoid] = count;
+  open_.push_back(trapezoid);
 }
 
-/// Edges do not cross within a slab. From bottom to top, the parts covered by no polygon are free.
-void TrapezoidalDecomposition::fill_slab(double left_m, double right_m, double half_width_m) {
-  const double middle_m = (left_m + right_m) / 2;
-  slab_edges_.clear();
-  for (const Edge& edge : edges_) {
-    if (edge.left_m.x() > middle_m) break;
-    if (edge.right_m.x() > middle_m) slab_edges_.push_back(&edge);
-  }
-  std::sort(slab_edges_.begin(), slab_edges_.end(),
-            [&](const Edge* a, const Edge* b) { return a->y_at(middle_m) < b->y_at(middle_m); });
-  current_cells_.clear();
-  int covered = 0;
-  Vec2 low(-half_width_m, -half_width_m);  // lower bound of the free part at the left and at the right end
-  const auto clamped = [&](double y) { return std::clamp(y, -half_width_m, half_width_m); };
-  for (const Edge* edge : slab_edges_) {
-    const Vec2 at(clamped(edge->y_at(left_m)), clamped(edge->y_at(right_m)));
-    if (edge->is_lower && covered++ == 0) add_cell(left_m, right_m, low, at);
-    if (!edge->is_lower && --covered == 0) low = at;
-  }
-  if (covered == 0) add_cell(left_m, right_m, low, {half_width_m, half_width_m});
-  std::swap(left_cells_, current_cells_);
+void TrapezoidalDecomposition::add_cell(Index i) {
+  const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[i];
+  const GridSegment &bottom = map_.segments()[trapezoid.bottom], &top = map_.segments()[trapezoid.top];
+  cell_of_[i] = static_cast<std::uint32_t>(graph_.cells.size());
+  std::vector<Vec2>& corners = graph_.cells.emplace_back().corners_m;
+  const GridPoint &left = trapezoid.left, &right = trapezoid.right;
+  corners.reserve(4);
+  for (const Vec2& corner : {in_metres(left.x, y_at(bottom, left)), in_metres(right.x, y_at(bottom, right)),
+                             in_metres(right.x, y_at(top, right)), in_metres(left.x, y_at(top, left))})
+    if (corners.empty() || (corner != corners.back() && corner != corners.front())) corners.push_back(corner);
 }
 
-void TrapezoidalDecomposition::add_cell(double left_m, double right_m, const Vec2& low_m,
-                                        const Vec2& high_m) {
-  if (high_m.x() - low_m.x() + high_m.y() - low_m.y() < kMinWidth_m) return;
-  const auto index = static_cast<std::uint32_t>(graph_.cells.size());
-  graph_.cells.push_back(
-      {{{left_m, low_m.x()}, {right_m, low_m.y()}, {right_m, high_m.y()}, {left_m, high_m.x()}}});
-  for (const Cell& other : left_cells_) {
-    const double low = std::max(other.right_low_m, low_m.x()),
-                 high = std::min(other.right_high_m, high_m.x());
-    if (high - low > kMinWidth_m) graph_.portals.push_back({other.index, index, {left_m, (low + high) / 2}});
+/// To the cells on its right.
+void TrapezoidalDecomposition::add_portals(Index i) {
+  const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[i];
+  const GridPoint& wall = trapezoid.right;
+  for (const Index neighbour : trapezoid.right_neighbours) {
+    if (neighbour == TrapezoidalMap::kNone || cell_of_[neighbour] == TrapezoidalMap::kNone) continue;
+    const TrapezoidalMap::Trapezoid& other = map_.trapezoids()[neighbour];
+    const double low =
+        std::max(y_at(map_.segments()[trapezoid.bottom], wall), y_at(map_.segments()[other.bottom], wall));
+    const double high =
+        std::min(y_at(map_.segments()[trapezoid.top], wall), y_at(map_.segments()[other.top], wall));
+    if (high - low <= kMinPortalHeight) continue;
+    graph_.portals.push_back({cell_of_[i], cell_of_[neighbour], in_metres(wall.x, (low + high) / 2)});
+    walls_.push_back({in_metres(wall.x, high), in_metres(wall.x, low)});
   }
-  current_cells_.push_back({index, low_m.y(), high_m.y()});
+}
+
+void TrapezoidalDecomposition::shorten(const DiscDomain& domain, const Vec2& start) {
+  const CellPath& path = search_.path();
+  gates_.clear();
+  for (const auto& [portal, cell] : path.steps) {
+    gates_.push_back(walls_[portal]);
+    // A portal's second cell is the one on its right.
+    if (cell != graph_.portals[portal].b) std::swap(gates_.back().left_m, gates_.back().right_m);
+  }
+  write_shortest_through(path.from_m, gates_, path.to_m, shortened_);
+  const Vec2 goal = plan_.states.back();
+  plan_.states.assign(1, start);
+  for (const Vec2& state : shortened_)
+    if (state != plan_.states.back()) plan_.states.push_back(state);
+  if (goal != plan_.states.back()) plan_.states.push_back(goal);
+  plan_.length = length_of(domain, plan_.states);
 }
 
 }  // namespace sidestep

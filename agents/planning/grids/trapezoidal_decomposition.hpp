@@ -2,17 +2,22 @@
 #pragma once
 
 #include "agents/planning/grids/cell_graph.hpp"
+#include "agents/planning/grids/funnel.hpp"
+#include "agents/planning/grids/trapezoidal_map.hpp"
+#include "agents/planning/grids/winding_segments.hpp"
 
 namespace sidestep {
 
 struct TrapezoidalDecompositionSettings {
   double vertex_turn_rad = 0.2;  ///< maximum turn at a vertex of the polygons that approximate arcs
+  std::uint64_t seed = 1;        ///< of the random order in which the map is built
 };
 
-/// Exact cell decomposition (Latombe 1991, section 5.1). Obstacles inflated by the robot's radius are
-/// approximated by polygons; vertical lines through their vertices and intersections cut the field into
-/// slabs, in which the free parts are trapezoids. Exact for these polygons, which are slightly larger than
-/// the inflated obstacles. Rebuilt for each query.
+/// Exact cell decomposition (Latombe 1991, section 5.1) by the trapezoidal map of the obstacles' boundaries
+/// (de Berg et al. 2008, section 13.2). Obstacles inflated by the robot's radius are approximated by
+/// polygons, whose corners are rounded to an integer grid; the trapezoids that no polygon covers are the
+/// cells. Exact for these polygons, which are slightly larger than the inflated obstacles. Rebuilt for each
+/// query, in expected O((n + k) log n) after k crossings are found.
 class TrapezoidalDecomposition {
  public:
   explicit TrapezoidalDecomposition(const TrapezoidalDecompositionSettings& settings = {})
@@ -22,30 +27,42 @@ class TrapezoidalDecomposition {
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
   const CellGraph& cells() const { return graph_; }
+  /// The cell at a position, as of the last query that had no straight path; none if an obstacle covers it.
+  /// Takes a logarithmic number of steps.
+  std::optional<std::uint32_t> cell_at(const Vec2& position_m) const;
 
  private:
-  struct Edge {
-    Vec2 left_m, right_m;
-    bool is_lower;  // part of the lower boundary of its polygon
-    double y_at(double x) const;
-  };
-  struct Cell {
-    std::uint32_t index;
-    double right_low_m, right_high_m;
-  };
-
-  void inflate_obstacles(const DiscDomain& domain);
-  void add_polygon(const std::vector<Vec2>& vertices);
-  void find_cuts(double half_length_m);
-  void fill_slab(double left_m, double right_m, double half_width_m);
-  void add_cell(double left_m, double right_m, const Vec2& low_m, const Vec2& high_m);
+  /// Chooses the unit of the grid. Returns false if the robot does not fit into the field.
+  bool choose_grid(const DiscDomain& domain);
+  void add_boundaries(const DiscDomain& domain);
+  void add_polygon(const std::vector<Vec2>& vertices_m);
+  /// Computes how many polygons cover each trapezoid.
+  void count_covers();
+  void cover(TrapezoidalMap::Index trapezoid, std::int32_t count);
+  void add_cells();
+  void add_cell(TrapezoidalMap::Index trapezoid);
+  void add_portals(TrapezoidalMap::Index trapezoid);
+  /// Replaces the path over the middles of portals by the shortest through the same portals.
+  void shorten(const DiscDomain& domain, const Vec2& start);
+  Vec2 in_metres(std::int64_t x, double y) const { return {unit_m_ * static_cast<double>(x), unit_m_ * y}; }
+  GridPoint rounded(const Vec2& position_m) const;
 
   TrapezoidalDecompositionSettings settings_;
-  std::vector<Edge> edges_;
-  std::vector<double> cuts_;
-  std::vector<const Edge*> slab_edges_;
-  std::vector<Cell> left_cells_, current_cells_;  // of the slab to the left, and of the current slab
+  double unit_m_ = 1;     // of the grid
+  GridPoint half_field_;  // of the positions of the robot's centre
+  CrossingDivider divider_;
+  std::vector<WindingSegment> boundaries_;
+  std::vector<GridSegment> segments_;
+  TrapezoidalMap map_;
+  std::vector<std::int32_t> covers_;          // by trapezoid
+  std::vector<TrapezoidalMap::Index> above_;  // by segment: a trapezoid above it
+  std::vector<TrapezoidalMap::Index> below_;
+  std::vector<TrapezoidalMap::Index> open_;
+  std::vector<std::uint32_t> cell_of_;  // by trapezoid
   CellGraph graph_;
+  std::vector<Gate> walls_;  // by portal, as seen from left to right
+  std::vector<Gate> gates_;  // of the path
+  std::vector<Vec2> shortened_;
   CellSearch search_;
   Plan<Vec2> plan_;
 };

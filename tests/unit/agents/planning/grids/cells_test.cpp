@@ -65,7 +65,7 @@ TEST_CASE("cell decompositions lead to the goal in all worlds") {
     CHECK((squares.over_shortest < 1.6 || squares.solved == 0));
     const Outcome trapezoids = plan_world(TrapezoidalDecomposition(), name, seed);
     CHECK(trapezoids.solved == 10);
-    CHECK(trapezoids.over_shortest < 2.5);
+    CHECK(trapezoids.over_shortest < 1.5);
   }
 }
 
@@ -94,7 +94,39 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
     if (count == 0)
       REQUIRE_FALSE((is_free(larger_robot, position) && larger_robot.field.contains(position, 0.11)));
     REQUIRE(count <= 1);
+    // Point location finds the same cell.
+    const std::optional<std::uint32_t> cell = planner.cell_at(position);
+    if (count == 1) REQUIRE((cell && contains(planner.cells().cells[*cell])));
+    if (count == 0 && cell) {
+      const std::span<const Vec2> corners = planner.cells().cells[*cell].corners_m;
+      REQUIRE(signed_distance(position, corners) < 1e-7);
+    }
   }
+}
+
+TEST_CASE("obstacles at and beyond the border of the field do not change the trapezoids inside") {
+  PlanWorld world;
+  world.obstacles = {Box{{-0.5, -2}, {0.5, 2}}};
+  const Vec2 start(-3, 0), goal(3, 0);
+  Rng rng(1);
+  TrapezoidalDecomposition planner;
+  const ObstacleWorld one(world.obstacles);
+  const double length_m =
+      planner.plan({one, world.field, world.radius_m, start, goal}, start, {}, rng).length;
+  CHECK(length_m > 6);
+  world.obstacles.push_back(Circle{{1e9, 0}, 1});
+  world.obstacles.push_back(Box{{-20, 6}, {20, 7}});
+  world.obstacles.push_back(Segment{{-5, 20}, {5, 20}});
+  const ObstacleWorld more(world.obstacles);
+  const Plan<Vec2>& plan = planner.plan({more, world.field, world.radius_m, start, goal}, start, {}, rng);
+  CHECK(plan.length == Approx(length_m).epsilon(1e-6));
+  // An obstacle that crosses the border, and leaves only the way below the box.
+  world.obstacles.push_back(Box{{-0.1, 1}, {0.1, 8}});
+  const ObstacleWorld most(world.obstacles);
+  const Plan<Vec2>& below = planner.plan({most, world.field, world.radius_m, start, goal}, start, {}, rng);
+  REQUIRE(below.arrives());
+  CHECK(is_valid_path(world, below.states, 1e-9));
+  for (const Vec2& state : below.states) CHECK(state.y() <= 0);
 }
 
 TEST_CASE("grids and cell decompositions report that no path exists") {

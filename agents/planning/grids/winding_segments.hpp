@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "agents/planning/grids/grid_segment.hpp"
+
+namespace sidestep {
+
+/// A part of polygons' boundaries.
+struct WindingSegment {
+  GridSegment segment;
+  /// How many polygons more cover the side above the segment than the side below it.
+  std::int32_t winding = 0;
+  auto operator<=>(const WindingSegment&) const = default;
+};
+
+/// Divides segments where they cross, until they have no more than ends in common. Crossings are rounded to
+/// grid points, which moves segments by about a unit of the grid and can cause new crossings; these are
+/// divided as well (iterated snap rounding; Halperin and Packer 2002).
+class CrossingDivider {
+ public:
+  /// Appends the boundary of a closed polygon with these corners. It covers what lies to the left of its
+  /// edges.
+  static void append_boundary(std::span<const GridPoint> corners, std::vector<WindingSegment>& segments);
+
+  /// Returns false if crossings remain after many rounds.
+  [[nodiscard]] bool divide(std::vector<WindingSegment>& segments);
+
+ private:
+  struct Cut {
+    std::size_t segment;
+    std::int64_t along;  // order of the cuts of a segment
+    GridPoint at;
+    auto operator<=>(const Cut&) const = default;
+  };
+
+  void find_cuts(const std::vector<WindingSegment>& segments);
+  void compare(const std::vector<WindingSegment>& segments, std::size_t a, std::size_t b);
+  void cut(const std::vector<WindingSegment>& segments, std::size_t i, const GridPoint& at);
+
+  std::vector<Cut> cuts_;
+  std::vector<WindingSegment> divided_;
+};
+
+}  // namespace sidestep
