@@ -10,10 +10,10 @@ namespace sidestep {
 /// ordered by x, and by y if x is equal: the order along the x axis after an infinitesimal shear, which
 /// leaves no segment vertical (de Berg et al. 2008, section 6.3).
 struct GridPoint {
-  std::int64_t x = 0, y = 0;
+  std::int32_t x = 0, y = 0;
   auto operator<=>(const GridPoint&) const = default;
 };
-inline constexpr std::int64_t kMaxGridCoordinate = std::int64_t{1} << 29;
+inline constexpr std::int32_t kMaxGridCoordinate = 1 << 29;
 
 /// A segment between grid points, left < right.
 struct GridSegment {
@@ -23,7 +23,7 @@ struct GridSegment {
 
 /// Twice the area of a triangle, positive if its corners are counter-clockwise.
 inline std::int64_t orientation(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  return std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{b.y - a.y} * (c.x - a.x);
 }
 
 /// Positive if a point lies above a segment's line, negative below it. Above a vertical segment is its left.
@@ -33,11 +33,9 @@ inline std::int64_t height_above(const GridSegment& segment, const GridPoint& po
 
 /// Where a vertical line through a point intersects a segment above or below the point.
 inline double y_at(const GridSegment& segment, const GridPoint& point) {
-  const auto width = static_cast<double>(segment.right.x - segment.left.x);
-  if (width == 0) return static_cast<double>(point.y);
-  const double fraction = static_cast<double>(point.x - segment.left.x) / width;
-  return static_cast<double>(segment.left.y) +
-         fraction * static_cast<double>(segment.right.y - segment.left.y);
+  const double width = segment.right.x - segment.left.x;
+  if (width == 0) return point.y;
+  return segment.left.y + (point.x - segment.left.x) / width * (segment.right.y - segment.left.y);
 }
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@ namespace {
 
 using Index = TrapezoidalMap::Index;
 
-constexpr std::int64_t kMargin = 16;      // of the box around the field, in units of the grid
+constexpr std::int32_t kMargin = 16;      // of the box around the field, in units of the grid
 constexpr double kStandoff_m = 1e-6;      // or kStandoff, if that is longer
 constexpr double kStandoff = 4;           // in units; rounding moves boundaries by about one
 constexpr double kMinPortalHeight = 0.5;  // in units
@@ -63,15 +63,17 @@ bool TrapezoidalDecomposition::choose_grid(const DiscDomain& domain) {
   const Vec2 half_m(domain.field().length_m / 2 - domain.radius_m(),
                     domain.field().width_m / 2 - domain.radius_m());
   if (!(half_m.minCoeff() > 0)) return false;
-  unit_m_ = half_m.maxCoeff() / static_cast<double>(kMaxGridCoordinate - 2 * kMargin);
-  half_field_ = rounded(half_m);
+  unit_m_ = half_m.maxCoeff() / (kMaxGridCoordinate - 2 * kMargin);
+  // Rounded inwards, so that paths along the border stay within the field.
+  half_field_ = {static_cast<std::int32_t>(half_m.x() / unit_m_),
+                 static_cast<std::int32_t>(half_m.y() / unit_m_)};
   return true;
 }
 
 GridPoint TrapezoidalDecomposition::rounded(const Vec2& position) const {
   const auto coordinate = [&](double at_m) {
-    constexpr auto kMax = static_cast<double>(kMaxGridCoordinate);
-    return std::llround(std::clamp(at_m / unit_m_, -kMax, kMax));
+    constexpr double kMax = kMaxGridCoordinate;
+    return static_cast<std::int32_t>(std::lround(std::clamp(at_m / unit_m_, -kMax, kMax)));
   };
   return {coordinate(position.x()), coordinate(position.y())};
 }
@@ -102,7 +104,7 @@ void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
 
 /// Adds the part within a box slightly larger than the field.
 void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices_m) {
-  const Vec2 half_m = in_metres(half_field_.x + kMargin, static_cast<double>(half_field_.y + kMargin));
+  const Vec2 half_m = in_metres(half_field_.x + kMargin, half_field_.y + kMargin);
   std::vector<Vec2> clipped = vertices_m;
   for (const Eigen::Index axis : {0, 1})
     for (const double sign : {-1.0, 1.0}) clip(clipped, axis, sign, half_m[axis]);

@@ -44,7 +44,7 @@ class TrapezoidalDecomposition {
   void add_portals(TrapezoidalMap::Index trapezoid);
   /// Replaces the path over the middles of portals by the shortest through the same portals.
   void shorten(const DiscDomain& domain, const Vec2& start);
-  Vec2 in_metres(std::int64_t x, double y) const { return {unit_m_ * static_cast<double>(x), unit_m_ * y}; }
+  Vec2 in_metres(double x, double y) const { return {unit_m_ * x, unit_m_ * y}; }
   GridPoint rounded(const Vec2& position_m) const;
 
   TrapezoidalDecompositionSettings settings_;

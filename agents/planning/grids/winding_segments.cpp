@@ -36,8 +36,8 @@ bool is_within_bounds(const GridPoint& point, const GridSegment& segment) {
 bool are_opposite(std::int64_t a, std::int64_t b) { return (a < 0 && b > 0) || (a > 0 && b < 0); }
 
 GridPoint rounded_point(const GridSegment& segment, double fraction) {
-  const auto between = [fraction](std::int64_t from, std::int64_t to) {
-    return from + std::llround(fraction * static_cast<double>(to - from));
+  const auto between = [fraction](std::int32_t from, std::int32_t to) {
+    return from + static_cast<std::int32_t>(std::lround(fraction * (to - from)));
   };
   return {between(segment.left.x, segment.right.x), between(segment.left.y, segment.right.y)};
 }
@@ -102,8 +102,8 @@ void CrossingDivider::compare(const std::vector<WindingSegment>& segments, std::
 void CrossingDivider::cut(const std::vector<WindingSegment>& segments, std::size_t i, const GridPoint& at) {
   const GridSegment& segment = segments[i].segment;
   if (at == segment.left || at == segment.right || !is_within_bounds(at, segment)) return;
-  const std::int64_t along = (at.x - segment.left.x) * (segment.right.x - segment.left.x) +
-                             (at.y - segment.left.y) * (segment.right.y - segment.left.y);
+  const std::int64_t along = std::int64_t{at.x - segment.left.x} * (segment.right.x - segment.left.x) +
+                             std::int64_t{at.y - segment.left.y} * (segment.right.y - segment.left.y);
   cuts_.push_back({i, along, at});
 }
 

@@ -9,16 +9,18 @@
 namespace sidestep {
 
 /// With coordinates from -half to half.
-inline GridPoint random_grid_point(Rng& rng, std::int64_t half) {
-  const auto coordinate = [&] { return static_cast<std::int64_t>(rng.below(2 * half + 1)) - half; };
-  const std::int64_t y = coordinate(), x = coordinate();
+inline GridPoint random_grid_point(Rng& rng, std::int32_t half) {
+  const auto coordinate = [&] {
+    return static_cast<std::int32_t>(rng.below(2 * std::uint64_t(half) + 1)) - half;
+  };
+  const std::int32_t y = coordinate(), x = coordinate();
   return {x, y};
 }
 
 /// Up to this many random segments, at most `max_length` long on each axis, divided where they cross. On a
 /// small grid, many share ends or are vertical.
-inline std::vector<GridSegment> random_divided_segments(Rng& rng, std::size_t count, std::int64_t half,
-                                                        std::int64_t max_length) {
+inline std::vector<GridSegment> random_divided_segments(Rng& rng, std::size_t count, std::int32_t half,
+                                                        std::int32_t max_length) {
   std::vector<WindingSegment> winding;
   while (winding.size() < count) {
     const GridPoint a = random_grid_point(rng, half), by = random_grid_point(rng, max_length);

@@ -18,7 +18,7 @@ std::int64_t compare_heights(const GridSegment& a, const GridSegment& b, const G
   // y = numerator / width, where a vertical segment contains the point.
   const auto y_of = [&](const GridSegment& s) {
     const std::int64_t width = s.right.x - s.left.x;
-    if (width == 0) return std::pair(at.y, std::int64_t{1});
+    if (width == 0) return std::pair(std::int64_t{at.y}, std::int64_t{1});
     return std::pair(s.left.y * width + (s.right.y - s.left.y) * (at.x - s.left.x), width);
   };
   const auto [a_numerator, a_width] = y_of(a);
@@ -59,7 +59,7 @@ bool contains_end(const TrapezoidalMap& map, const TrapezoidalMap::Trapezoid& t)
   return false;
 }
 
-void check_map(const TrapezoidalMap& map, std::int64_t half) {
+void check_map(const TrapezoidalMap& map, std::int32_t half) {
   std::size_t count = 0;
   double area = 0;
   for (Index i = 0; i < map.trapezoids().size(); ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("a trapezoidal map is consistent and locates points like a comparison 
   const std::uint64_t seed = GENERATE(range(1, 7));
   const std::size_t count = GENERATE(0, 1, 2, 10, 60);
   // On the smallest grid, most segments share ends or x coordinates with others.
-  const std::int64_t half = GENERATE(4, 25, 900);
+  const std::int32_t half = GENERATE(4, 25, 900);
   CAPTURE(seed, count, half);
   Rng rng(seed);
   const std::vector<GridSegment> segments = random_divided_segments(rng, count, half, half);
@@ -170,9 +170,9 @@ TEST_CASE("the trapezoids do not depend on the order of insertion") {
 
 /// Horizontal segments, one above and beyond the other, for which insertion in this order gives a search
 /// structure of linear depth.
-std::vector<GridSegment> staircase(std::int64_t count) {
+std::vector<GridSegment> staircase(std::int32_t count) {
   std::vector<GridSegment> segments;
-  for (std::int64_t i = 0; i < count; ++i) segments.push_back({{2 * i, i}, {2 * i + 1, i}});
+  for (std::int32_t i = 0; i < count; ++i) segments.push_back({{2 * i, i}, {2 * i + 1, i}});
   return segments;
 }
 
@@ -180,10 +180,9 @@ double mean_steps(const TrapezoidalMap& map, const GridPoint& half, Rng& rng) {
   double steps = 0;
   constexpr int kPoints = 1000;
   for (int i = 0; i < kPoints; ++i) {
-    const double y = rng.uniform(-1, 1), x = rng.uniform(-1, 1);
-    steps += static_cast<double>(map.locate({std::llround(x * static_cast<double>(half.x)),
-                                             std::llround(y * static_cast<double>(half.y))})
-                                     .steps);
+    const double y = rng.uniform(-half.y, half.y), x = rng.uniform(-half.x, half.x);
+    steps +=
+        static_cast<double>(map.locate({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}).steps);
   }
   return steps / kPoints;
 }
@@ -191,7 +190,7 @@ double mean_steps(const TrapezoidalMap& map, const GridPoint& half, Rng& rng) {
 TEST_CASE("locating a point takes a logarithmic number of steps, whatever the segments") {
   const bool is_staircase = GENERATE(true, false);
   double small_steps = 0;
-  for (const std::int64_t count : {64, 1024, 16384}) {
+  for (const std::int32_t count : {64, 1024, 16384}) {
     // Expected over the random orders: de Berg et al. 2008, theorem 6.3, with its constant.
     double mean = 0, slowest = 0;
     constexpr std::uint64_t kSeeds = 10;

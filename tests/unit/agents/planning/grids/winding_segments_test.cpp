@@ -26,14 +26,13 @@ bool overlap_or_cross(const GridSegment& a, const GridSegment& b) {
 }
 
 double distance(const GridPoint& p, const GridPoint& a, const GridPoint& b) {
-  const auto x = static_cast<double>(b.x - a.x), y = static_cast<double>(b.y - a.y);
-  const auto px = static_cast<double>(p.x - a.x), py = static_cast<double>(p.y - a.y);
+  const double x = b.x - a.x, y = b.y - a.y, px = p.x - a.x, py = p.y - a.y;
   const double along = std::clamp((px * x + py * y) / (x * x + y * y), 0.0, 1.0);
   return std::hypot(px - along * x, py - along * y);
 }
 
 /// A triangle with its corners counter-clockwise.
-std::vector<GridPoint> random_triangle(Rng& rng, std::int64_t half) {
+std::vector<GridPoint> random_triangle(Rng& rng, std::int32_t half) {
   for (;;) {
     const GridPoint a = random_grid_point(rng, half), b = random_grid_point(rng, half),
                     c = random_grid_point(rng, half);
@@ -43,7 +42,7 @@ std::vector<GridPoint> random_triangle(Rng& rng, std::int64_t half) {
 
 TEST_CASE("divided segments have no more than ends in common") {
   const std::uint64_t seed = GENERATE(range(1, 11));
-  const std::int64_t half = GENERATE(4, 30, 1000, kMaxGridCoordinate);
+  const std::int32_t half = GENERATE(4, 30, 1000, kMaxGridCoordinate);
   CAPTURE(seed, half);
   Rng rng(seed);
   const std::vector<GridSegment> segments = random_divided_segments(rng, 40, half, half);
@@ -58,7 +57,7 @@ TEST_CASE("dividing polygons does not change how many cover a point far from the
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
-  constexpr std::int64_t kHalf = 2000;
+  constexpr std::int32_t kHalf = 2000;
   std::vector<std::vector<GridPoint>> triangles;
   std::vector<WindingSegment> boundaries;
   for (int i = 0; i < 12; ++i) {
