@@ -130,7 +130,7 @@ class Prm {
   }
 
   bool is_known_blocked(const typename Roadmap<D>::Edge& edge) const {
-    return !edge.is_free && (edge.checked == version_ || !settings_.is_dynamic);
+    return !edge.is_free && edge.checked == version_;
   }
 
   void write_plan(Node from, Node node) {
@@ -146,7 +146,7 @@ class Prm {
   PrmSettings settings_;
   Roadmap<D> map_;
   std::size_t base_size_ = 0;              // nodes of the roadmap without start and goal of the last query
-  std::uint32_t version_ = 1;              // of the world
+  std::uint32_t version_ = 1;              // of the world; stays the same if it does not change
   std::vector<std::uint32_t> reached_by_;  // edge, by node
   std::vector<Open> queue_;
   Plan<State> plan_;
