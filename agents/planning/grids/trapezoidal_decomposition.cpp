@@ -109,6 +109,7 @@ void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices_m) 
   for (const Eigen::Index axis : {0, 1})
     for (const double sign : {-1.0, 1.0}) clip(clipped, axis, sign, half_m[axis]);
   std::vector<GridPoint> corners;
+  corners.reserve(clipped.size());
   for (const Vec2& vertex : clipped) corners.push_back(rounded(vertex));
   CrossingDivider::append_boundary(corners, boundaries_);
 }

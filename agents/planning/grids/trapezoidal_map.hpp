@@ -54,8 +54,8 @@ class TrapezoidalMap {
   /// A comparison with an end of a segment or with a segment. Children: if the point is left of the end or
   /// below the segment, and if not.
   struct Node {
-    Kind kind;
-    Index index;  // of the trapezoid or segment
+    Kind kind = Kind::kTrapezoid;
+    Index index = kNone;  // of the trapezoid or segment
     std::array<Index, 2> children{kNone, kNone};
   };
 

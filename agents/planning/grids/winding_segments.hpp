@@ -30,8 +30,8 @@ class CrossingDivider {
 
  private:
   struct Cut {
-    std::size_t segment;
-    std::int64_t along;  // order of the cuts of a segment
+    std::size_t segment = 0;
+    std::int64_t along = 0;  // order of the cuts of a segment
     GridPoint at;
     auto operator<=>(const Cut&) const = default;
   };
