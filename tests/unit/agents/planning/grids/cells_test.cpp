@@ -2,6 +2,7 @@
 #include "agents/planning/grids/grid_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
+#include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
 #include "deploy/evaluation/planning/worlds.hpp"
 #include "tests/catch.hpp"
@@ -127,6 +128,50 @@ TEST_CASE("obstacles at and beyond the border of the field do not change the tra
   REQUIRE(below.arrives());
   CHECK(is_valid_path(world, below.states, 1e-9));
   for (const Vec2& state : below.states) CHECK(state.y() <= 0);
+}
+
+/// Shapes with coordinates that are multiples of half a metre, so that many boundaries coincide.
+PlanWorld aligned_world(Rng& rng) {
+  PlanWorld world;
+  world.radius_m = rng.chance(0.5) ? 0.25 : 0.5;
+  const auto half_metres = [&](std::uint64_t count) { return 0.5 * static_cast<double>(rng.below(count)); };
+  const std::size_t count = 3 + rng.below(30);
+  while (world.obstacles.size() < count) {
+    const double y = half_metres(21) - 5, x = half_metres(21) - 5;
+    const double width_m = 0.5 + half_metres(4), length_m = 0.5 + half_metres(4);
+    const Vec2 at(x, y);
+    const Shape shapes[] = {Box{at, at + Vec2(length_m, width_m)}, Segment{at, at + Vec2(length_m, 0)},
+                            Segment{at, at + Vec2(0, width_m)}, Circle{at, length_m / 2},
+                            ConvexPolygon{{at, at + Vec2(length_m, 0), at + Vec2(0, length_m)}}};
+    world.obstacles.push_back(shapes[rng.below(std::size(shapes))]);
+  }
+  return world;
+}
+
+TEST_CASE("the decomposition solves what the visibility graph does, also if boundaries coincide") {
+  TrapezoidalDecomposition trapezoids;
+  LazyVisibility visibility;
+  int solved = 0, unsolvable = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    Rng rng(seed);
+    const PlanWorld world = aligned_world(rng);
+    const ObstacleWorld obstacles(world.obstacles);
+    const auto position = [&] {
+      const double y = rng.uniform(-4.4, 4.4), x = rng.uniform(-4.4, 4.4);
+      return Vec2(x, y);
+    };
+    const Vec2 start = position(), goal = position();
+    if (!is_free(world, start) || !is_free(world, goal)) continue;
+    CAPTURE(seed, start.transpose(), goal.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+    const Plan<Vec2>& plan = trapezoids.plan(domain, start, {}, rng);
+    REQUIRE(is_valid_path(world, plan.states, 1e-9));
+    REQUIRE(plan.arrives() == visibility.plan(domain, start, {}, rng).arrives());
+    solved += plan.arrives();
+    unsolvable += !plan.arrives();
+  }
+  CHECK(solved > 400);
+  CHECK(unsolvable > 10);
 }
 
 TEST_CASE("grids and cell decompositions report that no path exists") {
