@@ -156,7 +156,7 @@ void EStar::raise(std::uint32_t at) {
   raised_from_[at] = kBlocked;
   --unsupported_;
   for (const std::uint32_t neighbour : neighbours_of<Kernel>(at)) {
-    if (values_[neighbour] < lowest || raised_from_[neighbour] < kBlocked) continue;
+    if (values_[neighbour] < lowest) continue;
     if (std::min(values_[neighbour], value) == kBlocked) continue;
     update<Kernel>(neighbour);
     if (values_[neighbour] < value) queue_.push(values_[neighbour], neighbour);
