@@ -35,22 +35,34 @@ std::uint32_t clipped(double in_cells, std::uint32_t count) {
 }  // namespace
 
 void block_shape(CostGrid& grid, const Shape& shape, double radius_m) {
+  std::vector<GridCell> cells;
+  find_blocked_cells(grid.layout(), shape, radius_m, cells);
+  for (const GridCell cell : cells) grid.block(cell);
+}
+
+void find_blocked_cells(const GridLayout& layout, const Shape& shape, double radius_m,
+                        std::vector<GridCell>& cells) {
   check(shape);
   check_radius(radius_m);
-  const GridLayout& layout = grid.layout();
+  cells.clear();
   const double distance_m = radius_m + kRounding_m;
   const Box shape_bounds = bounds(shape);
   const Box reach = inflated(shape_bounds, distance_m);
   const Vec2 first = layout.in_cells(reach.min_m), last = layout.in_cells(reach.max_m);
   if (last.x() < 0 || last.y() < 0 || first.x() > layout.columns || first.y() > layout.rows) return;
   const Vec2 cell_size(layout.resolution_m, layout.resolution_m);
+  const double circumradius_m = layout.resolution_m * std::sqrt(0.5) * (1 + 1e-9) + kRounding_m;
   for (std::uint32_t row = clipped(first.y(), layout.rows); row <= clipped(last.y(), layout.rows); ++row) {
     for (std::uint32_t column = clipped(first.x(), layout.columns);
          column <= clipped(last.x(), layout.columns); ++column) {
       const GridCell cell = layout.cell(column, row);
       const Vec2 centre = layout.centre_of(cell);
-      if (is_near(shape, shape_bounds, {centre - cell_size / 2, centre + cell_size / 2}, distance_m))
-        grid.block(cell);
+      // The distance of the centre decides all cells but those near the border of the blocked region.
+      const double centre_m = signed_distance(centre, shape);
+      if (centre_m > distance_m + circumradius_m) continue;
+      if (centre_m <= distance_m ||
+          is_near(shape, shape_bounds, {centre - cell_size / 2, centre + cell_size / 2}, distance_m))
+        cells.push_back(cell);
     }
   }
 }

@@ -13,6 +13,11 @@ namespace sidestep {
 /// invalid shape or a radius that is negative or not finite.
 void block_shape(CostGrid& grid, const Shape& shape, double radius_m);
 
+/// Replaces `cells` by the cells that block_shape() blocks, each once. The same errors. Does not allocate
+/// once warm.
+void find_blocked_cells(const GridLayout& layout, const Shape& shape, double radius_m,
+                        std::vector<GridCell>& cells);
+
 /// The same for obstacles that fill the occupied cells (not 0) of a bitmap with the grid's layout. Throws
 /// std::invalid_argument if the sizes differ too.
 void block_occupied(CostGrid& grid, std::span<const std::uint8_t> occupied, double radius_m);

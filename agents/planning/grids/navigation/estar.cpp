@@ -174,12 +174,13 @@ void EStar::apply_changes() {
   changed_.clear();
 }
 
-/// Expands cells in the order of their keys, until this cell and all lower ones are final.
+/// Expands cells in the order of their keys, until this cell, all lower ones, and those up to `beyond` higher
+/// are final.
 template <typename Kernel>
-void EStar::run(std::uint32_t until) {
+void EStar::run(std::uint32_t until, float beyond) {
   apply_changes<Kernel>();
   while (queue_.advance([this](Entry entry) { return key_of(entry); })) {
-    if (until != kEverywhere && queue_.is_before_current(values_[until])) return;
+    if (until != kEverywhere && queue_.is_before_current(values_[until] + beyond)) return;
     expand_bucket<Kernel>();
   }
 }
@@ -208,25 +209,25 @@ void EStar::expand_bucket() {
   unsupported.clear();
 }
 
-void EStar::run_kernel(std::uint32_t until) {
+void EStar::run_kernel(std::uint32_t until, float beyond) {
   if (exact_.empty()) throw std::invalid_argument("a navigation function needs a goal");
   switch (settings_.kernel) {
     case GridKernel::kNf1:
-      return run<Nf1Kernel>(until);
+      return run<Nf1Kernel>(until, beyond);
     case GridKernel::kAlpha:
-      return run<AlphaKernel>(until);
+      return run<AlphaKernel>(until, beyond);
     case GridKernel::kLsm:
-      return run<LsmKernel>(until);
+      return run<LsmKernel>(until, beyond);
     case GridKernel::kSecondOrderLsm:
-      return run<SecondOrderLsmKernel>(until);
+      return run<SecondOrderLsmKernel>(until, beyond);
   }
 }
 
-void EStar::propagate() { run_kernel(kEverywhere); }
+void EStar::propagate() { run_kernel(kEverywhere, 0); }
 
-void EStar::propagate_until(GridCell cell) {
+void EStar::propagate_until(GridCell cell, float beyond) {
   check_cell(cell);
-  run_kernel(padded(cell));
+  run_kernel(padded(cell), beyond);
 }
 
 }  // namespace sidestep

@@ -43,8 +43,9 @@ class EStar {
   void set_cost(GridCell cell, float cost);
   /// Computes all values that are out of date.
   void propagate();
-  /// Computes until the value of this cell, and all lower ones, are final; the rest can be computed later.
-  void propagate_until(GridCell cell);
+  /// Computes until the value of this cell, and all lower ones, are final, and those that are at most
+  /// `beyond` higher; the rest can be computed later.
+  void propagate_until(GridCell cell, float beyond = 0);
 
   const GridLayout& layout() const { return layout_; }
   const Vec2& goal_m() const { return goal_m_; }
@@ -103,8 +104,8 @@ class EStar {
   template <typename Kernel>
   void expand_bucket();
   template <typename Kernel>
-  void run(std::uint32_t until);
-  void run_kernel(std::uint32_t until);
+  void run(std::uint32_t until, float beyond);
+  void run_kernel(std::uint32_t until, float beyond);
 
   GridLayout layout_;
   EStarSettings settings_;

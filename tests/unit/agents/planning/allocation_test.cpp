@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/grids/navigation/descent.hpp"
+#include "agents/planning/grids/navigation/navigation_planner.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
@@ -34,6 +35,7 @@ TEST_CASE("warm planners do not allocate") {
   Errt<DiscDomain> errt({.cache_capacity = 0});
   BidirectionalErrt<DiscDomain> two({.cache_capacity = 0, .bridges = 3});
   LazyVisibility lazy;
+  NavigationPlanner estar;
   LeaderFollower<DiscDomain> smoother;
   CHECK(allocations_once_warm(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { errt.plan(d, s, budget, rng); }, name) == 0);
@@ -41,6 +43,8 @@ TEST_CASE("warm planners do not allocate") {
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { two.plan(d, s, budget, rng); }, name) == 0);
   CHECK(allocations_once_warm(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { lazy.plan(d, s, budget, rng); }, name) == 0);
+  CHECK(allocations_once_warm(
+            [&](const DiscDomain& d, const Vec2& s, Rng& rng) { estar.plan(d, s, budget, rng); }, name) == 0);
   Plan<Vec2> plan;
   plan.states.reserve(1000);
   CHECK(allocations_once_warm(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/robust.hpp"
 
+#include "agents/planning/grids/navigation/navigation_planner.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
@@ -107,12 +108,14 @@ TEST_CASE("a start in an obstacle is left without deeper penetration") {
   leave_obstacles<LazyVisibility>(seed, 16);
   leave_obstacles<BidirectionalErrt<DiscDomain>>(seed, 14);
   leave_obstacles<Errt<DiscDomain>>(seed, 14);
+  leave_obstacles<NavigationPlanner>(seed, 14);
 }
 
 TEST_CASE("a goal in an obstacle is approached as closely as possible") {
   const auto seed = GENERATE(1u, 2u, 3u);
   approach_obstacles<LazyVisibility>(seed);
   approach_obstacles<BidirectionalErrt<DiscDomain>>(seed);
+  approach_obstacles<NavigationPlanner>(seed);
 }
 
 TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free position") {
@@ -129,11 +132,14 @@ TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free posit
   REQUIRE(domain.goal(start).x() > -1);
   LazyVisibility planner;
   Rng rng(1);
-  const Plan<Vec2> plan = plan_robustly(planner, domain, start, {}, rng);
-  CHECK(plan.arrives());
-  CHECK(plan.goal_blocked);
-  CHECK(is_valid_path(world, plan.states, 1e-9));
-  CHECK((plan.states.back() - Vec2(-1.6, 0)).norm() < 0.02);
+  NavigationPlanner descent;
+  for (const Plan<Vec2>& plan :
+       {plan_robustly(planner, domain, start, {}, rng), plan_robustly(descent, domain, start, {}, rng)}) {
+    CHECK(plan.arrives());
+    CHECK(plan.goal_blocked);
+    CHECK(is_valid_path(world, plan.states, 1e-9));
+    CHECK((plan.states.back() - Vec2(-1.6, 0)).norm() < 0.02);
+  }
 }
 
 TEST_CASE("a start that cannot be left is reported as blocked") {
@@ -145,9 +151,11 @@ TEST_CASE("a start that cannot be left is reported as blocked") {
   const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
   LazyVisibility lazy;
   BidirectionalErrt<DiscDomain> trees;
+  NavigationPlanner descent;
   Rng rng(1);
   for (const Plan<Vec2>& plan :
-       {lazy.plan(domain, start, {}, rng), trees.plan(domain, start, {.samples = 500}, rng)}) {
+       {lazy.plan(domain, start, {}, rng), trees.plan(domain, start, {.samples = 500}, rng),
+        descent.plan(domain, start, {}, rng)}) {
     CHECK_FALSE(plan.arrives());
     CHECK(plan.start_blocked);
     CHECK(leaves_and_stays_out(world, plan.states));

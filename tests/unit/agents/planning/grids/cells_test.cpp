@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/planning/grids/grid_planner.hpp"
+#include "agents/planning/grids/navigation/navigation_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
@@ -187,6 +188,9 @@ TEST_CASE("grids and cell decompositions report that no path exists") {
   GridPlanner grid;
   QuadTree squares;
   TrapezoidalDecomposition trapezoids;
+  NavigationPlanner estar, nf1({.field = {.kernel = GridKernel::kNf1}});
+  CHECK(estar.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
+  CHECK(nf1.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(grid.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(squares.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);
   CHECK(trapezoids.plan(domain, start, {}, rng).reason == PlanReason::kUnreachable);

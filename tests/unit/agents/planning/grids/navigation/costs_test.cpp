@@ -3,23 +3,9 @@
 #include "agents/planning/grids/navigation/risk_layer.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/planning/grids/navigation/random_grid.hpp"
+#include "tests/unit/agents/planning/grids/navigation/random_shape.hpp"
 
 namespace sidestep::costs_test {
-
-Shape random_shape(Rng& rng) {
-  const double x = rng.uniform(-0.5, 3.5), y = rng.uniform(-0.5, 2.5), size = rng.uniform(0.01, 0.8);
-  const Vec2 at(x, y);
-  switch (rng.below(4)) {
-    case 0:
-      return Circle{at, size};
-    case 1:
-      return Box{at, at + Vec2(size, size / 2)};
-    case 2:
-      return ConvexPolygon{{at, at + Vec2(size, 0), at + Vec2(0, size)}};
-    default:
-      return Segment{at, at + Vec2(-size, size / 3)};
-  }
-}
 
 TEST_CASE("discs in cells that a shape does not block do not touch it, and no cell far away is blocked") {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {

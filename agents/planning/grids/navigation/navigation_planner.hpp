@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "agents/planning/domain/disc_domain.hpp"
+#include "agents/planning/domain/plan.hpp"
+#include "agents/planning/grids/navigation/world_field.hpp"
+
+namespace sidestep {
+
+struct NavigationSettings {
+  WorldFieldSettings field = {};
+  /// A start or goal whose cell is blocked is joined to the centre of a cell at most this far away, or this
+  /// far beyond the border of the obstacles that it touches.
+  double join_m = 0.5;
+};
+
+/// Plans paths that descend a navigation function. Keeps the functions of the last two radii or floors: a
+/// replan for the same goal computes only what obstacles that have changed, and the start, require. The path
+/// is the same as without these. Cells are blocked conservatively, so passages less than two cells wider than
+/// the disc may be missed; PlanReason::kUnreachable refers to these cells. The number of cells limits the
+/// effort. The budget only limits the time, and the number of tries if a goal is cut off by obstacles. Does
+/// not allocate once warm.
+class NavigationPlanner {
+ public:
+  explicit NavigationPlanner(const NavigationSettings& settings = {}) : settings_(settings) {}
+
+  /// The result belongs to this planner and is valid until its next plan. Deterministic.
+  const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
+
+  /// Short lines along the directions in which the last function descends.
+  std::vector<Segment> directions() const;
+
+ private:
+  /// A position on a path between start or goal and the grid.
+  struct Join {
+    Vec2 at_m{0, 0};
+    GridCell cell = 0;
+    double distance_m = 0;
+  };
+
+  WorldField* field_of(const DiscDomain& domain);
+  std::optional<GridCell> free_cell_at(const Vec2& position) const;
+  void find_joins(const DiscDomain& domain, const Vec2& position, std::vector<Join>& joins) const;
+  void search(const DiscDomain& domain, const Vec2& start, const Budget& budget);
+  bool descend(const DiscDomain& domain, const Vec2& start, const Join& from, const Vec2& goal);
+  void forget_reached(std::vector<Join>& joins) const;
+
+  NavigationSettings settings_;
+  std::vector<std::unique_ptr<WorldField>> fields_;  // the last one used first
+  std::vector<Join> start_joins_, goal_joins_;
+  std::vector<Vec2> descent_m_;
+  Plan<Vec2> plan_;
+};
+
+}  // namespace sidestep

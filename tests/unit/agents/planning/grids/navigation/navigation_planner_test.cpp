@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/planning/grids/navigation/navigation_planner.hpp"
+
+#include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/evaluation/planning/worlds.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::navigation_planner_test {
+
+NavigationSettings with_kernel(GridKernel kernel) { return {.field = {.kernel = kernel}}; }
+
+struct Totals {
+  int solved = 0;
+  double over_shortest = 0;  // mean
+};
+
+Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) {
+  const ObstacleWorld obstacles(world.obstacles);
+  TangentGraph graph(obstacles, world.field, world.radius_m);
+  NavigationPlanner planner(settings);
+  Rng rng(1);
+  Totals totals;
+  for (const PlanQuery& query : world.queries) {
+    CAPTURE(query.start_m.transpose(), query.goal_m.transpose());
+    const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m);
+    const Plan<Vec2>& plan = planner.plan(domain, query.start_m, {}, rng);
+    REQUIRE(plan.states.front() == query.start_m);
+    REQUIRE(is_valid_path(world, plan.states, 1e-9));
+    if (!plan.arrives()) continue;
+    REQUIRE(plan.states.back() == query.goal_m);
+    REQUIRE(plan.length == Approx(length_of(domain, plan.states)));
+    graph.plan(query.start_m, query.goal_m);
+    REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
+    ++totals.solved;
+    totals.over_shortest += plan.length / graph.shortest_m();
+  }
+  totals.over_shortest /= totals.solved;
+  return totals;
+}
+
+TEST_CASE(
+    "navigation functions lead to the goal in all worlds, E* on paths little longer than the shortest") {
+  const auto seed = GENERATE(1u, 2u, 3u);
+  for (const std::string& name : world_names()) {
+    CAPTURE(name, seed);
+    const PlanWorld world = make_world(name, 10, seed);
+    const Totals estar = plan_queries(world, {});
+    const Totals nf1 = plan_queries(world, with_kernel(GridKernel::kNf1));
+    // The passages of the narrow worlds may be narrower than the cells require.
+    CHECK((estar.solved >= 9 || name == "gap" || name == "trap"));
+    CHECK(nf1.solved == estar.solved);
+    if (estar.solved == 0) continue;
+    // Among circles, cells close passages that the shortest path may use.
+    CHECK(estar.over_shortest < (name == "circles" ? 1.2 : 1.04));
+    CHECK(nf1.over_shortest < 1.3);
+    CHECK((name == "empty" || nf1.over_shortest > estar.over_shortest));
+  }
+}
+
+/// Moves some obstacles at random, and sometimes removes or adds one.
+void change(ObstacleWorld& world, Rng& rng) {
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    if (!rng.chance(0.2)) continue;
+    const double y = rng.uniform(-0.4, 0.4), x = rng.uniform(-0.4, 0.4);
+    world.move(world.obstacle(i), {x, y});
+  }
+  if (rng.chance(0.2)) world.remove(world.obstacle(rng.below(world.size())));
+  if (!rng.chance(0.2)) return;
+  const double y = rng.uniform(-4, 4), x = rng.uniform(-4, 4);
+  world.add(Circle{{x, y}, rng.uniform(0.1, 0.5)});
+}
+
+TEST_CASE("after obstacles have moved, the path is exactly that of a planner without a past") {
+  const auto kernel = GENERATE(GridKernel::kLsm, GridKernel::kNf1);
+  const auto seed = GENERATE(1u, 2u, 3u);
+  const PlanWorld world = make_world(seed == 2 ? "mixed" : "circles", 6, seed);
+  ObstacleWorld obstacles(world.obstacles);
+  NavigationPlanner kept(with_kernel(kernel));
+  Rng rng(seed);
+  int compared = 0;
+  for (int i = 0; i < 40; ++i) {
+    change(obstacles, rng);
+    // The goal and the radius change now and then, the start always does.
+    const auto& [from, goal] = world.queries[static_cast<std::size_t>(i / 7)];
+    const double y = rng.uniform(-0.5, 0.5), x = rng.uniform(-0.5, 0.5);
+    const Vec2 start = from + Vec2(x, y);
+    const double radius_m = i % 5 == 4 ? 0.13 : 0.1;
+    CAPTURE(kernel, seed, i, radius_m, start.transpose(), goal.transpose());
+    const DiscDomain domain(obstacles, world.field, radius_m, start, goal);
+    NavigationPlanner fresh(with_kernel(kernel));
+    const Plan<Vec2>& expected = fresh.plan(domain, start, {}, rng);
+    const Plan<Vec2>& plan = kept.plan(domain, start, {}, rng);
+    REQUIRE(plan.reason == expected.reason);
+    REQUIRE(plan.length == expected.length);
+    REQUIRE(plan.states == expected.states);
+    compared += plan.arrives() && plan.states.size() > 2;
+  }
+  CHECK(compared >= 15);
+}
+
+TEST_CASE("a replan computes only the cells whose values change") {
+  // The start is to the left, the goal to the right of a wall. A circle moves behind the goal.
+  ObstacleWorld obstacles({Box{{-0.1, -2}, {0.1, 2}}, Circle{{4, 0}, 0.2}});
+  const Vec2 start(-2, 0.1), goal(2, 0);
+  NavigationPlanner planner;
+  Rng rng(1);
+  const auto expansions = [&] {
+    const DiscDomain domain(obstacles, {10, 10}, 0.1, start, goal);
+    const Plan<Vec2>& plan = planner.plan(domain, start, {}, rng);
+    REQUIRE(plan.arrives());
+    return plan.samples;
+  };
+  const std::size_t first = expansions();
+  CHECK(first > 5'000);
+  CHECK(expansions() == 0);
+  obstacles.move(ObstacleId{1}, {0, 0.05});
+  const std::size_t next = expansions();
+  CHECK(next > 0);
+  CHECK(next < first / 10);
+}
+
+TEST_CASE("starts and goals in blocked cells are joined to free ones") {
+  // Both touch the wall nearly, so their cells are blocked, and the goal's by the field's edge as well.
+  //  ____________
+  //      |      g|
+  //     s|       |
+  //              |
+  const PlanWorld world{"wall", {10, 8}, 0.1, {Box{{0, -1}, {0.2, 4}}, Segment{{1, 3.7}, {4, 3.7}}}, {}};
+  const ObstacleWorld obstacles(world.obstacles);
+  const Vec2 start(-0.1001, 1), goal(4.8999, 3.8999);
+  const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+  NavigationPlanner planner;
+  Rng rng(1);
+  const Plan<Vec2>& plan = planner.plan(domain, start, {}, rng);
+  REQUIRE(plan.arrives());
+  CHECK(plan.states.front() == start);
+  CHECK(plan.states.back() == goal);
+  CHECK(is_valid_path(world, plan.states, 1e-9));
+}
+
+TEST_CASE("a goal in a free cell that is cut off from the others is joined to one that is not") {
+  // The passages around the goal's cell are wide enough for the disc, but not for cells.
+  const PlanWorld world{"cell",
+                        {10, 10},
+                        0.1,
+                        {Circle{{2, 0.26}, 0.13}, Circle{{2, -0.26}, 0.13}, Circle{{2.3, 0}, 0.13},
+                         Circle{{1.73, 0.22}, 0.005}, Circle{{1.73, -0.22}, 0.005}, Box{{0, -2}, {0.1, 2}}},
+                        {}};
+  const ObstacleWorld obstacles(world.obstacles);
+  const Vec2 start(-2, 0), goal(2.0, 0);
+  const DiscDomain domain(obstacles, world.field, world.radius_m, start, goal);
+  REQUIRE_FALSE(domain.goal_is_blocked());
+  NavigationPlanner planner;
+  Rng rng(1);
+  const Plan<Vec2>& plan = planner.plan(domain, start, {}, rng);
+  REQUIRE(plan.arrives());
+  CHECK(plan.states.back() == goal);
+  CHECK(is_valid_path(world, plan.states, 1e-9));
+}
+
+TEST_CASE("without a path, the plan says so and stays at the start") {
+  //  +---+
+  //  | g |    s
+  //  +---+
+  ObstacleWorld obstacles({Box{{-1.1, -1.1}, {1.1, -1}}, Box{{-1.1, 1}, {1.1, 1.1}},
+                           Box{{-1.1, -1.1}, {-1, 1.1}}, Box{{1, -1.1}, {1.1, 1.1}}});
+  const Vec2 start(3, 0), goal(0, 0);
+  NavigationPlanner planner;
+  Rng rng(1);
+  const auto plan = [&](const Vec2& from, const Vec2& to) {
+    const DiscDomain domain(obstacles, {10, 10}, 0.1, from, to);
+    return planner.plan(domain, from, {}, rng);
+  };
+  for (const auto& [from, to] : {std::pair(start, goal), std::pair(goal, start)}) {
+    const Plan<Vec2> none = plan(from, to);
+    CHECK(none.reason == PlanReason::kUnreachable);
+    CHECK(none.states == std::vector<Vec2>{from});
+    CHECK(none.length == 0);
+  }
+  obstacles.move(ObstacleId{3}, {0, 1});
+  CHECK(plan(start, goal).arrives());
+}
+
+TEST_CASE("on floors where a disc has no room, there is no path") {
+  const ObstacleWorld nothing({Circle{{0, 0}, 0.1}});
+  NavigationPlanner planner;
+  Rng rng(1);
+  for (const Field& floor : {Field{0.1, 5}, Field{5, 0.2}}) {
+    const DiscDomain domain(nothing, floor, 0.1, {0, -1}, {0, 1});
+    CHECK(planner.plan(domain, {0, -1}, {}, rng).reason == PlanReason::kUnreachable);
+    CHECK(planner.directions().empty());
+  }
+}
+
+}  // namespace sidestep::navigation_planner_test
