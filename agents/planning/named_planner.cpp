@@ -9,6 +9,7 @@
 
 #include "agents/planning/anytime.hpp"
 #include "agents/planning/grids/grid_planner.hpp"
+#include "agents/planning/grids/navigation/navigation_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/roadmaps/prm.hpp"
@@ -71,6 +72,7 @@ PlanDrawing drawing_of(FullVisibility& planner) {
 }
 PlanDrawing drawing_of(LazyVisibility& planner) { return {planner.explored_tangents(), {}, {}, {}}; }
 PlanDrawing drawing_of(GridPlanner& planner) { return {planner.steps(), {}, {}, {}}; }
+PlanDrawing drawing_of(NavigationPlanner& planner) { return {planner.directions(), {}, {}, {}}; }
 PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cells, {}}; }
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 
@@ -170,16 +172,19 @@ std::vector<Entry> two_tree_planners() {
 
 std::vector<Entry> other_planners() {
   using Roadmaps = Prm<DiscDomain>;
-  return {{"prm", shipped<Roadmaps>(), "", PlannerKind::kForOneWorld},
-          {"one-shot-prm", shipped<Roadmaps>(one_shot_prm()), "prm"},
-          {"dynamic-prm", shipped<Roadmaps>(dynamic_prm()), "prm"},
-          {"lazy-visibility", shipped<LazyVisibility>(), "visibility"},
-          {"visibility", shipped<FullVisibility>(), "", PlannerKind::kForOneWorld},
-          {"grid-bfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst}), "grid-a-star"},
-          {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
-          {"grid-a-star", shipped<GridPlanner>()},
-          {"quad-tree", shipped<QuadTree>()},
-          {"trapezoids", shipped<TrapezoidalDecomposition>()}};
+  return {
+      {"prm", shipped<Roadmaps>(), "", PlannerKind::kForOneWorld},
+      {"one-shot-prm", shipped<Roadmaps>(one_shot_prm()), "prm"},
+      {"dynamic-prm", shipped<Roadmaps>(dynamic_prm()), "prm"},
+      {"lazy-visibility", shipped<LazyVisibility>(), "visibility"},
+      {"visibility", shipped<FullVisibility>(), "", PlannerKind::kForOneWorld},
+      {"grid-bfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kBreadthFirst}), "grid-a-star"},
+      {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
+      {"grid-a-star", shipped<GridPlanner>()},
+      {"estar", shipped<NavigationPlanner>()},
+      {"nf1", shipped<NavigationPlanner>(NavigationSettings{.field = {.kernel = GridKernel::kNf1}}), "estar"},
+      {"quad-tree", shipped<QuadTree>()},
+      {"trapezoids", shipped<TrapezoidalDecomposition>()}};
 }
 
 const std::vector<Entry>& entries() {

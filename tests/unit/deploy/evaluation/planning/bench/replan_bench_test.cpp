@@ -6,7 +6,7 @@
 namespace sidestep::replan_bench_test {
 
 TEST_CASE("replans of planners are valid among circles that move") {
-  CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache"}, 60, 1).empty());
+  CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache", "estar", "nf1"}, 60, 1).empty());
 }
 
 TEST_CASE("planners that keep a world are not asked in one that moves") {
