@@ -130,6 +130,9 @@ BidirectionalErrtSettings rrt_connect_with(void (*change)(BidirectionalErrtSetti
   return settings;
 }
 
+/// Leads paths through the middle of passages that are up to a metre wider than the robot.
+constexpr NavigationSettings kKeepsClear{.field = {.clearance_m = 0.5, .contact_cost = 4}};
+
 struct Entry {
   std::string name;
   Factory make;
@@ -182,6 +185,7 @@ std::vector<Entry> other_planners() {
       {"grid-dfs", shipped<GridPlanner>(GridSettings{.order = GridOrder::kDepthFirst}), "grid-a-star"},
       {"grid-a-star", shipped<GridPlanner>()},
       {"estar", shipped<NavigationPlanner>()},
+      {"estar-clearance", shipped<NavigationPlanner>(kKeepsClear), "estar"},
       {"nf1", shipped<NavigationPlanner>(NavigationSettings{.field = {.kernel = GridKernel::kNf1}}), "estar"},
       {"quad-tree", shipped<QuadTree>()},
       {"trapezoids", shipped<TrapezoidalDecomposition>()}};

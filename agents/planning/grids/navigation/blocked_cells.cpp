@@ -17,6 +17,8 @@ void check_radius(double radius_m) {
 
 /// Whether a shape comes within a distance of a square cell.
 bool is_near(const Shape& shape, const Box& shape_bounds, const Box& square, double distance_m) {
+  if (const auto* circle = std::get_if<Circle>(&shape))
+    return signed_distance(circle->centre_m, square) <= circle->radius_m + distance_m;
   const auto contains = [&](const Vec2& p) { return signed_distance(p, square) <= 0; };
   if (contains(shape_bounds.min_m) && contains(shape_bounds.max_m)) return true;
   const std::array<Vec2, 4> corners = corners_of(square);

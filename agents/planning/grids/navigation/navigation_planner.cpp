@@ -24,8 +24,7 @@ double depth_of(const DiscDomain& domain, const Vec2& position) {
 const Plan<Vec2>& NavigationPlanner::plan(const DiscDomain& domain, const Vec2& start, const Budget& budget,
                                           Rng&) {
   begin_plan(domain, start, plan_);
-  const bool keeps_clear = settings_.field.clearance_m > 0 && settings_.field.contact_cost > 0;
-  if (!keeps_clear && plan_straight(domain, start, plan_)) return plan_;
+  if (!settings_.field.keeps_clear() && plan_straight(domain, start, plan_)) return plan_;
   plan_.states.assign(1, start);
   plan_.reason = PlanReason::kUnreachable;
   if (WorldField* field = field_of(domain)) {

@@ -18,7 +18,7 @@ void check_settings(const WorldFieldSettings& settings) {
     throw std::invalid_argument("the settings of a navigation function must be positive and finite");
 }
 
-/// The index of the cell that contains a coordinate, clipped to the grid.
+/// The index of the column or row that contains a coordinate, clipped to the grid.
 std::uint32_t clipped_index(double in_cells, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(in_cells), 0.0, static_cast<double>(count - 1)));
 }
@@ -51,7 +51,8 @@ WorldField::WorldField(const GridLayout& layout, const Field& floor, double radi
       radius_m_(radius_m),
       settings_(settings),
       obstacles_(layout, radius_m),
-      values_(CostGrid(layout), {.kernel = settings.kernel}) {
+      values_(CostGrid(layout), {.kernel = settings.kernel}),
+      updated_at_(layout.size()) {
   check_settings(settings);
 }
 
@@ -61,14 +62,22 @@ bool WorldField::is_for(const Field& floor, double radius_m) const {
 
 void WorldField::update(const ObstacleWorld& world) {
   obstacles_.update(world);
-  for (const GridCell cell : obstacles_.changed_cells()) values_.set_cost(cell, cost_of(world, cell));
-  if (settings_.clearance_m == 0 || settings_.contact_cost == 0) return;
+  ++updates_;
+  for (const GridCell cell : obstacles_.changed_cells()) update_cost(world, cell);
+  if (!keeps_clear()) return;
   for (const Box& bounds_m : obstacles_.changed_bounds()) update_costs_near(world, bounds_m);
+}
+
+/// Once per update.
+void WorldField::update_cost(const ObstacleWorld& world, GridCell cell) {
+  if (updated_at_[cell] == updates_) return;
+  updated_at_[cell] = updates_;
+  values_.set_cost(cell, cost_of(world, cell));
 }
 
 float WorldField::cost_of(const ObstacleWorld& world, GridCell cell) const {
   if (obstacles_.is_blocked(cell)) return kBlocked;
-  if (settings_.clearance_m == 0 || settings_.contact_cost == 0) return 1;
+  if (!keeps_clear()) return 1;
   const double clearance_m = world.nearest(values_.layout().centre_of(cell)).distance_m - radius_m_;
   const double lack = std::max(1 - clearance_m / settings_.clearance_m, 0.0);
   return static_cast<float>(1 + settings_.contact_cost * lack * lack);
@@ -81,12 +90,9 @@ void WorldField::update_costs_near(const ObstacleWorld& world, const Box& bounds
   if (last.x() < 0 || last.y() < 0 || first.x() > layout.columns || first.y() > layout.rows) return;
   const std::uint32_t last_row = clipped_index(last.y(), layout.rows),
                       last_column = clipped_index(last.x(), layout.columns);
-  for (std::uint32_t row = clipped_index(first.y(), layout.rows); row <= last_row; ++row) {
-    for (std::uint32_t column = clipped_index(first.x(), layout.columns); column <= last_column; ++column) {
-      const GridCell cell = layout.cell(column, row);
-      values_.set_cost(cell, cost_of(world, cell));
-    }
-  }
+  for (std::uint32_t row = clipped_index(first.y(), layout.rows); row <= last_row; ++row)
+    for (std::uint32_t column = clipped_index(first.x(), layout.columns); column <= last_column; ++column)
+      update_cost(world, layout.cell(column, row));
 }
 
 void WorldField::set_goal(const Vec2& goal_m) {
@@ -98,7 +104,7 @@ void WorldField::set_goal(const Vec2& goal_m) {
 bool WorldField::reach(GridCell cell) {
   // The values of adjacent cells differ by up to the cost of a cell. A path descends, so all cells between
   // whose centres it interpolates are at most four steps higher than the first.
-  const auto dearest = static_cast<float>(1 + (settings_.clearance_m > 0 ? settings_.contact_cost : 0));
+  const auto dearest = static_cast<float>(1 + (keeps_clear() ? settings_.contact_cost : 0));
   values_.propagate_until(cell, 4 * dearest);
   return !values_.is_blocked(cell) && values_.value(cell) < kBlocked;
 }

@@ -13,9 +13,11 @@ struct WorldFieldSettings {
   std::size_t max_cells = 250'000;  ///< on a larger floor, cells are larger
   /// Cells whose centre leaves the disc less than this distance to the nearest obstacle cost more; 0: none.
   double clearance_m = 0;
-  /// How much more a cell costs in which the disc touches. The addition falls with the square of the distance
-  /// that the clearance lacks.
+  /// How much more a cell costs where the disc touches; elsewhere, the square of the lacking part of the
+  /// clearance times this.
   double contact_cost = 0;
+
+  bool keeps_clear() const { return clearance_m > 0 && contact_cost > 0; }
 };
 
 /// The square cells in which the centre of a disc can be on a floor. They may leave a margin narrower than a
@@ -46,6 +48,8 @@ class WorldField {
   const EStar& values() const { return values_; }
 
  private:
+  bool keeps_clear() const { return settings_.keeps_clear(); }
+  void update_cost(const ObstacleWorld& world, GridCell cell);
   float cost_of(const ObstacleWorld& world, GridCell cell) const;
   void update_costs_near(const ObstacleWorld& world, const Box& bounds_m);
 
@@ -54,6 +58,8 @@ class WorldField {
   WorldFieldSettings settings_;
   ObstacleCells obstacles_;
   EStar values_;
+  std::uint64_t updates_ = 0;
+  std::vector<std::uint64_t> updated_at_;  // by cell
   bool has_goal_ = false;
 };
 

@@ -181,6 +181,37 @@ TEST_CASE("without a path, the plan says so and stays at the start") {
   CHECK(plan(start, goal).arrives());
 }
 
+/// The largest distance of a path from the line y = 0 between two coordinates x.
+double farthest_from_middle_m(const std::vector<Vec2>& path_m, double from_x_m, double to_x_m) {
+  double farthest_m = 0;
+  for (const Vec2& at : path_m)
+    if (at.x() >= from_x_m && at.x() <= to_x_m) farthest_m = std::max(farthest_m, std::abs(at.y()));
+  return farthest_m;
+}
+
+TEST_CASE("with a cost of clearance, paths keep to the middle of a corridor and move with it") {
+  //  ###############   start and goal lie at opposite walls
+  //              g
+  //   s
+  //  ###############
+  ObstacleWorld obstacles({Box{{-4, 0.6}, {4, 2}}, Box{{-4, -2}, {4, -0.6}}});
+  NavigationPlanner planner({.field = {.clearance_m = 0.6, .contact_cost = 9}});
+  Rng rng(1);
+  for (const double shift_m : {0.0, 0.23}) {
+    obstacles.move(ObstacleId{0}, {0, shift_m});
+    obstacles.move(ObstacleId{1}, {0, shift_m});
+    const Vec2 start(-3, shift_m - 0.45), goal(3, shift_m + 0.45);
+    const DiscDomain domain(obstacles, {10, 10}, 0.1, start, goal);
+    CAPTURE(shift_m);
+    REQUIRE(domain.check(start, goal));  // the straight path
+    std::vector<Vec2> path_m = planner.plan(domain, start, {}, rng).states;
+    REQUIRE(path_m.back() == goal);
+    for (Vec2& at : path_m) at.y() -= shift_m;
+    CHECK(path_m.size() > 100);
+    CHECK(farthest_from_middle_m(path_m, -2, 2) < 0.06);
+  }
+}
+
 TEST_CASE("on floors where a disc has no room, there is no path") {
   const ObstacleWorld nothing({Circle{{0, 0}, 0.1}});
   NavigationPlanner planner;
