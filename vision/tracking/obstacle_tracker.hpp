@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "common/tracking/kalman.hpp"
 #include "idl/vision.hpp"
 #include "vision/tracking/frame.hpp"
 #include "vision/tracking/incomplete_frames.hpp"
-#include "vision/tracking/kalman.hpp"
 
 namespace sidestep {
 

@@ -7,7 +7,7 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/time/time.hpp"
-#include "vision/tracking/kalman.hpp"
+#include "common/tracking/kalman.hpp"
 
 namespace sidestep {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vision/tracking/kalman.hpp"
+#include "common/tracking/kalman.hpp"
 
 #include <Eigen/Dense>
 
