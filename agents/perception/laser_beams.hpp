@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/map/laser_scanner.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// A scan, and where and when it was taken.
+struct LaserScan {
+  Vec2 at_m{0, 0};  ///< of the scanner
+  double heading_rad = 0;
+  Time captured_at{};
+  std::span<const float> ranges_m;  ///< as LaserScanner::scan writes them; NaN is a dropout
+};
+
+enum class BeamEnd : std::uint8_t {
+  kUnknown,  ///< nothing is known: a dropout, or something nearer than the minimum range
+  kHit,
+  kRobot,  ///< a hit on a known robot
+  kClear,  ///< no hit up to the maximum range
+};
+
+struct Beam {
+  Vec2 direction{1, 0};  ///< of length 1, in the world
+  double free_m = 0;     ///< free from the scanner up to here; 0 if nothing is known
+  BeamEnd end = BeamEnd::kUnknown;
+};
+
+/// The beams of the last scan, in the world's frame. Known robots are told apart, because they say themselves
+/// where they are. Does not allocate after the constructor.
+class LaserBeams {
+ public:
+  /// A hit belongs to a robot if it is within its radius plus the tolerance. Throws std::invalid_argument for
+  /// invalid settings (see LaserScanner) or a tolerance that is negative or not finite.
+  explicit LaserBeams(const LaserSettings& settings, double robot_tolerance_m = 0.1);
+
+  /// `robots`: the known ones at the time of the scan, without the one that carries the scanner. Throws
+  /// std::invalid_argument if the number of ranges is not that of the beams, a robot or the pose is not
+  /// finite, or a radius is negative. Finite ranges beyond the limits count as those limits.
+  void read(const LaserScan& scan, std::span<const Circle> robots);
+
+  std::span<const Beam> all() const { return beams_; }
+  int count() const { return static_cast<int>(beams_.size()); }
+  const Beam& operator[](int beam) const { return beams_[static_cast<std::size_t>(beam)]; }
+  Vec2 end_m(const Beam& beam) const { return at_m_ + beam.free_m * beam.direction; }
+
+  const Vec2& at_m() const { return at_m_; }
+  Time captured_at() const { return captured_at_; }
+  const LaserSettings& settings() const { return scanner_.settings(); }
+  /// The angle from a beam, counter-clockwise, to the next one; from the last one, to the first.
+  double gap_rad(int beam) const { return beam + 1 < count() ? spacing_rad_ : last_gap_rad_; }
+
+ private:
+  Beam interpreted(float range_m, const Vec2& direction, std::span<const Circle> robots) const;
+
+  LaserScanner scanner_;
+  double robot_tolerance_m_;
+  double spacing_rad_, last_gap_rad_;
+  std::vector<Vec2> directions_;  // by beam, relative to the heading
+  std::vector<Beam> beams_;
+  Vec2 at_m_{0, 0};
+  Time captured_at_{};
+};
+
+}  // namespace sidestep

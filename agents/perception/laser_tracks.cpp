@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/perception/laser_tracks.hpp"
+
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+/// The hits on a disc lie this much nearer than its centre, in radii: the mean of sqrt(1 - y²) over y.
+constexpr double kMeanDepth = std::numbers::pi / 4;
+constexpr double kRadiusGain = 0.2;
+/// A hit this far beyond the radius of a track may belong to it.
+constexpr double kTrackSlack_m = 0.15;
+
+void check(const LaserTrackSettings& settings) {
+  const auto is_positive = [](auto... numbers) {
+    return (... && (static_cast<double>(numbers) > 0 && std::isfinite(static_cast<double>(numbers))));
+  };
+  if (!is_positive(settings.explained_within_m, settings.standing_after.count(), settings.join_m,
+                   settings.min_hits, settings.max_radius_m, settings.noise_m, settings.partial_noise_m,
+                   settings.motion.acceleration_psd_m2ps3, settings.start_speed_mps, settings.gate_m,
+                   settings.confirm_scans, settings.drop_after.count(), settings.min_speed_mps,
+                   settings.speed_deviations, settings.min_moved_m, settings.memory.count(),
+                   settings.crossed_part) ||
+      !(settings.motion.manoeuvre_mps2 >= 0 && std::isfinite(settings.motion.manoeuvre_mps2)))
+    throw std::invalid_argument("the settings of laser tracks must be positive and finite");
+}
+
+}  // namespace
+
+LaserTracks::LaserTracks(const LaserTrackSettings& settings)
+    : settings_(settings), clusters_(settings.join_m) {
+  check(settings);
+  entries_.reserve(kMaxTracks);
+  listed_.reserve(kMaxTracks);
+}
+
+bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map) {
+  if (beams.captured_at() <= now_) return false;
+  now_ = beams.captured_at();
+  std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > settings_.drop_after; });
+  classify(beams, grid, map);
+  clusters_.find(beams, is_loose_);
+  associate(grid);
+  for (std::size_t i = 0; i < clusters_.all().size(); ++i)
+    if (is_used_[i] == 0 && is_trackable(clusters_.all()[i])) start(clusters_.all()[i]);
+  list();
+  return true;
+}
+
+void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map) {
+  kinds_.assign(beams.all().size(), kOther);
+  is_loose_.assign(beams.all().size(), 0);
+  const double within_m = settings_.explained_within_m;
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    const Beam& beam = beams.all()[i];
+    if (beam.end != BeamEnd::kHit) continue;
+    const Vec2 hit = beams.end_m(beam);
+    const bool is_known = map != nullptr && map->distance_m(hit, within_m) < within_m;
+    kinds_[i] = is_known || is_explained(hit, grid) ? kStanding : kLoose;
+    is_loose_[i] = kinds_[i] == kLoose;
+  }
+}
+
+bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
+  const double within_m = settings_.explained_within_m;
+  bool is_found = false;
+  grid.for_each_occupied(inflated({hit, hit}, within_m), [&](const Cell& cell) {
+    const Duration occupied_for = grid.occupied_for(cell);
+    is_found = is_found || (occupied_for >= settings_.standing_after &&
+                            signed_distance(hit, grid.box_of(cell)) <= within_m &&
+                            !is_of_mover(hit, grid.updated_at() - occupied_for));
+  });
+  return is_found;
+}
+
+/// Whether a track that has moved may have brought what is there.
+bool LaserTracks::is_of_mover(const Vec2& hit, Time occupied_since) const {
+  return std::ranges::any_of(entries_, [&](const Entry& entry) {
+    const double reach_m = entry.radius_m + kTrackSlack_m;
+    return entry.has_moved() && occupied_since >= entry.started_at &&
+           (hit - predicted_m(entry)).squaredNorm() < reach_m * reach_m;
+  });
+}
+
+Vec2 LaserTracks::predicted_m(const Entry& entry) const {
+  return entry.filter.position() + to_seconds(now_ - entry.seen_at) * entry.filter.velocity();
+}
+
+Vec2 LaserTracks::centre_m(const ScanCluster& cluster, double radius_m) const {
+  return cluster.mean_m + kMeanDepth * radius_m * cluster.away;
+}
+
+bool LaserTracks::is_trackable(const ScanCluster& cluster) const {
+  return cluster.hits >= settings_.min_hits && cluster.radius_m <= settings_.max_radius_m;
+}
+
+void LaserTracks::associate(const LocalGrid& grid) {
+  const auto clusters = clusters_.all();
+  pairs_.clear();
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    const Vec2 predicted = predicted_m(entries_[e]);
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const double distance_m = (centre_m(clusters[c], entries_[e].radius_m) - predicted).norm();
+      if (distance_m <= settings_.gate_m && is_trackable(clusters[c])) pairs_.push_back({distance_m, e, c});
+    }
+  }
+  std::ranges::sort(pairs_, {}, &Pair::distance_m);
+  is_used_.assign(clusters.size(), 0);
+  is_updated_.assign(entries_.size(), 0);
+  for (const Pair& pair : pairs_) {
+    if (is_updated_[pair.entry] != 0 || is_used_[pair.cluster] != 0) continue;
+    is_updated_[pair.entry] = is_used_[pair.cluster] = 1;
+    observe(entries_[pair.entry], clusters[pair.cluster], grid);
+  }
+}
+
+void LaserTracks::observe(Entry& entry, const ScanCluster& cluster, const LocalGrid& grid) {
+  if (!cluster.is_partial) entry.radius_m += kRadiusGain * (cluster.radius_m - entry.radius_m);
+  const Vec2 centre = centre_m(cluster, entry.radius_m);
+  const double noise_m = cluster.is_partial ? settings_.partial_noise_m : settings_.noise_m;
+  entry.filter.predict(to_seconds(now_ - entry.seen_at), settings_.motion);
+  entry.filter.correct(centre - entry.filter.position(), noise_m * noise_m);
+  entry.seen_at = now_;
+  ++entry.scans;
+  if (is_fast(entry) && shows_motion(entry, grid)) ++entry.evidence;
+}
+
+bool LaserTracks::is_fast(const Entry& entry) const {
+  const double error = std::sqrt(entry.filter.covariance()(1, 1));
+  return entry.filter.velocity().norm() >
+         std::max(settings_.min_speed_mps, settings_.speed_deviations * error);
+}
+
+bool LaserTracks::shows_motion(const Entry& entry, const LocalGrid& grid) const {
+  const Vec2& here = entry.filter.position();
+  return (here - entry.start_m).norm() >= settings_.min_moved_m &&
+         (was_crossed({here, entry.radius_m}, now_ - settings_.memory, grid) ||
+          was_crossed({entry.start_m, entry.radius_m}, entry.started_at, grid));
+}
+
+/// Whether beams have crossed nearly all cells of a disc since a time.
+bool LaserTracks::was_crossed(const Circle& disc, Time since, const LocalGrid& grid) const {
+  const double radius_m = std::max(disc.radius_m, 2 * grid.settings().resolution_m);
+  const Cell first = grid.cell_at(disc.centre_m - Vec2(radius_m, radius_m));
+  const Cell last = grid.cell_at(disc.centre_m + Vec2(radius_m, radius_m));
+  int cells = 0, crossed = 0;
+  for (int row = first.row; row <= last.row; ++row) {
+    for (int column = first.column; column <= last.column; ++column) {
+      const Box box = grid.box_of({column, row});
+      if (((box.min_m + box.max_m) / 2 - disc.centre_m).norm() > radius_m) continue;
+      ++cells;
+      crossed += grid.crossed_at({column, row}) > since;
+    }
+  }
+  return crossed > settings_.crossed_part * cells;
+}
+
+void LaserTracks::start(const ScanCluster& cluster) {
+  if (entries_.size() == kMaxTracks) return;
+  const Vec2 centre = centre_m(cluster, cluster.radius_m);
+  Entry entry;
+  entry.number = ++last_number_;
+  entry.scans = 1;
+  entry.started_at = entry.seen_at = now_;
+  entry.radius_m = cluster.radius_m;
+  entry.filter = {centre, settings_.noise_m * settings_.noise_m,
+                  settings_.start_speed_mps * settings_.start_speed_mps};
+  entry.start_m = centre;
+  entries_.push_back(entry);
+}
+
+void LaserTracks::list() {
+  listed_.clear();
+  for (const Entry& entry : entries_) {
+    if (entry.scans < settings_.confirm_scans) continue;
+    listed_.push_back({entry.number, entry.filter.position(), entry.filter.velocity(), entry.radius_m,
+                       std::sqrt(entry.filter.covariance()(0, 0)), std::sqrt(entry.filter.covariance()(1, 1)),
+                       entry.seen_at, entry.has_moved() && is_fast(entry)});
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/perception/local_grid.hpp"
+
+#include <bit>
+#include <limits>
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+void check(const LocalGridSettings& settings) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(std::string("a local grid: ") + what);
+  };
+  const int side = settings.side_cells;
+  require(side >= 16 && side <= 4096 && std::has_single_bit(static_cast<unsigned>(side)),
+          "the cells per side are not a power of two from 16 to 4096");
+  require(settings.resolution_m >= kMinResolution_m && settings.resolution_m <= kMaxResolution_m,
+          "the resolution is out of range");
+  require(settings.hit > 0 && settings.miss > 0 && std::isfinite(settings.hit + settings.miss),
+          "hits and misses must be positive and finite");
+  require(settings.occupied_from > 0 && settings.free_up_to < 0 &&
+              std::max(settings.occupied_from, -settings.free_up_to) <= settings.limit &&
+              std::isfinite(settings.limit),
+          "0 must lie between free and occupied, and both within the limit");
+  require(settings.decay_s > 0 && std::isfinite(settings.decay_s), "the decay must be positive and finite");
+}
+
+/// One coordinate of a ray on its way through the cells.
+struct CellAxis {
+  CellAxis(double from, double direction, double resolution_m)
+      : index(static_cast<int>(std::floor(from / resolution_m))), step(direction > 0 ? 1 : -1) {
+    if (direction == 0) return;
+    per_cell_m = resolution_m / std::abs(direction);
+    next_m = ((index + (step > 0 ? 1 : 0)) * resolution_m - from) / direction;
+  }
+  void advance() {
+    index += step;
+    next_m += per_cell_m;
+  }
+
+  int index, step;
+  double per_cell_m = std::numeric_limits<double>::infinity();
+  double next_m = std::numeric_limits<double>::infinity();  // where the ray leaves the column or row
+};
+
+}  // namespace
+
+LocalGrid::LocalGrid(const LocalGridSettings& settings) : settings_(settings) {
+  check(settings);
+  const auto side = static_cast<std::size_t>(settings.side_cells);
+  log_odds_.resize(side * side);
+  occupied_since_.resize(side * side);
+  crossed_at_.resize(side * side, Time::min());
+  touched_.resize(side * side);
+}
+
+Cell LocalGrid::cell_at(const Vec2& p) const {
+  constexpr double kMost = 2e9;  // beyond every window
+  const auto number = [&](double at_m) {
+    const double at = std::floor(at_m / settings_.resolution_m);
+    return at >= -kMost && at <= kMost ? static_cast<int>(at) : std::numeric_limits<int>::max();
+  };
+  return {number(p.x()), number(p.y())};
+}
+
+Box LocalGrid::box_of(const Cell& cell) const {
+  const double side_m = settings_.resolution_m;
+  return {{cell.column * side_m, cell.row * side_m}, {(cell.column + 1) * side_m, (cell.row + 1) * side_m}};
+}
+
+CellState LocalGrid::state(const Cell& cell) const {
+  const float odds = log_odds(cell);
+  if (odds >= settings_.occupied_from) return CellState::kOccupied;
+  return odds <= settings_.free_up_to ? CellState::kFree : CellState::kUnknown;
+}
+
+Duration LocalGrid::occupied_for(const Cell& cell) const {
+  return state(cell) == CellState::kOccupied ? updated_at_ - occupied_since_[index(cell)] : Duration::zero();
+}
+
+void LocalGrid::forget(const Cell& cell) {
+  const std::size_t i = index(cell);
+  log_odds_[i] = 0;
+  crossed_at_[i] = Time::min();
+  touched_[i] = 0;
+}
+
+void LocalGrid::move_window(const Cell& centre) {
+  const int side = settings_.side_cells;
+  const Cell before = first_;
+  first_ = {centre.column - side / 2, centre.row - side / 2};
+  const auto is_new = [side](int number, int first) { return number < first || number >= first + side; };
+  for (int row = first_.row; row < first_.row + side; ++row) {
+    if (is_empty_ || is_new(row, before.row)) {
+      for (int column = first_.column; column < first_.column + side; ++column) forget({column, row});
+      continue;
+    }
+    const int moved = first_.column - before.column;
+    const int begin = moved > 0 ? std::max(first_.column, before.column + side) : first_.column;
+    const int end = moved > 0 ? first_.column + side : std::min(first_.column + side, before.column);
+    for (int column = begin; column < end; ++column) forget({column, row});
+  }
+  is_empty_ = false;
+}
+
+void LocalGrid::decay(Duration passed) {
+  const auto factor = static_cast<float>(std::exp(-to_seconds(passed) / settings_.decay_s));
+  constexpr float kNegligible = 1e-3F;  // keeps denormal numbers away, which are slow
+  for (float& odds : log_odds_) odds = std::abs(odds) < kNegligible ? 0 : odds * factor;
+}
+
+void LocalGrid::add_hit(const Cell& cell) {
+  if (!has(cell)) return;
+  const std::size_t i = index(cell);
+  if (touched_[i] == scan_) return;
+  touched_[i] = scan_;
+  if (log_odds_[i] < settings_.occupied_from) occupied_since_[i] = updated_at_;
+  log_odds_[i] = std::min(log_odds_[i] + settings_.hit, settings_.limit);
+}
+
+void LocalGrid::add_miss(std::size_t i) {
+  if (touched_[i] == scan_) return;
+  touched_[i] = scan_;
+  crossed_at_[i] = updated_at_;
+  log_odds_[i] = std::max(log_odds_[i] - settings_.miss, -settings_.limit);
+}
+
+void LocalGrid::clear_along(const Vec2& from, const Beam& beam) {
+  CellAxis x(from.x(), beam.direction.x(), settings_.resolution_m);
+  CellAxis y(from.y(), beam.direction.y(), settings_.resolution_m);
+  while (has({x.index, y.index})) {
+    add_miss(index({x.index, y.index}));
+    CellAxis& axis = x.next_m < y.next_m ? x : y;
+    if (axis.next_m > beam.free_m) return;
+    axis.advance();
+  }
+}
+
+bool LocalGrid::update(const LaserBeams& beams) {
+  if (!is_empty_ && beams.captured_at() <= updated_at_) return false;
+  if (!(beams.at_m().cwiseAbs().maxCoeff() <= kMaxMapOrigin_m))
+    throw std::invalid_argument("the position of a scan is too far from the origin for a local grid");
+  if (!is_empty_) decay(beams.captured_at() - updated_at_);
+  move_window(cell_at(beams.at_m()));
+  updated_at_ = beams.captured_at();
+  ++scan_;
+  for (const Beam& beam : beams.all())
+    if (beam.end == BeamEnd::kHit) add_hit(cell_at(beams.end_m(beam)));
+  for (const Beam& beam : beams.all())
+    if (beam.end != BeamEnd::kUnknown) clear_along(beams.at_m(), beam);
+  return true;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "agents/perception/sight_rays.hpp"
+#include "common/geometry/segment.hpp"
+
+namespace sidestep {
+
+/// A piece of the border between what was seen free and the rest.
+struct Frontier {
+  Segment segment;
+  /// A person beyond the segment can project over it by this much: at capture if the segment is open, at any
+  /// time if it is closed.
+  double bulge_m = 0;
+};
+
+/// The border of the region that rays prove free of hidden people; see Visibility for the derivation.
+class SightBorder {
+ public:
+  /// `radius_m` and `error_m`: see closed_gap_m(). Does not allocate once warm.
+  void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double error_m);
+
+  /// Whether a point is in the region. False within a nanometre of the border.
+  [[nodiscard]] bool contains(const Vec2& p) const;
+  /// Where people may step out, counter-clockwise around the scanner.
+  std::span<const Frontier> frontiers() const { return frontiers_; }
+  /// Between things that stand; too narrow for people.
+  std::span<const Frontier> closed_gaps() const { return closed_; }
+
+ private:
+  /// What is seen between a ray and the next one: the offset along `normal` is at most `height_m`.
+  struct Wedge {
+    double angle_rad;  // of the ray
+    Vec2 normal;
+    double height_m;
+  };
+
+  Wedge closed_wedge(const SightRay& ray, const SightRay& next, double bulge_m);
+  Wedge open_wedge(const SightRay& ray, const SightRay& next, double radius_m);
+  void add_frontier(const Vec2& from_m, const Vec2& to_m, double bulge_m);
+
+  Vec2 at_m_{0, 0}, first_direction_{1, 0};
+  std::vector<Wedge> wedges_;
+  std::vector<Frontier> frontiers_, closed_;
+};
+
+}  // namespace sidestep

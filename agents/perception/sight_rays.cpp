@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/perception/sight_rays.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace sidestep {
+namespace {
+
+/// Between rays at larger angles, nothing is dropped.
+constexpr double kMaxAngle_rad = std::numbers::pi / 2;
+/// Shorter gaps have no direction.
+constexpr double kShortestGap_m = 1e-9;
+
+/// Calls `count_dropped(first)` for each ray in turn, which says how many rays after this one to drop. Until
+/// the end, those have the length 0.
+template <typename CountDropped>
+void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
+  const std::size_t count = rays.size();
+  for (std::size_t first = 0; first < count; ++first) {
+    const std::size_t dropped = rays[first].free_m > 0 ? count_dropped(first) : 0;
+    for (std::size_t i = 1; i <= dropped; ++i) rays[(first + i) % count].free_m = 0;
+  }
+  std::erase_if(rays, [](const SightRay& ray) { return ray.free_m == 0; });
+}
+
+/// How far a disc that lies beyond two rays of equal length stays from their common beginning, at least.
+double proven_m(double length_m, double angle_rad, double radius_m) {
+  return length_m * std::cos(angle_rad / 2) - sagitta_m(radius_m, 2 * length_m * std::sin(angle_rad / 2));
+}
+
+/// Whether all rays between two cross the line between the ends of the two.
+bool look_through(const std::vector<SightRay>& rays, std::size_t first, std::size_t last) {
+  const SightRay &from = rays[first % rays.size()], &to = rays[last % rays.size()];
+  const Vec2 normal = left_of(from.free_m * from.direction - to.free_m * to.direction);
+  const double height = normal.dot(from.free_m * from.direction);
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const SightRay& ray = rays[i % rays.size()];
+    if (ray.free_m * normal.dot(ray.direction) <= height) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double sagitta_m(double radius_m, double gap_m) {
+  return radius_m - std::sqrt(std::max(0.0, radius_m * radius_m - gap_m * gap_m / 4));
+}
+
+double angle_between_rad(const SightRay& ray, const SightRay& next) {
+  const double angle_rad = next.angle_rad - ray.angle_rad;
+  return angle_rad > 0 ? angle_rad : angle_rad + 2 * std::numbers::pi;
+}
+
+std::optional<double> closed_gap_m(const SightRay& ray, const SightRay& next, double radius_m,
+                                   double error_m) {
+  if (!ray.is_standing || !next.is_standing || angle_between_rad(ray, next) >= std::numbers::pi)
+    return std::nullopt;
+  const Vec2 gap = (next.free_m + error_m) * next.direction - (ray.free_m + error_m) * ray.direction;
+  const double gap_m = gap.norm() + 2 * error_m;
+  const double width_m = (next.free_m * next.direction - ray.free_m * ray.direction).norm();
+  if (gap_m >= 2 * radius_m || width_m < kShortestGap_m) return std::nullopt;
+  return gap_m;
+}
+
+void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
+  const std::size_t count = rays.size();
+  drop_runs(rays, [&](std::size_t first) -> std::size_t {
+    const SightRay& left = rays[first];
+    double nearer_m = 0;  // the longest of the rays between
+    for (std::size_t last = first + 1; last < first + count; ++last) {
+      const SightRay& right = rays[last % count];
+      const double angle_rad = angle_between_rad(left, right);
+      const double half_sine = std::sin(angle_rad / 2);
+      if (angle_rad >= kMaxAngle_rad || nearer_m >= left.free_m || nearer_m * half_sine >= radius_m) return 0;
+      const double length_m = std::min(left.free_m, right.free_m);
+      if (last > first + 1 && length_m > nearer_m && length_m * half_sine < radius_m &&
+          proven_m(length_m, angle_rad, radius_m) > nearer_m)
+        return last - first - 1;
+      nearer_m = std::max(nearer_m, right.free_m);
+    }
+    return 0;
+  });
+}
+
+void drop_looks_through_gaps(std::vector<SightRay>& rays, double radius_m, double error_m) {
+  const std::size_t count = rays.size();
+  drop_runs(rays, [&](std::size_t first) -> std::size_t {
+    const SightRay& from = rays[first];
+    if (!from.is_standing || closed_gap_m(from, rays[(first + 1) % count], radius_m, error_m)) return 0;
+    for (std::size_t last = first + 2; last < first + count; ++last) {
+      const SightRay& to = rays[last % count];
+      const double angle_rad = angle_between_rad(from, to);
+      if (angle_rad >= kMaxAngle_rad || from.free_m * std::sin(angle_rad) >= 2 * radius_m) return 0;
+      if (to.free_m > 0 && closed_gap_m(from, to, radius_m, error_m) && look_through(rays, first, last))
+        return last - first - 1;
+    }
+    return 0;
+  });
+}
+
+}  // namespace sidestep
