@@ -40,7 +40,7 @@ class LocalGrid {
   Cell cell_at(const Vec2& p) const;
   Box box_of(const Cell& cell) const;
   bool has(const Cell& cell) const {
-    return in_window(cell.column - first_.column) && in_window(cell.row - first_.row);
+    return in_window(cell.column, first_.column) && in_window(cell.row, first_.row);
   }
 
   /// 0 outside the window.
@@ -57,7 +57,10 @@ class LocalGrid {
   void for_each_occupied(const Box& box, const Call& call) const;
 
  private:
-  bool in_window(int offset) const { return offset >= 0 && offset < settings_.side_cells; }
+  bool in_window(int number, int first) const {
+    const std::int64_t offset = std::int64_t{number} - first;
+    return offset >= 0 && offset < settings_.side_cells;
+  }
   std::size_t index(const Cell& cell) const {
     const auto mask = static_cast<unsigned>(settings_.side_cells - 1);
     return static_cast<std::size_t>(static_cast<unsigned>(cell.row) & mask) *

@@ -29,18 +29,6 @@ double proven_m(double length_m, double angle_rad, double radius_m) {
   return length_m * std::cos(angle_rad / 2) - sagitta_m(radius_m, 2 * length_m * std::sin(angle_rad / 2));
 }
 
-/// Whether all rays between two cross the line between the ends of the two.
-bool look_through(const std::vector<SightRay>& rays, std::size_t first, std::size_t last) {
-  const SightRay &from = rays[first % rays.size()], &to = rays[last % rays.size()];
-  const Vec2 normal = left_of(from.free_m * from.direction - to.free_m * to.direction);
-  const double height = normal.dot(from.free_m * from.direction);
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const SightRay& ray = rays[i % rays.size()];
-    if (ray.free_m * normal.dot(ray.direction) <= height) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 double sagitta_m(double radius_m, double gap_m) {
@@ -83,7 +71,7 @@ void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
   });
 }
 
-void drop_looks_through_gaps(std::vector<SightRay>& rays, double radius_m, double error_m) {
+void drop_rays_within_gaps(std::vector<SightRay>& rays, double radius_m, double error_m) {
   const std::size_t count = rays.size();
   drop_runs(rays, [&](std::size_t first) -> std::size_t {
     const SightRay& from = rays[first];
@@ -92,8 +80,7 @@ void drop_looks_through_gaps(std::vector<SightRay>& rays, double radius_m, doubl
       const SightRay& to = rays[last % count];
       const double angle_rad = angle_between_rad(from, to);
       if (angle_rad >= kMaxAngle_rad || from.free_m * std::sin(angle_rad) >= 2 * radius_m) return 0;
-      if (to.free_m > 0 && closed_gap_m(from, to, radius_m, error_m) && look_through(rays, first, last))
-        return last - first - 1;
+      if (to.free_m > 0 && closed_gap_m(from, to, radius_m, error_m)) return last - first - 1;
     }
     return 0;
   });

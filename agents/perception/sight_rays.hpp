@@ -31,7 +31,8 @@ struct SightRay {
 /// beside them prove more. Dropping is always conservative: nothing is known of a ray that is not there.
 void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m);
 
-/// Drops rays that look through a gap between things that stand, if the gap is too narrow for a disc.
-void drop_looks_through_gaps(std::vector<SightRay>& rays, double radius_m, double error_m);
+/// Drops the rays between things that stand, if the gap is too narrow for a disc: it can neither pass nor be
+/// in front of the gap between the two remaining rays.
+void drop_rays_within_gaps(std::vector<SightRay>& rays, double radius_m, double error_m);
 
 }  // namespace sidestep

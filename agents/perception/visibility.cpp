@@ -70,7 +70,7 @@ void Visibility::finish() {
   const double radius_m = settings_.person_radius_m, error_m = settings_.range_error_m;
   drop_narrow_shadows(rays_, radius_m);
   seen_.build(rays_, at_m_, radius_m, error_m);
-  drop_looks_through_gaps(rays_, radius_m, error_m);
+  drop_rays_within_gaps(rays_, radius_m, error_m);
   reach_.build(rays_, at_m_, radius_m, error_m);
 }
 

@@ -35,8 +35,8 @@ struct BrakingQuery {
 /// are those that end at something narrow, if nobody fits into its shadow.
 ///
 /// **Closed and open.** If the ends of two neighbouring beams are hits on things that stand, closer together
-/// than 2 r, no centre passes between them, ever, but the disc can project by the sagitta. Beams that look
-/// through such a gap between two posts are left out of the border, so what is behind it does not count.
+/// than 2 r, no centre passes between them, ever, but the disc can project by the sagitta. Beams within
+/// such a gap between two posts are left out of the border, so what is behind it does not count.
 /// Every other border is open: jumps in range, the maximum range, unseen sectors, and hits on anything that
 /// may move, e.g. robots and people. These are the frontiers.
 ///
