@@ -17,11 +17,11 @@ struct NavigationSettings {
 };
 
 /// Plans paths that descend a navigation function. Keeps the functions of the last two radii or floors: a
-/// replan for the same goal computes only what obstacles that have changed, and the start, require. The path
-/// is the same as without these. Cells are blocked conservatively, so passages less than two cells wider than
-/// the disc may be missed; PlanReason::kUnreachable refers to these cells. The number of cells limits the
-/// effort. The budget only limits the time, and the number of tries if a goal is cut off by obstacles. Does
-/// not allocate once warm.
+/// replan for the same goal computes only what the start, and obstacles that have changed, require. The path
+/// equals that of a planner without a past. Cells are blocked conservatively, so a passage has to be up to
+/// three cells wider than the disc; PlanReason::kUnreachable refers to these cells. Their number limits the
+/// effort. Of the budget, only the time counts: once it is over, no further way to join the goal to the grid
+/// is tried. Does not allocate once warm.
 class NavigationPlanner {
  public:
   explicit NavigationPlanner(const NavigationSettings& settings = {}) : settings_(settings) {}

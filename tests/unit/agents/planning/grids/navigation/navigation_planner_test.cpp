@@ -138,6 +138,24 @@ TEST_CASE("starts and goals in blocked cells are joined to free ones") {
   CHECK(is_valid_path(world, plan.states, 1e-9));
 }
 
+TEST_CASE("a start deep in an obstacle, or far outside the field, is left") {
+  const ObstacleWorld obstacles({Circle{{0, 0}, 1}});
+  NavigationPlanner planner;
+  Rng rng(1);
+  for (const Vec2& start : {Vec2(0.2, 0.1), Vec2(-7, -4)}) {
+    CAPTURE(start.transpose());
+    const Vec2 goal(3, -3);
+    const DiscDomain domain(obstacles, {10, 10}, 0.1, start, goal);
+    const Plan<Vec2>& plan = planner.plan(domain, start, {}, rng);
+    CHECK(plan.start_blocked);
+    REQUIRE(plan.arrives());
+    CHECK(plan.states.front() == start);
+    CHECK(plan.states.back() == goal);
+    for (std::size_t i = 1; i < plan.states.size(); ++i)
+      REQUIRE(domain.check(plan.states[i - 1], plan.states[i]));
+  }
+}
+
 TEST_CASE("a goal in a free cell that is cut off from the others is joined to one that is not") {
   // The passages around the goal's cell are wide enough for the disc, but not for cells.
   const PlanWorld world{"cell",
