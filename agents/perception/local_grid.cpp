@@ -64,17 +64,6 @@ Cell LocalGrid::cell_at(const Vec2& p) const {
   return {number(p.x()), number(p.y())};
 }
 
-Box LocalGrid::box_of(const Cell& cell) const {
-  const double side_m = settings_.resolution_m;
-  return {{cell.column * side_m, cell.row * side_m}, {(cell.column + 1) * side_m, (cell.row + 1) * side_m}};
-}
-
-CellState LocalGrid::state(const Cell& cell) const {
-  const float odds = log_odds(cell);
-  if (odds >= settings_.occupied_from) return CellState::kOccupied;
-  return odds <= settings_.free_up_to ? CellState::kFree : CellState::kUnknown;
-}
-
 Duration LocalGrid::occupied_for(const Cell& cell) const {
   return state(cell) == CellState::kOccupied ? updated_at_ - occupied_since_[index(cell)] : Duration::zero();
 }

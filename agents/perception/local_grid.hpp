@@ -38,14 +38,21 @@ class LocalGrid {
   const LocalGridSettings& settings() const { return settings_; }
   Time updated_at() const { return updated_at_; }
   Cell cell_at(const Vec2& p) const;
-  Box box_of(const Cell& cell) const;
+  Box box_of(const Cell& cell) const {
+    const double side_m = settings_.resolution_m;
+    return {{cell.column * side_m, cell.row * side_m}, {(cell.column + 1) * side_m, (cell.row + 1) * side_m}};
+  }
   bool has(const Cell& cell) const {
     return in_window(cell.column, first_.column) && in_window(cell.row, first_.row);
   }
 
   /// 0 outside the window.
   float log_odds(const Cell& cell) const { return has(cell) ? log_odds_[index(cell)] : 0; }
-  CellState state(const Cell& cell) const;
+  CellState state(const Cell& cell) const {
+    const float odds = log_odds(cell);
+    if (odds >= settings_.occupied_from) return CellState::kOccupied;
+    return odds <= settings_.free_up_to ? CellState::kFree : CellState::kUnknown;
+  }
   CellState state_at(const Vec2& p) const { return state(cell_at(p)); }
   /// For how long a cell has been occupied without interruption; 0 if it is not.
   Duration occupied_for(const Cell& cell) const;
