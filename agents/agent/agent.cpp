@@ -33,7 +33,9 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       assignment_(robot, robot_.goals),
       desired_heading_rad_(robot_.start_heading_rad),
       planner_(make_driving_planner(robot_.planner.empty() ? scenario.planner : robot_.planner)),
-      give_way_(rules_.field, rules_.radius_m, required_separation_m(), rules_.min_separation_m()),
+      passage_period_(from_seconds(settings.passage_s + settings.passage_m / rules_.limits.speed_mps)),
+      give_way_(rules_.field, rules_.radius_m, required_separation_m(), rules_.min_separation_m(),
+                {.give_up_after = passage_period_ * 2 / 3}),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
 }
@@ -78,6 +80,8 @@ void Agent::on_orders(std::shared_ptr<const OrderPage> page) {
   begin_if_changed(revision);
   if (assignment_.zone_revision() == zone_revision) return;
   zones_ = ZoneMap(assignment_.zones());
+  give_way_.restart(last_plan_);
+  route_obstacles_.reset();
   route_planner_.reset();
   has_route_ = false;
 }
@@ -202,7 +206,8 @@ OrderReport Agent::order_report() const {
 }
 
 std::optional<double> Agent::remaining_s() const {
-  if (!assignment_.goal() || blocked_since_ || (!has_route_ && !arrived_)) return std::nullopt;
+  if (!assignment_.goal() || blocked_since_ || give_way_.place_m() || (!has_route_ && !arrived_))
+    return std::nullopt;
   if (assignment_.report().progress.is_finished()) return 0;
   double length_m = route_length_m_, seconds = 0;
   Vec2 from = goal().position_m;

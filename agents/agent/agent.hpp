@@ -129,7 +129,8 @@ class Agent {
   void begin_if_changed(std::uint64_t revision);
   /// Where the robot is to go: to its goal or, without one, nowhere.
   Vec2 target_m(const Vec2& rest_m) const { return assignment_.goal() ? goal().position_m : rest_m; }
-  /// Replaces the route planner if the target, zones, stationary robots or moving obstacles have changed.
+  /// Begins a new route for another target or if zones have changed and, unless the last one is free and not
+  /// old, if stationary robots or moving obstacles have.
   void update_route_planner(const Vec2& target_m, Time now);
   std::vector<TemporaryObstacle> temporary_obstacles(const Vec2& target_m, Time now);
   std::vector<Circle> moving_obstacles(const Vec2& target_m, Time now);
@@ -189,6 +190,7 @@ class Agent {
   std::optional<Time> blocked_since_;
   Time last_plan_{};
   DeadlockRecovery recovery_;
+  const Duration passage_period_;  // how long a robot has the right of way in a passage
   GiveWay give_way_;
   bool is_escaping_ = false;  // the last search has found only an escape from a conflict
   bool arrived_ = false;

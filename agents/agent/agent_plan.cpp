@@ -77,6 +77,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
   decide_whether_to_give_way(now);
+  const bool gives_way = give_way_.place_m().has_value();
   const Vec2 target = give_way_.place_m().value_or(target_m(rest));
   const double inflation_m = inflation_from(base, start);
   const auto ends_at = [&](const Vec2& place) {
@@ -84,7 +85,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   };
   if (start <= base.trajectory.start()) return std::nullopt;
   if (ends_at(target) && !zones_.is_kept_out(target, required_separation_m())) {
-    update_blockage({}, now);
+    if (!gives_way) update_blockage({}, now);
     route_length_m_ = 0;
     return std::nullopt;
   }
@@ -93,7 +94,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const Route straight{target, target, (target - at_start.position_m).norm(), target};
   const Route route = route_planner_->route_from(at_start.position_m, rng_).value_or(straight);
   route_length_m_ = route.length_m;
-  update_blockage(route, now);
+  if (!gives_way) update_blockage(route, now);
   if (!route.reaches_goal && ends_at(route.end_m)) return std::nullopt;
   if (assignment_.goal() && goal().speed_limit_mps)
     max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
@@ -116,13 +117,14 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
 
 void Agent::decide_whether_to_give_way(Time now) {
   const Vec2& position = estimate_.position_m;
-  if (!give_way_.is_due(now, position) || !route_obstacles_ || !assignment_.goal()) return;
+  if (!assignment_.goal() || assignment_.report().progress.is_finished()) return give_way_.restart(now);
+  if (!give_way_.is_due(now, position) || !route_obstacles_) return;
   std::vector<OtherRobot> others;
   for (const Version* version : neighbours_.newest(position, page_horizon_m())) {
-    OtherRobot other{version->trajectory.rest_position_m(), {}, false};
+    OtherRobot other{version->robot, version->trajectory.rest_position_m()};
     if (version->intent && !assignment_.other(version->robot).is_held) {
       other.goals_m = {version->intent->goal_m, version->intent->target_m};
-      other.has_right_of_way = has_right_of_way(version->robot, robot_.id, now, settings_.passage_period);
+      other.has_right_of_way = has_right_of_way(version->robot, robot_.id, now, passage_period_);
     }
     others.push_back(other);
   }

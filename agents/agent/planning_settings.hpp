@@ -37,8 +37,8 @@ struct PlanningSettings {
 
   // Right of way, and deadlocks.
   Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long
-  /// The same for robots that cannot pass each other: long enough to leave a passage.
-  Duration passage_period{30'000'000'000};
+  // Where robots cannot pass each other, for the time to drive this far and a while:
+  double passage_m = 40, passage_s = 10;
   double standstill_mps = 0.01;         ///< intended speeds below this count as standing still
   double waiting_speed_fraction = 0.5;  ///< intended speeds below this fraction of the limit count as waiting
   double recovery_clear_path_m = 0.5;   ///< length of free path that a recovery direction requires

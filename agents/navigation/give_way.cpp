@@ -2,6 +2,8 @@
 #include "agents/navigation/give_way.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <utility>
 
 namespace sidestep {
@@ -37,12 +39,14 @@ GiveWay::GiveWay(const Field& field, double radius_m, double required_m, double 
 void GiveWay::restart(Time now) {
   anchored_at_ = now;
   way_.clear();
+  yields_to_.clear();
   range_m_ = settings_.first_range_m;
 }
 
 bool GiveWay::is_due(Time now, const Vec2& position_m) {
-  const bool is_first = anchored_at_ == Time{};
-  if (is_first || (position_m - anchor_m_).norm() > settings_.progress_m || now < anchored_at_) {
+  const bool is_new = now - called_at_ > settings_.max_pause;
+  called_at_ = now;
+  if (is_new || (position_m - anchor_m_).norm() > settings_.progress_m || now < anchored_at_) {
     anchor_m_ = position_m;
     anchored_at_ = now;
   }
@@ -60,21 +64,40 @@ void GiveWay::update(Time now, const Vec2& position_m, std::span<const OtherRobo
     if (!is_needed || now - began_at_ >= settings_.give_up_after) restart(now);
     return;
   }
-  if (!is_in_the_way(scene.routes, {position_m}, min_separation_m_)) {
+  if (!blocks_a_passage(scene, position_m)) {
     range_m_ = settings_.first_range_m;
     return;
   }
   way_ = find_way(scene, position_m, others);
   began_at_ = now;
-  if (way_.empty()) range_m_ = std::min(2 * range_m_, settings_.longest_range_m);
+  if (way_.empty()) {
+    range_m_ = std::min(2 * range_m_, settings_.longest_range_m);
+    return;
+  }
+  for (const OtherRobot& other : others)
+    if (other.has_right_of_way) yields_to_.push_back(other.id);
+}
+
+bool GiveWay::blocks_a_passage(Scene& scene, const Vec2& position_m) const {
+  const ObstacleId self = scene.fixed.add(disc_at(position_m));
+  const bool is_blocked = std::ranges::any_of(scene.routes, [&](const Way& route) {
+    if (!is_in_the_way({route}, {position_m}, min_separation_m_)) return false;
+    const std::optional<Way> around = path(scene, route.front(), route.back());
+    return !around || around->back() != route.back();
+  });
+  scene.fixed.remove(self);
+  return is_blocked;
 }
 
 void GiveWay::find_routes(Scene& scene, std::span<const OtherRobot> others) const {
   for (const OtherRobot& other : others) {
-    if (!other.has_right_of_way) continue;
+    const bool is_passing = std::ranges::find(yields_to_, other.id) != yields_to_.end();
+    if (!other.has_right_of_way && !is_passing) continue;
     for (const std::optional<Vec2>& goal : other.goals_m) {
       if (!goal || (*goal - other.position_m).norm() < settings_.progress_m) continue;
-      if (auto route = path(scene, other.position_m, *goal)) scene.routes.push_back(std::move(*route));
+      auto route = path(scene, other.position_m, *goal);
+      if (!route) continue;
+      scene.routes.push_back(std::move(*route));
     }
   }
 }
@@ -82,8 +105,7 @@ void GiveWay::find_routes(Scene& scene, std::span<const OtherRobot> others) cons
 std::vector<Vec2> GiveWay::find_way(Scene& scene, const Vec2& position_m,
                                     std::span<const OtherRobot> others) const {
   const std::vector<Vec2> places = places_near(scene, position_m);
-  for (const OtherRobot& other : others)
-    scene.fixed.add(Circle{other.position_m, std::max(0.0, min_separation_m_ - required_m_)});
+  for (const OtherRobot& other : others) scene.fixed.add(disc_at(other.position_m));
   std::vector<Vec2> unreachable;
   for (const Vec2& place : places) {
     // What is connected with an unreachable place is unreachable too.
@@ -115,9 +137,10 @@ std::vector<Vec2> GiveWay::places_near(const Scene& scene, const Vec2& position_
   std::ranges::sort(places, {}, [&](const Vec2& place) { return (place - position_m).squaredNorm(); });
   // One of several that are near each other is enough.
   std::vector<Vec2> apart;
+  std::set<std::pair<long, long>> taken;
   for (const Vec2& place : places) {
-    const auto is_near = [&](const Vec2& other) { return (place - other).norm() < 2 * radius_m_; };
-    if (std::ranges::none_of(apart, is_near)) apart.push_back(place);
+    const Vec2 cell = (place - position_m) / (2 * radius_m_);
+    if (taken.insert({std::lround(cell.x()), std::lround(cell.y())}).second) apart.push_back(place);
   }
   return apart;
 }

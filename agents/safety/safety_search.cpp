@@ -146,7 +146,9 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
 void SafetySearch::find_cells(const Circle& disc) {
   cells_.clear();
   if (!rules_.map || rules_.map->field().lower_bound_m(disc.centre_m) > disc.radius_m) return;
-  const Vec2 half_m(disc.radius_m, disc.radius_m);
+  // The disc of a path of unknown length is huge. Boxes of such size would lose all precision.
+  constexpr double kMaxReach_m = 1e5;
+  const Vec2 half_m = Vec2::Constant(std::min(disc.radius_m, kMaxReach_m));
   rules_.map->cells().for_each_box({disc.centre_m - half_m, disc.centre_m + half_m}, [&](const Box& box) {
     if (signed_distance(disc.centre_m, box) <= disc.radius_m) cells_.emplace_back(box);
     return true;

@@ -41,7 +41,8 @@ FloorMap::FloorMap(OccupancyMap map, std::string name)
 
 std::vector<Box> FloorMap::boxes_on(const Field& field) const {
   std::vector<Box> boxes = rectangles_;
-  const Vec2 half_m(field.length_m / 2, field.width_m / 2);
+  constexpr double kBeyond_m = 10;  // more than any robot's radius and margin
+  const Vec2 half_m(field.length_m / 2 + kBeyond_m, field.width_m / 2 + kBeyond_m);
   const Box inside = cells_.extent();
   const auto add = [&](const Vec2& min_m, const Vec2& max_m) {
     if ((min_m.array() < max_m.array()).all()) boxes.push_back({min_m, max_m});

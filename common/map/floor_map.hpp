@@ -26,7 +26,7 @@ class FloorMap {
   const DistanceField& field() const { return field_; }
   /// Rectangles that together cover exactly the blocked cells, without the outside. They overlap.
   const std::vector<Box>& rectangles() const { return rectangles_; }
-  /// Boxes that cover the blocked cells, and the outside as far as it belongs to a field.
+  /// Boxes that cover the blocked cells, and the outside on a field and 10 m around it.
   std::vector<Box> boxes_on(const Field& field) const;
   /// Differs between maps whose cells differ in place or state.
   std::uint64_t fingerprint() const { return fingerprint_; }

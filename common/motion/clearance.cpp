@@ -7,8 +7,6 @@
 #include <limits>
 #include <span>
 
-#include "common/motion/trajectory_bounds.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -292,18 +290,50 @@ bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m) 
          min_squared;
 }
 
-Box region_around(const Trajectory& a, double distance_m) {
-  const Circle disc = disc_of(a);
-  const double half_m = disc.radius_m + distance_m;
-  return {disc.centre_m - Vec2(half_m, half_m), disc.centre_m + Vec2(half_m, half_m)};
+bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m) {
+  return for_each_near_box(a, map, min_separation_m, [](const Box&) { return false; });
 }
 
-bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m) {
-  const Circle disc = disc_of(a);
+bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_separation_m,
+                       const std::function<bool(const Box&)>& call) {
+  // Pieces of this length come near to few boxes, whatever the whole path does.
+  constexpr double kPiece_m = 1;
   const double far_m = std::max(min_separation_m, 0.0) + 2 * kClearanceTolerance_m;
-  if (map.field().lower_bound_m(disc.centre_m) > disc.radius_m + far_m) return true;
-  return map.cells().for_each_box(region_around(a, far_m),
-                                  [&](const Box& box) { return is_clear(a, Shape(box), min_separation_m); });
+  const auto visit = [&](const Trajectory& piece, double length_m) {
+    const Vec2 &from = piece.at_start().position_m, to = piece.rest_position_m();
+    // A path of this length lies within this distance of the middle of its ends.
+    const Vec2 middle = 0.5 * (from + to);
+    const double reach_m = 0.5 * length_m + far_m;
+    if (map.field().lower_bound_m(middle) > reach_m) return true;
+    const Vec2 half = Vec2::Constant(reach_m);
+    return map.cells().for_each_box({middle - half, middle + half}, [&](const Box& box) {
+      return is_clear(piece, Shape(box), min_separation_m) || call(box);
+    });
+  };
+  State state = a.at_start();
+  if (a.phases().empty()) return visit(a, 0);
+  for (const MotionPhase& phase : a.phases()) {
+    const double seconds = to_seconds(phase.duration);
+    const double end_mps = (state.velocity_mps + seconds * phase.acceleration_mps2).norm();
+    // The speed is convex over a phase.
+    const double length_m = seconds * std::max(state.velocity_mps.norm(), end_mps);
+    const auto pieces = static_cast<std::int64_t>(std::ceil(length_m / kPiece_m));
+    Duration begin{0};
+    for (std::int64_t i = 1; i <= std::max<std::int64_t>(pieces, 1); ++i) {
+      const Duration end = pieces > 1 ? phase.duration * i / pieces : phase.duration;
+      Trajectory piece(a.start(), state_after(state, phase.acceleration_mps2, to_seconds(begin)));
+      piece.append(end - begin, phase.acceleration_mps2);
+      const double part_s = to_seconds(end - begin);
+      const double piece_m =
+          part_s *
+          std::max(state_after(state, phase.acceleration_mps2, to_seconds(begin)).velocity_mps.norm(),
+                   state_after(state, phase.acceleration_mps2, to_seconds(end)).velocity_mps.norm());
+      if (!visit(piece, piece_m)) return false;
+      begin = end;
+    }
+    state = state_after(state, phase.acceleration_mps2, seconds);
+  }
+  return true;
 }
 
 }  // namespace sidestep

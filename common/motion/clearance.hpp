@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "common/collision/shapes.hpp"
 #include "common/map/floor_map.hpp"
 #include "common/motion/trajectory.hpp"
@@ -34,10 +36,14 @@ double clearance_m(const Trajectory& a, const Shape& shape, double min_separatio
 /// Whether clearance_m(a, shape, min_separation_m) >= 0.
 [[nodiscard]] bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m);
 
-/// A box that contains everything within a distance of the trajectory.
-[[nodiscard]] Box region_around(const Trajectory& a, double distance_m);
 /// Whether the trajectory keeps `min_separation_m` from all blocked cells of a map and from its outside, by
-/// the same comparison as with shapes.
+/// the same comparison as with shapes. The time grows with the length of the path.
 [[nodiscard]] bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m);
+
+/// Calls `call` with boxes of blocked cells, or of the outside, from which the trajectory does not keep
+/// `min_separation_m`; together they cover all such cells. Stops when `call` returns false, and then returns
+/// false.
+bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_separation_m,
+                       const std::function<bool(const Box&)>& call);
 
 }  // namespace sidestep

@@ -65,10 +65,8 @@ Validity check_workspace_with_escape(const Version& version, const Trajectory& b
   };
   if (!std::ranges::all_of(rules.obstacles, is_clear_of)) return Validity::kObstacle;
   const bool is_clear_of_map =
-      !rules.map || is_clear(version.trajectory, *rules.map, min_separation_m) ||
-      rules.map->cells().for_each_box(
-          region_around(version.trajectory, min_separation_m + 2 * kClearanceTolerance_m),
-          [&](const Box& box) { return is_clear_of(box); });
+      !rules.map || for_each_near_box(version.trajectory, *rules.map, min_separation_m,
+                                      [&](const Box& box) { return is_clear_of(box); });
   return is_clear_of_map ? Validity::kValid : Validity::kObstacle;
 }
 

@@ -12,7 +12,7 @@ struct Intent {
   double velocity_duration_s = 0;
   Vec2 waypoint_m{0, 0};
   Vec2 goal_m{0, 0};    ///< the end of its route
-  Vec2 target_m{0, 0};  ///< where it is to go; differs from the goal if that cannot be reached now
+  Vec2 target_m{0, 0};  ///< where it wants to be, even if its route ends elsewhere
 };
 
 }  // namespace sidestep

@@ -86,7 +86,7 @@ Scenario random_corridor(std::uint64_t seed) {
     const double side = i % 2 == 0 ? -1 : 1, y = i < 2 ? 0.7 : -0.7;
     scenario.robots.push_back({.id = static_cast<RobotId>(i),
                                .start_m = {3 * side, y},
-                               .goals = {{{-3.6 * side, y}}, {{3.6 * side, y}}}});
+                               .goals = {{{-3.2 * side, y}}, {{3.8 * side, y}}}});
   }
   return scenario;
 }

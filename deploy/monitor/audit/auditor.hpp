@@ -134,7 +134,9 @@ class Auditor {
   void check_field(const AuditedRobot& robot, const KnownVersion& known);
   void check_obstacles(const AuditedRobot& robot, const KnownVersion& known);
   void check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
-                      const Shape& shape);
+                      const Shape& shape, bool is_map);
+  double distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
+                            double required_m) const;
   /// Of the robot's centre from the edge of an obstacle.
   double required_separation_m(const KnownVersion& known) const {
     return scenario_.radius_m + scenario_.margin_m + known.version.inflation_m();

@@ -83,27 +83,41 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
 
 void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
   for (std::size_t i = 0; i < obstacles_.size(); ++i)
-    check_obstacle(robot, known, obstacles_[i], scenario_.obstacles[i]);
+    check_obstacle(robot, known, obstacles_[i], scenario_.obstacles[i], false);
   if (!scenario_.map) return;
   const double reach_m = known.path.reach_m() + required_separation_m(known);
   const Vec2 start_m(known.version.x_m(), known.version.y_m()), reach(reach_m, reach_m);
   scenario_.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
-    check_obstacle(robot, known, AuditShape(cells), cells);
+    check_obstacle(robot, known, AuditShape(cells), cells, true);
     return true;
   });
 }
 
+/// The base's distance from an obstacle or, if that is a part of the map, from all of the map: runs of cells
+/// are cut into boxes differently for every path.
+double Auditor::distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
+                                   double required_m) const {
+  double nearest_m = closest_approach(base.path, obstacle, required_m).distance_m;
+  if (!is_map) return nearest_m;
+  const Vec2 start_m(base.version.x_m(), base.version.y_m());
+  const Vec2 reach = Vec2::Constant(base.path.reach_m() + required_m);
+  scenario_.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
+    nearest_m = std::min(nearest_m, closest_approach(base.path, AuditShape(cells), required_m).distance_m);
+    return true;
+  });
+  return nearest_m;
+}
+
 void Auditor::check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
-                             const Shape& shape) {
+                             const Shape& shape, bool is_map) {
   const KnownVersion* base = robot.find(known.version.base());
   const double required_m = required_separation_m(known);
   if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
     return;
   const ClosestApproach near = closest_approach(known.path, obstacle, required_m);
   if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) return;
-  const bool was_near =
-      base && base->has_content &&
-      closest_approach(base->path, obstacle, required_m).distance_m <= near.distance_m + 1e-6;
+  const bool was_near = base && base->has_content &&
+                        distance_of_base_m(*base, obstacle, is_map, required_m) <= near.distance_m + 1e-6;
   if (was_near) return;
   report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
          fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,

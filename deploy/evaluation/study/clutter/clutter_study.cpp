@@ -21,13 +21,14 @@ ClutterSizes quick_clutter_sizes() { return {{"lazy-visibility", "errt"}, {5}, 1
 
 // Columns that have to be zero.
 constexpr const char *kContacts = "contacts", *kCrashesInMotion = "crashes_in_motion";
+constexpr const char *kAudit = "audit", *kPassed = "passed";
 
 Experiment experiment_of(const char* name, const StudyOptions& options) {
   Experiment experiment;
   experiment.jobs = options.jobs;
   experiment.table.name = name;
   experiment.table.columns = {"planner", "robots",  "people",  "seed",           "seconds",
-                              "arrived", kContacts, "crashes", kCrashesInMotion, "audit"};
+                              "arrived", kContacts, "crashes", kCrashesInMotion, kAudit};
   experiment.table.plots.push_back({fmt::format("{}: time until all goals are reached", name), "people",
                                     "time [s], 300 if not all arrived"});
   return experiment;
@@ -39,7 +40,7 @@ void add_run(Experiment& experiment, const ClutterSettings& settings, std::uint6
                                const ClutterResult r = run_clutter(clutter_scene(settings, seed), seed);
                                return fmt::format("{:.3f},{},{},{},{},{}", r.seconds, r.arrived, r.contacts,
                                                   r.crashes, r.crashes_in_motion,
-                                                  r.audit_passed ? "passed" : "not passed");
+                                                  r.audit_passed ? kPassed : "not passed");
                              }});
 }
 
@@ -48,6 +49,7 @@ bool is_safe(const StudyTable& table) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string& column = table.columns[i];
       if ((column == kContacts || column == kCrashesInMotion) && row[i] != "0") return false;
+      if (column == kAudit && row[i] != kPassed) return false;
     }
     return true;
   });

@@ -8,7 +8,7 @@ namespace sidestep::give_way_test {
 constexpr double kRadius_m = 0.09, kRequired_m = 0.104, kSeparation_m = 0.194;
 const Field kField{10, 4};
 
-Time at(double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); }
+Time at(double seconds) { return time_from_ns(100'000'000'000) + from_seconds(seconds); }
 
 /// A corridor along the x axis that is 0.3 m wide, with a bay above it at `bay_x_m`.
 ObstacleWorld corridor(double bay_x_m) {
@@ -17,15 +17,22 @@ ObstacleWorld corridor(double bay_x_m) {
 }
 
 OtherRobot coming_from(double x_m, double goal_x_m) {
-  return {{x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
+  return {7, {x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
 }
 
 struct Robot {
   GiveWay give_way{kField, kRadius_m, kRequired_m, kSeparation_m};
   Rng rng{1};
+  double decided_s = 0;
 
+  /// Decides ten times a second up to this time.
   std::optional<Vec2> decide(double seconds, const Vec2& position_m, const std::vector<OtherRobot>& others,
                              const ObstacleWorld& fixed) {
+    for (; decided_s < seconds + 1e-6; decided_s += 0.1) decide_once(decided_s, position_m, others, fixed);
+    return give_way.place_m();
+  }
+  std::optional<Vec2> decide_once(double seconds, const Vec2& position_m,
+                                  const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
     if (give_way.is_due(at(seconds), position_m))
       give_way.update(at(seconds), position_m, others, fixed, rng);
     return give_way.place_m();
@@ -100,9 +107,33 @@ TEST_CASE("a robot does not take a place that another robot covers") {
   // The bay is occupied, and a third robot closes the way back.
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  OtherRobot in_bay{{-1, 0.3}, {}, false}, behind{{-1.6, 0}, {}, false};
+  OtherRobot in_bay{1, {-1, 0.3}}, behind{2, {-1.6, 0}};
   const std::vector<OtherRobot> others{coming_from(0.2, -4.9), in_bay, behind};
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
+}
+
+TEST_CASE("a robot goes on giving way when the right of way changes, until the other has passed") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
+  const std::optional<Vec2> place = robot.give_way.place_m();
+  REQUIRE(place);
+  OtherRobot other = coming_from(0.1, -4.9);
+  other.has_right_of_way = false;
+  CHECK(robot.decide(5, *place, {other}, fixed) == place);
+  other.position_m = {-1.5, 0};
+  CHECK_FALSE(robot.decide(6, *place, {other}, fixed));
+}
+
+TEST_CASE("a robot does not give way to one that drives around it, nor at once after a pause") {
+  const ObstacleWorld open;
+  Robot robot;
+  const OtherRobot other = coming_from(1, -4.9);
+  for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {other}, open));
+  const ObstacleWorld fixed = corridor(-1);
+  Robot paused;
+  CHECK_FALSE(paused.decide_once(0, {0, 0}, {}, fixed));
+  CHECK_FALSE(paused.decide_once(60, {0, 0}, {coming_from(0.2, -4.9)}, fixed));
 }
 
 }  // namespace sidestep::give_way_test

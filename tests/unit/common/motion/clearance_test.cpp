@@ -229,4 +229,19 @@ TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked
   CHECK(clear_by_field > 10);
 }
 
+TEST_CASE("a trajectory that leaves the map on a path of more than a hundred metres is not clear") {
+  MapGrid grid;
+  grid.columns = grid.rows = 400, grid.origin_m = {-10, -10};
+  const FloorMap map(OccupancyMap(grid, BitGrid(grid.columns, grid.rows)));
+  Trajectory a(kBegin, {{0, 0}, {0, 0}});
+  a.append(from_seconds(1), {2, 0});
+  a.append(from_seconds(25), {-0.16, 0});
+  a.append(from_seconds(25), {0.16, 0});
+  append_stop(a, 4);
+  CHECK((a.rest_position_m() - Vec2(1.5, 0)).norm() < 1e-6);
+  CHECK_FALSE(is_clear(a, map, 0.1));
+  grid.columns = grid.rows = 800, grid.origin_m = {-20, -20};
+  CHECK(is_clear(a, FloorMap(OccupancyMap(grid, BitGrid(grid.columns, grid.rows))), 0.1));
+}
+
 }  // namespace sidestep::clearance_test
