@@ -10,6 +10,7 @@
 #include "common/geometry/vec2.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/hosts_file.hpp"
+#include "deploy/monitor/audit/audit_totals.hpp"
 #include "tests/catch.hpp"
 #include "tests/sanitized.hpp"
 
@@ -231,6 +232,12 @@ std::string shuttles(int times, const std::string& extra_keys) {
   add(6, {-0.8, -2.5}, {-0.8, 2.5});
   add(7, {0.8, 2.5}, {0.8, -2.5});
   return text;
+}
+
+void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& end) {
+  if (end == "exit code 0") return;
+  CHECK(end == "exit code " + std::to_string(kExitNotJudged));
+  CHECK(run.printed("of the messages were missed"));
 }
 
 void require_no_violations(const nlohmann::json& report) {

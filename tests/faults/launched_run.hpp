@@ -100,6 +100,10 @@ class LaunchedRun {
   pid_t pid_ = 0;
 };
 
+/// Checks that the run has passed or, where processes are forgotten for a while or packets are lost, could
+/// not be judged because too many messages were missed.
+void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& end);
+
 /// The text of a shipped file below deploy/, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
 /// The text of a shipped scenario.
