@@ -9,6 +9,7 @@
 #include "common/collision/shapes.hpp"
 #include "common/geometry/field.hpp"
 #include "common/image/image.hpp"
+#include "common/map/laser_settings.hpp"
 #include "common/motion/floor_rules.hpp"
 #include "common/motion/goal.hpp"
 #include "common/motion/limits.hpp"
@@ -73,6 +74,16 @@ struct OdometrySpec {
   double velocity_noise_mps = 0.01;  ///< standard deviation per axis and millisecond of measurement
 };
 
+/// The laser that each robot carries, and what robots assume of it. Robots with lasers learn of opponents and
+/// people by their own scans only.
+struct LaserSpec {
+  LaserSettings settings;
+  double rate_hz = 15;
+  double range_error_m = 0.03;     ///< largest error of a range
+  double dropout_probability = 0;  ///< probability that a beam is lost
+  double person_radius_m = 0.15;   ///< of the smallest person, at the height of the laser
+};
+
 /// The impairments of messages on SimBus; not applied over DDS.
 struct NetworkSpec {
   double loss = 0;
@@ -112,6 +123,7 @@ struct Scenario {
   double time_limit_s = 60;  ///< for all robots to arrive, counted from when the coordinator starts to grant
   VisionSpec vision;
   OdometrySpec odometry;
+  std::optional<LaserSpec> laser;  ///< nullopt: vision sees opponents and people
   double command_loss = 0;  ///< probability that the radio link between agent and robot drops a command
   NetworkSpec network;
   RestartSpec restart;

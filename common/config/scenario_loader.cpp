@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <numbers>
 #include <stdexcept>
 
 #include "common/config/planner_names.hpp"
@@ -12,6 +13,7 @@
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
 #include "common/messaging/senders.hpp"
+#include "idl/laser.hpp"
 #include "idl/vision.hpp"
 
 namespace sidestep {
@@ -130,6 +132,26 @@ void read_odometry(YamlMap& map, OdometrySpec& odometry) {
   });
 }
 
+void read_laser(YamlMap& map, Scenario& scenario) {
+  read_section(map, "laser", [&](YamlMap& inner) {
+    LaserSpec& laser = scenario.laser.emplace();
+    inner.read("beams", {8, msg::MAX_BEAMS}, laser.settings.beams);
+    inner.read("field_of_view_rad", {0.1, 2 * std::numbers::pi}, laser.settings.field_of_view_rad);
+    inner.read("min_range_m", {0, 1}, laser.settings.min_range_m);
+    inner.read("max_range_m", {1.001, 200}, laser.settings.max_range_m);
+    inner.read("rate_hz", {1, 200}, laser.rate_hz);
+    inner.read("range_error_m", {0, 0.5}, laser.range_error_m);
+    inner.read("dropout_probability", kProbability, laser.dropout_probability);
+    inner.read("person_radius_m", {0.01, 1}, laser.person_radius_m);
+    for (std::size_t i = 0; i < scenario.opponents.size(); ++i) {
+      if (scenario.opponents[i].radius_m >= laser.person_radius_m) continue;
+      inner.location_of("person_radius_m")
+          .fail(fmt::format("expected at most the radius of every opponent, but opponents[{}] has {:g} m", i,
+                            scenario.opponents[i].radius_m));
+    }
+  });
+}
+
 void read_network(YamlMap& map, NetworkSpec& network) {
   read_section(map, "network", [&](YamlMap& inner) {
     inner.read("loss", kProbability, network.loss);
@@ -172,6 +194,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name) {
   read_floor(map, scenario);
   read_vision(map, scenario.vision);
   read_odometry(map, scenario.odometry);
+  read_laser(map, scenario);
   map.read("command_loss", kProbability, scenario.command_loss);
   read_network(map, scenario.network);
   read_restart(map, scenario.restart);

@@ -55,6 +55,12 @@ std::string obstacles_of(const Scenario& scenario) {
   return text.empty() ? "none" : text;
 }
 
+std::string laser_text(const LaserSpec& laser) {
+  return fmt::format("{} beams, {} rad, {}-{} m, error {} m, people {} m", laser.settings.beams,
+                     laser.settings.field_of_view_rad, laser.settings.min_range_m, laser.settings.max_range_m,
+                     laser.range_error_m, laser.person_radius_m);
+}
+
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 
 std::string shown(const std::string& value) {
@@ -83,6 +89,7 @@ SharedRules::SharedRules(const Scenario& scenario) {
   add("tracking_bound_m", scenario.tracking_bound_m);
   add("clock_bound_s", scenario.clock_bound_s);
   add("max_opponent_speed_mps", scenario.max_opponent_speed_mps);
+  if (scenario.laser) rules_.push_back({"laser", laser_text(*scenario.laser)});
   finish();
 }
 

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <numbers>
 #include <vector>
 
+#include "common/map/laser_settings.hpp"
 #include "common/map/ray_cast.hpp"
 
 namespace sidestep {
-
-struct LaserSettings {
-  int beams = 360;                                  ///< 1 to 100,000
-  double field_of_view_rad = 2 * std::numbers::pi;  ///< 0.001 to a full turn; centred on the heading
-  double min_range_m = 0.05, max_range_m = 10;
-};
 
 /// A planar laser scanner: the distances along beams at equal angles, counter-clockwise. The first and the
 /// last beam are at the borders of the field of view; of a full turn, the beam at the end is left out,

@@ -9,7 +9,8 @@ std::vector<TopicInfo> all_topics() {
           topics::kVerdict,     topics::kLedger,      topics::kCoordinator,  topics::kStatus,
           topics::kDisturbance, topics::kAttestation, topics::kNetworkFault, topics::kTruth,
           topics::kRules,       topics::kCounters,    topics::kOrder,        topics::kOrderAnswer,
-          topics::kOrderMemory, topics::kOrderStatus, topics::kClockProbe,   topics::kClockReading};
+          topics::kOrderMemory, topics::kOrderStatus, topics::kClockProbe,   topics::kClockReading,
+          topics::kScan};
 }
 
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {

@@ -11,6 +11,7 @@
 #include "common/messaging/cdr.hpp"
 #include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
+#include "idl/laser.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/order.hpp"
@@ -102,6 +103,9 @@ inline constexpr Topic<msg::Command> kCommand{
     {"command", "agent", Qos::kState, true, true, message_type<msg::Command>("sidestep::msg::Command")}};
 inline constexpr Topic<msg::Feedback> kFeedback{{"feedback", "simulator", Qos::kState, true, true,
                                                  message_type<msg::Feedback>("sidestep::msg::Feedback")}};
+inline constexpr Topic<msg::LaserScan> kScan{
+    {"scan", "simulator", Qos::kState, true, true,
+     message_type<msg::LaserScan>("sidestep::msg::LaserScan", msg::MAX_BEAMS)}};
 inline constexpr Topic<msg::Registration> kRegistration{
     {"registration", "agent", Qos::kState, false, true,
      message_type<msg::Registration>("sidestep::msg::Registration")}};

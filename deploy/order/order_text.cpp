@@ -89,6 +89,10 @@ std::string to_text(const Blockage& blockage) {
       return fmt::format("by robot {}", blockage.blocker) + instead;
     case msg::BlockReason::BLOCK_ZONE:
       return fmt::format("by zone {}", blockage.blocker) + instead;
+    case msg::BlockReason::BLOCK_OCCLUDED_CORNER:
+      return fmt::format("by an occluded corner at {:.2f},{:.2f}", blockage.blocker_m.x(),
+                         blockage.blocker_m.y()) +
+             instead;
     case msg::BlockReason::BLOCK_NONE:
     case msg::BlockReason::BLOCK_NO_PATH:
       break;

@@ -128,6 +128,7 @@ class Firmware {
   bool has_pose() const { return has_pose_; }
   /// Its own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }
+  double heading_rad() const { return estimator_.heading_rad(); }
   Incarnation obeyed_incarnation() const { return obeyed_; }
   Epoch obeyed_epoch() const { return obeyed_epoch_; }
   const FirmwareCounts& counts() const { return counts_; }

@@ -51,6 +51,10 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
     bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
                                 [this, i](const msg::Command& command) { on_command(i, command); });
   }
+  if (scenario.laser) {
+    lasers_.emplace(scenario, begin, Rng(seed + 3).bits());
+    for (std::size_t i = 0; i < count; ++i) scans_.push_back(bus.advertise(topics::kScan, world_.id(i)));
+  }
   bus.subscribe<msg::Disturbance>(
       topics::kDisturbance, [this](const msg::Disturbance& disturbance) { on_disturbance(disturbance); });
   bus.at(begin, [this] { wake(); });
@@ -75,9 +79,15 @@ void SimulatorNode::advance(Time now) {
     world_.advance(world_.time() + kMaxCatchUp);
     world_.skip_to(now);
   }
-  while (cameras_.next_capture() <= now) {
-    world_.advance(cameras_.next_capture());
-    capture_frame(now);
+  while (true) {
+    const bool is_scan = lasers_ && lasers_->next_scan() < cameras_.next_capture();
+    const Time next = is_scan ? lasers_->next_scan() : cameras_.next_capture();
+    if (next > now) break;
+    world_.advance(next);
+    if (is_scan)
+      publish_scan();
+    else
+      capture_frame(now);
   }
   world_.advance(now);
   changes_.update();
@@ -176,13 +186,22 @@ void SimulatorNode::capture_frame(Time now) {
   if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
   const Time captured_at = world_.time();
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
-  cameras_.capture(captured_at, {world_.bodies(), ball, world_.opponents().discs(), world_.sight_errors()},
-                   slot->message);
+  // Robots with lasers have to see opponents themselves.
+  const auto opponents = lasers_ ? std::span<const Circle>() : world_.opponents().discs();
+  cameras_.capture(captured_at, {world_.bodies(), ball, opponents, world_.sight_errors()}, slot->message);
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kFrameExpiry < now) return;
   if (capture_listener_) capture_listener_(slot->message.camera(), captured_at);
   slot->is_waiting = true;
   bus_.at(slot->publish_at, [this] { publish_frames(); });
+}
+
+void SimulatorNode::publish_scan() {
+  const std::size_t robot = lasers_->next_robot();
+  if (!lasers_->scan(world_, scan_message_)) return;
+  scan_message_.header().sender(world_.id(robot));
+  scan_message_.header().incarnation(incarnation_);
+  scans_[robot].publish(scan_message_, clock());
 }
 
 void SimulatorNode::publish_frames() {

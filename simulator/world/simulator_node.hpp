@@ -12,6 +12,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/cameras.hpp"
+#include "simulator/world/lasers.hpp"
 #include "simulator/world/world.hpp"
 #include "simulator/world/world_changes.hpp"
 
@@ -71,6 +72,7 @@ class SimulatorNode {
   void publish_truth(Time now);
   void capture_frame(Time now);
   void publish_frames();
+  void publish_scan();
 
   Bus& bus_;
   Duration cycle_;
@@ -85,6 +87,9 @@ class SimulatorNode {
   EventReporter events_;
   WorldChanges changes_{events_, world_};
   Cameras cameras_;
+  std::optional<Lasers> lasers_;
+  std::vector<Writer<msg::LaserScan>> scans_;  // of the robots with lasers
+  msg::LaserScan scan_message_;
   Rng radio_rng_;
   DropCounters drops_;  // lost commands and refused disturbances
   std::vector<std::function<void(DropCounters&)>> drop_sources_;

@@ -144,6 +144,9 @@ const std::vector<Cause> kCauses{
        list.complete_within_m(kNan);
        s.send(topics::kObstacles, list);
      }},
+    {DropReason::kMalformedScan, "agent 0",
+     [](Stranger& s, SimSystem&) { s.send(topics::kScan, from<msg::LaserScan>(Sender::kVision)); },
+     [](Scenario& scenario) { scenario.laser.emplace(); }},
     {DropReason::kMalformedLedgerPage, "agent 0",
      [](Stranger& s, SimSystem&) { s.send(topics::kLedger, from<msg::LedgerPage>(Sender::kVision)); }},
     {DropReason::kMalformedVersion, "agent 0",

@@ -149,6 +149,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
   subscribe(topics::kObstacles);
   subscribe(topics::kCommand);
   subscribe(topics::kFeedback);
+  subscribe(topics::kScan);
   subscribe(topics::kRegistration);
   subscribe(topics::kProposal);
   subscribe(topics::kVerdict);

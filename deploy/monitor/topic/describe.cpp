@@ -2,6 +2,7 @@
 #include "deploy/monitor/topic/describe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -202,6 +203,24 @@ Json describe(const msg::Feedback& m) {
           {"odometry_scale_stddev", m.odometry_scale_stddev()},
           {"has_moved", m.has_moved()},
           {"activated", m.activated()}};
+}
+
+Json describe(const msg::LaserScan& m) {
+  // JSON has no numbers for beams without a hit.
+  const auto range = [](float r) -> Json {
+    if (std::isfinite(r)) return r;
+    return std::isnan(r) ? "lost" : r > 0 ? "no hit" : "too near";
+  };
+  return {{"robot", m.robot()},
+          {"header", header(m.header())},
+          {"captured_at_ns", m.captured_at_ns()},
+          {"x_m", m.x_m()},
+          {"y_m", m.y_m()},
+          {"heading_rad", m.heading_rad()},
+          {"field_of_view_rad", m.field_of_view_rad()},
+          {"min_range_m", m.min_range_m()},
+          {"max_range_m", m.max_range_m()},
+          {"ranges_m", list(m.ranges_m(), range)}};
 }
 
 Json describe(const msg::Registration& m) {

@@ -5,6 +5,7 @@
 
 #include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
+#include "idl/laser.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/order.hpp"
@@ -22,6 +23,7 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json describe(const msg::ObstacleList& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Command& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Feedback& m);
+[[nodiscard]] nlohmann::ordered_json describe(const msg::LaserScan& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Registration& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Proposal& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::Verdict& m);

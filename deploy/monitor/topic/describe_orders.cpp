@@ -15,7 +15,7 @@ constexpr const char* kOrderKinds[] = {"go", "cancel", "hold", "resume", "zone",
 constexpr const char* kOrderStates[] = {"accepted", "driving", "blocked", "arrived", "left"};
 constexpr const char* kOrderResults[] = {"remembered",    "replaced",      "malformed",
                                          "unknown robot", "outside field", "too many"};
-constexpr const char* kBlockReasons[] = {"none", "obstacle", "robot", "zone", "no path"};
+constexpr const char* kBlockReasons[] = {"none", "obstacle", "robot", "zone", "no path", "occluded corner"};
 
 Json terms(const msg::OrderTerms& m) {
   return {{"order_kind", word(m.order_kind(), kOrderKinds)},

@@ -82,7 +82,8 @@ int echo_topic(const TopicOptions& options) {
       echo.subscribe(topics::kOrder, channel) || echo.subscribe(topics::kOrderAnswer, channel) ||
       echo.subscribe(topics::kOrderMemory, channel) || echo.subscribe(topics::kOrderStatus, channel) ||
       echo.subscribe(topics::kClockProbe, channel) || echo.subscribe(topics::kClockReading, channel) ||
-      echo.subscribe(topics::kRules, channel) || echo.subscribe(topics::kCounters, channel);
+      echo.subscribe(topics::kRules, channel) || echo.subscribe(topics::kCounters, channel) ||
+      echo.subscribe(topics::kScan, channel);
   if (!is_known) {
     fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known_topics());
     return kExitFailure;

@@ -35,6 +35,20 @@ TEST_CASE("a margin below the safety budget is rejected with the required margin
   check_rejected(kRobot + "clock_bound_s: .nan\n", 2, "clock_bound_s: expected");
 }
 
+TEST_CASE("an invalid laser is rejected with its line") {
+  CHECK(error_of(kRobot + "laser: {}\n") == "accepted");
+  check_rejected(kRobot + "laser: {beams: 7}\n", 2, "laser.beams: expected 8 to 2048");
+  check_rejected(kRobot + "laser: {beams: 2049}\n", 2, "laser.beams: expected 8 to 2048");
+  check_rejected(kRobot + "laser: {field_of_view_rad: 7}\n", 2, "laser.field_of_view_rad: expected");
+  check_rejected(kRobot + "laser: {max_range_m: .nan}\n", 2, "laser.max_range_m: expected");
+  check_rejected(kRobot + "laser: {colour: red}\n", 2, "colour");
+  const std::string person = "opponents: [{radius_m: 0.1, speed_mps: 1, path_m: [[2, 2]]}]\n";
+  check_rejected(
+      kRobot + person + "laser: {}\n", 3,
+      "person_radius_m: expected at most the radius of every opponent, but opponents[0] has 0.1 m");
+  CHECK(error_of(kRobot + person + "laser: {person_radius_m: 0.1}\n") == "accepted");
+}
+
 TEST_CASE("invalid opponents are rejected with their line") {
   const auto opponent = [](const std::string& keys) { return kRobot + "opponents:\n- {" + keys + "}\n"; };
   CHECK(error_of(opponent("radius_m: 0.1, speed_mps: 1.5, path_m: [[2, 2]]")) == "accepted");

@@ -83,6 +83,7 @@ time_limit_s: 12.5
 vision: {images: {format: rgb, width_px: 1001, height_px: 400, camera_height_m: 3.5, distortion: 0.2}, rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
          delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2, ghost_obstacle_probability: 0.3}
 odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
+laser: {beams: 270, field_of_view_rad: 4.5, min_range_m: 0.1, max_range_m: 25, rate_hz: 40, range_error_m: 0.02, dropout_probability: 0.05, person_radius_m: 0.2}
 command_loss: 0.25
 network: {loss: 0.3, duplicate: 0.1, delay_min_ms: 0, delay_max_ms: 150}
 restart: [agents, vision]
@@ -128,6 +129,15 @@ robots:
   CHECK(s.vision.images->height_px == 400);
   CHECK(s.vision.images->camera_height_m == 3.5);
   CHECK(s.vision.images->distortion == 0.2);
+  REQUIRE(s.laser);
+  CHECK(s.laser->settings.beams == 270);
+  CHECK(s.laser->settings.field_of_view_rad == 4.5);
+  CHECK(s.laser->settings.min_range_m == 0.1);
+  CHECK(s.laser->settings.max_range_m == 25);
+  CHECK(s.laser->rate_hz == 40);
+  CHECK(s.laser->range_error_m == 0.02);
+  CHECK(s.laser->dropout_probability == 0.05);
+  CHECK(s.laser->person_radius_m == 0.2);
   CHECK(s.odometry.scale_error == 0.01);
   CHECK(s.odometry.velocity_noise_mps == 0.02);
   CHECK(s.command_loss == 0.25);

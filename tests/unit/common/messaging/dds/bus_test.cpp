@@ -50,6 +50,7 @@ TEST_CASE("every message type arrives over DDS unchanged") {
   check_round_trip(topics::kStatus, from, to, 10);
   check_round_trip(topics::kTruth, from, to, 11);
   check_round_trip(topics::kCounters, from, to, 13);
+  check_round_trip(topics::kScan, from, to, 14);
   CHECK(drops_of(to).total(DropReason::kUnreadable) == 0);
 }
 

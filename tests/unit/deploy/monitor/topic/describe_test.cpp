@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::string idl_text() {
   std::ostringstream text;
   for (const char* name : {"header", "trajectory", "robot", "negotiation", "vision", "disturbance", "monitor",
-                           "order", "clock"}) {
+                           "order", "clock", "laser"}) {
     std::ifstream file(std::string(SIDESTEP_IDL_DIR) + "/" + name + ".idl");
     REQUIRE(file);
     text << file.rdbuf();
@@ -107,6 +107,7 @@ TEST_CASE("a description contains the members of each message in IDL order") {
   CHECK(keys(describe(world)["ball"]) == idl_members(idl, "TrackedBall"));
   CHECK(keys(describe(world)["robots"].at(0)) == idl_members(idl, "TrackedRobot"));
   CHECK(keys(describe(msg::Command())) == idl_members(idl, "Command"));
+  CHECK(keys(describe(msg::LaserScan())) == idl_members(idl, "LaserScan"));
   CHECK(keys(describe(msg::Command())["fix"]) == idl_members(idl, "PoseFix"));
   CHECK(keys(describe(feedback)) == idl_members(idl, "Feedback"));
   CHECK(keys(describe(feedback)["executing"]) == idl_members(idl, "Version"));
