@@ -29,6 +29,8 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       obstacles_(scenario.max_opponent_speed_mps, max_clock_difference_),
       displaced_(robot, scenario.radius_m, scenario.margin_m,
                  std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps), max_clock_difference_),
+      max_person_speed_mps_(scenario.max_opponent_speed_mps),
+      scan_period_(scenario.laser ? from_seconds(1 / scenario.laser->rate_hz) : Duration{0}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
       assignment_(robot, robot_.goals),
       desired_heading_rad_(robot_.start_heading_rad),
@@ -38,6 +40,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
                 {.give_up_after = passage_period_ * 2 / 3}),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
+  if (scenario.laser) sight_.emplace(*scenario.laser, rules_);
 }
 
 bool Agent::on_feedback(const Feedback& feedback) {
@@ -228,7 +231,7 @@ void Agent::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kLateFact, std::nullopt, counts.late_facts);
   drops.count(DropReason::kOldEpoch, std::nullopt, counts.old_epochs);
   drops.count(DropReason::kFutureObservation, std::nullopt, invalid_);
-  drops.count(DropReason::kFutureObstacles, std::nullopt, obstacles_.invalid());
+  drops.count(DropReason::kFutureObstacles, std::nullopt, obstacles_.invalid() + future_scans_);
   neighbours_.count_drops(drops);
 }
 

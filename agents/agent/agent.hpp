@@ -19,6 +19,7 @@
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/route_planner.hpp"
 #include "agents/navigation/zone_map.hpp"
+#include "agents/perception/laser_sight.hpp"
 #include "agents/safety/escape_search.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/drop_counters.hpp"
@@ -58,6 +59,8 @@ class Agent {
   void on_obstacles(const ObstacleObservations& list, Time now) {
     obstacles_.on_list(list, estimate_.position_m, now);
   }
+  /// A scan of the robot's laser. `now`: upper bound of the time by the robot's clock.
+  void on_scan(const LaserScan& scan, Time now);
   void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
   /// Learns where the lifted robot is to be put down.
   void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
@@ -119,6 +122,11 @@ class Agent {
   msg::AgentStatus status(Time now) const;
 
  private:
+  /// A corner around which somebody may come, and until when routes avoid it.
+  struct OccludedCorner {
+    Vec2 at_m{0, 0};
+    Time until{};
+  };
   /// Stores the robot's own state estimate.
   void update_estimate(const Feedback& feedback);
   /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
@@ -140,6 +148,8 @@ class Agent {
   void update_blockage(const Route& route, Time now);
   /// Required distance of the robot's centre from the edge of an obstacle.
   double required_separation_m() const { return rules_.radius_m + rules_.margin_m; }
+  /// By which routes prefer to keep clear of obstacles, descending.
+  std::span<const double> extra_clearances_m() const;
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
   /// Inflation of a version that continues `base`: the base's inflation, or 0 once the robot is at rest and
@@ -157,6 +167,18 @@ class Agent {
   void add_walls(const Vec2& position_m);
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
                              double max_speed_mps) const;
+  /// As follow(), at the highest speed at which the robot is at rest before anybody who was hidden can touch
+  /// it; nearly 0 if there is none.
+  AccelerationCommand follow_in_sight(const Intent& intent, const State& at_start, Time start,
+                                      const Route& route, double max_speed_mps, const HiddenSpace& hidden);
+  /// Away from where somebody may step out, so slowly that the robot counts as being at rest.
+  AccelerationCommand creep_away(const State& at_start, const HiddenSpace& hidden) const;
+  /// What the laser did not see in its last scan; nothing without a laser.
+  HiddenSpace hidden_space() const;
+  /// Remembers the corner that the robot cannot pass at any speed, if it has stood before one for a while.
+  void update_occlusion(const Intent& intent, const State& at_start, const HiddenSpace& hidden, Time now);
+  /// What the laser sees standing that the rules do not know, and corners that the robot could not pass.
+  std::vector<TemporaryObstacle> obstacles_in_sight(const Vec2& target_m) const;
   /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
   Vec2 recovery_direction(const Vec2& position_m, const Route& route) const;
 
@@ -172,6 +194,13 @@ class Agent {
   Neighbours neighbours_;
   ObservedObstacles obstacles_;
   DisplacedObstacles displaced_;
+  std::optional<LaserSight> sight_;  // nullopt: the robot has no laser
+  const double max_person_speed_mps_;
+  const Duration scan_period_;
+  std::vector<Circle> seen_robots_;  // at the time of the last scan
+  std::optional<Time> occluded_since_;
+  std::vector<OccludedCorner> occluded_corners_;
+  std::uint64_t future_scans_ = 0;
   Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions
   LastChoice last_choice_;
   Rng rng_;

@@ -55,6 +55,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       order_writer_(bus.advertise(topics::kOrderMemory)),
       order_status_writer_(bus.advertise(topics::kOrderStatus)),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
+  if (scenario.laser) scans_.emplace(robot, scenario.laser->settings);
   subscribe();
   const Time now = robot_now();
   next_cycle_ = now - now.time_since_epoch() % cycle_ + cycle_offset(scenario, robot) + cycle_;
@@ -67,6 +68,7 @@ void AgentNode::subscribe() {
   bus_.subscribe(topics::kVerdict, robot_, [this](const msg::Verdict& m) { on_verdict(m); });
   bus_.subscribe(topics::kWorld, [this](const msg::WorldState& m) { on_world(m); });
   bus_.subscribe(topics::kObstacles, [this](const msg::ObstacleList& m) { on_obstacles(m); });
+  if (scans_) bus_.subscribe(topics::kScan, robot_, [this](const msg::LaserScan& m) { on_scan(m); });
   bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& m) { on_disturbance(m); });
   bus_.subscribe(topics::kLedger, [this](const msg::LedgerPage& m) { on_page(m); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& m) { on_coordinator_state(m); });
@@ -110,6 +112,12 @@ void AgentNode::on_obstacles(const msg::ObstacleList& message) {
   const auto list = obstacles_.decode(message);
   if (accept(list, DropReason::kMalformedObstacles))
     agent_.on_obstacles(*list, bus_.now() + clocks_.max_robot_offset(bus_.now()));
+}
+
+void AgentNode::on_scan(const msg::LaserScan& message) {
+  const auto scan = scans_->decode(message, robot_now());
+  if (accept(scan, DropReason::kMalformedScan))
+    agent_.on_scan(*scan, bus_.now() + clocks_.max_robot_offset(bus_.now()));
 }
 
 void AgentNode::on_page(const msg::LedgerPage& message) {

@@ -5,6 +5,7 @@
 #include "agents/agent/agent_changes.hpp"
 #include "agents/agent/clock_monitor.hpp"
 #include "agents/agent/obstacle_view.hpp"
+#include "agents/agent/scan_view.hpp"
 #include "agents/agent/world_view.hpp"
 #include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
@@ -41,6 +42,7 @@ class AgentNode {
   void on_verdict(const msg::Verdict& message);
   void on_world(const msg::WorldState& message);
   void on_obstacles(const msg::ObstacleList& message);
+  void on_scan(const msg::LaserScan& message);
   void on_page(const msg::LedgerPage& message);
   void on_coordinator_state(const msg::CoordinatorState& message);
   void on_disturbance(const msg::Disturbance& message);
@@ -88,7 +90,8 @@ class AgentNode {
   ClockMonitor clocks_;
   WorldView world_;
   ObstacleView obstacles_;
-  DropCounters drops_;  // messages that could not be decoded
+  std::optional<ScanView> scans_;  // nullopt: the robot has no laser
+  DropCounters drops_;             // messages that could not be decoded
   EventReporter events_;
   AgentChanges changes_;
   Time next_cycle_;            // by the robot's clock, like all times passed to the agent

@@ -66,7 +66,9 @@ WaitReason Agent::wait_reason(Time now) const {
   if (!assignment_.goal() && !zones_.is_kept_out(estimate_.position_m, required_separation_m()))
     return WaitReason::kNoOrder;
   if (!is_recent(last_fix_, settings_.max_fix_age)) return WaitReason::kNotSeen;
-  if (!is_recent(obstacles_.complete_at(), settings_.max_fix_age)) return WaitReason::kNoObstacleList;
+  if (sight_ && !is_recent(sight_->captured_at(), settings_.max_fix_age)) return WaitReason::kNoScan;
+  if (!sight_ && !is_recent(obstacles_.complete_at(), settings_.max_fix_age))
+    return WaitReason::kNoObstacleList;
   if (!is_recent(watched_until_, settings_.max_watch_age)) return WaitReason::kNotWatched;
   return WaitReason::kNone;
 }
@@ -103,13 +105,22 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
                                           cycle_ * (negotiation_.lead() + 1), rules_.limits));
   Intent intent = steer(at_start, start, route);
   intent.target_m = target;
-  const AccelerationCommand desired = follow(intent, at_start, route, max_speed_mps);
-  SearchQuery query{start,        at_start,    desired.acceleration_mps2,
-                    desired.hold, inflation_m, obstacles_.recent(now)};
+  const HiddenSpace hidden = hidden_space();
+  if (sight_ && !sight_->visibility().is_before_frontiers(at_start.position_m)) return std::nullopt;
+  const AccelerationCommand desired =
+      sight_ ? follow_in_sight(intent, at_start, start, route, max_speed_mps, hidden)
+             : follow(intent, at_start, route, max_speed_mps);
+  if (sight_) update_occlusion(intent, at_start, hidden, now);
+  SearchQuery query{start, at_start, desired.acceleration_mps2, desired.hold, inflation_m};
+  if (sight_) {
+    query.hidden = hidden;
+  } else {
+    query.moving = obstacles_.recent(now);
+    query.seen = obstacles_.seen(now);
+  }
   query.uncontrolled = displaced_.recent(now);
   query.stop = &base.trajectory;
-  query.max_speed_mps = max_speed_mps;
-  query.seen = obstacles_.seen(now);
+  query.max_speed_mps = occluded_since_ ? std::min(max_speed_mps, hidden.creep_mps) : max_speed_mps;
   query.keep_outs = zones_.keep_outs();
   if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};

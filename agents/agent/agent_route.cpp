@@ -22,7 +22,15 @@ std::vector<Circle> Agent::moving_obstacles(const Vec2& target, Time now) {
     const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
     found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
   };
-  for (const MovingObstacle& obstacle : obstacles_.recent(now)) add(obstacle);
+  if (sight_) {
+    // Routes keep a large distance from walls in order to see early, but need not from people. If people
+    // are in the way, the robot waits rather than squeezing past along a wall.
+    const double less_m = settings_.clearances_in_sight_m.front() - settings_.extra_clearance_m;
+    for (const LaserTrack& track : sight_->tracks())
+      add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
+  } else {
+    for (const MovingObstacle& obstacle : obstacles_.recent(now)) add(obstacle);
+  }
   for (const UncontrolledBody& body : displaced_.recent(now)) add(body.reach);
   std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
   if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
@@ -41,7 +49,7 @@ bool Agent::is_to_stay(const Neighbours::Stationary& other) const {
 }
 
 std::vector<TemporaryObstacle> Agent::temporary_obstacles(const Vec2& target, Time now) {
-  std::vector<TemporaryObstacle> found;
+  std::vector<TemporaryObstacle> found = obstacles_in_sight(target);
   for (const Circle& circle : moving_obstacles(target, now)) found.push_back({circle});
   for (const Neighbours::Stationary& other : neighbours_.find_stationary(
            now - settings_.stationary_after, estimate_.position_m, settings_.max_stationary)) {
@@ -56,7 +64,7 @@ void Agent::update_route_planner(const Vec2& target, Time now) {
   if (!route_planner_) {
     route_obstacles_.emplace(rules_, zones_);
     route_planner_.emplace(planner_, route_obstacles_->world(), rules_.field, rules_.radius_m,
-                           rules_.margin_m, settings_.extra_clearance_m);
+                           rules_.margin_m, extra_clearances_m());
   }
   is_route_outdated_ |= route_obstacles_->set_temporary(temporary_obstacles(target, now));
   const bool is_new = !has_route_ || target != route_planner_->goal_m();
@@ -78,6 +86,8 @@ void Agent::update_blockage(const Route& route, Time now) {
   }
   const std::optional<ObstacleId> obstacle = route_planner_->obstacle_on_goal();
   blockage_ = obstacle ? route_obstacles_->blockage(*obstacle) : Blockage{};
+  if (!occluded_corners_.empty())
+    blockage_ = Blockage{msg::BlockReason::BLOCK_OCCLUDED_CORNER, 0, occluded_corners_.back().at_m};
   blockage_->nearest_m = route.end_m;
   if (!blocked_since_) blocked_since_ = now;
 }

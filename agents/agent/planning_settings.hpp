@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "common/time/time.hpp"
@@ -34,6 +35,14 @@ struct PlanningSettings {
 
   /// A robot stops if the coordinator has compared no robots with their versions for longer.
   Duration max_watch_age{600'000'000};
+
+  // Sight by the robot's own laser.
+  std::array<double, 4> clearances_in_sight_m{0.35, 0.2, 0.1, 0.03};  ///< instead of extra_clearance_m
+  double max_heading_error_rad = 0.02;              ///< bound of the error of a scan's heading
+  double creep_mps = 0.03;                          ///< a robot that is not faster counts as being at rest
+  Duration occluded_after{2'000'000'000};           ///< a corner that stops the robot for longer is avoided
+  Duration occluded_corner_memory{20'000'000'000};  ///< ... for this long
+  double corner_slack_m = 0.4;  ///< what stops the robot this near to a person or robot is no corner
 
   // Right of way, and deadlocks.
   Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long

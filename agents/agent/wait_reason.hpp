@@ -20,6 +20,7 @@ enum class WaitReason : std::uint8_t {
   kHeld,                 ///< an order holds the robot
   kNoOrder,              ///< the robot has no order
   kNotSeen,              ///< vision has lost the robot
+  kNoScan,               ///< no scan of the robot's laser has arrived lately
   kNoObstacleList,       ///< no complete list of obstacles has arrived lately
   kNotWatched,           ///< the coordinator has had no world state lately
   kClockNotMeasured,     ///< an offset of the robot's clock from the coordinator's is not known
@@ -54,6 +55,8 @@ constexpr const char* to_text(WaitReason reason) {
       return "an order";
     case WaitReason::kNotSeen:
       return "vision: it does not see the robot";
+    case WaitReason::kNoScan:
+      return "a scan of the robot's laser";
     case WaitReason::kNoObstacleList:
       return "vision: no complete list of obstacles arrives";
     case WaitReason::kNotWatched:

@@ -2,6 +2,7 @@
 #include "agents/navigation/route_planner.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "agents/planning/domain/nearest_reachable.hpp"
 
@@ -10,6 +11,8 @@ namespace {
 
 // A route is replanned if its remaining length exceeds the smallest one so far by more than this.
 constexpr double kReplanIncrease_m = 0.05;
+// A waypoint that the robot has to pass is reached at this distance.
+constexpr double kReached_m = 0.1;
 // Enough for about a hundred obstacles. Without a route the robot heads straight for its goal while that is
 // safe.
 constexpr std::size_t kMaxSamples = 5000;
@@ -23,19 +26,21 @@ Budget cycle_budget() {
 }  // namespace
 
 RoutePlanner::RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
-                           double radius_m, double margin_m, double extra_clearance_m)
+                           double radius_m, double margin_m, std::span<const double> extra_clearances_m)
     : world_(&obstacles),
       field_(field),
       radius_m_(radius_m),
       required_m_(radius_m + margin_m),
-      preferred_m_(required_m_ + extra_clearance_m),
-      clearance_m_(preferred_m_),
+      clearance_m_(required_m_),
       planner_(&planner),
-      domain_settings_(planner.domain_settings(field, radius_m)) {}
+      domain_settings_(planner.domain_settings(field, radius_m)) {
+  for (const double extra_m : extra_clearances_m) preferred_m_.push_back(required_m_ + extra_m);
+}
 
 void RoutePlanner::begin(const Vec2& goal_m) {
   goal_m_ = goal_m;
-  clearance_m_ = preferred_m_;
+  clearance_m_ = preferred_m_.back();
+  has_tight_end_ = false;
   waypoints_.clear();
   next_waypoint_ = 0;
 }
@@ -51,10 +56,15 @@ bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
   return domain(from, to).check(from, to);
 }
 
+bool RoutePlanner::is_leg_free(const Vec2& from, std::size_t waypoint) const {
+  if (!has_tight_end_ || waypoint + 1 < waypoints_.size()) return is_line_free(from, waypoints_[waypoint]);
+  return !world_->touches(from, waypoints_[waypoint], required_m_);
+}
+
 bool RoutePlanner::is_free_from(const Vec2& start) const {
-  if (next_waypoint_ >= waypoints_.size() || !is_line_free(start, waypoints_[next_waypoint_])) return false;
+  if (next_waypoint_ >= waypoints_.size() || !is_leg_free(start, next_waypoint_)) return false;
   for (std::size_t i = next_waypoint_ + 1; i < waypoints_.size(); ++i)
-    if (!is_line_free(waypoints_[i - 1], waypoints_[i])) return false;
+    if (!is_leg_free(waypoints_[i - 1], i)) return false;
   return true;
 }
 
@@ -67,6 +77,7 @@ std::optional<ObstacleId> RoutePlanner::obstacle_on_goal() const {
 bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
   next_waypoint_ = 0;
   waypoints_.clear();
+  has_tight_end_ = false;
   if (!plan.arrives()) return false;
   const auto take = [this](const Plan<Vec2>& path) {
     waypoints_.assign(path.states.begin() + 1, path.states.end());
@@ -87,6 +98,15 @@ bool RoutePlanner::replan(const Vec2& start, double clearance, Rng& rng) {
   return follow(here, planner_->plan(here, start, cycle_budget(), rng));
 }
 
+bool RoutePlanner::replan_to_tight_goal(const Vec2& start, double clearance, Rng& rng) {
+  if (!replan(start, clearance, rng)) return false;
+  if (waypoints_.back() == goal_m_) return true;
+  if (world_->touches(waypoints_.back(), goal_m_, required_m_)) return false;
+  waypoints_.push_back(goal_m_);
+  has_tight_end_ = true;
+  return true;
+}
+
 bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& rng) {
   clearance_m_ = clearance;
   const DiscDomain here = domain(start, goal_m_);
@@ -98,19 +118,32 @@ bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& r
 
 std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   if (auto route = continued_from(start)) return route;
-  // The goal may be nearer to an obstacle than preferred.
-  const bool is_near = world_->nearest(goal_m_).distance_m <= preferred_m_ && !obstacle_on_goal();
-  const bool is_found = (!is_near && replan(start, preferred_m_, rng)) || replan(start, required_m_, rng) ||
-                        replan_to_nearest(start, preferred_m_, rng) ||
-                        replan_to_nearest(start, required_m_, rng);
-  if (!is_found) return way_out(start);
+  if (!find_route(start, rng)) return way_out(start);
   min_remaining_m_ = remaining_length_m(start);
   return route(min_remaining_m_);
 }
 
+bool RoutePlanner::find_route(const Vec2& start, Rng& rng) {
+  const double goal_room_m =
+      obstacle_on_goal() ? std::numeric_limits<double>::infinity() : world_->nearest(goal_m_).distance_m;
+  for (const double clearance : preferred_m_) {
+    const bool is_last = clearance == preferred_m_.back();
+    if (goal_room_m > clearance) {
+      if (replan(start, clearance, rng)) return true;
+    } else if (!is_last && replan_to_tight_goal(start, clearance, rng)) {
+      return true;
+    }
+  }
+  if (replan(start, required_m_, rng)) return true;
+  for (const double clearance : preferred_m_)
+    if (replan_to_nearest(start, clearance, rng)) return true;
+  return replan_to_nearest(start, required_m_, rng);
+}
+
 std::optional<Route> RoutePlanner::way_out(const Vec2& start) {
   waypoints_.clear();
-  clearance_m_ = preferred_m_;
+  has_tight_end_ = false;
+  clearance_m_ = preferred_m_.back();
   const DiscDomain here = domain(start, start);
   if (!here.start_is_blocked()) return std::nullopt;
   const std::vector<Vec2> positions = here.free_positions_near_goal();
@@ -125,13 +158,19 @@ std::optional<Route> RoutePlanner::way_out(const Vec2& start) {
 
 std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
   if (next_waypoint_ >= waypoints_.size()) return std::nullopt;
-  while (next_waypoint_ + 1 < waypoints_.size() && is_line_free(start, waypoints_[next_waypoint_ + 1]))
-    ++next_waypoint_;
+  while (next_waypoint_ + 1 < waypoints_.size() && may_skip_waypoint(start)) ++next_waypoint_;
   const double length = remaining_length_m(start);
-  if (length > min_remaining_m_ + kReplanIncrease_m || !is_line_free(start, waypoints_[next_waypoint_]))
+  if (length > min_remaining_m_ + kReplanIncrease_m || !is_leg_free(start, next_waypoint_))
     return std::nullopt;
   min_remaining_m_ = std::min(min_remaining_m_, length);
   return route(length);
+}
+
+bool RoutePlanner::may_skip_waypoint(const Vec2& start) const {
+  // The last leg must not be entered earlier: it would lead along obstacles.
+  const bool is_before_tight_end = has_tight_end_ && next_waypoint_ + 2 == waypoints_.size();
+  if (is_before_tight_end && (start - waypoints_[next_waypoint_]).norm() > kReached_m) return false;
+  return is_leg_free(start, next_waypoint_ + 1);
 }
 
 double RoutePlanner::remaining_length_m(const Vec2& start) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "agents/planning/named_planner.hpp"
@@ -30,11 +31,13 @@ class RoutePlanner {
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
-  /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, and `extra_clearance_m` more
-  /// where a route with that clearance exists. The planner of the paths, one of kDrivingPlanners, and the
+  /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, and the first of the extra
+  /// clearances, in descending order, with which a route exists. A goal that is nearer to an obstacle is
+  /// reached on a straight line from the nearest place with that clearance, unless it is the last one. The
+  /// planner of the paths, one of kDrivingPlanners, and the
   /// obstacles have to outlive this object.
   RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
-               double radius_m, double margin_m, double extra_clearance_m);
+               double radius_m, double margin_m, std::span<const double> extra_clearances_m);
 
   /// Gives up the last route: for another goal, or when obstacles have changed. Call it before all others.
   void begin(const Vec2& goal_m);
@@ -57,9 +60,16 @@ class RoutePlanner {
   /// Plans a new route that keeps this distance from obstacles. Returns whether one leads to the goal or, if
   /// an obstacle covers it, to the nearest place.
   bool replan(const Vec2& start_m, double clearance_m, Rng& rng);
+  /// Plans a new route with the largest clearance possible. Returns whether there is one.
+  bool find_route(const Vec2& start_m, Rng& rng);
+  bool may_skip_waypoint(const Vec2& start_m) const;
   /// Plans a new route to the nearest place that can be reached.
   bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
   bool follow(const DiscDomain& domain, const Plan<Vec2>& plan);
+  /// As replan(), for a goal that is nearer to an obstacle than this.
+  bool replan_to_tight_goal(const Vec2& start_m, double clearance_m, Rng& rng);
+  /// Whether the line from a position to a waypoint is free for the robot.
+  bool is_leg_free(const Vec2& from_m, std::size_t waypoint) const;
   /// The straight line from a blocked start to the nearest free position.
   std::optional<Route> way_out(const Vec2& start_m);
   /// The rest of the last route, if that is still free and not longer.
@@ -70,8 +80,10 @@ class RoutePlanner {
   const ObstacleWorld* world_;
   Field field_;
   double radius_m_;
-  double required_m_, preferred_m_;  // distance of the robot's centre from obstacles
+  double required_m_;                // distance of the robot's centre from obstacles
+  std::vector<double> preferred_m_;  // the same, descending
   double clearance_m_;               // of the last route
+  bool has_tight_end_ = false;       // the last leg of the route keeps only the required distance
   Vec2 goal_m_{0, 0};
   const NamedPlanner* planner_;
   DiscDomainSettings domain_settings_;

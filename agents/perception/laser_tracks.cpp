@@ -35,11 +35,11 @@ LaserTracks::LaserTracks(const LaserTrackSettings& settings)
   listed_.reserve(kMaxTracks);
 }
 
-bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map) {
+bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
   if (beams.captured_at() <= now_) return false;
   now_ = beams.captured_at();
   std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > settings_.drop_after; });
-  classify(beams, grid, map);
+  classify(beams, grid, floor);
   clusters_.find(beams, is_loose_);
   associate(grid);
   for (std::size_t i = 0; i < clusters_.all().size(); ++i)
@@ -48,7 +48,7 @@ bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const O
   return true;
 }
 
-void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map) {
+void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
   kinds_.assign(beams.all().size(), kOther);
   is_loose_.assign(beams.all().size(), 0);
   const double within_m = settings_.explained_within_m;
@@ -56,8 +56,7 @@ void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const
     const Beam& beam = beams.all()[i];
     if (beam.end != BeamEnd::kHit) continue;
     const Vec2 hit = beams.end_m(beam);
-    const bool is_known = map != nullptr && map->distance_m(hit, within_m) < within_m;
-    kinds_[i] = is_known || is_explained(hit, grid) ? kStanding : kLoose;
+    kinds_[i] = floor.is_near(hit, within_m) || is_explained(hit, grid) ? kStanding : kLoose;
     is_loose_[i] = kinds_[i] == kLoose;
   }
 }

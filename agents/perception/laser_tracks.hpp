@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "agents/perception/known_floor.hpp"
 #include "agents/perception/local_grid.hpp"
 #include "agents/perception/scan_clusters.hpp"
 #include "common/tracking/kalman.hpp"
@@ -53,9 +54,9 @@ class LaserTracks {
   /// Throws std::invalid_argument for numbers that are not positive and finite.
   explicit LaserTracks(const LaserTrackSettings& settings = {});
 
-  /// Takes a scan. The grid must not have taken it yet. `map` may be null. Returns false, and changes
-  /// nothing, if the scan is not newer than the last one. Does not allocate once warm.
-  bool update(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map = nullptr);
+  /// Takes a scan. The grid must not have taken it yet. Returns false, and changes nothing, if the scan is
+  /// not newer than the last one. Does not allocate once warm.
+  bool update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor = {});
 
   /// The confirmed tracks.
   std::span<const LaserTrack> tracks() const { return listed_; }
@@ -81,7 +82,7 @@ class LaserTracks {
     std::size_t entry = 0, cluster = 0;
   };
 
-  void classify(const LaserBeams& beams, const LocalGrid& grid, const OccupancyMap* map);
+  void classify(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor);
   bool is_explained(const Vec2& hit_m, const LocalGrid& grid) const;
   bool is_of_mover(const Vec2& hit_m, Time occupied_since) const;
   Vec2 predicted_m(const Entry& entry) const;

@@ -3,18 +3,10 @@
 
 #include <span>
 
+#include "agents/perception/frontier.hpp"
 #include "agents/perception/sight_rays.hpp"
-#include "common/geometry/segment.hpp"
 
 namespace sidestep {
-
-/// A piece of the border between what was seen free and the rest.
-struct Frontier {
-  Segment segment;
-  /// A person beyond the segment can project over it by this much: at capture if the segment is open, at any
-  /// time if it is closed.
-  double bulge_m = 0;
-};
 
 /// The border of the region that rays prove free of hidden people; see Visibility for the derivation.
 class SightBorder {

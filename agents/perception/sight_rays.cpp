@@ -24,9 +24,12 @@ void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
   std::erase_if(rays, [](const SightRay& ray) { return ray.free_m == 0; });
 }
 
-/// How far a disc that lies beyond two rays of equal length stays from their common beginning, at least.
+/// How far a disc that crosses neither of two rays of equal length stays from their common beginning, at
+/// least, if it lies beyond or between them.
 double proven_m(double length_m, double angle_rad, double radius_m) {
-  return length_m * std::cos(angle_rad / 2) - sagitta_m(radius_m, 2 * length_m * std::sin(angle_rad / 2));
+  const double half_sine = std::sin(angle_rad / 2);
+  if (length_m * half_sine >= radius_m) return radius_m / half_sine - radius_m;
+  return length_m * std::cos(angle_rad / 2) - sagitta_m(radius_m, 2 * length_m * half_sine);
 }
 
 }  // namespace
@@ -62,8 +65,7 @@ void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
       const double half_sine = std::sin(angle_rad / 2);
       if (angle_rad >= kMaxAngle_rad || nearer_m >= left.free_m || nearer_m * half_sine >= radius_m) return 0;
       const double length_m = std::min(left.free_m, right.free_m);
-      if (last > first + 1 && length_m > nearer_m && length_m * half_sine < radius_m &&
-          proven_m(length_m, angle_rad, radius_m) > nearer_m)
+      if (last > first + 1 && length_m > nearer_m && proven_m(length_m, angle_rad, radius_m) > nearer_m)
         return last - first - 1;
       nearer_m = std::max(nearer_m, right.free_m);
     }

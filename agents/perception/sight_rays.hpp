@@ -27,8 +27,9 @@ struct SightRay {
 [[nodiscard]] std::optional<double> closed_gap_m(const SightRay& ray, const SightRay& next, double radius_m,
                                                  double error_m);
 
-/// Drops rays that end at things whose shadow is too narrow to hide a disc, e.g. at a thin post, if the rays
-/// beside them prove more. Dropping is always conservative: nothing is known of a ray that is not there.
+/// Drops rays that end at things which are too narrow to hide a disc right behind them, e.g. at a post or a
+/// small robot, if the rays beside them prove more. Dropping is always conservative: nothing is known of a
+/// ray that is not there.
 void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m);
 
 /// Drops the rays between things that stand, if the gap is too narrow for a disc: it can neither pass nor be

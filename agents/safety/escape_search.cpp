@@ -77,6 +77,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
     if (!uncontrolled.allow(trajectory, min_separation_m, rules.limits.deceleration_mps2)) return;
     if (!is_passively_safe_from_all(trajectory, query.moving, min_separation_m)) return;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) return;
+    if (!is_passively_safe_from_hidden(trajectory, query.hidden, min_separation_m)) return;
     if (check_workspace_with_escape(candidate, base.trajectory, rules) != Validity::kValid) return;
     const bool is_clear_of_all = std::ranges::all_of(surroundings.others, [&](const Other& other) {
       return is_clear(trajectory, *other.trajectory, other.separation_m);

@@ -84,6 +84,10 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   const Circle disc{desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m};
   find_nearby(query, disc, others);
   find_moving(query, disc);
+  find_hidden(query, disc);
+  HiddenSpace hidden = query.hidden;
+  hidden.frontiers = frontiers_;
+  hidden.closed_gaps = closed_gaps_;
   keep_out_.find(query.keep_outs, query.at_start.position_m, query.way_out_m, disc, rules_.radius_m);
   compare(query, desired_bounds, max_deviation_m, result.checks);
   const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
@@ -95,6 +99,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
     if (!uncontrolled.allow(trajectory, min_separation_m, limits.deceleration_mps2)) continue;
     if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m)) continue;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) continue;
+    if (!is_passively_safe_from_hidden(trajectory, hidden, min_separation_m)) continue;
     if (!keep_out_.allows(trajectory)) continue;
     candidates_.accept(*index);
     result.desired_is_clear = result.desired_is_clear || *index == 0;
@@ -164,6 +169,26 @@ void SafetySearch::find_moving(const SearchQuery& query, const Circle& disc) {
     const double reach = std::max(obstacle.reach_m(query.start), obstacle.reach_m(latest_end));
     if (touch(disc, {obstacle.position_m, reach + separation})) moving_.push_back(obstacle);
   }
+}
+
+void SafetySearch::find_hidden(const SearchQuery& query, const Circle& disc) {
+  constexpr double kTolerance_m = 0.01;  // more than that of the check
+  const HiddenSpace& hidden = query.hidden;
+  const Time latest_end = query.start + query.hold_time + from_seconds(max_stop_s(query, rules_.limits));
+  const double turned_m =
+      hidden.heading_error_rad * ((disc.centre_m - hidden.observed_from_m).norm() + disc.radius_m);
+  const double reach_m = disc.radius_m + rules_.radius_m + rules_.margin_m + query.inflation_m + turned_m +
+                         hidden.speed_mps * std::abs(to_seconds(latest_end - hidden.observed_at)) +
+                         kTolerance_m;
+  const auto find = [&](std::span<const Frontier> all, std::vector<Frontier>& near) {
+    near.clear();
+    for (const Frontier& frontier : all) {
+      const double within_m = reach_m + frontier.bulge_m;
+      if (squared_distance(disc.centre_m, frontier.segment) <= within_m * within_m) near.push_back(frontier);
+    }
+  };
+  find(hidden.frontiers, frontiers_);
+  find(hidden.closed_gaps, closed_gaps_);
 }
 
 /// All candidates stay within `extra_clearance_m` of the desired motion. A neighbour that is clear of the

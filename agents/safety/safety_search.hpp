@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "agents/safety/candidate_set.hpp"
+#include "agents/safety/hidden_space.hpp"
 #include "agents/safety/keep_out.hpp"
 #include "agents/safety/moving_obstacle.hpp"
 #include "agents/safety/seen_region.hpp"
@@ -34,6 +35,7 @@ struct SearchQuery {
   /// Below the speed limit if the clocks require it. A robot that is faster already slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
   SeenRegion seen{};                   ///< where there are no obstacles but those in `moving`
+  HiddenSpace hidden{};                ///< what the robot's laser did not see
   std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter
   std::optional<Vec2> way_out_m{};     ///< out of zones that overlap at the start
 
@@ -83,6 +85,8 @@ class SafetySearch {
   void find_cells(const Circle& disc);
   /// Collects the moving obstacles that could reach a candidate within the disc before it is at rest.
   void find_moving(const SearchQuery& query, const Circle& disc);
+  /// Collects the frontiers from which somebody could reach such a candidate.
+  void find_hidden(const SearchQuery& query, const Circle& disc);
   void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
                int& checks);
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
@@ -99,7 +103,8 @@ class SafetySearch {
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
-  std::vector<MovingObstacle> moving_;  // the subset of the query's that may be near
+  std::vector<MovingObstacle> moving_;             // the subset of the query's that may be near
+  std::vector<Frontier> frontiers_, closed_gaps_;  // the subset of the query's that may be near
   KeepOut keep_out_;
 };
 

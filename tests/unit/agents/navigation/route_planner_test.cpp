@@ -29,7 +29,7 @@ struct PlannerInWorld : World, RoutePlanner {
   PlannerInWorld(const NamedPlanner& named, const std::vector<Shape>& obstacles, const Field& field,
                  double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
       : World{ObstacleWorld(obstacles)},
-        RoutePlanner(named, world, field, radius_m, margin_m, extra_clearance_m) {
+        RoutePlanner(named, world, field, radius_m, margin_m, {&extra_clearance_m, 1}) {
     begin(goal_m);
   }
 };

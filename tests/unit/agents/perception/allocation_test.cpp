@@ -37,10 +37,10 @@ TEST_CASE("warm perception does not allocate") {
     }
     const std::size_t before = allocation_count();
     beams.read(scan, std::span(discs).subspan(0, 2));
-    tracks.update(beams, grid, &scene.map());
+    tracks.update(beams, grid, {&scene.map()});
     grid.update(beams);
     visibility.update(beams, [&](int beam) { return tracks.is_standing(beam); });
-    sum += visibility.max_speed_mps({.at_m = robot.at_m(), .now = scan.captured_at});
+    sum += visibility.is_before_frontiers(robot.at_m());
     grid.for_each_occupied({{-1, -1}, {1, 1}}, [&](const Cell&) { sum += 1; });
     sum += static_cast<double>(tracks.tracks().size());
     if (i >= 300) allocations += allocation_count() - before;

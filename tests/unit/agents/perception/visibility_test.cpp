@@ -90,7 +90,7 @@ struct View {
     for (float& range_m : ranges)
       if (rng.chance(dropouts)) range_m = test::kNoRange;
     beams.read({{0, 0}, 0, Time{}, ranges}, robots);
-    visibility.update(beams, [&](int) { return stand; });
+    visibility.update(beams, [&](int beam) { return stand && beams[beam].end == BeamEnd::kHit; });
   }
   /// Whether a frontier crosses the line from the origin in this direction, and how near.
   double frontier_m(double angle_rad) const {
@@ -160,13 +160,17 @@ TEST_CASE("nobody hides behind a thin post") {
   CHECK_FALSE(thick.visibility.was_seen_free({2, 0.2}));
 }
 
-TEST_CASE("known robots and their shadows are frontiers") {
+TEST_CASE("people may stand behind known robots, as near as their size lets them") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
   const std::vector<Shape> walls{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}},
                                  Segment{{-3, 3}, {3, 3}}, Segment{{-3, -3}, {-3, 3}}};
   const std::vector<Circle> robots{{{2, 0}, 0.3}};
   const View view(laser, walls, {0.2, 0.01}, robots);
+  // A disc of 0.2 m fits into the shadow of one of 0.3 m, but not into that of one of 0.1 m before the wall.
   CHECK(view.frontier_m(0.01) == Approx(1.69).margin(0.02));
+  const std::vector<Circle> small{{{2, 0}, 0.1}};
+  const View beside(laser, walls, {0.2, 0.01}, small);
+  CHECK(beside.visibility.was_seen_free({2.8, 0}));
   CHECK(view.frontier_m(0.5) > 1e3);
   CHECK_FALSE(view.visibility.was_seen_free({2.8, 0}));
   CHECK(view.visibility.was_seen_free({1.5, 0}));
@@ -194,7 +198,7 @@ TEST_CASE("unseen sectors and empty scans are frontiers") {
   CHECK_FALSE(blind.was_seen_free({1, 1}));
   REQUIRE(blind.frontiers().size() == 1);
   CHECK(blind.frontiers()[0].segment.from_m == Vec2(1, 1));
-  CHECK(blind.max_speed_mps({.at_m = {1, 1}}) == 0);
+  CHECK_FALSE(blind.is_before_frontiers({1, 1}));
 }
 
 TEST_CASE("the border is closed around the scanner") {

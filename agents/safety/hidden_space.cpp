@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/safety/hidden_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+constexpr double kRounding_m = 1e-9;
+/// A trajectory that comes this near to being unsafe counts as unsafe.
+constexpr double kTolerance_m = 1e-3;
+
+/// The smallest distance to a segment less the bulge, up to `limit_m`.
+double nearest_m(const Vec2& p, std::span<const Frontier> frontiers, double ignored_bulge_m, double limit_m) {
+  for (const Frontier& frontier : frontiers) {
+    const double within_m = limit_m + frontier.bulge_m;
+    if (frontier.bulge_m < ignored_bulge_m || within_m <= 0) continue;
+    const double distance2 = squared_distance(p, frontier.segment);
+    if (distance2 < within_m * within_m) limit_m = std::sqrt(distance2) - frontier.bulge_m;
+  }
+  return limit_m;
+}
+
+}  // namespace
+
+double HiddenSpace::distance_m(const Vec2& p, Time t) const {
+  constexpr double kFar_m = 1e6;
+  const double growth_m = speed_mps * std::abs(to_seconds(t - observed_at));
+  const double turned_m = heading_error_rad * (p - observed_from_m).norm();
+  const double open_m = nearest_m(p, frontiers, 0, kFar_m) - growth_m;
+  return nearest_m(p, closed_gaps, projection_m, open_m) - turned_m;
+}
+
+namespace {
+
+bool creeps_away(const Trajectory& trajectory, const HiddenSpace& hidden) {
+  State state = trajectory.at_start();
+  double fastest_mps = state.velocity_mps.norm();
+  for (const MotionPhase& phase : trajectory.phases()) {
+    state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
+    fastest_mps = std::max(fastest_mps, state.velocity_mps.norm());
+  }
+  return fastest_mps <= hidden.creep_mps &&
+         hidden.distance_m(state.position_m, trajectory.start()) >
+             hidden.distance_m(trajectory.at_start().position_m, trajectory.start());
+}
+
+}  // namespace
+
+bool is_passively_safe_from_hidden(const Trajectory& trajectory, const HiddenSpace& hidden,
+                                   double min_separation_m) {
+  if (hidden.is_nothing() || creeps_away(trajectory, hidden)) return true;
+  Time t = trajectory.start();
+  State state = trajectory.at_start();
+  const double separation_m = min_separation_m + kRounding_m;
+  for (const MotionPhase& phase : trajectory.phases()) {
+    if (phase.duration <= Duration::zero()) continue;
+    const double seconds = to_seconds(phase.duration);
+    const State end = state_after(state, phase.acceleration_mps2, seconds);
+    // The speed is convex in time.
+    const double closing_mps =
+        (1 + hidden.heading_error_rad) * std::max(state.velocity_mps.norm(), end.velocity_mps.norm()) +
+        hidden.speed_mps;
+    double at_s = 0;
+    while (true) {
+      const State here = state_after(state, phase.acceleration_mps2, std::min(at_s, seconds));
+      const Time then = t + from_seconds(std::min(at_s, seconds));
+      const double room_m = hidden.distance_m(here.position_m, then) - separation_m;
+      if (room_m <= kTolerance_m) return false;
+      if (at_s >= seconds) break;
+      at_s += room_m / closing_mps;
+    }
+    state = end;
+    t += phase.duration;
+  }
+  return true;
+}
+
+}  // namespace sidestep
