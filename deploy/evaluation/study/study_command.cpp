@@ -6,6 +6,7 @@
 
 #include "common/process/command_line.hpp"
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
+#include "deploy/evaluation/study/corners/corner_study.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 #include "deploy/evaluation/study/vision/vision_study.hpp"
@@ -56,6 +57,13 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
       .check(positive())
       .show_default();
   clutter.on_parsed([&action, options] { action = [options] { return study_clutter(*options); }; });
+  const CliCommand corners =
+      add_study(study, "corners",
+                "A robot with a laser, and people who step out from behind corners: crashes, time", *options);
+  corners.add_option("--jobs", options->jobs, "number of parallel processes")
+      .check(positive())
+      .show_default();
+  corners.on_parsed([&action, options] { action = [options] { return study_corners(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "agents/planning/named_planner.hpp"
 #include "common/map/floor_plan.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
+#include "deploy/simulate/campaign/way_finder.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -45,43 +45,6 @@ void sample_hall(Scenario& scenario, Rng& rng) {
       scenario.obstacles.emplace_back(Box{centre - half, centre + half});
   }
 }
-
-/// Plans around the obstacles of a scenario for discs of one radius.
-class WayFinder {
- public:
-  WayFinder(const Scenario& scenario, double radius_m, Rng& rng)
-      : field_(scenario.field), radius_m_(radius_m), rng_(&rng), planner_(make_planner("lazy-visibility")) {
-    std::vector<Shape> shapes = scenario.obstacles;
-    if (scenario.map)
-      for (const Box& box : scenario.map->boxes_on(field_)) shapes.emplace_back(box);
-    world_ = ObstacleWorld(std::move(shapes));
-  }
-
-  Vec2 sample_free() {
-    while (true) {
-      const double y = rng_->uniform(-0.5, 0.5) * field_.width_m,
-                   x = rng_->uniform(-0.5, 0.5) * field_.length_m;
-      const Vec2 p(x, y);
-      if (field_.contains(p, radius_m_) && !world_.touches(p, radius_m_)) return p;
-    }
-  }
-
-  /// The shortest path, without its start; nullopt if there is none.
-  std::optional<std::vector<Vec2>> path(const Vec2& from_m, const Vec2& to_m) {
-    const DiscDomain domain(world_, field_, radius_m_, from_m, to_m,
-                            planner_.domain_settings(field_, radius_m_));
-    const Plan<Vec2>& plan = planner_.plan(domain, from_m, {}, *rng_);
-    if (!plan.arrives()) return std::nullopt;
-    return std::vector<Vec2>(plan.states.begin() + 1, plan.states.end());
-  }
-
- private:
-  Field field_;
-  double radius_m_;
-  Rng* rng_;
-  NamedPlanner planner_;
-  ObstacleWorld world_;
-};
 
 void sample_people(Scenario& scenario, int count, Rng& rng) {
   WayFinder finder(scenario, kPersonRadius_m, rng);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/evaluation/study/corners/corner_study.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+#include <map>
+
+#include "deploy/evaluation/study/corners/corner_scene.hpp"
+#include "deploy/evaluation/study/table/experiment.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::uint64_t kBatch = 50, kCompared = 10;  // every tenth case is repeated with cameras
+
+/// The sums over a batch of cases.
+struct Batch {
+  int arrived = 0, blocked = 0;
+  std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
+  int failed_audits = 0;
+  double laser_s = 0, camera_s = 0;  // of the cases that arrived both times
+};
+
+Batch run_batch(std::size_t kind, std::uint64_t first, std::uint64_t count) {
+  Batch sum;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    const Scenario scenario = corner_scene(kind, seed);
+    const CornerResult result = run_corner(scenario, seed, true);
+    sum.arrived += result.has_arrived;
+    sum.blocked += !result.has_arrived && result.was_blocked;
+    sum.contacts += result.contacts;
+    sum.crashes += result.crashes;
+    sum.crashes_in_motion += result.crashes_in_motion;
+    sum.failed_audits += !result.audit_passed;
+    if (seed % kCompared != 0 || !result.has_arrived) continue;
+    const CornerResult camera = run_corner(scenario, seed, false);
+    if (!camera.has_arrived) continue;
+    sum.laser_s += result.seconds;
+    sum.camera_s += camera.seconds;
+  }
+  return sum;
+}
+
+double number(const std::string& text) {
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+/// Prints a row per kind, and says whether nothing happened that must not.
+bool summarise(const StudyTable& table) {
+  std::map<std::string, std::vector<double>> sums;
+  for (const auto& row : table.rows) {
+    auto& sum = sums[row[0]];
+    sum.resize(row.size());
+    for (std::size_t i = 2; i < row.size(); ++i) sum[i] += number(row[i]);
+  }
+  bool is_safe = true;
+  fmt::print("kind      cases arrived blocked contacts crashes_at_rest crashes_in_motion time_ratio\n");
+  for (const auto& [kind, s] : sums) {
+    // Columns: kind, first, cases, time ratio, laser_s, camera_s, arrived, blocked, contacts, crashes, in
+    // motion, audits.
+    fmt::print("{:<9} {:5} {:7} {:7} {:8} {:15} {:17} {:10.2f}\n", kind, s[2], s[6], s[7], s[8], s[9] - s[10],
+               s[10], s[4] / s[5]);
+    is_safe = is_safe && s[8] == 0 && s[10] == 0 && s[11] == 0;
+  }
+  return is_safe;
+}
+
+}  // namespace
+
+int study_corners(const StudyOptions& options) {
+  require_study_output(options);
+  const std::uint64_t batches = options.is_quick ? 1 : 40, cases = options.is_quick ? 2 : kBatch;
+  Experiment experiment;
+  experiment.jobs = options.jobs;
+  experiment.table.name = "corners";
+  experiment.table.columns = {
+      "kind",    "first_seed", "cases",    "time_ratio", "laser_s",           "camera_s",
+      "arrived", "blocked",    "contacts", "crashes",    "crashes_in_motion", "failed_audits"};
+  Plot plot{"time with a laser over time with cameras above the floor", "kind of scene", "ratio"};
+  experiment.table.plots.push_back(plot);
+  for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
+    for (std::uint64_t i = 0; i < batches; ++i) {
+      const std::uint64_t first = options.seed * 1'000'000 + i * cases;
+      experiment.runs.push_back(
+          {kCornerKinds[kind], static_cast<double>(kind), cells(kCornerKinds[kind], first, cases), [=] {
+             const Batch b = run_batch(kind, first, cases);
+             return fmt::format("{:.3f},{:.3f},{:.3f},{},{},{},{},{},{}",
+                                b.camera_s > 0 ? b.laser_s / b.camera_s : 1.0, b.laser_s, b.camera_s,
+                                b.arrived, b.blocked, b.contacts, b.crashes, b.crashes_in_motion,
+                                b.failed_audits);
+           }});
+    }
+  }
+  measure(experiment);
+  write_study_table(experiment.table, "corners", options);
+  return summarise(experiment.table) ? 0 : 1;
+}
+
+}  // namespace sidestep
