@@ -127,6 +127,11 @@ class Agent {
     Vec2 at_m{0, 0};
     Time until{};
   };
+  /// Where no speed was safe, and since when the robot has not come away from there.
+  struct Standstill {
+    Vec2 at_m{0, 0};
+    Time since{};
+  };
   /// Stores the robot's own state estimate.
   void update_estimate(const Feedback& feedback);
   /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
@@ -198,7 +203,8 @@ class Agent {
   const double max_person_speed_mps_;
   const Duration scan_period_;
   std::vector<Circle> seen_robots_;  // at the time of the last scan
-  std::optional<Time> occluded_since_;
+  std::optional<Standstill> standstill_;
+  bool is_creeping_ = false;  // no speed was safe when it last planned
   std::vector<OccludedCorner> occluded_corners_;
   std::uint64_t future_scans_ = 0;
   Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions

@@ -120,7 +120,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   }
   query.uncontrolled = displaced_.recent(now);
   query.stop = &base.trajectory;
-  query.max_speed_mps = occluded_since_ ? std::min(max_speed_mps, hidden.creep_mps) : max_speed_mps;
+  query.max_speed_mps = is_creeping_ ? std::min(max_speed_mps, hidden.creep_mps) : max_speed_mps;
   query.keep_outs = zones_.keep_outs();
   if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};

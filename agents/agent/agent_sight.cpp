@@ -64,10 +64,11 @@ AccelerationCommand Agent::follow_in_sight(const Intent& intent, const State& at
         accelerate_then_stop(start, at_start, acceleration, command.hold, rules_.limits.deceleration_mps2);
     const double separation_m = required_separation_m();
     if (!is_passively_safe_from_hidden(trajectory, hidden, separation_m)) continue;
-    occluded_since_.reset();
+    is_creeping_ = false;
     return command;
   }
-  if (!occluded_since_) occluded_since_ = start;
+  is_creeping_ = true;
+  if (!standstill_) standstill_ = {at_start.position_m, start};
   return creep_away(at_start, hidden);
 }
 
@@ -90,10 +91,10 @@ AccelerationCommand Agent::creep_away(const State& at_start, const HiddenSpace& 
 void Agent::update_occlusion(const Intent& intent, const State& at_start, const HiddenSpace& hidden,
                              Time now) {
   std::erase_if(occluded_corners_, [&](const OccludedCorner& c) { return now >= c.until; });
-  const bool is_stuck = occluded_since_ && now - *occluded_since_ >= settings_.occluded_after &&
-                        at_start.velocity_mps.norm() < settings_.standstill_mps;
-  if (!is_stuck) return;
-  occluded_since_ = now;
+  if (!standstill_) return;
+  if ((at_start.position_m - standstill_->at_m).norm() > settings_.occluded_range_m) standstill_.reset();
+  if (!is_creeping_ || !standstill_ || now - standstill_->since < settings_.occluded_after) return;
+  standstill_->since = now;
   const Vec2 ahead =
       at_start.position_m + rules_.radius_m * (intent.waypoint_m - at_start.position_m).stableNormalized();
   const Frontier* nearest = nullptr;

@@ -38,9 +38,10 @@ struct PlanningSettings {
 
   // Sight by the robot's own laser.
   std::array<double, 4> clearances_in_sight_m{0.35, 0.2, 0.1, 0.03};  ///< instead of extra_clearance_m
-  double max_heading_error_rad = 0.02;              ///< bound of the error of a scan's heading
-  double creep_mps = 0.03;                          ///< a robot that is not faster counts as being at rest
-  Duration occluded_after{2'000'000'000};           ///< a corner that stops the robot for longer is avoided
+  double max_heading_error_rad = 0.02;     ///< bound of the error of a scan's heading
+  double creep_mps = 0.03;                 ///< a robot that is not faster counts as being at rest
+  Duration occluded_after{3'000'000'000};  ///< a corner that stops the robot for longer is avoided ...
+  double occluded_range_m = 0.4;           ///< ... if it has not come farther away meanwhile
   Duration occluded_corner_memory{20'000'000'000};  ///< ... for this long
   double corner_slack_m = 0.4;  ///< what stops the robot this near to a person or robot is no corner
 
