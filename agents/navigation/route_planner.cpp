@@ -46,14 +46,19 @@ void RoutePlanner::begin(const Vec2& goal_m) {
 }
 
 /// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
-DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
+Field RoutePlanner::extended_field() const {
   const double extra = 2 * (clearance_m_ - radius_m_);
-  return {*world_,         {field_.length_m + extra, field_.width_m + extra}, clearance_m_, start, goal,
-          domain_settings_};
+  return {field_.length_m + extra, field_.width_m + extra};
+}
+
+DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
+  return {*world_, extended_field(), clearance_m_, start, goal, domain_settings_};
 }
 
 bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
-  return domain(from, to).check(from, to);
+  using ForChecks = DiscDomain::ForChecks;
+  return DiscDomain(ForChecks(), *world_, extended_field(), clearance_m_, from, domain_settings_)
+      .check(from, to);
 }
 
 bool RoutePlanner::is_leg_free(const Vec2& from, std::size_t waypoint) const {
@@ -146,14 +151,9 @@ std::optional<Route> RoutePlanner::way_out(const Vec2& start) {
   clearance_m_ = preferred_m_.back();
   const DiscDomain here = domain(start, start);
   if (!here.start_is_blocked()) return std::nullopt;
-  const std::vector<Vec2> positions = here.free_positions_near_goal();
-  if (positions.empty()) return std::nullopt;
-  return Route{positions.front(),
-               positions.front(),
-               (positions.front() - start).norm(),
-               positions.front(),
-               false,
-               true};
+  const Vec2 free = here.goal(start);
+  if (free == start) return std::nullopt;
+  return Route{free, free, (free - start).norm(), free, false, true};
 }
 
 std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {

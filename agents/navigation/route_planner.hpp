@@ -56,6 +56,7 @@ class RoutePlanner {
   [[nodiscard]] std::optional<ObstacleId> obstacle_on_goal() const;
 
  private:
+  Field extended_field() const;
   DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
   /// Plans a new route that keeps this distance from obstacles. Returns whether one leads to the goal or, if
   /// an obstacle covers it, to the nearest place.

@@ -80,9 +80,20 @@ DiscDomain::DiscDomain(const ObstacleWorld& world, const Field& field, double ra
     goal_m_ = *projected;
     return;
   }
-  const std::vector<Vec2> positions = free_positions_near_goal();
-  if (!positions.empty()) goal_m_ = positions.front();
+  if (const std::optional<Vec2> nearest = free_position_near(goal_m)) goal_m_ = *nearest;
 }
+
+DiscDomain::DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field, double radius_m,
+                       const Vec2& start_m, const DiscDomainSettings& settings)
+    : world_(&world),
+      field_(field),
+      radius_m_(radius_m),
+      start_m_(start_m),
+      requested_goal_m_(start_m),
+      goal_m_(start_m),
+      start_is_blocked_(!is_free(start_m)),
+      goal_is_blocked_(start_is_blocked_),
+      settings_(settings) {}
 
 std::optional<Vec2> DiscDomain::projected_out(const Vec2& position) const {
   const Nearest nearest = world_->nearest(position);
@@ -141,10 +152,14 @@ std::optional<Vec2> DiscDomain::exit() const {
   if (const std::optional<Vec2> projected = projected_out(start_m_);
       projected && escapes(start_m_, *projected))
     return projected;
-  const auto is_exit = [&](const Vec2& position) { return is_free(position) && escapes(start_m_, position); };
-  const std::vector<Vec2> positions =
-      free_positions_near(start_m_, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m), is_exit);
-  return positions.empty() ? std::nullopt : std::optional(positions.front());
+  return free_position_near(start_m_, [&](const Vec2& position) { return escapes(start_m_, position); });
+}
+
+std::optional<Vec2> DiscDomain::free_position_near(const Vec2& position,
+                                                   const std::function<bool(const Vec2&)>& can_reach) const {
+  return nearest_free_position(
+      position, radius_m_ / 8, std::hypot(field_.length_m, field_.width_m),
+      [&](const Vec2& other) { return is_free(other); }, can_reach);
 }
 
 std::vector<Vec2> DiscDomain::free_positions_near_goal() const {

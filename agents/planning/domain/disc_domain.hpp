@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,10 @@ class DiscDomain {
 
   DiscDomain(const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
              const Vec2& goal_m, const DiscDomainSettings& settings = {});
+  /// A domain without a goal: its goal is the start, and is not replaced if it is blocked.
+  struct ForChecks {};
+  DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
+             const DiscDomainSettings& settings = {});
 
   double distance(const Vec2& a, const Vec2& b) const {
     const double x = a.x() - b.x(), y = a.y() - b.y();
@@ -72,6 +77,9 @@ class DiscDomain {
   bool escapes(const Vec2& from, const Vec2& to) const;
   /// The projection out of the deepest obstacle: the nearest free position, if the projection is free.
   std::optional<Vec2> projected_out(const Vec2& position) const;
+  /// nullopt: none that can be reached; see nearest_free_position().
+  std::optional<Vec2> free_position_near(const Vec2& position,
+                                         const std::function<bool(const Vec2&)>& can_reach = {}) const;
   Vec2 sample_uniform(Rng& rng) const;
   Vec2 sample_contact(Rng& rng) const;
 

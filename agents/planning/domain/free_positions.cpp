@@ -57,6 +57,29 @@ class DirectionalSearch {
 
 }  // namespace
 
+std::optional<Vec2> nearest_free_position(const Vec2& position_m, double step_m, double max_distance_m,
+                                          const std::function<bool(const Vec2&)>& is_free,
+                                          const std::function<bool(const Vec2&)>& can_reach) {
+  const DirectionalSearch direction_search(position_m, step_m, is_free);
+  std::optional<FreePosition> best;
+  const auto look = [&](double angle_rad) {
+    const double limit_m = best ? best->distance_m : max_distance_m;
+    const Vec2 first = position_m + step_m * Vec2(std::cos(angle_rad), std::sin(angle_rad));
+    if (can_reach && step_m < limit_m && !can_reach(first)) return;
+    const auto found = direction_search.search(angle_rad, limit_m);
+    if (!found || (best && found->distance_m >= limit_m)) return;
+    if (!can_reach || can_reach(found->position_m)) best = found;
+  };
+  for (int i = 0; i < kDirections; ++i) look(i * kSpacing_rad);
+  for (double step_rad = kSpacing_rad / 2; best && step_rad > kSpacing_rad / 64; step_rad /= 2) {
+    const double middle_rad = best->angle_rad;
+    look(middle_rad - step_rad);
+    look(middle_rad + step_rad);
+  }
+  if (!best) return std::nullopt;
+  return best->position_m;
+}
+
 std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m, double max_distance_m,
                                       const std::function<bool(const Vec2&)>& is_free) {
   const DirectionalSearch direction_search(position_m, step_m, is_free);
