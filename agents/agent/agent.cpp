@@ -36,7 +36,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       desired_heading_rad_(robot_.start_heading_rad),
       planner_(make_driving_planner(robot_.planner.empty() ? scenario.planner : robot_.planner)),
       passage_period_(from_seconds(settings.passage_s + settings.passage_m / rules_.limits.speed_mps)),
-      give_way_(rules_.field, rules_.radius_m, required_separation_m(), rules_.min_separation_m(),
+      give_way_({rules_.field, rules_.radius_m, required_separation_m(), rules_.min_separation_m()},
                 {.give_up_after = passage_period_ * 2 / 3}),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());

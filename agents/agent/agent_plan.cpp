@@ -130,6 +130,7 @@ void Agent::decide_whether_to_give_way(Time now) {
   const Vec2& position = estimate_.position_m;
   if (!assignment_.goal() || assignment_.report().progress.is_finished()) return give_way_.restart(now);
   if (!give_way_.is_due(now, position) || !route_obstacles_) return;
+  if (give_way_.is_searching()) return give_way_.search(now, rng_);
   std::vector<OtherRobot> others;
   for (const Version* version : neighbours_.newest(position, page_horizon_m())) {
     OtherRobot other{version->robot, version->trajectory.rest_position_m()};
@@ -139,7 +140,7 @@ void Agent::decide_whether_to_give_way(Time now) {
     }
     others.push_back(other);
   }
-  give_way_.update(now, position, others, route_obstacles_->fixed_world(), rng_);
+  give_way_.begin_search(now, position, others, route_obstacles_->fixed_world());
 }
 
 Intent Agent::steer(const State& at_start, Time start, const Route& route) {

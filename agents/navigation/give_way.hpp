@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "agents/planning/named_planner.hpp"
-#include "common/collision/obstacle_world.hpp"
+#include "agents/navigation/give_way_search.hpp"
 #include "common/motion/version.hpp"
 #include "common/time/time.hpp"
 
@@ -19,11 +18,8 @@ struct GiveWaySettings {
   Duration retry_after{500'000'000};    ///< between two searches, and two checks whether the way is free
   Duration give_up_after{20'000'000'000};
   Duration max_pause{1'000'000'000};  ///< after a longer time without decisions, progress is judged anew
-  double clearance_m = 0.02;          ///< beyond the minimum separation, from the routes of others
   double first_range_m = 1;  ///< places up to this distance are searched at first, later twice as far
   double longest_range_m = 8;
-  double grid_fraction = 0.5;  ///< spacing of the places, as a part of the robot's radius
-  std::size_t max_plans = 12;  ///< paths that are planned in one search
 };
 
 /// Another robot, and the places to which it may want to go.
@@ -40,48 +36,32 @@ struct OtherRobot {
 /// stays there until the way back is not needed any more. Safety does not depend on it.
 class GiveWay {
  public:
-  /// A robot's centre keeps `required_m` from obstacles; robots' centres stay `min_separation_m` apart.
-  GiveWay(const Field& field, double radius_m, double required_m, double min_separation_m,
-          const GiveWaySettings& settings = {});
+  explicit GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings = {});
 
-  /// Whether update() is to be called: the robot has made no progress for long, or may stop giving way. Call
-  /// it once per decision, with the robot's position.
+  /// Whether to search: the robot has made no progress for long, or may stop giving way. Call it once per
+  /// decision, with the robot's position.
   [[nodiscard]] bool is_due(Time now, const Vec2& position_m);
-  /// Decides whether to give way. `fixed`: all obstacles but robots. Precondition: is_due().
-  void update(Time now, const Vec2& position_m, std::span<const OtherRobot> others, ObstacleWorld fixed,
-              Rng& rng);
+  /// Whether search() is to be called, because a search has begun; otherwise begin_search(), if is_due().
+  bool is_searching() const { return search_.is_active(); }
+  /// `fixed`: all obstacles but robots.
+  void begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
+                    ObstacleWorld fixed);
+  /// One step of the search, which decides whether to give way in its last one. Precondition:
+  /// is_searching().
+  void search(Time now, Rng& rng);
   /// Where the robot should go instead of its goal; nullopt: to its goal.
   std::optional<Vec2> place_m() const { return way_.empty() ? std::nullopt : std::optional(way_.back()); }
   /// Forgets the place: the robot has another goal.
   void restart(Time now);
 
  private:
-  using Way = std::vector<Vec2>;
-  struct Scene {
-    ObstacleWorld fixed;
-    Rng* rng;
-    std::vector<Way> routes;  // of the robots with the right of way
-  };
-  /// A robot, as an obstacle.
-  Circle disc_at(const Vec2& position_m) const {
-    return {position_m, std::max(0.0, min_separation_m_ - required_m_)};
-  }
-  /// Whether one of the routes leads through the robot, and there is no way around it.
-  bool blocks_a_passage(Scene& scene, const Vec2& position_m) const;
-  void find_routes(Scene& scene, std::span<const OtherRobot> others) const;
-  /// Empty if there is no such place.
-  std::vector<Vec2> find_way(Scene& scene, const Vec2& position_m, std::span<const OtherRobot> others) const;
-  std::vector<Vec2> places_near(const Scene& scene, const Vec2& position_m) const;
-  std::optional<std::vector<Vec2>> path(const Scene& scene, const Vec2& from_m, const Vec2& to_m) const;
-
-  Field field_;
-  double radius_m_, required_m_, min_separation_m_;
   GiveWaySettings settings_;
-  NamedPlanner planner_;
+  GiveWaySearch search_;
   Vec2 anchor_m_{0, 0};  // where the robot has been since anchored_at_
   Time anchored_at_{}, checked_at_{}, began_at_{};
   Time called_at_{};
   double range_m_;
+  std::vector<RobotId> searched_;   // with the right of way when the search began
   std::vector<RobotId> yields_to_;  // they keep the right of way until they have passed
   std::vector<Vec2> way_;           // from the place that the robot left to the one where it gives way
 };

@@ -21,7 +21,7 @@ OtherRobot coming_from(double x_m, double goal_x_m) {
 }
 
 struct Robot {
-  GiveWay give_way{kField, kRadius_m, kRequired_m, kSeparation_m};
+  GiveWay give_way{{kField, kRadius_m, kRequired_m, kSeparation_m}};
   Rng rng{1};
   double decided_s = 0;
 
@@ -33,8 +33,9 @@ struct Robot {
   }
   std::optional<Vec2> decide_once(double seconds, const Vec2& position_m,
                                   const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
-    if (give_way.is_due(at(seconds), position_m))
-      give_way.update(at(seconds), position_m, others, fixed, rng);
+    if (give_way.is_due(at(seconds), position_m) && !give_way.is_searching())
+      give_way.begin_search(at(seconds), position_m, others, fixed);
+    while (give_way.is_searching()) give_way.search(at(seconds), rng);
     return give_way.place_m();
   }
 };
@@ -123,6 +124,24 @@ TEST_CASE("a robot goes on giving way when the right of way changes, until the o
   CHECK(robot.decide(5, *place, {other}, fixed) == place);
   other.position_m = {-1.5, 0};
   CHECK_FALSE(robot.decide(6, *place, {other}, fixed));
+}
+
+TEST_CASE("progress and another goal end a search") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  CHECK_FALSE(robot.give_way.is_due(at(0), {0, 0}));
+  REQUIRE(robot.give_way.is_due(at(0.9), {0, 0}) == false);
+  REQUIRE(robot.give_way.is_due(at(1.6), {0, 0}));
+  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  robot.give_way.begin_search(at(1.6), {0, 0}, facing, fixed);
+  CHECK(robot.give_way.is_searching());
+  CHECK(robot.give_way.is_due(at(1.7), {0, 0}));
+  const bool has_progress = GENERATE(false, true);
+  if (has_progress)
+    CHECK_FALSE(robot.give_way.is_due(at(1.8), {0.2, 0}));
+  else
+    robot.give_way.restart(at(1.8));
+  CHECK_FALSE(robot.give_way.is_searching());
 }
 
 TEST_CASE("a robot does not give way to one that drives around it, nor at once after a pause") {

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/give_way_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kMaxPathSamples = 5000;
+
+/// Whether a robot that drives along this way, or stays at its only place, would be in the way of a route.
+bool is_on_route(const std::vector<Vec2>& route, const std::vector<Vec2>& way, double separation_m) {
+  for (std::size_t i = 1; i < route.size(); ++i)
+    for (std::size_t k = 0; k < way.size(); ++k)
+      if (squared_distance(Segment{way[k], way[std::min(k + 1, way.size() - 1)]},
+                           Segment{route[i - 1], route[i]}) < separation_m * separation_m)
+        return true;
+  return false;
+}
+
+bool is_place_on_route(const std::vector<Vec2>& route, const Vec2& place, double separation_m) {
+  for (std::size_t i = 1; i < route.size(); ++i)
+    if (squared_distance(place, Segment{route[i - 1], route[i]}) < separation_m * separation_m) return true;
+  return false;
+}
+
+/// For heaps with the nearest place on top.
+bool is_farther(const std::pair<double, Vec2>& a, const std::pair<double, Vec2>& b) {
+  return a.first > b.first;
+}
+
+}  // namespace
+
+GiveWaySearch::GiveWaySearch(const GiveWayFloor& floor, const GiveWaySearchSettings& settings)
+    : floor_(floor), settings_(settings), planner_(make_driving_planner("lazy-visibility")) {}
+
+Circle GiveWaySearch::disc_at(const Vec2& position_m) const {
+  return {position_m, std::max(0.0, floor_.min_separation_m - floor_.required_m)};
+}
+
+void GiveWaySearch::begin(GiveWayQuery query, ObstacleWorld fixed) {
+  query_ = std::move(query);
+  fixed_ = std::move(fixed);
+  routes_.clear();
+  way_.clear();
+  is_in_the_way_ = false;
+  next_ = 0;
+  stage_ = Stage::kRoutes;
+}
+
+void GiveWaySearch::step(Rng& rng) {
+  switch (stage_) {
+    case Stage::kRoutes:
+      return plan_route(rng);
+    case Stage::kPassages:
+      return check_passage(rng);
+    case Stage::kPlaces:
+      return search_places(rng);
+    case Stage::kIdle:
+      break;
+  }
+}
+
+void GiveWaySearch::plan_route(Rng& rng) {
+  if (next_ < query_.trips.size()) {
+    const auto& [from, to] = query_.trips[next_++];
+    if (auto route = path(from, to, rng)) routes_.push_back(std::move(*route));
+    return;
+  }
+  next_ = 0;
+  stage_ = query_.way.empty() ? Stage::kPassages : Stage::kIdle;
+  is_in_the_way_ = std::ranges::any_of(
+      routes_, [&](const Way& route) { return is_on_route(route, query_.way, floor_.min_separation_m); });
+}
+
+void GiveWaySearch::check_passage(Rng& rng) {
+  while (next_ < routes_.size()) {
+    const Way& route = routes_[next_++];
+    if (!is_place_on_route(route, query_.position_m, floor_.min_separation_m)) continue;
+    const ObstacleId self = fixed_.add(disc_at(query_.position_m));
+    const std::optional<Way> around = path(route.front(), route.back(), rng);
+    fixed_.remove(self);
+    is_in_the_way_ = !around || around->back() != route.back();
+    if (is_in_the_way_) begin_places();
+    return;
+  }
+  stage_ = Stage::kIdle;
+}
+
+void GiveWaySearch::begin_places() {
+  for (const Vec2& other : query_.others_m) fixed_.add(disc_at(other));
+  candidates_.clear();
+  taken_.clear();
+  unreachable_.clear();
+  ring_ = index_ = 0;
+  rings_ = static_cast<int>(query_.range_m / (settings_.grid_fraction * floor_.radius_m));
+  stage_ = Stage::kPlaces;
+}
+
+void GiveWaySearch::search_places(Rng& rng) {
+  const std::optional<Vec2> place = next_place();
+  if (place) {
+    auto found = path(query_.position_m, *place, rng);
+    if (found && found->back() == *place)
+      way_ = std::move(*found);
+    else
+      unreachable_.push_back(*place);
+  }
+  const bool are_all_examined = ring_ > rings_ && candidates_.empty();
+  if (!way_.empty() || are_all_examined || unreachable_.size() == settings_.max_plans) stage_ = Stage::kIdle;
+}
+
+std::optional<Vec2> GiveWaySearch::next_place() {
+  const double spacing_m = settings_.grid_fraction * floor_.radius_m;
+  for (int examined = 0; examined < settings_.max_places; ++examined) {
+    // All places that are nearer than the ring have been examined.
+    if (!candidates_.empty() && (ring_ > rings_ || candidates_.front().first <= ring_ * spacing_m)) {
+      std::ranges::pop_heap(candidates_, is_farther);
+      const Vec2 place = candidates_.back().second;
+      candidates_.pop_back();
+      // What is connected with an unreachable place is unreachable too.
+      const bool is_unreachable = std::ranges::any_of(
+          unreachable_, [&](const Vec2& other) { return !fixed_.touches(other, place, floor_.required_m); });
+      if (!is_unreachable) return place;
+      continue;
+    }
+    const std::optional<Vec2> place = next_of_grid();
+    if (!place) return std::nullopt;
+    if (!is_candidate(*place)) continue;
+    candidates_.emplace_back((*place - query_.position_m).norm(), *place);
+    std::ranges::push_heap(candidates_, is_farther);
+  }
+  return std::nullopt;
+}
+
+bool GiveWaySearch::is_candidate(const Vec2& place) {
+  // One of several that are near each other is enough.
+  const Vec2 cell = (place - query_.position_m) / (2 * floor_.radius_m);
+  const std::pair key{std::lround(cell.x()), std::lround(cell.y())};
+  if (taken_.contains(key)) return false;
+  const double separation_m = floor_.min_separation_m + settings_.clearance_m;
+  if (!floor_.field.contains(place, floor_.radius_m) || fixed_.touches(place, floor_.required_m) ||
+      std::ranges::any_of(routes_,
+                          [&](const Way& route) { return is_place_on_route(route, place, separation_m); }))
+    return false;
+  taken_.insert(key);
+  return true;
+}
+
+std::optional<Vec2> GiveWaySearch::next_of_grid() {
+  if (ring_ > rings_) return std::nullopt;
+  const int side = 2 * ring_, k = ring_, along = ring_ == 0 ? 0 : index_ % side;
+  Vec2 cell(-k + along, -k);
+  for (int turns = ring_ == 0 ? 0 : index_ / side; turns > 0; --turns) cell = Vec2(-cell.y(), cell.x());
+  if (++index_ >= 4 * side) {
+    ++ring_;
+    index_ = 0;
+  }
+  return query_.position_m + settings_.grid_fraction * floor_.radius_m * cell;
+}
+
+std::optional<std::vector<Vec2>> GiveWaySearch::path(const Vec2& from_m, const Vec2& to_m, Rng& rng) const {
+  Budget budget;
+  budget.samples = kMaxPathSamples;
+  const double extra_m = 2 * (floor_.required_m - floor_.radius_m);
+  const DiscDomain domain(fixed_, {floor_.field.length_m + extra_m, floor_.field.width_m + extra_m},
+                          floor_.required_m, from_m, to_m,
+                          planner_.domain_settings(floor_.field, floor_.radius_m));
+  const Plan<Vec2>& plan = planner_.plan(domain, from_m, budget, rng);
+  if (!plan.arrives()) return std::nullopt;
+  return std::vector<Vec2>(plan.states.begin(), plan.states.end());
+}
+
+}  // namespace sidestep
