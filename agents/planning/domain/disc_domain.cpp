@@ -75,6 +75,7 @@ DiscDomain::DiscDomain(const ObstacleWorld& world, const Field& field, double ra
       start_is_blocked_(!is_free(start_m)),
       goal_is_blocked_(!is_free(goal_m)),
       settings_(settings) {
+  measure_from_start();
   if (!goal_is_blocked_) return;
   if (const std::optional<Vec2> projected = projected_out(goal_m)) {
     goal_m_ = *projected;
@@ -93,7 +94,16 @@ DiscDomain::DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field
       goal_m_(start_m),
       start_is_blocked_(!is_free(start_m)),
       goal_is_blocked_(start_is_blocked_),
-      settings_(settings) {}
+      settings_(settings) {
+  measure_from_start();
+}
+
+void DiscDomain::measure_from_start() {
+  if (!start_is_blocked_) return;
+  start_distances_m_.reserve(world_->size());
+  for (std::size_t i = 0; i < world_->size(); ++i)
+    start_distances_m_.push_back(signed_distance(start_m_, world_->shape(world_->obstacle(i))));
+}
 
 std::optional<Vec2> DiscDomain::projected_out(const Vec2& position) const {
   const Nearest nearest = world_->nearest(position);
@@ -133,10 +143,13 @@ bool DiscDomain::escapes(const Vec2& from, const Vec2& to) const {
       std::abs(to.y()) > std::max(y, std::abs(from.y())))
     return false;
   constexpr double kStep_m = 1e-6, kRounding_m = 1e-12;
-  const Vec2 step = kStep_m / distance(from, to) * (to - from);
+  const double length_m = distance(from, to), reach_m = radius_m_ + length_m + kStep_m;
+  const Vec2 step = kStep_m / length_m * (to - from);
+  const bool is_start = from == start_m_ && start_is_blocked_;
   for (std::size_t i = 0; i < world_->size(); ++i) {
     const Shape& shape = world_->shape(world_->obstacle(i));
-    const double from_m = signed_distance(from, shape);
+    const double from_m = is_start ? start_distances_m_[i] : signed_distance(from, shape);
+    if (from_m > reach_m) continue;
     if (from_m > radius_m_) {
       if (squared_distance(Segment{from, to}, shape) <= radius_m_ * radius_m_) return false;
     } else if (signed_distance(from + step, shape) < from_m - kRounding_m) {

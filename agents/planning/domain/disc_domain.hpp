@@ -77,6 +77,7 @@ class DiscDomain {
   bool escapes(const Vec2& from, const Vec2& to) const;
   /// The projection out of the deepest obstacle: the nearest free position, if the projection is free.
   std::optional<Vec2> projected_out(const Vec2& position) const;
+  void measure_from_start();
   /// nullopt: none that can be reached; see nearest_free_position().
   std::optional<Vec2> free_position_near(const Vec2& position,
                                          const std::function<bool(const Vec2&)>& can_reach = {}) const;
@@ -89,6 +90,7 @@ class DiscDomain {
   Vec2 start_m_, requested_goal_m_, goal_m_;  // goal_m_ replaces a blocked requested goal
   bool start_is_blocked_, goal_is_blocked_;
   DiscDomainSettings settings_;
+  std::vector<double> start_distances_m_;  // of a blocked start from each obstacle of the world
 };
 
 static_assert(EuclideanDomain<DiscDomain> && StraightDomain<DiscDomain>);
