@@ -9,6 +9,7 @@
 #include "common/config/scenario_check.hpp"
 #include "deploy/simulate/campaign/building_sampler.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
+#include "deploy/simulate/campaign/walk_sampler.hpp"
 
 namespace sidestep {
 namespace {
@@ -99,6 +100,26 @@ void sample_paths(Scenario& scenario, Rng& rng) {
   }
 }
 
+/// People who walk through the rooms of a building.
+void sample_people(Scenario& scenario, Rng& rng) {
+  const auto is_near_robot = [&](const Vec2& p, double radius_m) {
+    return std::ranges::any_of(scenario.robots, [&](const RobotSpec& robot) {
+      return (robot.start_m - p).norm() < radius_m + scenario.radius_m + scenario.margin_m;
+    });
+  };
+  for (std::uint64_t left = 1 + rng.below(6); left > 0; --left) {
+    OpponentSpec person;
+    person.radius_m = rng.uniform(0.5, 2) * scenario.radius_m;
+    person.speed_mps = rng.uniform(0.1, 1) * scenario.max_opponent_speed_mps;
+    WalkSampler walks(scenario, person.radius_m, rng);
+    const int places = 2 + static_cast<int>(rng.below(3));
+    const std::optional<Vec2> start = walks.sample_free();
+    if (!start || is_near_robot(*start, person.radius_m)) continue;
+    person.path_m = walks.sample_walk(*start, places);
+    scenario.opponents.push_back(std::move(person));
+  }
+}
+
 }  // namespace
 
 Scenario sample_scene(Rng& rng) {
@@ -122,9 +143,10 @@ Scenario sample_scene(Rng& rng) {
 }
 
 void sample_opponents(Scenario& scenario, Rng& rng) {
-  if (!rng.chance(0.12)) return;
+  if (!rng.chance(scenario.map ? 0.6 : 0.12)) return;
   // On a small floor, quick opponents could be anywhere before a robot has stopped, and no robot would drive.
   scenario.max_opponent_speed_mps = std::min(1.5, 0.25 * scenario.field.width_m);
+  if (scenario.map) return sample_people(scenario, rng);
   PositionSampler positions(scenario, rng);
   std::vector<Vec2> starts;
   for (const RobotSpec& robot : scenario.robots) starts.push_back(robot.start_m);
@@ -144,15 +166,16 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
 
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} opponents, {} coordinators; at most {:.2f} m/s; "
+      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} {}, {} coordinators; at most {:.2f} m/s; "
       "command loss "
       "{:.1f} %, "
       "vision delay {:.1f} ms, missed detections {:.1f} %, ghosts {:.1f} % robots and {:.1f} % obstacles",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m,
       scenario.map ? "a building, " : "", scenario.obstacles.size(), scenario.opponents.size(),
-      scenario.coordinators, scenario.limits.speed_mps, 100 * scenario.command_loss,
-      to_seconds(scenario.vision.delay) * 1e3, 100 * scenario.vision.miss_probability,
-      100 * scenario.vision.ghost_probability, 100 * scenario.vision.ghost_obstacle_probability);
+      scenario.map ? "people" : "opponents", scenario.coordinators, scenario.limits.speed_mps,
+      100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
+      100 * scenario.vision.miss_probability, 100 * scenario.vision.ghost_probability,
+      100 * scenario.vision.ghost_obstacle_probability);
 }
 
 }  // namespace sidestep

@@ -7,7 +7,7 @@
 
 #include "common/map/floor_plan.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
-#include "deploy/simulate/campaign/way_finder.hpp"
+#include "deploy/simulate/campaign/walk_sampler.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -46,17 +46,15 @@ void sample_hall(Scenario& scenario, Rng& rng) {
   }
 }
 
+/// Precondition: the floor has room for people.
 void sample_people(Scenario& scenario, int count, Rng& rng) {
-  WayFinder finder(scenario, kPersonRadius_m, rng);
+  WalkSampler walks(scenario, kPersonRadius_m, rng);
   scenario.max_opponent_speed_mps = kMaxPersonSpeed_mps;
   for (int i = 0; i < count; ++i) {
     OpponentSpec person;
     person.radius_m = kPersonRadius_m;
     person.speed_mps = rng.uniform(0.3, 1) * kMaxPersonSpeed_mps;
-    person.path_m.push_back(finder.sample_free());
-    for (int walks = 0; walks < kWalks; ++walks)
-      if (const auto path = finder.path(person.path_m.back(), finder.sample_free()))
-        person.path_m.insert(person.path_m.end(), path->begin(), path->end());
+    person.path_m = walks.sample_walk(walks.sample_free().value(), kWalks);
     scenario.opponents.push_back(std::move(person));
   }
 }
@@ -64,7 +62,7 @@ void sample_people(Scenario& scenario, int count, Rng& rng) {
 /// A robot at a free place away from others and from people, with goals that it can reach.
 void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>& lasts, Rng& rng) {
   PositionSampler positions(scenario, rng);
-  WayFinder finder(scenario, scenario.radius_m + scenario.margin_m, rng);
+  WalkSampler walks(scenario, scenario.radius_m + scenario.margin_m, rng);
   const auto is_near_people = [&](const Vec2& p) {
     return std::ranges::any_of(scenario.opponents, [&](const OpponentSpec& person) {
       return (person.path_m.front() - p).norm() < kStartDistance_m;
@@ -77,7 +75,7 @@ void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>&
   starts.push_back(robot.start_m);
   while (robot.goals.size() < kGoalsPerRobot) {
     const Vec2 goal = positions.sample_apart(lasts);
-    if (finder.path(robot.start_m, goal)) robot.goals.push_back({goal});
+    if (walks.path(robot.start_m, goal)) robot.goals.push_back({goal});
   }
   lasts.push_back(robot.goals.back().position_m);
   scenario.robots.push_back(std::move(robot));
