@@ -16,10 +16,12 @@ constexpr double kReached_m = 0.1;
 // Enough for about a hundred obstacles. Without a route the robot heads straight for its goal while that is
 // safe.
 constexpr std::size_t kMaxSamples = 5000;
+// Random samples cost more, and are all spent when there is no path.
+constexpr std::size_t kMaxRandomSamples = 1500;
 
-Budget cycle_budget() {
+Budget cycle_budget(const NamedPlanner& planner) {
   Budget budget;
-  budget.samples = kMaxSamples;
+  budget.samples = planner.is_random ? kMaxRandomSamples : kMaxSamples;
   return budget;
 }
 
@@ -35,6 +37,7 @@ RoutePlanner::RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obs
       planner_(&planner),
       domain_settings_(planner.domain_settings(field, radius_m)) {
   for (const double extra_m : extra_clearances_m) preferred_m_.push_back(required_m_ + extra_m);
+  if (!planner.is_shortest) exact_.emplace(make_driving_planner("lazy-visibility"));
 }
 
 void RoutePlanner::begin(const Vec2& goal_m) {
@@ -79,7 +82,7 @@ std::optional<ObstacleId> RoutePlanner::obstacle_on_goal() const {
   return nearest.obstacle;
 }
 
-bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
+bool RoutePlanner::follow(const NamedPlanner& planner, const DiscDomain& domain, const Plan<Vec2>& plan) {
   next_waypoint_ = 0;
   waypoints_.clear();
   has_tight_end_ = false;
@@ -87,7 +90,7 @@ bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
   const auto take = [this](const Plan<Vec2>& path) {
     waypoints_.assign(path.states.begin() + 1, path.states.end());
   };
-  if (planner_->is_shortest) {
+  if (planner.is_shortest) {
     take(plan);
   } else {
     Plan<Vec2> smoothed = plan;
@@ -97,14 +100,15 @@ bool RoutePlanner::follow(const DiscDomain& domain, const Plan<Vec2>& plan) {
   return !waypoints_.empty();
 }
 
-bool RoutePlanner::replan(const Vec2& start, double clearance, Rng& rng) {
+bool RoutePlanner::replan(const NamedPlanner& planner, const Vec2& start, double clearance, Rng& rng) {
   clearance_m_ = clearance;
   const DiscDomain here = domain(start, goal_m_);
-  return follow(here, planner_->plan(here, start, cycle_budget(), rng));
+  return follow(planner, here, planner.plan(here, start, cycle_budget(planner), rng));
 }
 
-bool RoutePlanner::replan_to_tight_goal(const Vec2& start, double clearance, Rng& rng) {
-  if (!replan(start, clearance, rng)) return false;
+bool RoutePlanner::replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start, double clearance,
+                                        Rng& rng) {
+  if (!replan(planner, start, clearance, rng)) return false;
   if (waypoints_.back() == goal_m_) return true;
   if (world_->touches(waypoints_.back(), goal_m_, required_m_)) return false;
   waypoints_.push_back(goal_m_);
@@ -118,28 +122,34 @@ bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& r
   const std::optional<Vec2> nearest = nearest_reachable(here, start, goal_m_);
   if (!nearest) return false;
   const DiscDomain there = here.with_goal_at(*nearest);
-  return follow(there, planner_->plan(there, start, cycle_budget(), rng));
+  const NamedPlanner& planner = exact();
+  return follow(planner, there, planner.plan(there, start, cycle_budget(planner), rng));
 }
 
 std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   if (auto route = continued_from(start)) return route;
-  if (!find_route(start, rng)) return way_out(start);
+  const bool is_found = find_route(*planner_, start, rng) || (exact_ && find_route(*exact_, start, rng)) ||
+                        find_route_to_nearest(start, rng);
+  if (!is_found) return way_out(start);
   min_remaining_m_ = remaining_length_m(start);
   return route(min_remaining_m_);
 }
 
-bool RoutePlanner::find_route(const Vec2& start, Rng& rng) {
+bool RoutePlanner::find_route(const NamedPlanner& planner, const Vec2& start, Rng& rng) {
   const double goal_room_m =
       obstacle_on_goal() ? std::numeric_limits<double>::infinity() : world_->nearest(goal_m_).distance_m;
   for (const double clearance : preferred_m_) {
     const bool is_last = clearance == preferred_m_.back();
     if (goal_room_m > clearance) {
-      if (replan(start, clearance, rng)) return true;
-    } else if (!is_last && replan_to_tight_goal(start, clearance, rng)) {
+      if (replan(planner, start, clearance, rng)) return true;
+    } else if (!is_last && replan_to_tight_goal(planner, start, clearance, rng)) {
       return true;
     }
   }
-  if (replan(start, required_m_, rng)) return true;
+  return replan(planner, start, required_m_, rng);
+}
+
+bool RoutePlanner::find_route_to_nearest(const Vec2& start, Rng& rng) {
   for (const double clearance : preferred_m_)
     if (replan_to_nearest(start, clearance, rng)) return true;
   return replan_to_nearest(start, required_m_, rng);

@@ -24,8 +24,9 @@ struct Route {
 
 /// Plans routes around obstacles, once per control cycle. A route is kept while it is
 /// free and its remaining length does not grow, so that the robot does not alternate between two routes of
-/// equal length. If obstacles cover or enclose the goal, routes lead to the nearest place that can be
-/// reached.
+/// equal length. Grids miss narrow passages, and random samples may: if the planner finds no path, the lazy
+/// visibility graph decides whether there is one. If obstacles cover or enclose the goal, routes lead to the
+/// nearest place that can be reached.
 class RoutePlanner {
  public:
   RoutePlanner(const RoutePlanner&) = delete;
@@ -60,15 +61,18 @@ class RoutePlanner {
   DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
   /// Plans a new route that keeps this distance from obstacles. Returns whether one leads to the goal or, if
   /// an obstacle covers it, to the nearest place.
-  bool replan(const Vec2& start_m, double clearance_m, Rng& rng);
+  bool replan(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
+  /// As replan(), for a goal that is nearer to an obstacle than this.
+  bool replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
   /// Plans a new route with the largest clearance possible. Returns whether there is one.
-  bool find_route(const Vec2& start_m, Rng& rng);
+  bool find_route(const NamedPlanner& planner, const Vec2& start_m, Rng& rng);
   bool may_skip_waypoint(const Vec2& start_m) const;
   /// Plans a new route to the nearest place that can be reached.
   bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
-  bool follow(const DiscDomain& domain, const Plan<Vec2>& plan);
-  /// As replan(), for a goal that is nearer to an obstacle than this.
-  bool replan_to_tight_goal(const Vec2& start_m, double clearance_m, Rng& rng);
+  bool find_route_to_nearest(const Vec2& start_m, Rng& rng);
+  bool follow(const NamedPlanner& planner, const DiscDomain& domain, const Plan<Vec2>& plan);
+  /// The planner whose answer that there is no path can be relied on.
+  const NamedPlanner& exact() const { return exact_ ? *exact_ : *planner_; }
   /// Whether the line from a position to a waypoint is free for the robot.
   bool is_leg_free(const Vec2& from_m, std::size_t waypoint) const;
   /// The straight line from a blocked start to the nearest free position.
@@ -87,6 +91,7 @@ class RoutePlanner {
   bool has_tight_end_ = false;       // the last leg of the route keeps only the required distance
   Vec2 goal_m_{0, 0};
   const NamedPlanner* planner_;
+  std::optional<NamedPlanner> exact_;  // unless planner_ is
   DiscDomainSettings domain_settings_;
   std::vector<Vec2> waypoints_;  // of the last route
   std::size_t next_waypoint_ = 0;

@@ -103,6 +103,9 @@ Factory factory(DomainSettings domain_settings, Arguments... arguments) {
     named.draw = [planner] { return drawing_of(*planner); };
     named.domain_settings = domain_settings;
     named.is_shortest = std::is_same_v<Planner, LazyVisibility> || std::is_same_v<Planner, FullVisibility>;
+    named.is_random = std::is_same_v<Planner, Errt<DiscDomain>> || std::is_same_v<Planner, Trees> ||
+                      std::is_same_v<Planner, Prm<DiscDomain>> ||
+                      std::is_same_v<Planner, Anytime<DiscDomain, Trees>>;
     return named;
   };
 }

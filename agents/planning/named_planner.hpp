@@ -38,6 +38,7 @@ struct NamedPlanner {
   std::function<PlanDrawing()> draw;
   std::function<DiscDomainSettings(const Field&, double radius_m)> domain_settings;
   bool is_shortest = false;  ///< its paths cannot be shortened
+  bool is_random = false;    ///< grows by random samples, and never knows that there is no path
 };
 
 /// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.

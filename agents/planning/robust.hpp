@@ -10,7 +10,9 @@ namespace sidestep {
 
 /// Plans to the goal or, if the goal touches an obstacle, to the nearest free position that the planner can
 /// reach. A start that touches obstacles is handled by the domain. `planner` is any planner with
-/// plan(domain, start, budget, rng); each attempt gets the whole budget.
+/// plan(domain, start, budget, rng). The goal itself gets the whole budget; the positions share as many
+/// samples again, because planners that sample at random spend all of them on each position that cannot be
+/// reached.
 template <typename Planner>
 const Plan<Vec2>& plan_robustly(Planner& planner, const DiscDomain& domain, const Vec2& start,
                                 const Budget& budget, Rng& rng) {
@@ -18,12 +20,15 @@ const Plan<Vec2>& plan_robustly(Planner& planner, const DiscDomain& domain, cons
   if (plan->arrives() || !domain.goal_is_blocked()) return *plan;
   // A position connected to an unreachable one by a straight motion is unreachable too.
   std::vector<Vec2> tried{domain.goal(start)};
+  Budget rest = budget;
   for (const Vec2& position : domain.free_positions_near_goal()) {
     const auto is_connected = [&](const Vec2& other) { return domain.check(position, other); };
     if (std::any_of(tried.begin(), tried.end(), is_connected)) continue;
-    const Plan<Vec2>& next = planner.plan(domain.with_goal_at(position), start, budget, rng);
+    const Plan<Vec2>& next = planner.plan(domain.with_goal_at(position), start, rest, rng);
     if (next.arrives()) return next;
     tried.push_back(position);
+    if (next.samples >= rest.samples) break;
+    rest.samples -= next.samples;
   }
   return planner.plan(domain, start, budget, rng);
 }

@@ -198,6 +198,26 @@ TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
   CHECK_FALSE(planner.obstacle_on_goal());
 }
 
+TEST_CASE("every planner leads through a passage that is hardly wider than the robot") {
+  const double half_m = kRadius_m + kMargin_m + 0.003;
+  const std::vector<Shape> walls{Box{{-0.5, -2}, {0.5, -half_m}}, Box{{-0.5, half_m}, {0.5, 2}}};
+  for (const std::string_view name : kDrivingPlanners) {
+    CAPTURE(name);
+    const NamedPlanner named = make_driving_planner(std::string(name));
+    PlannerInWorld planner(named, walls, kField, kRadius_m, kMargin_m, 0.03, {1.5, 1});
+    Vec2 here(-1.5, 1);
+    Rng rng(1);
+    for (int i = 0; i < 1000 && here != Vec2(1.5, 1); ++i) {
+      const auto route = planner.route_from(here, rng);
+      REQUIRE(route);
+      REQUIRE(route->reaches_goal);
+      const Vec2 ahead = route->waypoint_m - here;
+      here = ahead.norm() <= 0.05 ? route->waypoint_m : Vec2(here + 0.05 * ahead.normalized());
+    }
+    CHECK(here == Vec2(1.5, 1));
+  }
+}
+
 TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
   PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);
