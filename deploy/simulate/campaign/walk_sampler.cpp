@@ -21,7 +21,7 @@ std::optional<Vec2> WalkSampler::sample_free() {
     const double y = rng_->uniform(-0.5, 0.5) * field_.width_m,
                  x = rng_->uniform(-0.5, 0.5) * field_.length_m;
     const Vec2 p(x, y);
-    if (field_.contains(p, radius_m_) && !world_.touches(p, radius_m_)) return p;
+    if (is_free(p)) return p;
   }
   return std::nullopt;
 }

@@ -16,6 +16,13 @@ class WalkSampler {
   /// `rng` must outlive the sampler.
   WalkSampler(const Scenario& scenario, double radius_m, Rng& rng);
 
+  [[nodiscard]] bool is_free(const Vec2& p) const {
+    return field_.contains(p, radius_m_) && !world_.touches(p, radius_m_);
+  }
+  /// Whether a straight line crosses no obstacle.
+  [[nodiscard]] bool is_seen(const Vec2& from_m, const Vec2& to_m) const {
+    return !world_.touches(from_m, to_m, 0);
+  }
   /// A place that touches nothing; nullopt: none was found.
   std::optional<Vec2> sample_free();
   /// The shortest path, without its start; nullopt if there is none.

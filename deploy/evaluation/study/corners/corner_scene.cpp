@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/map/floor_plan.hpp"
-#include "deploy/simulate/campaign/way_finder.hpp"
+#include "deploy/simulate/campaign/walk_sampler.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -111,12 +111,13 @@ std::optional<OpponentSpec> sample_person(const Scenario& scenario, const RobotS
   OpponentSpec person;
   person.radius_m = rng.chance(0.5) ? smallest_m : smallest_m * rng.uniform(1, 1.5);
   person.speed_mps = scenario.max_opponent_speed_mps * (rng.chance(0.5) ? 1 : rng.uniform(0.4, 1));
-  WayFinder finder(scenario, person.radius_m, rng);
+  WalkSampler finder(scenario, person.radius_m, rng);
   const Vec2 meeting = point_on(robot.start_m, way_m, rng.uniform(0.2, 0.95));
   for (int i = 0; i < kTries; ++i) {
-    const Vec2 hidden = finder.sample_free();
+    const std::optional<Vec2> place = finder.sample_free();
+    if (!place || !finder.is_free(meeting)) return std::nullopt;
+    const Vec2& hidden = *place;
     if (finder.is_seen(robot.start_m, hidden) || (hidden - robot.start_m).norm() < kPersonApart_m) continue;
-    if (!finder.is_free(meeting)) return std::nullopt;
     const auto walk = finder.path(hidden, meeting);
     if (!walk) continue;
     // People begin anywhere on their way, so that they and the robot meet at any time.
@@ -145,11 +146,13 @@ Scenario corner_scene(std::size_t kind, std::uint64_t seed) {
     constexpr std::array kFloors{add_corner, add_door, add_shelves, add_pillars, add_rooms};
     kFloors.at(kind)(scenario, rng);
     sample_robot_and_laser(scenario, rng);
-    WayFinder finder(scenario, scenario.radius_m + scenario.margin_m + 0.05, rng);
+    WalkSampler finder(scenario, scenario.radius_m + scenario.margin_m + 0.05, rng);
     RobotSpec robot;
-    robot.start_m = finder.sample_free();
+    const std::optional<Vec2> start = finder.sample_free(), end = finder.sample_free();
+    if (!start || !end) continue;
+    robot.start_m = *start;
     robot.start_heading_rad = rng.uniform(-3, 3);
-    const Vec2 goal = finder.sample_free();
+    const Vec2& goal = *end;
     const auto way = finder.path(robot.start_m, goal);
     if (!way || (goal - robot.start_m).norm() < kMinWay_m || finder.is_seen(robot.start_m, goal)) continue;
     robot.goals = {{goal}};
