@@ -7,6 +7,7 @@
 #include "common/process/command_line.hpp"
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
 #include "deploy/evaluation/study/corners/corner_study.hpp"
+#include "deploy/evaluation/study/explicit/explicit_study.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 #include "deploy/evaluation/study/vision/vision_study.hpp"
@@ -64,6 +65,9 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
       .check(positive())
       .show_default();
   corners.on_parsed([&action, options] { action = [options] { return study_corners(*options); }; });
+  const CliCommand joint = add_study(
+      study, "explicit", "Robots planned as one or by priority, against the safety search", *options);
+  joint.on_parsed([&action, options] { action = [options] { return study_explicit(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "agents/planning/domain/planning_domain.hpp"
+#include "agents/planning/joint/joint_plan.hpp"
+
+namespace sidestep {
+
+struct CompositeDomainSettings {
+  double step_m = 0.5;  ///< maximum motion of each robot in an extension
+  /// Probabilities that a robot's part of a sample is its start, or its goal. Otherwise it is a random free
+  /// position.
+  double start_probability = 0.15, goal_probability = 0.15;
+};
+
+/// All robots planned as one (Bruce 2006, chapter 5): a state holds the positions of all robots, at rest. In
+/// a motion, all robots leave together, drive straight with the same speed profile, scaled to each one's
+/// distance, and arrive together. So they are on a straight line of the composite space, and every check is
+/// exact. Refers to the problem, which has to outlive it.
+class CompositeDomain {
+ public:
+  using State = std::vector<Vec2>;
+
+  explicit CompositeDomain(const JointProblem& problem, const CompositeDomainSettings& settings = {})
+      : problem_(&problem), settings_(settings) {}
+
+  /// Euclidean in the composite space.
+  double distance(const State& a, const State& b) const;
+  /// One step, in which robots wait whose motion would touch another's.
+  std::optional<State> extend(const State& from, const State& to) const;
+  bool check(const State& from, const State& to) const;
+  State sample(Rng& rng) const;
+  const State& starts() const { return problem_->starts_m; }
+  State goal(const State&) const { return problem_->goals_m; }
+  State between(const State& a, const State& b, double fraction) const;
+
+ private:
+  bool is_clear_of_obstacles(const Vec2& from, const Vec2& to) const;
+  bool are_clear(const State& from, const State& to, std::size_t i, std::size_t j) const;
+  Vec2 sample_free(Rng& rng) const;
+
+  const JointProblem* problem_;
+  CompositeDomainSettings settings_;
+};
+
+static_assert(StraightDomain<CompositeDomain>);
+
+}  // namespace sidestep

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+/// A robot's planned motion over all time: trajectories from rest to rest, each of which begins where the one
+/// before ends. Between them, before the first and after the last, the robot rests.
+class Course {
+ public:
+  Course() = default;
+  /// At rest from `start` on.
+  Course(Time start, const Vec2& position_m) : legs_{Trajectory::resting(start, position_m)} {}
+
+  /// Precondition: the leg begins at rest where the course ends, and not before it ends.
+  void append(const Trajectory& leg) { legs_.push_back(leg); }
+
+  /// The first leg rests at the start.
+  std::span<const Trajectory> legs() const { return legs_; }
+  Time end() const { return legs_.back().end(); }
+  Vec2 rest_position_m() const { return legs_.back().rest_position_m(); }
+  State state_at(Time t) const;
+
+ private:
+  std::vector<Trajectory> legs_;
+};
+
+/// Whether a robot that executes `motion` until a time, at which it may still be moving, keeps
+/// `min_separation_m` from one on this course, from the start of the motion on. `until` Time::max(): for all
+/// time. By the exact clearance of common/motion.
+[[nodiscard]] bool is_clear(const Course& course, const Trajectory& motion, Time until,
+                            double min_separation_m);
+
+}  // namespace sidestep

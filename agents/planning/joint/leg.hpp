@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/motion/limits.hpp"
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+/// How long a straight motion from rest to rest accelerates, cruises and brakes.
+struct LegTimes {
+  Duration accelerate{0}, cruise{0}, brake{0};
+  Duration total() const { return accelerate + cruise + brake; }
+};
+
+/// The shortest times for a distance (trapezoidal speed profile), rounded up to whole nanoseconds so that the
+/// motion obeys the limits; zero for no distance. Preconditions: the distance is not negative, the limits are
+/// positive.
+[[nodiscard]] LegTimes leg_times(double distance_m, const MotionLimits& limits);
+
+/// The straight motion that begins at `start` and takes these times. It obeys the limits if the times are for
+/// this distance or a longer one.
+[[nodiscard]] Trajectory make_leg(Time start, const Vec2& from_m, const Vec2& to_m, const LegTimes& times);
+
+/// The part of a trajectory from `from` to `until`; it stops dead there. Thus the clearance of two
+/// trajectories that are clipped to the same interval is their clearance within it. Precondition: from <=
+/// until.
+[[nodiscard]] Trajectory clipped(const Trajectory& trajectory, Time from, Time until);
+
+}  // namespace sidestep

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "agents/planning/joint/composite_planner.hpp"
+#include "agents/planning/joint/prioritised_planner.hpp"
+#include "deploy/evaluation/planning/joint_check.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/agents/planning/joint/random_course.hpp"
+
+namespace sidestep::joint_planners_test {
+
+const Budget kBudget{20'000, 20'000};
+
+/// Free positions at least `apart_m` apart from each other and from the obstacles.
+std::vector<Vec2> places(Rng& rng, const ObstacleWorld& world, std::size_t count) {
+  std::vector<Vec2> result;
+  while (result.size() < count) {
+    const Vec2 place = random_position(rng, 1.3);
+    const bool is_apart =
+        std::ranges::all_of(result, [&](const Vec2& other) { return (place - other).norm() > 0.3; });
+    if (is_apart && !world.touches(place, 0.15)) result.push_back(place);
+  }
+  return result;
+}
+
+template <typename Planner>
+void check_on_random_floors() {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    std::vector<Shape> obstacles;
+    for (int i = 0; i < 4; ++i) {
+      const Vec2 at = random_position(rng, 1.2);
+      if (i % 2)
+        obstacles.emplace_back(Circle{at, 0.15});
+      else
+        obstacles.emplace_back(Box{at, at + Vec2(0.3, 0.1)});
+    }
+    const ObstacleWorld world(obstacles);
+    JointProblem problem;
+    problem.world = &world;
+    problem.field = {3, 3};
+    const std::size_t robots = 1 + rng.below(5);
+    problem.starts_m = places(rng, world, robots);
+    problem.goals_m = places(rng, world, robots);
+    Planner planner, again;
+    Rng first(seed), second(seed);
+    const JointPlan plan = planner.plan(problem, kBudget, first);
+    REQUIRE(plan.arrives());
+    CHECK(fault_of(problem, obstacles, plan.courses) == "");
+    CHECK(again.plan(problem, kBudget, second).makespan_s() == plan.makespan_s());
+  }
+}
+
+TEST_CASE("the composite planner solves random floors, and an independent check finds no fault") {
+  check_on_random_floors<CompositePlanner>();
+}
+
+TEST_CASE("the prioritised planner solves random floors, and an independent check finds no fault") {
+  check_on_random_floors<PrioritisedPlanner>();
+}
+
+//  +-----------------+
+//  | A             B |   A and B change places; only the bay lets them pass.
+//  +-------+  +------+
+//          +--+
+struct BayFloor {
+  BayFloor() {
+    problem.world = &world;
+    problem.field = {3, 0.9};
+    problem.starts_m = {{-1.2, 0.3}, {1.2, 0.3}};
+    problem.goals_m = {{1.2, 0.3}, {-1.2, 0.3}};
+  }
+  std::vector<Shape> obstacles{Box{{-1.5, -0.45}, {-0.2, 0.15}}, Box{{0.2, -0.45}, {1.5, 0.15}}};
+  ObstacleWorld world{obstacles};
+  JointProblem problem;
+};
+
+TEST_CASE("robots in a corridor pass each other by way of its bay") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const BayFloor floor;
+    Rng rng(seed);
+    const JointPlan plan = CompositePlanner().plan(floor.problem, kBudget, rng);
+    REQUIRE(plan.arrives());
+    CHECK(fault_of(floor.problem, floor.obstacles, plan.courses) == "");
+  }
+}
+
+TEST_CASE("priorities fail where the first robot's path leaves the second no room") {
+  // The robots drive as fast as they can, so whichever is first is past the bay before the other is in it.
+  const BayFloor floor;
+  Rng rng(1);
+  PrioritisedSettings settings;
+  settings.max_orders = 6;
+  const JointPlan plan = PrioritisedPlanner(settings).plan(floor.problem, kBudget, rng);
+  CHECK(plan.reason == PlanReason::kBudgetSpent);
+  CHECK(plan.courses.empty());
+}
+
+template <typename Planner>
+void check_refusals() {
+  const ObstacleWorld world({Circle{{0, 0}, 0.3}});
+  JointProblem problem;
+  Planner planner;
+  Rng rng(1);
+  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
+  problem.world = &world;
+  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
+  problem.starts_m = {{1, 0}, {1, 1}};
+  problem.goals_m = {{-1, 0}};
+  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
+  problem.goals_m = {{-1, 0}, {-1, 0.1}};
+  CHECK(planner.plan(problem, kBudget, rng).reason == PlanReason::kUnreachable);
+  problem.goals_m = {{-1, 0}, {0, 0.35}};
+  CHECK(planner.plan(problem, kBudget, rng).reason == PlanReason::kUnreachable);
+  problem.goals_m = {{-1, 0}, {-1, 1}};
+  CHECK(planner.plan(problem, Budget{.samples = 0}, rng).reason == PlanReason::kBudgetSpent);
+  CHECK(planner.plan(problem, kBudget, rng).arrives());
+}
+
+TEST_CASE("joint planners refuse what cannot be planned") {
+  check_refusals<CompositePlanner>();
+  check_refusals<PrioritisedPlanner>();
+}
+
+}  // namespace sidestep::joint_planners_test
