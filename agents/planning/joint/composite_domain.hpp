@@ -10,7 +10,7 @@
 namespace sidestep {
 
 struct CompositeDomainSettings {
-  double step_m = 0.5;  ///< maximum motion of each robot in an extension
+  double step_m = 1;  ///< maximum motion of each robot in an extension
   /// Probabilities that a robot's part of a sample is its start, or its goal. Otherwise it is a random free
   /// position.
   double start_probability = 0.15, goal_probability = 0.15;

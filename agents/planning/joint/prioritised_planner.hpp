@@ -10,7 +10,7 @@ namespace sidestep {
 struct PrioritisedSettings {
   SpaceTimeSettings domain{};
   ErrtSettings tree{};
-  std::size_t plans_per_robot = 4;       ///< of which the one that arrives first is kept
+  std::size_t plans_per_robot = 8;       ///< of which the one that arrives first is kept
   std::size_t samples_per_robot = 1500;  ///< for one tree, before another order is tried
   std::size_t max_orders = 1000;         ///< maximum number of orders that are tried
 };

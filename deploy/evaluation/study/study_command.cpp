@@ -9,6 +9,7 @@
 #include "deploy/evaluation/study/corners/corner_study.hpp"
 #include "deploy/evaluation/study/explicit/explicit_study.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
+#include "deploy/evaluation/study/potential/potential_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
 #include "deploy/evaluation/study/vision/vision_study.hpp"
 
@@ -68,6 +69,9 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand joint = add_study(
       study, "explicit", "Robots planned as one or by priority, against the safety search", *options);
   joint.on_parsed([&action, options] { action = [options] { return study_explicit(*options); }; });
+  const CliCommand potential = add_study(
+      study, "potential", "Potential fields: local minima and oscillation, against E* and NF1", *options);
+  potential.on_parsed([&action, options] { action = [options] { return study_potential(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

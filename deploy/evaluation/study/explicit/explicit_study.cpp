@@ -13,7 +13,7 @@ namespace {
 
 struct ExplicitSizes {
   std::vector<int> robots{2, 4, 6, 8, 12, 16};
-  int trials = 50;
+  int trials = 200;
   double budget_s = 1;
 };
 ExplicitSizes quick_explicit_sizes() { return {{2, 4}, 2, 0.5}; }
