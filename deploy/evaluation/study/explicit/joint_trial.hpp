@@ -17,8 +17,10 @@ enum class JointMethod {
 
 struct JointTrial {
   bool solved = false;
-  std::string fault{};        ///< found by the independent check; empty: none
-  double plan_us = 0;         ///< of all robots together, over the whole run
+  std::string fault{};  ///< found by the independent check; empty: none
+  /// Of all robots together, over the whole run: processor time, or for the safety search, wall clock,
+  /// accurate to 12 %.
+  double plan_us = 0;
   double makespan_ratio = 0;  ///< over the longest straight line; 0 unless solved
   double cycle_us = 0,
          cycle_p99_us = 0;  ///< one robot's planning in one control cycle; only the safety search

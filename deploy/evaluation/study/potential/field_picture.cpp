@@ -10,7 +10,9 @@ namespace sidestep {
 namespace {
 
 constexpr double kPixels_pm = 100;
-constexpr double kArrowSpacing_m = 0.15, kArrow_m = 0.1;
+constexpr double kArrowSpacing_m = 0.2, kArrow_m = 0.14;
+// Points of paths that are nearer to each other are not drawn.
+constexpr double kPathStep_m = 0.02;
 
 std::string arrows(const PlanWorld& world, const DriveDirection& field) {
   const ObstacleWorld obstacles(world.obstacles);
@@ -24,6 +26,14 @@ std::string arrows(const PlanWorld& world, const DriveDirection& field) {
       lines += fmt::format("<polyline points='{}'/>\n", svg_points(arrow, kPixels_pm));
     }
   return fmt::format("<g fill='none' stroke='#8b949e' stroke-width='1'>\n{}</g>\n", lines);
+}
+
+std::vector<Vec2> thinned(const std::vector<Vec2>& path_m) {
+  std::vector<Vec2> result{path_m.front()};
+  for (const Vec2& p : path_m)
+    if ((p - result.back()).norm() >= kPathStep_m) result.push_back(p);
+  result.push_back(path_m.back());
+  return result;
 }
 
 std::string legend(const PlanWorld& world, const std::vector<PicturePath>& paths) {
@@ -53,7 +63,7 @@ std::string field_picture(const PlanWorld& world, const DriveDirection& field,
   for (const Shape& shape : world.obstacles) svg += svg_obstacle(shape, kPixels_pm);
   for (const PicturePath& path : paths)
     svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='4'/>\n",
-                       svg_points(path.path_m, kPixels_pm), path.colour) +
+                       svg_points(thinned(path.path_m), kPixels_pm), path.colour) +
            svg_disc(path.path_m.back(), world.radius_m,
                     fmt::format("fill='none' stroke='{}' stroke-width='3'", path.colour), kPixels_pm);
   svg += svg_disc(world.queries.front().start_m, world.radius_m, "fill='#2da44e'", kPixels_pm);

@@ -24,7 +24,8 @@ int study(std::vector<std::string> arguments) {
 }
 
 TEST_CASE("a study with wrong arguments is refused before it begins") {
-  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit");
+  const std::string name =
+      GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit", "potential");
   StudyFolder folder;
   CAPTURE(name);
   CHECK(study({}) == kExitUsage);
@@ -40,7 +41,8 @@ TEST_CASE("a study with wrong arguments is refused before it begins") {
 }
 
 TEST_CASE("a study names the folder that it cannot write to before it begins") {
-  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit");
+  const std::string name =
+      GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit", "potential");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";
   CHECK_THROWS_WITH(study({name, "--out", folder.path()}), ContainsSubstring(folder.path()));
