@@ -3,6 +3,7 @@
 
 #include "agents/planning/joint/composite_planner.hpp"
 #include "agents/planning/joint/prioritised_planner.hpp"
+#include "common/motion/validity.hpp"
 #include "deploy/evaluation/planning/joint_check.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/planning/joint/random_course.hpp"
@@ -48,6 +49,13 @@ void check_on_random_floors() {
     const JointPlan plan = planner.plan(problem, kBudget, first);
     REQUIRE(plan.arrives());
     CHECK(fault_of(problem, obstacles, plan.courses) == "");
+    // Each trajectory satisfies the rules that the coordinator checks.
+    const FloorRules rules{problem.field, obstacles, problem.limits, problem.radius_m, problem.margin_m};
+    for (const Course& course : plan.courses)
+      for (const Trajectory& leg : course.legs()) {
+        CHECK(check_limits(leg, problem.limits) == Validity::kValid);
+        CHECK(check_workspace(leg, rules) == Validity::kValid);
+      }
     CHECK(again.plan(problem, kBudget, second).makespan_s() == plan.makespan_s());
   }
 }
