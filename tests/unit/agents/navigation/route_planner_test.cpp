@@ -27,11 +27,15 @@ struct World {
 };
 struct PlannerInWorld : World, RoutePlanner {
   PlannerInWorld(const NamedPlanner& named, const std::vector<Shape>& obstacles, const Field& field,
-                 double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
+                 double radius_m, double margin_m, std::span<const double> extra_clearances_m,
+                 const Vec2& goal_m)
       : World{ObstacleWorld(obstacles)},
-        RoutePlanner(named, world, field, radius_m, margin_m, {&extra_clearance_m, 1}) {
+        RoutePlanner(named, world, field, radius_m, margin_m, extra_clearances_m) {
     begin(goal_m);
   }
+  PlannerInWorld(const NamedPlanner& named, const std::vector<Shape>& obstacles, const Field& field,
+                 double radius_m, double margin_m, double extra_clearance_m, const Vec2& goal_m)
+      : PlannerInWorld(named, obstacles, field, radius_m, margin_m, {&extra_clearance_m, 1}, goal_m) {}
 };
 
 std::vector<Shape> shapes_of(const std::vector<Circle>& circles) { return {circles.begin(), circles.end()}; }
@@ -324,6 +328,55 @@ TEST_CASE("by every planner, a robot that follows its route gets around obstacle
     CHECK((here - goal).norm() <= 0.01);
     CHECK(steps < 200);
   }
+}
+
+/// Follows a route in small steps to its end. Returns the smallest distance from obstacles on the way, and
+/// that on the part of the way farther than `tight_m` from the goal.
+std::pair<double, double> drive(PlannerInWorld& planner, Vec2 at, const Vec2& goal, double tight_m) {
+  double nearest_m = 1e9, nearest_before_m = 1e9;
+  for (int step = 0; step < 2000 && (at - goal).norm() > 1e-6; ++step) {
+    const auto route = planner.route_from(at, random());
+    REQUIRE(route);
+    CHECK(route->reaches_goal);
+    const Vec2 way = route->waypoint_m - at;
+    at += std::min(0.01, way.norm()) * way.stableNormalized();
+    const double distance_m = planner.world.nearest(at).distance_m;
+    nearest_m = std::min(nearest_m, distance_m);
+    if ((at - goal).norm() > tight_m) nearest_before_m = std::min(nearest_before_m, distance_m);
+  }
+  CHECK((at - goal).norm() <= 1e-6);
+  return {nearest_m, nearest_before_m};
+}
+
+//   |        the gap is 2 w wide: routes keep the largest of the
+//   o->  *   clearances that fits
+//   |
+TEST_CASE("routes keep the largest extra clearance that fits through a gap") {
+  const std::vector<double> extra_m{0.4, 0.25, 0.1};
+  for (const auto& [half_gap_m, expected_m] :
+       {std::pair{0.6, 0.4}, std::pair{0.45, 0.25}, std::pair{0.3, 0.1}, std::pair{0.15, 0.0}}) {
+    CAPTURE(half_gap_m);
+    PlannerInWorld planner(shortest(),
+                           {Box{{-0.05, -2}, {0.05, -half_gap_m}}, Box{{-0.05, half_gap_m}, {0.05, 2}}},
+                           kField, kRadius_m, kMargin_m, extra_m, {1.2, 1});
+    const double nearest_m = drive(planner, {-1.2, -1}, {1.2, 1}, 0).first;
+    CHECK(nearest_m >= kRadius_m + kMargin_m + expected_m - 1e-6);
+    CHECK(nearest_m < kRadius_m + kMargin_m + expected_m + 0.02);
+  }
+}
+
+//   +-----
+//   | *      the goal is in a corner: only the last leg comes near
+//   |        the walls
+//        o
+TEST_CASE("a goal near obstacles is reached from the nearest place with the full clearance") {
+  const std::vector<double> extra_m{0.4, 0.03};
+  const Vec2 goal(-1.2, 1.3);
+  PlannerInWorld planner(shortest(), {Box{{-1.5, -0.5}, {-1.4, 1.6}}, Box{{-1.5, 1.5}, {1.5, 1.6}}}, kField,
+                         kRadius_m, kMargin_m, extra_m, goal);
+  const auto [nearest_m, before_m] = drive(planner, {-1.7, -1.2}, goal, 0.6);
+  CHECK(nearest_m >= kRadius_m + kMargin_m - 1e-6);
+  CHECK(before_m >= kRadius_m + kMargin_m + 0.4 - 1e-6);
 }
 
 }  // namespace sidestep::route_planner_test
