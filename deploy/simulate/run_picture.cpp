@@ -6,14 +6,12 @@
 #include <fmt/format.h>
 
 #include "deploy/shape_picture.hpp"
+#include "deploy/simulate/floor_picture.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr double kPixelsPerMetre = 200;
 constexpr double kOutlinePeriod_s = 0.25;
-
-const char* colour_of(Team team) { return team == Team::kBlue ? "#1f6feb" : "#e0a100"; }
 
 /// SVG's y axis points down.
 std::string circle(const Vec2& centre_m, double radius_m, const std::string& style) {
@@ -66,32 +64,15 @@ std::string RunPicture::track(const RobotSpec& robot, const std::vector<TrackPoi
          fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
 }
 
-std::string RunPicture::end(const RobotSpec& robot, const Vec2& position_m) const {
-  return circle(position_m, scenario_.radius_m, fmt::format("fill='{}'", colour_of(robot.team))) +
-         fmt::format("<text x='{:.1f}' y='{:.1f}' dy='0.35em' text-anchor='middle' fill='white'>{}</text>\n",
-                     kPixelsPerMetre * position_m.x(), -kPixelsPerMetre * position_m.y(), robot.id);
-}
-
 std::string RunPicture::svg() const {
-  const double width = kPixelsPerMetre * scenario_.field.length_m,
-               height = kPixelsPerMetre * scenario_.field.width_m;
-  std::string svg = fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' "
-      "font-family='sans-serif' "
-      "font-size='{:.0f}'>\n<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#f6f8fa' "
-      "stroke='#8b949e' stroke-width='4'/>\n",
-      -width / 2, -height / 2, width, height, kPixelsPerMetre * scenario_.radius_m, -width / 2, -height / 2,
-      width, height);
-  for (const Shape& obstacle : scenario_.obstacles) svg += svg_obstacle(obstacle, kPixelsPerMetre);
-  if (scenario_.map)
-    for (const Box& cells : scenario_.map->rectangles()) svg += svg_obstacle(cells, kPixelsPerMetre);
+  std::string svg = svg_floor(scenario_);
   for (const OpponentSpec& opponent : scenario_.opponents) svg += path_of(opponent);
   std::string ends;
   for (const RobotSpec& robot : scenario_.robots) {
     const auto found = tracks_.find(robot.id);
     if (found == tracks_.end()) continue;
     svg += track(robot, found->second);
-    ends += end(robot, found->second.back().position_m);
+    ends += svg_robot(scenario_, robot, found->second.back().position_m);
   }
   return svg + ends + "</svg>\n";
 }

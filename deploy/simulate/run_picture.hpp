@@ -25,7 +25,6 @@ class RunPicture {
     Vec2 position_m;
   };
   std::string track(const RobotSpec& robot, const std::vector<TrackPoint>& points) const;
-  std::string end(const RobotSpec& robot, const Vec2& position_m) const;
 
   const Scenario& scenario_;
   std::map<RobotId, std::vector<TrackPoint>> tracks_;

@@ -9,6 +9,7 @@
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
+#include "common/process/command_line.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
@@ -16,6 +17,7 @@
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/run_picture.hpp"
+#include "deploy/simulate/sight_picture.hpp"
 #include "deploy/simulate/system/sim_log.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
@@ -87,8 +89,32 @@ class SimRecorder {
   SimBus bus_;
 };
 
+/// Listens to the scans of one robot for a picture, if the options ask for one.
+class SightRecorder {
+ public:
+  /// Throws UsageError if no such robot has a laser.
+  SightRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
+      : bus_(network) {
+    if (!options.sight_of) return;
+    try {
+      picture_.emplace(scenario, *options.sight_of);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("--sight: ") + error.what());
+    }
+    bus_.become_observer();
+    bus_.observe<msg::LaserScan>(topics::kScan, *options.sight_of,
+                                 [this](const msg::LaserScan& scan) { picture_->add(scan); });
+  }
+  /// Null if no picture was asked for.
+  SightPicture* picture() { return picture_ ? &*picture_ : nullptr; }
+
+ private:
+  std::optional<SightPicture> picture_;
+  SimBus bus_;
+};
+
 /// Completes, writes and prints the report, and returns the exit code.
-int finish(const SimulateOptions& options, Report& report, const RunPicture& picture,
+int finish(const SimulateOptions& options, Report& report, const std::function<std::string()>& picture,
            steady_clock::time_point begin) {
   report.program = "simulate";
   report.seed = options.seed;
@@ -96,7 +122,7 @@ int finish(const SimulateOptions& options, Report& report, const RunPicture& pic
   const std::string path =
       options.report_file.empty() ? default_report_path(report.scenario, options.seed) : options.report_file;
   write_report(report, path);
-  if (!options.picture_file.empty()) write_file(options.picture_file, picture.svg());
+  if (!options.picture_file.empty()) write_file(options.picture_file, picture());
   fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
              summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
   return exit_code(report.verdict());
@@ -131,7 +157,8 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   };
   hooks.on_end = [&] { recorder->close(), recorder.reset(); };
   run_trial(trial, &report, hooks);
-  return finish(options, report, picture, begin);
+  return finish(
+      options, report, [&] { return picture.svg(); }, begin);
 }
 
 int simulate(const SimulateOptions& options) {
@@ -144,14 +171,19 @@ int simulate(const SimulateOptions& options) {
   SimSystem system(scenario, options.seed);
   log_events_of(system, options.log_level);
   RunPicture picture(scenario);
-  if (!options.picture_file.empty())
-    system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
+  SightRecorder sight(system.network(), scenario, options);
+  if (!options.picture_file.empty()) {
+    system.on_truth([&](const msg::GroundTruth& truth) {
+      sight.picture() ? sight.picture()->add(truth) : picture.add(truth);
+    });
+  }
   SimRecorder recorder(system.network(), scenario, options);
   const std::string abort_reason = run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
   recorder.close();
   Report report = system.metrics().report();
   report.abort_reason = abort_reason;
-  return finish(options, report, picture, begin);
+  const auto draw = [&] { return sight.picture() ? sight.picture()->svg() : picture.svg(); };
+  return finish(options, report, draw, begin);
 }
 
 }  // namespace sidestep

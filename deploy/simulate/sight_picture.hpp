@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "agents/agent/scan_view.hpp"
+#include "agents/perception/laser_sight.hpp"
+#include "common/config/scenario.hpp"
+#include "idl/monitor.hpp"
+
+namespace sidestep {
+
+/// Draws as SVG what a robot makes of the scans of its laser: the last scan, its local grid, where people may
+/// step out, and who moves.
+class SightPicture {
+ public:
+  /// The scenario must outlive the picture. Throws std::invalid_argument if it has no laser, or no such
+  /// robot.
+  SightPicture(const Scenario& scenario, RobotId robot);
+
+  /// Where the robots are, for the picture and for hits on them.
+  void add(const msg::GroundTruth& truth);
+  void add(const msg::LaserScan& scan);
+  std::string svg() const;
+
+ private:
+  std::string svg_grid() const;
+  std::string svg_scan() const;
+  std::string svg_people() const;
+
+  const Scenario& scenario_;
+  RobotId robot_;
+  FloorRules rules_;
+  ScanView view_;
+  LaserSight sight_;
+  std::map<RobotId, Vec2> robots_m_;
+};
+
+}  // namespace sidestep
