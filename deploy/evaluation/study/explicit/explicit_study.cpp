@@ -47,7 +47,7 @@ std::vector<std::string> trials_row(JointMethod method, int robots, const Trials
   return {name_of(method),
           fmt::format("{}", robots),
           fmt::format("{}", trials.count),
-          fmt::format("{:.0f}", trials.solved_percent()),
+          fmt::format("{:.1f}", trials.solved_percent()),
           fmt::format("{}", trials.faults),
           fmt::format("{:.0f}", trials.plan_us.median()),
           number_or_none(!has_cycles, trials.plan_us.quantile(0.99), 0),
@@ -72,7 +72,8 @@ StudyTable empty_table(JointScene scene) {
   return table;
 }
 
-/// The bars leave out the extremes: the safety search is timed by the wall clock, so some include preemption.
+/// The bars leave out the extremes: the safety search is timed by the wall clock, so some include other
+/// processes.
 PlotPoint point_of(double x, const Distribution& values, double scale) {
   return {x, scale * values.median(), scale * values.quantile(0.1), scale * values.quantile(0.9)};
 }

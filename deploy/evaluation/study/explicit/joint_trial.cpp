@@ -15,10 +15,14 @@ namespace {
 
 double microseconds(Duration duration) { return 1e6 * to_seconds(duration); }
 
-/// The sum of a histogram's durations, each counted as the upper edge of its bucket.
+/// A thread that was not preempted plans within a few tens of microseconds.
+constexpr Duration kPreempted = std::chrono::milliseconds(1);
+
+/// The sum of a histogram's durations, each counted as the upper edge of its bucket. Leaves out those that
+/// contain a preemption.
 double sum_us(const DurationHistogram& histogram) {
   double sum = 0;
-  for (std::size_t i = 0; i < DurationHistogram::kBuckets; ++i)
+  for (std::size_t i = 0; DurationHistogram::upper_edge(i) <= kPreempted; ++i)
     sum += static_cast<double>(histogram.buckets()[i]) * microseconds(DurationHistogram::upper_edge(i));
   return sum;
 }

@@ -19,7 +19,7 @@ struct JointTrial {
   bool solved = false;
   std::string fault{};  ///< found by the independent check; empty: none
   /// Of all robots together, over the whole run: processor time, or for the safety search, wall clock,
-  /// accurate to 12 %.
+  /// accurate to 12 %, without cycles of more than a millisecond, in which other processes ran.
   double plan_us = 0;
   double makespan_ratio = 0;  ///< over the longest straight line; 0 unless solved
   double cycle_us = 0,

@@ -20,7 +20,7 @@ TEST_CASE("the quick study of explicit planning solves its scenes without faults
     CHECK(rows.size() == 6);
     for (const StudyRow& row : rows) {
       CAPTURE(row);
-      CHECK(row.at("solved_percent") == "100");
+      CHECK(row.at("solved_percent") == "100.0");
       CHECK(row.at("faults") == "0");
       CHECK(std::stod(row.at("makespan")) > 1);
       CHECK(std::stod(row.at("plan_us")) > 0);
