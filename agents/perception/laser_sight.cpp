@@ -24,14 +24,15 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
   captured_at_ = scan.captured_at;
   beams_.read(scan, robots);
   tracks_.update(beams_, grid_, floor_);
-  grid_.update(beams_);
+  const bool is_grid_due = captured_at_ - grid_.updated_at() >= settings_.grid_period;
+  if (is_grid_due) grid_.update(beams_);
   for (int beam = 0; beam < beams_.count(); ++beam) {
     // What is near a robot may be the wall behind it.
     is_fixed_[static_cast<std::size_t>(beam)] =
         floor_.is_near(beams_.end_m(beams_[beam]), explained_within_m_);
   }
   visibility_.update(beams_, [&](int beam) { return is_fixed_[static_cast<std::size_t>(beam)] != 0; });
-  find_unknown();
+  if (is_grid_due) find_unknown();
   return true;
 }
 

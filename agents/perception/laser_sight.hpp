@@ -14,7 +14,9 @@
 namespace sidestep {
 
 struct LaserSightSettings {
-  double pose_error_m = 0.02;           ///< bound of the error of a scan's position
+  double pose_error_m = 0.02;  ///< bound of the error of a scan's position
+  /// The grid takes scans at most this often: it takes most of the time, and nothing stands up as quickly.
+  Duration grid_period{90'000'000};
   double unknown_cell_m = 0.2;          ///< side of the squares that report what stands but is not on the map
   double unknown_range_m = 2.5;         ///< squares farther away are ignored
   std::size_t max_unknown = 48;         ///< number of nearest squares
