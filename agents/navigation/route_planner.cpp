@@ -18,10 +18,13 @@ constexpr double kReached_m = 0.1;
 constexpr std::size_t kMaxSamples = 5000;
 // Random samples cost more, and are all spent when there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
+// Of roadmaps, which would otherwise grow with each query that they do not solve.
+constexpr std::size_t kMaxRandomNodes = 2000;
 
 Budget cycle_budget(const NamedPlanner& planner) {
   Budget budget;
   budget.samples = planner.is_random ? kMaxRandomSamples : kMaxSamples;
+  if (planner.is_random) budget.nodes = kMaxRandomNodes;
   return budget;
 }
 
