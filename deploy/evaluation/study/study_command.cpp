@@ -4,7 +4,9 @@
 #include <charconv>
 #include <memory>
 
+#include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
+#include "deploy/evaluation/study/buildings/buildings_study.hpp"
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
 #include "deploy/evaluation/study/corners/corner_study.hpp"
 #include "deploy/evaluation/study/explicit/explicit_study.hpp"
@@ -37,6 +39,44 @@ CliCommand add_study(const CliCommand& study, const std::string& name, const std
   return command;
 }
 
+void add_clutter_study(const CliCommand& study, std::function<int()>& action) {
+  const auto options = std::make_shared<StudyOptions>();
+  const auto planners = std::make_shared<std::vector<std::string>>();
+  const CliCommand clutter = add_study(
+      study, "clutter", "Every planner among obstacles and people: time, contacts, crashes", *options);
+  clutter.add_option("--planner", *planners, "planners, separated by commas [all that drive robots]")
+      .comma_separated()
+      .check(one_of(driving_planners()));
+  clutter.add_option("--jobs", options->jobs, "number of parallel processes")
+      .check(positive())
+      .show_default();
+  clutter.on_parsed([&action, options, planners] {
+    action = [options, planners] { return study_clutter(*options, *planners); };
+  });
+}
+
+void add_buildings_study(const CliCommand& study, std::function<int()>& action) {
+  const auto options = std::make_shared<BuildingsOptions>();
+  const CliCommand buildings = add_study(
+      study, "buildings", "Robots that drive to random places of scenarios again and again", options->study);
+  buildings.add_option("SCENARIO", options->scenario_files, "scenario files; their goals are the places")
+      .required();
+  buildings.add_option("--planner", options->planners, "planners, separated by commas")
+      .comma_separated()
+      .check(one_of(driving_planners()))
+      .show_default();
+  buildings.add_option("--seconds", options->seconds, "virtual time of each run")
+      .check(in_range(1, 86400))
+      .show_default();
+  buildings.add_option("--trials", options->trials, "runs of each planner, with consecutive seeds")
+      .check(positive())
+      .show_default();
+  buildings.add_option("--jobs", options->study.jobs, "number of parallel processes")
+      .check(positive())
+      .show_default();
+  buildings.on_parsed([&action, options] { action = [options] { return study_buildings(*options); }; });
+}
+
 }  // namespace
 
 void add_study_command(const CliCommand& root, std::function<int()>& action) {
@@ -53,12 +93,8 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
       study, "planning",
       "Planners and collision structures: caches, trees, graphs, roadmaps, obstacles, terrain", *options);
   planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
-  const CliCommand clutter = add_study(
-      study, "clutter", "Every planner among obstacles and people: time, contacts, crashes", *options);
-  clutter.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(positive())
-      .show_default();
-  clutter.on_parsed([&action, options] { action = [options] { return study_clutter(*options); }; });
+  add_clutter_study(study, action);
+  add_buildings_study(study, action);
   const CliCommand corners =
       add_study(study, "corners",
                 "A robot with a laser, and people who step out from behind corners: crashes, time", *options);

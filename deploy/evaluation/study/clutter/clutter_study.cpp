@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/config/planner_names.hpp"
 #include "deploy/evaluation/study/clutter/clutter_scene.hpp"
+#include "deploy/evaluation/study/clutter/clutter_summary.hpp"
 #include "deploy/evaluation/study/table/experiment.hpp"
 
 namespace sidestep {
@@ -57,9 +59,10 @@ bool is_safe(const StudyTable& table) {
 
 }  // namespace
 
-int study_clutter(const StudyOptions& options) {
+int study_clutter(const StudyOptions& options, const std::vector<std::string>& planners) {
   require_study_output(options);
-  const ClutterSizes sizes = options.is_quick ? quick_clutter_sizes() : ClutterSizes{};
+  ClutterSizes sizes = options.is_quick ? quick_clutter_sizes() : ClutterSizes{};
+  if (!planners.empty()) sizes.planners = planners;
   Experiment people = experiment_of("people", options), buildings = experiment_of("buildings", options);
   for (const std::string& planner : sizes.planners) {
     const auto seed = [&](int trial) { return options.seed + static_cast<std::uint64_t>(trial); };
@@ -72,7 +75,11 @@ int study_clutter(const StudyOptions& options) {
   bool all_safe = true;
   for (Experiment* experiment : {&people, &buildings}) {
     measure(*experiment);
-    write_study_table(experiment->table, "clutter", options);
+    const StudyTable summary = clutter_summary(experiment->table);
+    experiment->table.plots.push_back(success_plot(summary));
+    fmt::print("{}", markdown_of(summary));
+    const std::string only = planners.empty() ? "" : fmt::format(" --planner {}", fmt::join(planners, ","));
+    write_study_table(experiment->table, "clutter" + only, options);
     all_safe = all_safe && is_safe(experiment->table);
   }
   return all_safe ? 0 : 1;

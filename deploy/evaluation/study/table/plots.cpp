@@ -12,7 +12,8 @@ namespace sidestep {
 namespace {
 
 constexpr std::array kLineColours{"#9400d3", "#009e73", "#2a78c8", "#e69f00", "#8c5a3c",
-                                  "#222222", "#d62728", "#ff7fbf", "#8f8f8f"};
+                                  "#222222", "#d62728", "#ff7fbf", "#8f8f8f", "#17becf",
+                                  "#b0b000", "#f0a0a0", "#70d070", "#a0a0ff", "#005050"};
 
 /// Quotes text for gnuplot: within single quotes, only a single quote has to be doubled.
 std::string quoted(const std::string& text) {

@@ -40,6 +40,24 @@ TEST_CASE("a study with wrong arguments is refused before it begins") {
   CHECK_FALSE(std::filesystem::exists(folder.path()));
 }
 
+TEST_CASE("a study of buildings needs scenarios that exist, and planners that drive") {
+  StudyFolder folder;
+  const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/house.yaml";
+  CHECK(study({"buildings", "--out", folder.path()}) == kExitUsage);
+  CHECK(study({"buildings", file}) == kExitUsage);
+  for (const auto& [option, value] : {std::pair{"--planner", "errt,legs"},
+                                      {"--planner", "legs"},
+                                      {"--seconds", "0"},
+                                      {"--trials", "-1"},
+                                      {"--jobs", "0"}}) {
+    CAPTURE(option, value);
+    CHECK(study({"buildings", file, "--out", folder.path(), option, value}) == kExitUsage);
+  }
+  CHECK_THROWS_WITH(study({"buildings", "nowhere.yaml", "--out", folder.path()}),
+                    ContainsSubstring("nowhere.yaml"));
+  CHECK_FALSE(std::filesystem::exists(folder.path()));
+}
+
 TEST_CASE("a study names the folder that it cannot write to before it begins") {
   const std::string name =
       GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit", "potential");

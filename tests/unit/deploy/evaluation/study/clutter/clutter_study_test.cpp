@@ -2,6 +2,7 @@
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
 
 #include "deploy/evaluation/study/clutter/clutter_scene.hpp"
+#include "deploy/evaluation/study/clutter/clutter_summary.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
@@ -27,6 +28,34 @@ TEST_CASE("the quick study drives every robot among people without a crash in mo
     }
     CHECK(folder.has_png(name));
   }
+}
+
+TEST_CASE("the summary of the clutter study counts the runs of each planner and number of people") {
+  StudyTable runs;
+  runs.name = "people";
+  runs.columns = {"planner",           "robots",  "people",   "seed",
+                  "seconds",           "arrived", "contacts", "crashes",
+                  "crashes_in_motion", "audit"};
+  runs.rows = {
+      cells("errt", 2, 5, 1, 10.0, 2, 0, 3, 0, "passed"), cells("errt", 2, 5, 2, 30.0, 1, 1, 4, 2, "passed"),
+      cells("errt", 2, 5, 3, 20.0, 2, 0, 0, 0, "passed"), cells("errt", 2, 9, 1, 50.0, 0, 0, 0, 0, "passed"),
+      cells("nf1", 2, 5, 1, 7.0, 2, 0, 0, 0, "passed")};
+  const StudyTable summary = clutter_summary(runs);
+  const auto rows = rows_of(summary);
+  REQUIRE(rows.size() == 3);
+  const StudyRow first{{"planner", "errt"},       {"people", "5"},   {"runs", "3"},
+                       {"arrived", "5"},          {"robots", "6"},   {"median_s", "20.0"},
+                       {"longest_s", "30.0"},     {"contacts", "1"}, {"crashes", "7"},
+                       {"crashes_in_motion", "2"}};
+  CHECK(rows[0] == first);
+  CHECK(rows[1].at("people") == "9");
+  CHECK(rows[2].at("planner") == "nf1");
+  const Plot plot = success_plot(summary);
+  REQUIRE(plot.lines.size() == 2);
+  REQUIRE(plot.lines[0].points.size() == 2);
+  CHECK(plot.lines[0].points[0].median == Approx(5.0 / 6));
+  CHECK(plot.lines[0].points[1].median == 0);
+  CHECK(plot.lines[1].points[0].median == 1);
 }
 
 TEST_CASE("a scene of the clutter study depends on the seed, and not on the planner") {

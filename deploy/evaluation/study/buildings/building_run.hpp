@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "deploy/evaluation/study/buildings/random_trips.hpp"
+
+namespace sidestep {
+
+struct BuildingResult {
+  TripCounts trips;
+  std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
+  double distance_m = 0;  ///< sum over all robots
+  std::uint64_t route_changes = 0;
+  double plan_p99_us = 0, plan_max_us = 0;  ///< processor time of one decision
+  bool audit_passed = false;
+
+  /// Whether nothing went wrong: all goals were reached or reported as blocked, nothing was touched.
+  bool is_good() const { return trips.stuck == 0 && contacts == 0 && crashes_in_motion == 0 && audit_passed; }
+};
+
+/// Sends the robots of a scenario to random places for some virtual time, and lets them finish. Their goals
+/// in the scenario are only places.
+[[nodiscard]] BuildingResult run_building(const Scenario& scenario, Duration duration, std::uint64_t seed);
+
+}  // namespace sidestep

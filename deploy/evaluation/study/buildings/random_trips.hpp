@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "common/config/scenario.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+
+struct TripSettings {
+  Duration max_pause{3'000'000'000};      ///< a robot stays at a goal for a random time up to this
+  Duration patience{30'000'000'000};      ///< a goal that is reported blocked for longer is given up
+  Duration stuck_after{180'000'000'000};  ///< an order that takes longer, and is not blocked, is given up
+};
+
+/// What has become of all orders.
+struct TripCounts {
+  int orders = 0, reached = 0;
+  int blocked = 0;  ///< given up after being reported as blocked, or blocked at the end
+  int stuck = 0;    ///< neither reached nor reported as blocked in time
+  double longest_s = 0;
+};
+
+/// A client that sends each robot to random places, one after another. The places are the starts and goals of
+/// the scenario. No two robots have places that overlap.
+class RandomTrips {
+ public:
+  RandomTrips(SimNetwork& network, const Scenario& scenario, std::uint64_t seed,
+              const TripSettings& settings = {});
+
+  /// Follows the orders, and sends robots that have none to their next places. Call it several times a
+  /// second.
+  void update(Time now);
+  /// From here on robots get no more orders.
+  void finish() { is_finishing_ = true; }
+  /// Whether all orders are over.
+  bool is_over() const;
+  /// Counts orders that are not over as blocked or stuck.
+  TripCounts counts(Time now) const;
+
+ private:
+  struct Trip {
+    std::optional<OrderHandle> order;  ///< none: the robot pauses
+    Vec2 place_m{0, 0};
+    Time begun_at{}, next_at{};
+    std::optional<Time> blocked_since{};
+  };
+  void follow(Trip& trip, Time now);
+  void begin(RobotId robot, Trip& trip, Time now);
+  void end(Trip& trip, Time now);
+
+  TripSettings settings_;
+  SimBus bus_;
+  OrderClient client_;
+  Rng rng_;
+  double separation_m_;  // of places
+  std::vector<Vec2> places_;
+  std::map<RobotId, Trip> trips_;
+  TripCounts counts_;
+  bool is_finishing_ = false;
+};
+
+}  // namespace sidestep
