@@ -28,6 +28,14 @@ bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
   return (other < self) == is_low_first;
 }
 
+/// The same where robots cannot pass each other, and may have to wait for whole periods: a new order in each
+/// of them, as good as random, so that each robot is soon ahead of all others.
+bool may_pass_first(RobotId other, RobotId self, Time t, Duration period) {
+  const auto number = static_cast<std::uint64_t>(t.time_since_epoch() / period);
+  const auto rank = [&](RobotId robot) { return std::pair(Rng((number << 16) + robot).bits(), robot); };
+  return rank(other) < rank(self);
+}
+
 /// What remains of a version's intent at a time; nullopt if the robot will stay at its goal.
 std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m) {
   if (!version.intent) return std::nullopt;
@@ -136,7 +144,7 @@ void Agent::decide_whether_to_give_way(Time now) {
     OtherRobot other{version->robot, version->trajectory.rest_position_m()};
     if (version->intent && !assignment_.other(version->robot).is_held) {
       other.goals_m = {version->intent->goal_m, version->intent->target_m};
-      other.has_right_of_way = has_right_of_way(version->robot, robot_.id, now, passage_period_);
+      other.has_right_of_way = may_pass_first(version->robot, robot_.id, now, passage_period_);
     }
     others.push_back(other);
   }
