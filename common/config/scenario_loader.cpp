@@ -97,11 +97,9 @@ void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
   });
 }
 
-/// Images show circles only, and two robots of a team with the same pattern cannot be distinguished in them.
+/// Two robots of a team with the same pattern cannot be distinguished in images.
 void check_images(YamlMap& map, const Scenario& scenario) {
   if (!scenario.vision.images) return;
-  if (scenario.map || circles_of(scenario.obstacles).size() != scenario.obstacles.size())
-    map.location_of("vision").fail("images: cannot show obstacles other than circles");
   try {
     require_unique_numbers(scenario);
   } catch (const std::invalid_argument& error) {

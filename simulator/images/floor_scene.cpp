@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/images/floor_scene.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace sidestep {
 namespace {
 
@@ -46,6 +49,14 @@ FloorScene floor_scene(const Scenario& scenario, const World& world) {
   for (const Circle& disc : world.opponents().discs()) floor.cylinders.push_back(opponent(disc));
   if (world.ball()) floor.ball = ball(world.ball()->state().position_m, world.ball()->state().velocity_mps);
   return floor;
+}
+
+StaticScene static_scene(const Scenario& scenario) {
+  StaticScene statics;
+  std::ranges::copy_if(scenario.obstacles, std::back_inserter(statics.shapes),
+                       [](const Shape& shape) { return !std::holds_alternative<Circle>(shape); });
+  statics.map = scenario.map;
+  return statics;
 }
 
 }  // namespace sidestep

@@ -6,6 +6,7 @@
 
 #include "common/config/scenario.hpp"
 #include "simulator/rendering/scene.hpp"
+#include "simulator/rendering/static_obstacles.hpp"
 #include "simulator/world/world.hpp"
 
 namespace sidestep {
@@ -23,5 +24,8 @@ struct FloorScene {
 FloorScene floor_scene(const Scenario& scenario);
 /// The floor in the world's current state.
 FloorScene floor_scene(const Scenario& scenario, const World& world);
+
+/// The obstacles of a scenario that are not circles, and its map. Circles are cylinders of the floor.
+StaticScene static_scene(const Scenario& scenario);
 
 }  // namespace sidestep

@@ -22,7 +22,8 @@ ImageOutput::ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simu
   spec.format = images.format;
   Rng rng(seed);
   for (const CameraModel& camera : camera_grid(scenario))
-    renderers_.emplace_back(camera, scenario.field, butterfly(), spec, Rng(rng.bits()));
+    renderers_.emplace_back(camera, scenario.field, butterfly(), spec, Rng(rng.bits()),
+                            static_scene(scenario));
   image_.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
   image_.header().incarnation(incarnation);
   image_.image_format(images.format == PixelFormat::kRgb ? msg::ImageFormat::IMAGE_RGB

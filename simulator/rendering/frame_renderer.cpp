@@ -39,7 +39,7 @@ cv::Rect expanded(const cv::Rect& rect, int by) {
 }  // namespace
 
 FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, const MarkerLayout& layout,
-                             const RenderSpec& spec, Rng rng)
+                             const RenderSpec& spec, Rng rng, const StaticScene& statics)
     : camera_(checked(camera, spec)),
       field_(field),
       layout_(layout),
@@ -48,12 +48,13 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
       noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
   // The outer edge of the kernel's last pixel is three standard deviations from its centre.
   if (spec_.blur_px > kMinBlur_px) blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
-  render_empty_floor();
+  render_floor_once(statics);
 }
 
-void FrameRenderer::render_empty_floor() {
+void FrameRenderer::render_floor_once(const StaticScene& statics) {
   const Eigen::Vector3d& gain = spec_.colour_gain;
-  const Canvas neutral_floor = render_floor(camera_, field_, spec_, rng_);
+  Canvas neutral_floor = render_floor(camera_, field_, spec_, rng_);
+  cover_ = draw_static(statics, camera_, field_, spec_, neutral_floor);
   cv::multiply(neutral_floor, cv::Scalar(gain.x(), gain.y(), gain.z()), floor_);
   floor_.copyTo(canvas_);
   clean_.resize(row_bytes() * static_cast<std::size_t>(canvas_.rows));
@@ -68,7 +69,7 @@ Eigen::Vector3d FrameRenderer::gain_at(const Vec2& p) const {
 void FrameRenderer::sort_objects(const Scene& scene) {
   objects_.clear();
   const auto add = [&](const Vec2& place_m, VisibleObject::Kind kind, std::size_t index) {
-    objects_.push_back({(place_m - camera_.position_m().head<2>()).norm(), kind, index});
+    objects_.push_back({(place_m - camera_.position_m().head<2>()).norm(), place_m, kind, index});
   };
   for (std::size_t i = 0; i < scene.robots.size(); ++i)
     add(scene.robots[i].position_m, VisibleObject::Kind::kRobot, i);
@@ -129,6 +130,14 @@ cv::Rect FrameRenderer::draw_object(const Scene& scene, const VisibleObject& obj
   return draw(*scene.ball, light, camera_, spec_.exposure_s, canvas_);
 }
 
+cv::Rect FrameRenderer::draw_visible_part(const Scene& scene, const VisibleObject& object) {
+  if (cover_.samples.empty()) return draw_object(scene, object);
+  canvas_.copyTo(before_);
+  const cv::Rect drawn = draw_object(scene, object);
+  if (!drawn.empty()) hide_behind(cover_, camera_, object.place_m, drawn, before_(drawn), canvas_);
+  return drawn;
+}
+
 void FrameRenderer::blur(const cv::Rect& rect) {
   // OpenCV rounds identically on every machine only for a matrix with its own memory, not for part of a
   // larger one.
@@ -160,7 +169,7 @@ void FrameRenderer::render(const Scene& scene, std::uint8_t* pixels) {
   changed_.clear();
   const cv::Rect image(0, 0, canvas_.cols, canvas_.rows);
   for (const VisibleObject& object : objects_) {
-    const cv::Rect drawn = draw_object(scene, object);
+    const cv::Rect drawn = draw_visible_part(scene, object);
     if (!drawn.empty()) changed_.push_back(aligned_to_pairs(expanded(drawn, blur_size_ / 2)) & image);
   }
   for (const cv::Rect& rect : changed_) blur(rect);

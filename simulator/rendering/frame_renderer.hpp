@@ -12,17 +12,19 @@
 #include "simulator/rendering/render_spec.hpp"
 #include "simulator/rendering/scene.hpp"
 #include "simulator/rendering/sensor_noise.hpp"
+#include "simulator/rendering/static_obstacles.hpp"
 #include "simulator/rendering/vertical_body.hpp"
 
 namespace sidestep {
 
-/// Renders the frames of one camera. The empty floor is drawn, blurred and converted once; the cost of a
-/// frame is that of drawing its objects, plus one pass over its bytes that adds the noise.
+/// Renders the frames of one camera. The floor with its static obstacles is drawn, blurred and converted
+/// once; the cost of a frame is that of drawing its objects, plus one pass over its bytes that adds the
+/// noise.
 class FrameRenderer {
  public:
   /// The state of `rng` determines the frames. Throws std::invalid_argument if the width is odd with kYuv422.
   FrameRenderer(const CameraModel& camera, const Field& field, const MarkerLayout& layout,
-                const RenderSpec& spec, Rng rng);
+                const RenderSpec& spec, Rng rng, const StaticScene& statics = {});
 
   /// Renders a frame in the spec's format and the camera's size. Precondition: `pixels` has space for
   /// ImageView::bytes() bytes.
@@ -36,13 +38,16 @@ class FrameRenderer {
   /// An object of the scene; the farthest from the camera is drawn first.
   struct VisibleObject {
     double distance_m;
+    Vec2 place_m;
     enum class Kind { kRobot, kCylinder, kBall } kind;
     std::size_t index;
   };
 
-  void render_empty_floor();
+  void render_floor_once(const StaticScene& statics);
   void sort_objects(const Scene& scene);
   cv::Rect draw_object(const Scene& scene, const VisibleObject& object);
+  /// The same, without what static obstacles hide.
+  cv::Rect draw_visible_part(const Scene& scene, const VisibleObject& object);
   cv::Rect draw_robot(const SceneRobot& robot);
   cv::Rect draw_cylinder(const SceneCylinder& cylinder);
   Eigen::Vector3d gain_at(const Vec2& p) const;
@@ -57,13 +62,15 @@ class FrameRenderer {
   RenderSpec spec_;
   Rng rng_;
   SensorNoise noise_;
-  Canvas floor_;                           ///< under the actual light
+  StaticCover cover_;
+  Canvas floor_;                           ///< with static obstacles, under the actual light
   Canvas canvas_;                          ///< the floor with the objects drawn so far
   int blur_size_ = 1;                      ///< of the kernel, odd
-  std::vector<std::uint8_t> clean_floor_;  ///< the frame of the empty floor without noise
+  std::vector<std::uint8_t> clean_floor_;  ///< the frame of that floor without noise
   std::vector<std::uint8_t> clean_;        ///< the same with the objects
   std::vector<VisibleObject> objects_;
   std::vector<cv::Rect> changed_;
+  Canvas before_;  ///< the canvas before an object is drawn
   std::vector<TopDot> dots_;
 };
 

@@ -51,6 +51,23 @@ TEST_CASE("robots change rooms through doors of random floor plans, without cont
   require_safe(system);
 }
 
+TEST_CASE("robots that are localised in camera images change rooms among walls and map cells") {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  Rng rng(seed);
+  const std::string text = "vision: {columns: 2, overlap_m: 0.4, images: {}}\n" + random_rooms(rng);
+  CAPTURE(text);
+  Scenario scenario = parse_scenario(text, "rooms.yaml");
+  // A map whose border lies around the field, with two blocked cells in it.
+  BitGrid blocked(82, 52);
+  blocked.set(24, 8);
+  blocked.set(60, 40);
+  scenario.map = std::make_shared<FloorMap>(OccupancyMap(MapGrid{82, 52, 0.1, {-4.1, -2.6}}, blocked));
+  SimSystem system(scenario, seed);
+  CHECK(system.run_until_arrived(system.begin() + std::chrono::seconds(60)));
+  require_safe(system);
+}
+
 TEST_CASE("every planner drives robots from room to room") {
   const auto planner = std::string(GENERATE(from_range(kDrivingPlanners.begin(), kDrivingPlanners.end())));
   CAPTURE(planner);

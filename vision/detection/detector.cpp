@@ -48,6 +48,7 @@ ObstacleFinderSettings obstacle_finder_settings(const DetectorSettings& settings
   result.min_radius_m = settings.min_obstacle_radius_m;
   result.robot_height_m = settings.robot_height_m;
   result.known_obstacles = settings.known_obstacles;
+  result.known_map = settings.known_map;
   return result;
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/camera/camera_model.hpp"
+#include "common/collision/shapes.hpp"
 #include "common/image/image.hpp"
+#include "common/map/floor_map.hpp"
 #include "idl/vision.hpp"
 #include "vision/detection/obstacle_finder.hpp"
 #include "vision/patterns/identifier.hpp"
@@ -23,7 +26,8 @@ struct DetectorSettings {
   double ball_radius_m = 0.0215;
   Colour ball = Colour::kOrange;
   double min_obstacle_radius_m = 0.03;
-  std::vector<Circle> known_obstacles;  ///< not reported
+  std::vector<Shape> known_obstacles;         ///< not reported
+  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported; null: none
 };
 
 /// Detects robots, balls and obstacles in the frames of one camera. Obstacles are all that is neither robot,

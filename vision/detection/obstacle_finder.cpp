@@ -19,7 +19,7 @@ constexpr double kMaxDotAreaRatio = 3;     // of the largest dot's area: larger 
 constexpr double kMinFillRatio = 0.6;      // coloured share of the pixels inside the contour
 constexpr double kMaxHalfWidthSine = 0.7;  // beyond it the obstacle is treated as below the camera
 
-// Known obstacles are extended by this margin, and assumed to be this high.
+// Known obstacles are extended by this margin; circles are assumed to be this high.
 constexpr double kKnownMargin_m = 0.04, kKnownHeight_m = 0.3;
 
 constexpr int kGrey = 128;
@@ -117,20 +117,41 @@ bool ObstacleFinder::find_contour(const Blob& blob, const ImageView& image, cons
   return !contour_.empty() && blob.area_px >= kMinFillRatio * static_cast<double>(enclosed_px);
 }
 
-/// Whether the whole contour lies in the shadow of one known obstacle.
+/// Whether a wall or a map cell that is not a circle hides a point on the floor.
+bool ObstacleFinder::is_in_shadow_of_floor(const Vec2& floor_m) const {
+  const Vec3& eye_m = camera_.position_m();
+  const double share = std::min(1.0, settings_.robot_height_m / eye_m.z());
+  const Segment ray{floor_m, floor_m + share * (eye_m.head<2>() - floor_m)};
+  constexpr double kMargin2_m2 = kKnownMargin_m * kKnownMargin_m;
+  return std::ranges::any_of(settings_.known_obstacles,
+                             [&](const Shape& known) {
+                               return !std::holds_alternative<Circle>(known) &&
+                                      squared_distance(ray, known) <= kMargin2_m2;
+                             }) ||
+         (settings_.known_map && touches(settings_.known_map->cells(), settings_.known_map->field(),
+                                         ray.from_m, ray.to_m, kKnownMargin_m));
+}
+
+/// Whether the whole contour lies in the shadow of one known circle, or of the other shapes together, which
+/// may be parts of one wall.
 bool ObstacleFinder::is_in_known_shadow() const {
-  return std::ranges::any_of(settings_.known_obstacles, [&](const Circle& known) {
-    const Circle extended{known.centre_m, known.radius_m + kKnownMargin_m};
-    const VerticalCylinders cylinder{{&extended, 1}, kKnownHeight_m};
-    return std::ranges::all_of(contour_,
-                               [&](const Vec2& point) { return is_occluded(point, cylinder, camera_); });
-  });
+  return std::ranges::any_of(settings_.known_obstacles,
+                             [&](const Shape& known) {
+                               const auto* const circle = std::get_if<Circle>(&known);
+                               if (!circle) return false;
+                               const Circle extended{circle->centre_m, circle->radius_m + kKnownMargin_m};
+                               const VerticalCylinders cylinder{{&extended, 1}, kKnownHeight_m};
+                               return std::ranges::all_of(contour_, [&](const Vec2& point) {
+                                 return is_occluded(point, cylinder, camera_);
+                               });
+                             }) ||
+         std::ranges::all_of(contour_, [&](const Vec2& point) { return is_in_shadow_of_floor(point); });
 }
 
 /// Independent of the known obstacle's height.
 bool ObstacleFinder::is_within_known(const Circle& circle) const {
-  return std::ranges::any_of(settings_.known_obstacles, [&](const Circle& known) {
-    return (known.centre_m - circle.centre_m).norm() + circle.radius_m <= known.radius_m + kKnownMargin_m;
+  return std::ranges::any_of(settings_.known_obstacles, [&](const Shape& known) {
+    return signed_distance(circle.centre_m, known) + circle.radius_m <= kKnownMargin_m;
   });
 }
 

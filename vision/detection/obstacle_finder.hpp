@@ -2,13 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "common/camera/camera_model.hpp"
+#include "common/collision/shapes.hpp"
 #include "common/geometry/circle.hpp"
 #include "common/image/image.hpp"
+#include "common/map/floor_map.hpp"
 #include "vision/detection/occlusion.hpp"
 #include "vision/segmentation/colour_classes.hpp"
 #include "vision/segmentation/region.hpp"
@@ -20,7 +23,8 @@ struct ObstacleFinderSettings {
   double max_dot_radius_m = 0.025;   ///< of the largest dot or ball
   double min_radius_m = 0.03;        ///< of an obstacle
   double robot_height_m = 0.15;
-  std::vector<Circle> known_obstacles;  ///< not reported
+  std::vector<Shape> known_obstacles;         ///< not reported
+  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported; null: none
 };
 
 /// Finds obstacles on the floor, neither robot nor ball, from regions of any colour. Adjacent regions form
@@ -28,8 +32,9 @@ struct ObstacleFinderSettings {
 /// and irrelevant for a vertical cylinder: around the point below the camera it subtends the same angle as
 /// its base whatever its height, and its nearest point lies on the floor. Objects that float, or show their
 /// colour only on top, are estimated farther away and larger, by the ratio of their height to the camera's.
-/// A blob is attributed to a known obstacle when it lies in the shadow that the obstacle, 0.3 m high, would
-/// cast from a lamp at the camera, or when its circle lies within the known one.
+/// A blob is attributed to a known obstacle when it lies in the shadow that the obstacle would cast from a
+/// lamp at the camera, or when its circle lies within the known one. Circles are assumed to be 0.3 m high;
+/// other shapes and map cells, whose long shadows could hide a person, as high as robots.
 class ObstacleFinder {
  public:
   ObstacleFinder(const CameraModel& camera, const ObstacleFinderSettings& settings)
@@ -62,6 +67,7 @@ class ObstacleFinder {
   bool find_contour(const Blob& blob, const ImageView& image, const ColourClasses& classes,
                     const VerticalCylinders& robots);
   bool is_in_known_shadow() const;
+  bool is_in_shadow_of_floor(const Vec2& floor_m) const;
   bool is_within_known(const Circle& circle) const;
   Circle fit_circle(const ImageView& image, const VerticalCylinders& robots) const;
 

@@ -28,7 +28,8 @@ DetectorSettings detector_settings(const Scenario& scenario, const std::vector<C
   for (const RobotSpec& robot : scenario.robots)
     settings.roster.push_back({robot.id, robot.team, pattern_of(layout, robot.id)});
   settings.robot_radius_m = scenario.radius_m;
-  settings.known_obstacles = circles_of(scenario.obstacles);
+  settings.known_obstacles = scenario.obstacles;
+  settings.known_map = scenario.map;
   return settings;
 }
 

@@ -76,7 +76,7 @@ int write_frame(const FrameOptions& options) {
   const CameraModel& camera = cameras[options.camera];
   RenderSpec spec;
   spec.format = images.format;
-  FrameRenderer renderer(camera, scenario.field, layout, spec, Rng(options.seed));
+  FrameRenderer renderer(camera, scenario.field, layout, spec, Rng(options.seed), static_scene(scenario));
   const Image image = renderer.render(floor_scene(scenario).scene());
   cv::Mat3b picture = bgr_of(image.view());
   if (options.shows_detections) overlay(image, camera, scenario, layout, picture);

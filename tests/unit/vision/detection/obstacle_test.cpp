@@ -25,7 +25,7 @@ struct ObstacleFixture {
     spec.colour_gain = {1 + drift, 1, 1 - drift};
     return spec;
   }
-  static DetectorSettings settings_of(PixelFormat format, std::vector<Circle> known = {}) {
+  static DetectorSettings settings_of(PixelFormat format, std::vector<Shape> known = {}) {
     DetectorSettings settings;
     settings.known_obstacles = std::move(known);
     settings.boxes = default_colours(format).boxes;
