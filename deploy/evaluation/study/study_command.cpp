@@ -7,6 +7,7 @@
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
 #include "deploy/evaluation/study/buildings/buildings_study.hpp"
+#include "deploy/evaluation/study/camera/camera_study.hpp"
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
 #include "deploy/evaluation/study/corners/corner_study.hpp"
 #include "deploy/evaluation/study/explicit/explicit_study.hpp"
@@ -108,6 +109,10 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand potential = add_study(
       study, "potential", "Potential fields: local minima and oscillation, against E* and NF1", *options);
   potential.on_parsed([&action, options] { action = [options] { return study_potential(*options); }; });
+  clutter.on_parsed([&action, options] { action = [options] { return study_clutter(*options); }; });
+  const CliCommand camera = add_study(
+      study, "camera", "A robot guided by blobs of a camera's image: drives, stages, paths", *options);
+  camera.on_parsed([&action, options] { action = [options] { return study_camera(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

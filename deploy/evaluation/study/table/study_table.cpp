@@ -33,8 +33,9 @@ void write_study_table(const StudyTable& table, const std::string& study, const 
                                  kBuildCommit, fmt::join(table.columns, ","));
   for (const auto& row : table.rows) text += fmt::format("{}\n", fmt::join(row, ","));
   write_file((folder / (table.name + ".csv")).string(), text);
-  draw(table.plots, (folder / (table.name + ".png")).string());
-  fmt::print("{0}/{1}.csv, {0}/{1}.png\n", folder.string(), table.name);
+  if (!table.plots.empty()) draw(table.plots, (folder / (table.name + ".png")).string());
+  fmt::print("{0}/{1}.csv{2}\n", folder.string(), table.name,
+             table.plots.empty() ? "" : fmt::format(", {}/{}.png", folder.string(), table.name));
   std::fflush(stdout);
 }
 

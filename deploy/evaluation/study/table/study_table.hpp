@@ -52,9 +52,9 @@ class StudyProgress {
 /// that a long study does not fail at its end.
 void require_study_output(const StudyOptions& options);
 
-/// Writes the table as .csv, with the command and the commit in its head, and its picture as .png into the
-/// folder, and prints their names. `study`: the name of the command. Throws std::runtime_error that says what
-/// failed.
+/// Writes the table as .csv, with the command and the commit in its head, and its plots, if any, as .png into
+/// the folder, and prints their names. `study`: the name of the command. Throws std::runtime_error that says
+/// what failed.
 void write_study_table(const StudyTable& table, const std::string& study, const StudyOptions& options);
 
 /// The table with aligned columns, as Markdown.

@@ -24,8 +24,8 @@ int study(std::vector<std::string> arguments) {
 }
 
 TEST_CASE("a study with wrong arguments is refused before it begins") {
-  const std::string name =
-      GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit", "potential");
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners",
+                                    "explicit", "potential", "camera");
   StudyFolder folder;
   CAPTURE(name);
   CHECK(study({}) == kExitUsage);
