@@ -109,7 +109,6 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand potential = add_study(
       study, "potential", "Potential fields: local minima and oscillation, against E* and NF1", *options);
   potential.on_parsed([&action, options] { action = [options] { return study_potential(*options); }; });
-  clutter.on_parsed([&action, options] { action = [options] { return study_clutter(*options); }; });
   const CliCommand camera = add_study(
       study, "camera", "A robot guided by blobs of a camera's image: drives, stages, paths", *options);
   camera.on_parsed([&action, options] { action = [options] { return study_camera(*options); }; });
