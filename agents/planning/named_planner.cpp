@@ -72,7 +72,9 @@ PlanDrawing drawing_of(FullVisibility& planner) {
 }
 PlanDrawing drawing_of(LazyVisibility& planner) { return {planner.explored_tangents(), {}, {}, {}}; }
 PlanDrawing drawing_of(GridPlanner& planner) { return {planner.steps(), {}, {}, {}}; }
-PlanDrawing drawing_of(NavigationPlanner& planner) { return {planner.directions(), {}, {}, {}}; }
+PlanDrawing drawing_of(NavigationPlanner& planner) {
+  return {planner.directions(), planner.iso_lines(), {}, {}};
+}
 PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cells, {}}; }
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 

@@ -15,8 +15,8 @@ namespace sidestep {
 
 /// What a planner explored, for pictures.
 struct PlanDrawing {
-  std::vector<Segment> tree;  ///< or roadmap, or tangents
-  std::vector<Segment> goal_tree;
+  std::vector<Segment> tree;       ///< or roadmap, or tangents
+  std::vector<Segment> goal_tree;  ///< or lines of equal cost
   std::vector<ConvexPolygon> cells;
   std::vector<Vec2> cache;
 };

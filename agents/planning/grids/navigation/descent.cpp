@@ -63,7 +63,7 @@ Vec2 direction_of(const EStar& field, GridCell cell) {
   const float value = field.value(cell);
   Vec2 along(0, 0);
   if (value == field.exact_value(cell)) {
-    along = field.goal_m() - layout.centre_of(cell);
+    along = field.exact_target_m(cell) - layout.centre_of(cell);
   } else {
     const std::uint32_t column = cell % layout.columns, row = cell / layout.columns;
     const auto neighbour = [&](bool exists, GridCell other) {
@@ -133,13 +133,16 @@ class Tracer {
     return layout_.cell(static_cast<std::uint32_t>(at_.x()), static_cast<std::uint32_t>(at_.y()));
   }
 
-  /// Ends the path if the goal is near and the way to it as good as straight.
+  /// Ends the path if the rest of it is known exactly and as good as straight up to its first turn.
   bool arrive() {
     const GridCell from = cell();
     if (field_.value(from) != field_.exact_value(from)) return false;
     const float cost = field_.cost(from);
-    if (!sees(layout_, at_, goal_, [&](GridCell other) { return field_.cost(other) == cost; })) return false;
-    path_m_.push_back(field_.goal_m());
+    const Vec2 target = layout_.in_cells(field_.exact_target_m(from));
+    // From a little beside a corner, towards this position.
+    const Vec2 end = target == goal_ ? target : Vec2(target + 1e-7 * (at_ - target));
+    if (!sees(layout_, at_, end, [&](GridCell other) { return field_.cost(other) == cost; })) return false;
+    field_.append_exact_path(from, path_m_);
     return true;
   }
 
@@ -164,7 +167,7 @@ class Tracer {
     do {
       if (field_.value(at) == field_.exact_value(at)) {
         add(layout_.in_cells(layout_.centre_of(at)));
-        path_m_.push_back(field_.goal_m());
+        field_.append_exact_path(at, path_m_);
         return has_arrived_ = true;
       }
       const GridCell next = lowest_neighbour(field_, at);

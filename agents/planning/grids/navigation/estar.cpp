@@ -24,6 +24,7 @@ EStar::EStar(const CostGrid& grid, const EStarSettings& settings)
     throw std::invalid_argument("the radius of exact distances must be 0 to 20 cells, not " +
                                 std::to_string(settings.exact_radius_cells));
   if (!is_euclidean()) settings_.exact_radius_cells = 0;
+  if (settings.kernel == GridKernel::kLineOfSight) sight_.emplace_back(layout_);
   costs_.assign(std::size_t{stride_} * (layout_.rows + 4), kBlocked);
   values_.assign(costs_.size(), kBlocked);
   raised_from_.assign(costs_.size(), kBlocked);
@@ -165,7 +166,6 @@ void EStar::raise(std::uint32_t at) {
 
 template <typename Kernel>
 void EStar::apply_changes() {
-  if (exact_is_stale_) compute_exact_values();
   float lowest = kBlocked;
   for (const std::uint32_t at : changed_)
     lowest = std::min({lowest, known_value(at), value_from_neighbours<Kernel>(at)});
@@ -211,11 +211,15 @@ void EStar::expand_bucket() {
 
 void EStar::run_kernel(std::uint32_t until, float beyond) {
   if (exact_.empty()) throw std::invalid_argument("a navigation function needs a goal");
+  if (exact_is_stale_) compute_exact_values();
   switch (settings_.kernel) {
     case GridKernel::kNf1:
       return run<Nf1Kernel>(until, beyond);
     case GridKernel::kAlpha:
       return run<AlphaKernel>(until, beyond);
+    case GridKernel::kLineOfSight:
+      if (is_of_one_cost_) return run<NoKernel>(until, beyond);
+      return run<LsmKernel>(until, beyond);
     case GridKernel::kLsm:
       return run<LsmKernel>(until, beyond);
     case GridKernel::kSecondOrderLsm:

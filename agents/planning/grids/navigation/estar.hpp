@@ -3,6 +3,7 @@
 
 #include "agents/planning/grids/navigation/bucket_queue.hpp"
 #include "agents/planning/grids/navigation/cost_grid.hpp"
+#include "agents/planning/grids/navigation/sight_lengths.hpp"
 
 namespace sidestep {
 
@@ -11,13 +12,16 @@ enum class GridKernel {
   kAlpha,           ///< linear interpolation
   kLsm,             ///< fast marching: nearly Euclidean
   kSecondOrderLsm,  ///< more exact on open floor, and slower
+  /// Exact lengths where all free cells cost the same; otherwise fast marching, bounded by exact lengths
+  /// through cells that cost as much as the goal's. Computes all these lengths anew when costs change.
+  kLineOfSight,
 };
 
 struct EStarSettings {
   GridKernel kernel = GridKernel::kLsm;
   /// Cells whose centre is at most this far from the goal, and visible from it through cells of equal cost,
-  /// have exact Euclidean distances; 0 to 20. Only for fast marching: the other kernels begin with 0 in the
-  /// goal's cell.
+  /// have exact Euclidean distances; 0 to 20. Only for fast marching: NF1 and alpha begin with 0 in the
+  /// goal's cell, and lines of sight need no such cells.
   int exact_radius_cells = 20;
 };
 
@@ -55,6 +59,10 @@ class EStar {
   float value(GridCell cell) const { return values_[padded(cell)]; }
   /// The exact distance to the goal in cells, times the cost, if the cell has one; otherwise infinite.
   float exact_value(GridCell cell) const { return exact_at(padded(cell)); }
+  /// For a cell whose value is the exact one: where the shortest path first leads, in a straight line.
+  Vec2 exact_target_m(GridCell cell) const;
+  /// Likewise: appends all turns of the shortest path and the goal.
+  void append_exact_path(GridCell cell, std::vector<Vec2>& path_m) const;
   /// The number of cells expanded since construction.
   std::uint64_t expansions() const { return expansions_; }
 
@@ -73,6 +81,8 @@ class EStar {
     return i < exact_.size() ? exact_[i] : kBlocked;
   }
   bool is_euclidean() const;
+  bool has_sight() const { return !sight_.empty(); }
+  void compute_sight();
   bool is_in_disc(GridCell cell) const;
   float exact_distance(GridCell cell) const;
   void compute_exact_values();
@@ -121,6 +131,8 @@ class EStar {
   std::vector<float> exact_;       // of the padded rows around the goal, infinite where there is none
   std::uint32_t exact_begin_ = 0;  // the first of these cells
   bool exact_is_stale_ = false;
+  std::vector<SightLengths> sight_;  // one, or none
+  bool is_of_one_cost_ = true;       // all cells that are not blocked; only with lines of sight
   std::uint64_t expansions_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sidestep {
 
@@ -30,6 +31,12 @@ inline float interpolated_step(float low, float high, float cost, float interpol
 struct Nf1Kernel {
   static constexpr int kReach = 1;
   static float value(float low, float, float cost) { return straight_step(low, cost); }
+};
+
+/// For fields in which all values are known exactly.
+struct NoKernel {
+  static constexpr int kReach = 1;
+  static float value(float, float, float) { return std::numeric_limits<float>::infinity(); }
 };
 
 /// The kernel "alpha" of E* (Philippsen 2004, EPFL thesis 3146): a linear interpolation. Scaled so that a

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "agents/planning/grids/navigation/descent.hpp"
+#include "agents/planning/grids/navigation/iso_lines.hpp"
 
 namespace sidestep {
 namespace {
@@ -151,6 +152,13 @@ std::vector<Segment> NavigationPlanner::directions() const {
     }
   }
   return lines;
+}
+
+std::vector<Segment> NavigationPlanner::iso_lines() const {
+  if (fields_.empty()) return {};
+  constexpr double kSpacing_m = 0.25;
+  const EStar& values = fields_.front()->values();
+  return sidestep::iso_lines(values, kSpacing_m / values.layout().resolution_m);
 }
 
 }  // namespace sidestep

@@ -31,6 +31,8 @@ class NavigationPlanner {
 
   /// Short lines along the directions in which the last function descends.
   std::vector<Segment> directions() const;
+  /// Lines of equal cost of the last function, where it has been computed; 0.25 m of free floor apart.
+  std::vector<Segment> iso_lines() const;
 
  private:
   /// A position on a path between start or goal and the grid.
