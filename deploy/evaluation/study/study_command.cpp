@@ -11,6 +11,7 @@
 #include "deploy/evaluation/study/clutter/clutter_study.hpp"
 #include "deploy/evaluation/study/corners/corner_study.hpp"
 #include "deploy/evaluation/study/explicit/explicit_study.hpp"
+#include "deploy/evaluation/study/navigation/navigation_study.hpp"
 #include "deploy/evaluation/study/planning/planning_study.hpp"
 #include "deploy/evaluation/study/potential/potential_study.hpp"
 #include "deploy/evaluation/study/safety/safety_study.hpp"
@@ -112,6 +113,9 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand camera = add_study(
       study, "camera", "A robot guided by blobs of a camera's image: drives, stages, paths", *options);
   camera.on_parsed([&action, options] { action = [options] { return study_camera(*options); }; });
+  const CliCommand navigation =
+      add_study(study, "navigation", "Navigation functions on grids: errors, replanning, costs", *options);
+  navigation.on_parsed([&action, options] { action = [options] { return study_navigation(*options); }; });
   const CliCommand vision =
       add_study(study, "vision", "Vision in rendered frames: recognition, pose errors, time", *options);
   vision.on_parsed([&action, options] { action = [options] { return study_vision(*options); }; });

@@ -25,7 +25,7 @@ int study(std::vector<std::string> arguments) {
 
 TEST_CASE("a study with wrong arguments is refused before it begins") {
   const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners",
-                                    "explicit", "potential", "camera");
+                                    "explicit", "navigation", "potential", "camera");
   StudyFolder folder;
   CAPTURE(name);
   CHECK(study({}) == kExitUsage);
@@ -60,7 +60,8 @@ TEST_CASE("a study of buildings needs scenarios that exist, and planners that dr
 
 TEST_CASE("a study names the folder that it cannot write to before it begins") {
   const std::string name =
-      GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "explicit", "potential");
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners",
+                                    "explicit", "navigation", "potential", "camera");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";
   CHECK_THROWS_WITH(study({name, "--out", folder.path()}), ContainsSubstring(folder.path()));

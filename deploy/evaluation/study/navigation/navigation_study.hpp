@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "deploy/evaluation/study/table/study_table.hpp"
+
+namespace sidestep {
+
+/// Navigation functions on grids: errors of their kernels by direction and among obstacles, what changes when
+/// a wall appears, and what costs do to paths. Writes directions, obstacles, replanning and costs as .csv and
+/// .png into the folder, which it creates. Throws std::runtime_error that says what failed.
+int study_navigation(const StudyOptions& options);
+
+}  // namespace sidestep
