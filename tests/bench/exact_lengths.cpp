@@ -121,8 +121,10 @@ void ExactLengths::look_into(std::int64_t x, std::int64_t y, int side_x, int sid
         if (turn(part.low, part.high) >= 0 && !is_squeezed && !is_border) next_.push_back(part);
       };
       bool is_left = true;
-      for (std::int64_t i = cone.high.x * j / cone.high.y; is_left; ++i) {
-        if (cone.low.y > 0 && i * cone.low.y >= cone.low.x * (j + 1)) break;  // beyond the cone
+      // Cells that touch the cone only with a corner may squeeze it.
+      const std::int64_t first = (cone.high.x * j + cone.high.y - 1) / cone.high.y - 1;
+      for (std::int64_t i = std::max<std::int64_t>(first, 0); is_left; ++i) {
+        if (cone.low.y > 0 && i * cone.low.y > cone.low.x * (j + 1)) break;  // beyond the cone
         if (!blocked(i, j)) continue;
         keep({i, j + 1});
         const Direction below{i + 1, j};

@@ -24,7 +24,6 @@ TEST_CASE("the quick study of navigation functions shows what grids and costs do
   for (const StudyRow& row : folder.table("navigation", "obstacles", 3)) {
     CAPTURE(row.at("kernel"), row.at("blocked_percent"));
     CHECK(std::stod(row.at("path_over_exact")) > 0.9999);
-    if (row.at("kernel") == "line of sight") CHECK(std::stod(row.at("mean_error_cells")) < 0.3);
   }
   for (const StudyRow& row : folder.table("navigation", "replanning", 3)) {
     CHECK(row.at("equals_fresh") == "true");
