@@ -59,9 +59,8 @@ TEST_CASE("a study of buildings needs scenarios that exist, and planners that dr
 }
 
 TEST_CASE("a study names the folder that it cannot write to before it begins") {
-  const std::string name = const std::string name =
-      GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners", "explicit",
-               "navigation", "potential", "camera");
+  const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners",
+                                    "explicit", "navigation", "potential", "camera");
   StudyFolder folder;
   std::ofstream(folder.path()) << "a file";
   CHECK_THROWS_WITH(study({name, "--out", folder.path()}), ContainsSubstring(folder.path()));
