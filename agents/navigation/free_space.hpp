@@ -41,9 +41,9 @@ class ObstaclePoints {
 /// A distance query: `distance_m(position)` is the distance to the nearest obstacle. The direction away from
 /// it is the gradient, by central differences. Cannot mask obstacles.
 template <typename Distance>
-class DistanceField {
+class DistanceFunction {
  public:
-  explicit DistanceField(Distance distance_m) : distance_m_(std::move(distance_m)) {}
+  explicit DistanceFunction(Distance distance_m) : distance_m_(std::move(distance_m)) {}
 
   FreeDistance operator()(const Vec2& at_m, double) const {
     constexpr double kStep_m = 1e-4;

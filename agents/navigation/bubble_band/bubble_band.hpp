@@ -32,8 +32,8 @@ struct BubbleBandSettings {
 /// radius can follow the polyline of the centres, free of all obstacles that are not masked. Once broken, the
 /// band has to be started again with a new path.
 ///
-/// `FreeSpace` is ObstaclePoints, DistanceField, or any function of a position and the masked distance that
-/// returns a FreeDistance. Does not allocate once warm.
+/// `FreeSpace` is ObstaclePoints, DistanceFunction, or any function of a position and the masked distance
+/// that returns a FreeDistance. Does not allocate once warm.
 class BubbleBand {
  public:
   /// Throws std::invalid_argument if the radius or a setting is out of range.

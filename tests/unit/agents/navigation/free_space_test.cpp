@@ -42,11 +42,11 @@ TEST_CASE("obstacle points find the nearest point that is not masked") {
 
 TEST_CASE("a distance field leads away from the nearest obstacle") {
   // The distance to a disc of radius 1 around the origin.
-  const DistanceField field([](const Vec2& at) { return at.norm() - 1; });
+  const DistanceFunction field([](const Vec2& at) { return at.norm() - 1; });
   const FreeDistance found = field({3, 4}, 0);
   CHECK(found.distance_m == Approx(4));
   CHECK((found.away - Vec2(0.6, 0.8)).norm() < 1e-6);
-  const DistanceField empty([](const Vec2&) { return std::numeric_limits<double>::infinity(); });
+  const DistanceFunction empty([](const Vec2&) { return std::numeric_limits<double>::infinity(); });
   CHECK(empty({0, 0}, 0).away == Vec2(0, 0));
 }
 

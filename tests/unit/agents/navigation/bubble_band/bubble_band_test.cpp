@@ -228,7 +228,7 @@ TEST_CASE("bubbles far along the band ignore what is near the robot") {
 
 TEST_CASE("a band works with a distance query") {
   const ObstacleWorld world({Circle{{3, 0.1}, 0.3}});
-  const DistanceField field([&](const Vec2& at) { return world.nearest(at).distance_m; });
+  const DistanceFunction field([&](const Vec2& at) { return world.nearest(at).distance_m; });
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> path{{0, 0}, {3, -1}, {6, 0}};
   band.start(path, field);
