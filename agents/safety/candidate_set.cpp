@@ -71,6 +71,16 @@ void CandidateSet::sample_accelerations(const Vec2& velocity, const Vec2& desire
   accepted_.reset();
 }
 
+void CandidateSet::prefer(std::span<const Vec2> accelerations) {
+  constexpr double kStep = 1e-12;  // squared distances below those of all samples
+  for (std::size_t i = 1; i < count_ && i <= accelerations.size(); ++i) {
+    batch::AccelerationBlock& block = accelerations_[i / kLanes];
+    block.x.lane[i % kLanes] = accelerations[i - 1].x();
+    block.y.lane[i % kLanes] = accelerations[i - 1].y();
+    block.distance2.lane[i % kLanes] = kStep * static_cast<double>(i);
+  }
+}
+
 void CandidateSet::sample_motions(const State& at_start, double hold_s, double step_s) {
   const batch::StopSettings settings{at_start.position_m.x(),
                                      at_start.position_m.y(),

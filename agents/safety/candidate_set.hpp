@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "agents/batch/dispatch.hpp"
@@ -21,6 +22,9 @@ class CandidateSet {
   /// be held for `hold_time` at this maximum speed. Precondition: the desired acceleration obeys the limits.
   void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time,
                             double max_speed_mps, Rng& rng);
+  /// Replaces samples by these accelerations, which are taken in this order after the desired one.
+  /// Precondition: as for the desired one.
+  void prefer(std::span<const Vec2> accelerations_mps2);
   /// Prepares for compare(): samples the motions that begin in `at_start`, hold an acceleration for `hold_s`,
   /// and then stop.
   void sample_motions(const State& at_start, double hold_s, double step_s);

@@ -59,6 +59,7 @@ SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settin
   constexpr std::size_t kTypicalCount = 64;
   found_indices_.reserve(kTypicalCount);
   others_.reserve(kTypicalCount);
+  preferred_.reserve(kTypicalCount);
   nearby_.reserve(kTypicalCount);
   exact_.reserve(kTypicalCount);
   edges_.reserve(kTypicalCount);
@@ -81,6 +82,11 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   SearchResult result;
   candidates_.sample_accelerations(query.at_start.velocity_mps, desired, query.hold_time, limited.speed_mps,
                                    rng);
+  preferred_.clear();
+  for (const Vec2& preferred : query.preferred_mps2)
+    preferred_.push_back(
+        limit_acceleration(preferred, query.at_start.velocity_mps, limited, query.hold_time));
+  candidates_.prefer(preferred_);
   const Circle disc{desired_bounds.disc.centre_m, desired_bounds.disc.radius_m + max_deviation_m};
   find_nearby(query, disc, others);
   find_moving(query, disc);

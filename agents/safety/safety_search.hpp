@@ -38,6 +38,8 @@ struct SearchQuery {
   HiddenSpace hidden{};                ///< what the robot's laser did not see
   std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter
   std::optional<Vec2> way_out_m{};     ///< out of zones that overlap at the start
+  /// Tried in this order after the desired one, before random ones; at most as many as are sampled.
+  std::span<const Vec2> preferred_mps2{};
 
   /// The motion limits, with the lower of both speeds.
   MotionLimits limited(MotionLimits limits) const {
@@ -106,6 +108,7 @@ class SafetySearch {
   std::vector<MovingObstacle> moving_;             // the subset of the query's that may be near
   std::vector<Frontier> frontiers_, closed_gaps_;  // the subset of the query's that may be near
   KeepOut keep_out_;
+  std::vector<Vec2> preferred_;  // the query's, limited
 };
 
 /// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.

@@ -201,6 +201,27 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
   CHECK(restricted > 100);
 }
 
+TEST_CASE("preferred accelerations that are safe are the first candidates after the desired one") {
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
+  CAPTURE(seed);
+  Rng rng(seed);
+  const FloorRules rules;
+  SafetySearch search(rules, {});
+  TrajectoryIndex others;
+  const auto first_mps2 = [](const Trajectory& candidate) {
+    return Vec2(candidate.phases().front().acceleration_mps2);
+  };
+  SearchQuery query{kStart, {{0, 0}, {0, 0}}, {2, 0}, kCycle};
+  const std::array<Vec2, 3> preferred{{{0, rng.uniform(1, 2)}, {rng.uniform(-2, -1), 0}, {0, -1.5}}};
+  query.preferred_mps2 = preferred;
+  const SearchResult result = search.search(query, others, rng);
+  REQUIRE(result.count >= 4);
+  CHECK(result.desired_is_clear);
+  CHECK((first_mps2(result.candidates[0]) - Vec2(2, 0)).norm() < 1e-9);
+  for (std::size_t i = 0; i < preferred.size(); ++i)
+    CHECK((first_mps2(result.candidates[i + 1]) - preferred[i]).norm() < 1e-9);
+}
+
 TEST_CASE("the same seed gives the same candidates") {
   SafetySearch one({}, {}), two({}, {});
   Rng rng_one(9), rng_two(9);
