@@ -16,6 +16,7 @@
 #include "agents/agent/route_obstacles.hpp"
 #include "agents/navigation/deadlock_recovery.hpp"
 #include "agents/navigation/give_way.hpp"
+#include "agents/navigation/local_driver.hpp"
 #include "agents/navigation/motion_control.hpp"
 #include "agents/navigation/route_planner.hpp"
 #include "agents/navigation/zone_map.hpp"
@@ -168,6 +169,10 @@ class Agent {
   void decide_whether_to_give_way(Time now);
   /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
   Intent steer(const State& at_start, Time start, const Route& route);
+  /// As steer(), with the planner's local methods. Fills preferred_mps_.
+  Intent steer_locally(const State& at_start, Time start, Route route);
+  /// The accelerations that reach the velocities in preferred_mps_; empty without local methods.
+  std::span<const Vec2> preferred_accelerations(const Vec2& velocity_mps, Duration hold);
   /// Adds what a robot at a position would see of the map to the steering.
   void add_walls(const Vec2& position_m);
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
@@ -215,6 +220,9 @@ class Agent {
   double desired_heading_rad_;
   ZoneMap zones_;
   NamedPlanner planner_;
+  std::optional<LocalDriver> local_driver_;  // nullopt: planner_ has no local methods
+  std::vector<Circle> bodies_nearby_;
+  std::vector<Vec2> preferred_mps_, preferred_mps2_;  // by the local methods, in this cycle
   std::optional<RouteObstacles> route_obstacles_;
   std::optional<RoutePlanner> route_planner_;  // by planner_, around route_obstacles_
   bool has_route_ = false;                     // since the target or zones have changed

@@ -111,7 +111,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   max_speed_mps = std::min(
       max_speed_mps, zones_.max_speed_mps(at_start.position_m, at_start.velocity_mps.norm(), rules_.radius_m,
                                           cycle_ * (negotiation_.lead() + 1), rules_.limits));
-  Intent intent = steer(at_start, start, route);
+  Intent intent = planner_.local ? steer_locally(at_start, start, route) : steer(at_start, start, route);
   intent.target_m = target;
   const HiddenSpace hidden = hidden_space();
   if (sight_ && !sight_->visibility().is_before_frontiers(at_start.position_m)) return std::nullopt;
@@ -130,6 +130,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   query.stop = &base.trajectory;
   query.max_speed_mps = is_creeping_ ? std::min(max_speed_mps, hidden.creep_mps) : max_speed_mps;
   query.keep_outs = zones_.keep_outs();
+  query.preferred_mps2 = preferred_accelerations(at_start.velocity_mps, desired.hold);
   if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};
 }
@@ -184,6 +185,33 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
   });
   return steering.choose(at_start, route.waypoint_m, is_open ? route.end_m : route.following_m, elapsed_s,
                          last_choice_);
+}
+
+Intent Agent::steer_locally(const State& at_start, Time start, Route route) {
+  preferred_mps_.clear();
+  const std::span<const Vec2> path = route_planner_->remaining_waypoints_m();
+  if (route.is_way_out || path.empty() || path.front() != route.waypoint_m || recovery_.is_active())
+    return steer(at_start, start, route);
+  if (!local_driver_)
+    local_driver_.emplace(*planner_.local, rules_.field, rules_.radius_m, required_separation_m(),
+                          rules_.limits);
+  bodies_nearby_.clear();
+  for (const Version* version : neighbours_.newest(at_start.position_m, page_horizon_m()))
+    bodies_nearby_.push_back(
+        {state_if_continued(version->trajectory, start).position_m, rules_.radius_m + version->inflation_m});
+  const LocalChoice choice = local_driver_->choose(
+      {at_start, path, &route_obstacles_->world(), bodies_nearby_, to_seconds(cycle_ * negotiation_.lead())});
+  route.waypoint_m = choice.target_m;
+  if (!choice.velocity_mps) return steer(at_start, start, route);
+  preferred_mps_.assign(choice.preferred_mps.begin(), choice.preferred_mps.end());
+  return {*choice.velocity_mps, settings_.recovery_hold_s, choice.target_m, route.end_m};
+}
+
+std::span<const Vec2> Agent::preferred_accelerations(const Vec2& velocity_mps, Duration hold) {
+  preferred_mps2_.clear();
+  for (const Vec2& preferred : preferred_mps_)
+    preferred_mps2_.emplace_back((preferred - velocity_mps) / to_seconds(hold));
+  return preferred_mps2_;
 }
 
 void Agent::add_walls(const Vec2& position_m) {

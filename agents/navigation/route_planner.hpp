@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -48,6 +49,10 @@ class RoutePlanner {
   /// obstacle may be left on a straight line away from it. If several obstacles leave no such line, the route
   /// leads straight to the nearest free position.
   [[nodiscard]] std::optional<Route> route_from(const Vec2& start_m, Rng& rng);
+  /// The last route from its next waypoint on.
+  std::span<const Vec2> remaining_waypoints_m() const {
+    return std::span(waypoints_).subspan(std::min(next_waypoint_, waypoints_.size()));
+  }
   /// Whether the straight line between two points is free for the robot, in the world of the last route. A
   /// line that leads out of an obstacle counts as free.
   [[nodiscard]] bool is_line_free(const Vec2& from_m, const Vec2& to_m) const;

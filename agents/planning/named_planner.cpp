@@ -2,6 +2,7 @@
 #include "agents/planning/named_planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
@@ -196,6 +197,17 @@ std::vector<Entry> other_planners() {
       {"trapezoids", shipped<TrapezoidalDecomposition>()}};
 }
 
+/// Planners that only drive: another one's paths, followed by local methods.
+struct LocalEntry {
+  std::string_view name, path_planner;
+  LocalMethods methods;
+};
+constexpr std::array<LocalEntry, 4> kLocalEntries{
+    {{"dynamic-window", "lazy-visibility", {.uses_window = true, .ignores_path = true}},
+     {"nf1-dynamic-window", "nf1", {.uses_window = true}},
+     {"bubble-band", "lazy-visibility", {.uses_band = true}},
+     {"nf1-band-dynamic-window", "nf1", {.uses_band = true, .uses_window = true}}}};
+
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = [] {
     std::vector<Entry> entries;
@@ -239,7 +251,12 @@ NamedPlanner make_planner(const std::string& name) {
 NamedPlanner make_driving_planner(const std::string& name) {
   if (!std::ranges::count(kDrivingPlanners, name))
     refuse(name, {kDrivingPlanners.begin(), kDrivingPlanners.end()});
-  return make_planner(name);
+  const auto local = std::ranges::find(kLocalEntries, name, &LocalEntry::name);
+  if (local == kLocalEntries.end()) return make_planner(name);
+  NamedPlanner planner = make_planner(std::string(local->path_planner));
+  planner.name = name;
+  planner.local = local->methods;
+  return planner;
 }
 
 }  // namespace sidestep

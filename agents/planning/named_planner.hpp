@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,13 @@ enum class PlannerKind {
   kAnytime,      ///< improves its path until the budget is used up
 };
 
+/// The local methods that follow a planner's path; agents/navigation/local_driver.hpp runs them.
+struct LocalMethods {
+  bool uses_band = false;     ///< the path becomes a bubble band
+  bool uses_window = false;   ///< a dynamic window chooses the velocity
+  bool ignores_path = false;  ///< the window heads for the end of the path
+};
+
 /// A planner of agents/planning, chosen by name, and the domain settings that belong to it.
 struct NamedPlanner {
   std::string name;
@@ -37,8 +45,9 @@ struct NamedPlanner {
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
   std::function<PlanDrawing()> draw;
   std::function<DiscDomainSettings(const Field&, double radius_m)> domain_settings;
-  bool is_shortest = false;  ///< its paths cannot be shortened
-  bool is_random = false;    ///< grows by random samples, and never knows that there is no path
+  bool is_shortest = false;             ///< its paths cannot be shortened
+  bool is_random = false;               ///< grows by random samples, and never knows that there is no path
+  std::optional<LocalMethods> local{};  ///< none: steering among the other robots follows the path
 };
 
 /// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.

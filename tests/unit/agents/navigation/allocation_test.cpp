@@ -2,6 +2,7 @@
 #include "agents/navigation/bubble_band/bubble_band.hpp"
 #include "agents/navigation/dynamic_window/disc_window.hpp"
 #include "agents/navigation/dynamic_window/dynamic_window.hpp"
+#include "agents/navigation/local_driver.hpp"
 #include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/agents/navigation/dynamic_window/random_hull.hpp"
@@ -53,6 +54,19 @@ TEST_CASE("a warm bubble band does not allocate") {
           free.set(points, {-2, 0});
           if (band.is_broken()) band.start(path, free);
           band.update({-2, 0}, free);
+        }) == 0);
+}
+
+TEST_CASE("a warm local driver does not allocate") {
+  Rng rng(3);
+  LocalDriver local({.uses_band = true, .uses_window = true}, Field{6, 6}, 0.09, 0.1, MotionLimits{});
+  const ObstacleWorld world({Box{{-0.2, 0.5}, {0.2, 1}}, Circle{{1, 0.2}, 0.2}});
+  const std::vector<Vec2> path{{0, 1.3}, {2, 0}};
+  std::vector<Circle> others{{{-1, -1}, 0.1}, {{0, 2}, 0.1}};
+  CHECK(allocations_once_warm([&] {
+          for (Circle& other : others) other.centre_m += random_point(rng, 0.01);
+          const Vec2 velocity = random_point(rng, 0.5);
+          (void)local.choose({{{-2, 0}, velocity}, path, &world, others, 0.03});
         }) == 0);
 }
 

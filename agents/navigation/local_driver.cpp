@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/local_driver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sidestep {
+namespace {
+
+// Paths may touch the obstacles that they lead around.
+constexpr double kTolerance_m = 0.002;
+
+double length_m(const Vec2& from_m, std::span<const Vec2> path_m) {
+  double length = 0;
+  Vec2 last = from_m;
+  for (const Vec2& point : path_m) {
+    length += (point - last).norm();
+    last = point;
+  }
+  return length;
+}
+
+}  // namespace
+
+LocalDriver::LocalDriver(const LocalMethods& methods, const Field& field, double radius_m,
+                         double separation_m, const MotionLimits& limits, const LocalDriverSettings& settings)
+    : methods_(methods),
+      field_(field),
+      radius_m_(radius_m),
+      separation_m_(separation_m - kTolerance_m),
+      settings_(settings),
+      band_(separation_m - kTolerance_m) {
+  if (methods.uses_window) window_.emplace(separation_m - kTolerance_m, limits, settings.window);
+  points_m_.reserve(settings.rays + 1);
+  preferred_mps_.reserve(settings.max_preferred);
+}
+
+std::span<const Bubble> LocalDriver::bubbles() const {
+  return methods_.uses_band && !band_.is_broken() ? band_.bubbles() : std::span<const Bubble>();
+}
+
+LocalChoice LocalDriver::choose(const LocalQuery& query) {
+  if (methods_.uses_band) update_band(query);
+  LocalChoice choice{methods_.ignores_path ? query.path_m.back() : target_m(query)};
+  const double length = length_m(query.at.position_m, query.path_m);
+  if (window_ && length > settings_.final_approach_m) choose_velocity(query, length, choice);
+  return choice;
+}
+
+double LocalDriver::distance_m(const LocalQuery& query, const Vec2& at) const {
+  // The centre keeps only its radius from the border.
+  const double beyond_m = separation_m_ - radius_m_;
+  const double border_m =
+      beyond_m + std::min(field_.length_m / 2 - std::abs(at.x()), field_.width_m / 2 - std::abs(at.y()));
+  double distance = std::min(border_m, query.world->nearest(at).distance_m);
+  for (const Circle& other : query.others)
+    distance = std::min(distance, (at - other.centre_m).norm() - other.radius_m);
+  return distance;
+}
+
+bool LocalDriver::is_line_free(const LocalQuery& query, const Vec2& to) const {
+  constexpr double kStep_m = 0.01;
+  const Vec2 from = query.at.position_m;
+  const double length = (to - from).norm();
+  const Vec2 direction = (to - from).stableNormalized();
+  for (double at = 0; at < length;) {
+    const double spare_m = distance_m(query, from + at * direction) - separation_m_;
+    if (spare_m < 0) return false;
+    at += std::max(kStep_m, spare_m);
+  }
+  return distance_m(query, to) >= separation_m_;
+}
+
+void LocalDriver::update_band(const LocalQuery& query) {
+  const auto distance = [&](const Vec2& at) { return distance_m(query, at); };
+  const DistanceFunction free(distance);
+  const std::span<const Bubble> bubbles = band_.bubbles();
+  const double longest_m =
+      settings_.max_detour * length_m(query.at.position_m, query.path_m) + settings_.max_detour_m;
+  if (!bubbles.empty() && !band_.is_broken() && bubbles.back().centre_m == query.path_m.back() &&
+      band_.length_m() <= longest_m) {
+    band_.update(query.at.position_m, free);
+    if (!band_.is_broken()) return;
+  }
+  path_m_.assign(1, query.at.position_m);
+  path_m_.insert(path_m_.end(), query.path_m.begin(), query.path_m.end());
+  band_.start(path_m_, free);
+}
+
+Vec2 LocalDriver::target_m(const LocalQuery& query) const {
+  if (bubbles().empty()) return query.path_m.front();
+  for (const double ahead_m : settings_.look_ahead_m) {
+    const Vec2 target = band_.position_m(ahead_m);
+    if (is_line_free(query, target)) return target;
+  }
+  return band_.position_m(settings_.look_ahead_m.back());
+}
+
+void LocalDriver::cast_rays(const LocalQuery& query) {
+  constexpr double kHit_m = 0.005;
+  points_m_.clear();
+  for (std::size_t i = 0; i < settings_.rays; ++i) {
+    const double angle_rad =
+        2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(settings_.rays);
+    const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
+    double along_m = 0;
+    while (along_m < settings_.range_m) {
+      const double distance = distance_m(query, query.at.position_m + along_m * direction);
+      if (distance < kHit_m) break;
+      along_m += distance;
+    }
+    if (along_m < settings_.range_m) points_m_.emplace_back(along_m * direction);
+  }
+}
+
+void LocalDriver::choose_velocity(const LocalQuery& query, double length, LocalChoice& choice) {
+  cast_rays(query);
+  const Vec2 direction = (choice.target_m - query.at.position_m).stableNormalized();
+  const DiscWindowChoice& found = window_->choose({.points_m = points_m_,
+                                                   .velocity_mps = query.at.velocity_mps,
+                                                   .goal_m = length * direction,
+                                                   .cycle_s = query.cycle_s,
+                                                   .window_s = settings_.reaction_s});
+  if (found.admissible.empty()) return;
+  const Vec2& best = found.admissible.front().velocity_mps;
+  if (best.dot(direction) < settings_.min_progress_mps) return;
+  choice.velocity_mps = best;
+  preferred_mps_.clear();
+  for (std::size_t i = 1; i < found.admissible.size() && i <= settings_.max_preferred; ++i)
+    preferred_mps_.push_back(found.admissible[i].velocity_mps);
+  choice.preferred_mps = preferred_mps_;
+}
+
+}  // namespace sidestep

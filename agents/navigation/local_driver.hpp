@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "agents/navigation/bubble_band/bubble_band.hpp"
+#include "agents/navigation/dynamic_window/disc_window.hpp"
+#include "agents/planning/named_planner.hpp"
+#include "common/collision/obstacle_world.hpp"
+#include "common/motion/trajectory.hpp"
+
+namespace sidestep {
+
+struct LocalDriverSettings {
+  // On a polyline or band: steers for the first of these distances that is free on a straight line.
+  std::array<double, 4> look_ahead_m{0.8, 0.4, 0.2, 0.1};
+  double final_approach_m = 0.25;  ///< nearer to the goal, the window's grid of velocities is too coarse
+  std::size_t rays = 64;           ///< on which the window sees the nearest obstacles
+  double range_m = 1.6;            ///< of the rays
+  double reaction_s = 0.35;        ///< velocities that are reachable in this time are considered
+  double min_progress_mps = 0.3;   ///< towards the target, of a velocity worth choosing
+  std::size_t max_preferred = 4;   ///< velocities offered besides the best one
+  // A band is started again if it is longer than the path by this factor plus this length.
+  double max_detour = 1.2, max_detour_m = 0.3;
+  /// On a path chosen by a planner, the heading counts most. The table would only round times down.
+  DiscWindowSettings window{.method = CollisionMethod::kExact,
+                            .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
+};
+
+/// What local methods decide on. Must outlive the call only.
+struct LocalQuery {
+  State at;
+  std::span<const Vec2> path_m{};  ///< from the next waypoint to the end; not empty
+  const ObstacleWorld* world = nullptr;
+  std::span<const Circle> others{};  ///< bodies that are not in the world
+  double cycle_s = 1.0 / 60;
+};
+
+struct LocalChoice {
+  Vec2 target_m{0, 0};  ///< the point to steer to
+  /// What the window chose. None: without a window, near the goal, too near to an obstacle for the window, or
+  /// if its best velocity makes no progress.
+  std::optional<Vec2> velocity_mps{};
+  std::span<const Vec2> preferred_mps{};  ///< the next best velocities; valid until the next call
+};
+
+/// Follows a planner's path with local methods: a band finds the point to steer to, a window the velocity.
+/// Safety does not depend on it. Does not allocate once warm.
+class LocalDriver {
+ public:
+  /// The robot's centre keeps `separation_m` from the edges of obstacles, and as much of the field's border
+  /// as `radius_m`. Throws std::invalid_argument if a distance, limit or setting is invalid.
+  LocalDriver(const LocalMethods& methods, const Field& field, double radius_m, double separation_m,
+              const MotionLimits& limits, const LocalDriverSettings& settings = {});
+
+  [[nodiscard]] LocalChoice choose(const LocalQuery& query);
+
+  /// None without a band or while the robot follows the path itself, because no band fits through.
+  std::span<const Bubble> bubbles() const;
+
+ private:
+  /// From a position to the nearest obstacle, body or border; negative inside.
+  double distance_m(const LocalQuery& query, const Vec2& at_m) const;
+  bool is_line_free(const LocalQuery& query, const Vec2& to_m) const;
+  void update_band(const LocalQuery& query);
+  Vec2 target_m(const LocalQuery& query) const;
+  /// Fills points_m_ with the first obstacles on the rays, relative to the robot.
+  void cast_rays(const LocalQuery& query);
+  void choose_velocity(const LocalQuery& query, double length_m, LocalChoice& choice);
+
+  LocalMethods methods_;
+  Field field_;
+  double radius_m_, separation_m_;
+  LocalDriverSettings settings_;
+  BubbleBand band_;
+  std::optional<DiscWindow> window_;
+  std::vector<Vec2> path_m_, points_m_, preferred_mps_;
+};
+
+}  // namespace sidestep
