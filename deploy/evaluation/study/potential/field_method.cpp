@@ -16,7 +16,7 @@ constexpr double kOvershoot_m = 0.04;
 constexpr double kCell_m = 0.02;
 
 auto free_distance(const ObstacleWorld& obstacles) {
-  return DistanceField([&obstacles](const Vec2& p) { return obstacles.nearest(p).distance_m; });
+  return DistanceFunction([&obstacles](const Vec2& p) { return obstacles.nearest(p).distance_m; });
 }
 
 DriveDirection down_the_potential(double rotation, const PlanWorld& world, const ObstacleWorld& obstacles) {
