@@ -6,11 +6,22 @@
 #include <tuple>
 
 namespace sidestep {
+namespace {
+
+/// How near to what the rules know a hit belongs to it. Never so far that the front of somebody who leans
+/// against a wall, or both sides of a gap that the smallest person passes, would count as the wall.
+double explained_within_m(const LaserSpec& laser, const FloorRules& rules, double pose_error_m) {
+  const double error_m = laser.range_error_m + pose_error_m;
+  const double cell_m = rules.map ? rules.map->cells().grid().resolution_m : 0;
+  const double front_m = 2 * laser.person_radius_m - error_m;
+  return std::max(0.0, std::min({error_m + cell_m, laser.person_radius_m, front_m}));
+}
+
+}  // namespace
 
 LaserSight::LaserSight(const LaserSpec& laser, const FloorRules& rules, const LaserSightSettings& settings)
     : settings_(settings),
-      explained_within_m_(laser.range_error_m + settings.pose_error_m +
-                          (rules.map ? rules.map->cells().grid().resolution_m : 0)),
+      explained_within_m_(explained_within_m(laser, rules, settings.pose_error_m)),
       shapes_(rules.obstacles),
       floor_{rules.map ? &rules.map->cells() : nullptr, rules.obstacles.empty() ? nullptr : &shapes_},
       beams_(laser.settings),

@@ -20,7 +20,7 @@ struct LaserSightSettings {
   double unknown_cell_m = 0.2;          ///< side of the squares that report what stands but is not on the map
   double unknown_range_m = 2.5;         ///< squares farther away are ignored
   std::size_t max_unknown = 48;         ///< number of nearest squares
-  Duration unknown_after{500'000'000};  ///< what was occupied for so long stands
+  Duration unknown_after{500'000'000};  ///< cells that were occupied for longer stand
 };
 
 /// What a robot makes of the scans of its own laser: where people may step out, who moves, and what stands

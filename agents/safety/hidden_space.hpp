@@ -34,9 +34,9 @@ struct HiddenSpace {
 /// Precondition: the trajectory begins in the region that was seen. Conservative: never falsely true; false
 /// negatives only within a millimetre.
 ///
-/// Nobody's distance changes faster than at the sum of both speeds, so a distance that is large enough now
-/// stays so for a while: the check steps there (conservative advancement). A trajectory that never comes
-/// near a frontier does not cross one.
+/// A distance shrinks at most at the sum of both speeds. So a distance that is large enough now stays large
+/// enough for a known time, and the check steps ahead by it (conservative advancement). A trajectory that
+/// never comes near a frontier does not cross one.
 [[nodiscard]] bool is_passively_safe_from_hidden(const Trajectory& trajectory, const HiddenSpace& hidden,
                                                  double min_separation_m);
 
