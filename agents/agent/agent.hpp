@@ -167,6 +167,8 @@ class Agent {
   double page_horizon_m() const;
   /// Leaves a passage to a robot with the right of way, if this robot makes no progress.
   void decide_whether_to_give_way(Time now);
+  /// The robots to which this one may have to give way.
+  std::vector<OtherRobot> others_in_passages(Time now);
   /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
   Intent steer(const State& at_start, Time start, const Route& route);
   /// As steer(), with the planner's local methods. Fills preferred_mps_.
@@ -229,6 +231,7 @@ class Agent {
   bool is_route_outdated_ = false;             // obstacles have changed since routed_at_
   Time routed_at_{};
   double route_length_m_ = 0;         // of the last route
+  double remaining_to_goal_m_ = 0;    // of the last route; infinity: it leads elsewhere
   std::optional<Blockage> blockage_;  // of the target
   std::optional<Time> blocked_since_;
   Time last_plan_{};

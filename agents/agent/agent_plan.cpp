@@ -2,10 +2,12 @@
 // The agent's planning: from the route to the goal to a proposal.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "agents/agent/agent.hpp"
+#include "agents/navigation/right_of_way.hpp"
 #include "common/map/ray_cast.hpp"
 
 namespace sidestep {
@@ -19,21 +21,6 @@ State state_if_continued(const Trajectory& trajectory, Time t) {
   const Time first_end = trajectory.start() + trajectory.phases().front().duration;
   if (t > first_end) state.velocity_mps = trajectory.state_at(first_end).velocity_mps;
   return state;
-}
-
-/// All robots must agree on who yields: if every robot yields to every other, their choices oscillate. The
-/// order is reversed periodically, so that no robot always yields.
-bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
-  const bool is_low_first = t.time_since_epoch() / period % 2 == 0;
-  return (other < self) == is_low_first;
-}
-
-/// The same where robots cannot pass each other, and may have to wait for whole periods: a new order in each
-/// of them, as good as random, so that each robot is soon ahead of all others.
-bool may_pass_first(RobotId other, RobotId self, Time t, Duration period) {
-  const auto number = static_cast<std::uint64_t>(t.time_since_epoch() / period);
-  const auto rank = [&](RobotId robot) { return std::pair(Rng((number << 16) + robot).bits(), robot); };
-  return rank(other) < rank(self);
 }
 
 /// What remains of a version's intent at a time; nullopt if the robot will stay at its goal.
@@ -105,6 +92,8 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const Route route = route_planner_->route_from(at_start.position_m, rng_).value_or(straight);
   route_length_m_ = route.length_m;
   if (!gives_way) update_blockage(route, now);
+  const bool leads_to_goal = !gives_way && route.reaches_goal;
+  remaining_to_goal_m_ = leads_to_goal ? route.length_m : std::numeric_limits<double>::infinity();
   if (!route.reaches_goal && ends_at(route.end_m)) return std::nullopt;
   if (assignment_.goal() && goal().speed_limit_mps)
     max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
@@ -136,20 +125,31 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
 }
 
 void Agent::decide_whether_to_give_way(Time now) {
-  const Vec2& position = estimate_.position_m;
   if (!assignment_.goal() || assignment_.report().progress.is_finished()) return give_way_.restart(now);
-  if (!give_way_.is_due(now, position) || !route_obstacles_) return;
+  const double remaining_m = has_route_ ? remaining_to_goal_m_ : std::numeric_limits<double>::infinity();
+  if (!give_way_.is_due(now, remaining_m) || !route_obstacles_) return;
   if (give_way_.is_searching()) return give_way_.search(now, rng_);
+  give_way_.begin_search(now, estimate_.position_m, others_in_passages(now), route_obstacles_->fixed_world());
+}
+
+std::vector<OtherRobot> Agent::others_in_passages(Time now) {
+  const Passer self{robot_.id, assignment_.report().number};
   std::vector<OtherRobot> others;
-  for (const Version* version : neighbours_.newest(position, page_horizon_m())) {
-    OtherRobot other{version->robot, version->trajectory.rest_position_m()};
-    if (version->intent && !assignment_.other(version->robot).is_held) {
+  for (const Version* version : neighbours_.newest(estimate_.position_m, page_horizon_m())) {
+    OtherRobot other{version->robot, true, version->trajectory.rest_position_m()};
+    const OtherAssignment orders = assignment_.other(version->robot);
+    if (version->intent && !orders.is_held) {
       other.goals_m = {version->intent->goal_m, version->intent->target_m};
-      other.has_right_of_way = may_pass_first(version->robot, robot_.id, now, passage_period_);
+      other.has_right_of_way = may_pass_first({version->robot, orders.number}, self, now, passage_period_);
     }
     others.push_back(other);
   }
-  give_way_.begin_search(now, position, others, route_obstacles_->fixed_world());
+  for (const RobotId robot : give_way_.yields_to()) {
+    const OtherAssignment orders = assignment_.other(robot);
+    const bool is_near = std::ranges::any_of(others, [=](const auto& other) { return other.id == robot; });
+    if (!is_near && orders.has_to_go && !orders.is_held) others.push_back({robot, false});
+  }
+  return others;
 }
 
 Intent Agent::steer(const State& at_start, Time start, const Route& route) {

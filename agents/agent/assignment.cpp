@@ -91,6 +91,7 @@ OtherAssignment Assignment::other(RobotId robot) const {
     const RememberedOrder* order = book.drive_order(robot, rank);
     if (!is_to_do(order)) continue;
     other.has_to_go = true;
+    other.number = order->order.number;
     const std::vector<Goal>& goals = order->order.goals;
     if (order->progress.goal_index < goals.size())
       other.goal_m = goals[order->progress.goal_index].position_m;

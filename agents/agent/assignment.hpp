@@ -17,6 +17,7 @@ namespace sidestep {
 struct OtherAssignment {
   bool is_held = false;
   bool has_to_go = false;        ///< it has an order to drive that it has not finished
+  OrderNumber number = 0;        ///< of that order
   std::optional<Vec2> goal_m{};  ///< of that order; nullopt if only the scenario states it
 };
 

@@ -7,26 +7,33 @@
 namespace sidestep {
 
 GiveWay::GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings)
-    : settings_(settings), search_(floor), range_m_(settings.first_range_m) {}
+    : settings_(settings),
+      search_(floor),
+      range_m_(settings.first_range_m),
+      min_separation_m_(floor.min_separation_m) {}
 
 void GiveWay::restart(Time now) {
-  anchored_at_ = now;
+  progress_at_ = now;
+  shortest_m_ = kInfinity_m;
   way_.clear();
   yields_to_.clear();
+  trips_.clear();
+  unreachable_.clear();
   search_.cancel();
   range_m_ = settings_.first_range_m;
 }
 
-bool GiveWay::is_due(Time now, const Vec2& position_m) {
-  const bool is_new = now - called_at_ > settings_.max_pause;
+bool GiveWay::is_due(Time now, double remaining_m) {
+  const bool is_new = now - called_at_ > settings_.max_pause || now < progress_at_;
   called_at_ = now;
-  if (is_new || (position_m - anchor_m_).norm() > settings_.progress_m || now < anchored_at_) {
-    anchor_m_ = position_m;
-    anchored_at_ = now;
+  remaining_m_ = remaining_m;
+  if (is_new || remaining_m < shortest_m_ - settings_.progress_m) {
+    shortest_m_ = remaining_m;
+    progress_at_ = now;
     if (way_.empty()) search_.cancel();
   }
   if (search_.is_active()) return true;
-  if (way_.empty() && now - anchored_at_ < settings_.stuck_after) return false;
+  if (way_.empty() && now - progress_at_ < settings_.stuck_after) return false;
   return now - checked_at_ >= settings_.retry_after || now < checked_at_;
 }
 
@@ -34,20 +41,46 @@ void GiveWay::begin_search(Time now, const Vec2& position_m, std::span<const Oth
                            ObstacleWorld fixed) {
   checked_at_ = now;
   searched_.clear();
+  if (!way_.empty()) check_place(now, position_m, others);
   GiveWayQuery query;
   query.position_m = position_m;
   query.way = way_;
   query.range_m = range_m_;
+  query.unreachable_m = unreachable_;
   for (const OtherRobot& other : others) {
-    query.others_m.push_back(other.position_m);
+    if (other.is_near) {
+      query.others_m.push_back(other.position_m);
+      remember_trips(other);
+    }
     const bool is_passing = std::ranges::find(yields_to_, other.id) != yields_to_.end();
     if (other.has_right_of_way) searched_.push_back(other.id);
     if (!other.has_right_of_way && !is_passing) continue;
-    for (const std::optional<Vec2>& goal : other.goals_m)
-      if (goal && (*goal - other.position_m).norm() >= settings_.progress_m)
-        query.trips.emplace_back(other.position_m, *goal);
+    const auto [first, last] = trips_.equal_range(other.id);
+    for (auto trip = first; trip != last; ++trip) query.trips.push_back(trip->second);
   }
   search_.begin(std::move(query), std::move(fixed));
+}
+
+void GiveWay::check_place(Time now, const Vec2& position_m, std::span<const OtherRobot> others) {
+  const Vec2 place = way_.back();
+  const bool is_covered = std::ranges::any_of(others, [&](const OtherRobot& other) {
+    return other.is_near && (other.position_m - place).norm() < min_separation_m_;
+  });
+  const double distance_m = (position_m - place).norm();
+  if (distance_m < nearest_m_ - settings_.progress_m / 2 || distance_m < settings_.progress_m) {
+    nearest_m_ = distance_m;
+    nearer_at_ = now;
+  }
+  const bool is_unreachable = now - nearer_at_ >= settings_.unreachable_after;
+  if (is_unreachable) unreachable_.push_back(place);
+  if (is_covered || is_unreachable) way_.clear();
+}
+
+void GiveWay::remember_trips(const OtherRobot& other) {
+  trips_.erase(other.id);
+  for (const std::optional<Vec2>& goal : other.goals_m)
+    if (goal && (*goal - other.position_m).norm() >= settings_.progress_m)
+      trips_.emplace(other.id, Trip(other.position_m, *goal));
 }
 
 void GiveWay::search(Time now, Rng& rng) {
@@ -59,10 +92,14 @@ void GiveWay::search(Time now, Rng& rng) {
   }
   if (!search_.is_in_the_way()) {
     range_m_ = settings_.first_range_m;
+    shortest_m_ = remaining_m_;
+    yields_to_.clear();
+    unreachable_.clear();
     return;
   }
   way_ = search_.way();
-  began_at_ = now;
+  began_at_ = nearer_at_ = now;
+  nearest_m_ = kInfinity_m;
   if (way_.empty())
     range_m_ = std::min(2 * range_m_, settings_.longest_range_m);
   else

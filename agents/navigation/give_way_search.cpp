@@ -89,7 +89,12 @@ void GiveWaySearch::check_passage(Rng& rng) {
 }
 
 void GiveWaySearch::begin_places() {
-  for (const Vec2& other : query_.others_m) fixed_.add(disc_at(other));
+  // They are never quite at rest.
+  for (const Vec2& other : query_.others_m) {
+    Circle disc = disc_at(other);
+    disc.radius_m += settings_.clearance_m;
+    fixed_.add(disc);
+  }
   candidates_.clear();
   taken_.clear();
   unreachable_.clear();
@@ -140,6 +145,8 @@ bool GiveWaySearch::is_candidate(const Vec2& place) {
   const std::pair key{std::lround(cell.x()), std::lround(cell.y())};
   if (taken_.contains(key)) return false;
   const double separation_m = floor_.min_separation_m + settings_.clearance_m;
+  const auto is_near = [&](const Vec2& other) { return (other - place).norm() < 2 * floor_.radius_m; };
+  if (std::ranges::any_of(query_.unreachable_m, is_near)) return false;
   if (!floor_.field.contains(place, floor_.radius_m) || fixed_.touches(place, floor_.required_m) ||
       std::ranges::any_of(routes_,
                           [&](const Way& route) { return is_place_on_route(route, place, separation_m); }))

@@ -17,7 +17,7 @@ ObstacleWorld corridor(double bay_x_m) {
 }
 
 OtherRobot coming_from(double x_m, double goal_x_m) {
-  return {7, {x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
+  return {7, true, {x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
 }
 
 struct Robot {
@@ -33,7 +33,7 @@ struct Robot {
   }
   std::optional<Vec2> decide_once(double seconds, const Vec2& position_m,
                                   const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
-    if (give_way.is_due(at(seconds), position_m) && !give_way.is_searching())
+    if (give_way.is_due(at(seconds), 5 - position_m.x()) && !give_way.is_searching())
       give_way.begin_search(at(seconds), position_m, others, fixed);
     while (give_way.is_searching()) give_way.search(at(seconds), rng);
     return give_way.place_m();
@@ -108,7 +108,7 @@ TEST_CASE("a robot does not take a place that another robot covers") {
   // The bay is occupied, and a third robot closes the way back.
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  OtherRobot in_bay{1, {-1, 0.3}}, behind{2, {-1.6, 0}};
+  OtherRobot in_bay{1, true, {-1, 0.3}}, behind{2, true, {-1.6, 0}};
   const std::vector<OtherRobot> others{coming_from(0.2, -4.9), in_bay, behind};
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
 }
@@ -129,16 +129,16 @@ TEST_CASE("a robot goes on giving way when the right of way changes, until the o
 TEST_CASE("progress and another goal end a search") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  CHECK_FALSE(robot.give_way.is_due(at(0), {0, 0}));
-  REQUIRE(robot.give_way.is_due(at(0.9), {0, 0}) == false);
-  REQUIRE(robot.give_way.is_due(at(1.6), {0, 0}));
+  CHECK_FALSE(robot.give_way.is_due(at(0), 5));
+  REQUIRE(robot.give_way.is_due(at(0.9), 5) == false);
+  REQUIRE(robot.give_way.is_due(at(1.6), 5));
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
   robot.give_way.begin_search(at(1.6), {0, 0}, facing, fixed);
   CHECK(robot.give_way.is_searching());
-  CHECK(robot.give_way.is_due(at(1.7), {0, 0}));
+  CHECK(robot.give_way.is_due(at(1.7), 5));
   const bool has_progress = GENERATE(false, true);
   if (has_progress)
-    CHECK_FALSE(robot.give_way.is_due(at(1.8), {0.2, 0}));
+    CHECK_FALSE(robot.give_way.is_due(at(1.8), 4.8));
   else
     robot.give_way.restart(at(1.8));
   CHECK_FALSE(robot.give_way.is_searching());

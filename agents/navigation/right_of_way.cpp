@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/right_of_way.hpp"
+
+#include <utility>
+
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::uint64_t kRandomPeriod = 4;
+
+std::uint64_t number_of_period(Time t, Duration period) {
+  return static_cast<std::uint64_t>(t.time_since_epoch() / period);
+}
+
+}  // namespace
+
+bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
+  const bool is_low_first = number_of_period(t, period) % 2 == 0;
+  return (other < self) == is_low_first;
+}
+
+bool may_pass_first(const Passer& other, const Passer& self, Time t, Duration period) {
+  const std::uint64_t number = number_of_period(t, period);
+  if (other.order != self.order && number % kRandomPeriod != 0) return other.order < self.order;
+  const auto rank = [&](RobotId robot) { return std::pair(Rng((number << 16) + robot).bits(), robot); };
+  return rank(other.robot) < rank(self.robot);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/motion/version.hpp"
+#include "common/protocol/order.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Whether a robot has to yield to another one among moving robots. All robots must agree on who yields: if
+/// every robot yields to every other, their choices oscillate. Lower ids come first, then higher ids, in
+/// alternation, so that no robot always yields.
+[[nodiscard]] bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period);
+
+/// A robot that wants to pass, and the number of the order that it carries out: a clock reading, smaller for
+/// older orders.
+struct Passer {
+  RobotId robot = 0;
+  OrderNumber order = 0;
+};
+
+/// The same where robots cannot pass each other and may have to wait for whole periods. The older order comes
+/// first: no robot waits for more orders than were given before its own. Robots with the same number, and in
+/// every fourth period all robots, come in a random order that is drawn anew in each period, because the
+/// robot with the oldest order may be unable to drive.
+[[nodiscard]] bool may_pass_first(const Passer& other, const Passer& self, Time t, Duration period);
+
+}  // namespace sidestep

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/right_of_way.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kPeriod = std::chrono::seconds(30);
+Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
+
+}  // namespace
+
+TEST_CASE("right of way: among moving robots, each of two comes first in every second period") {
+  for (int period = 0; period < 4; ++period) {
+    CAPTURE(period);
+    CHECK(has_right_of_way(3, 7, in_period(period), kPeriod) == (period % 2 == 0));
+    CHECK(has_right_of_way(7, 3, in_period(period), kPeriod) == (period % 2 == 1));
+  }
+}
+
+TEST_CASE("right of way: in passages the older order comes first, except in every fourth period") {
+  int reversed = 0;
+  for (int period = 0; period < 400; ++period) {
+    CAPTURE(period);
+    const bool is_older_first = may_pass_first({9, 100}, {2, 101}, in_period(period), kPeriod);
+    if (period % 4 != 0) CHECK(is_older_first);
+    reversed += is_older_first ? 0 : 1;
+  }
+  CHECK(reversed > 25);
+  CHECK(reversed < 75);
+}
+
+TEST_CASE("right of way: robots in passages agree on one order in each period") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    std::vector<Passer> passers;
+    for (RobotId robot = 0; robot < 8; ++robot) passers.push_back({robot, rng.below(3)});
+    const Time t = in_period(static_cast<int>(rng.below(1000)));
+    std::vector<int> ahead;  // how many come before each
+    for (const Passer& self : passers) {
+      int count = 0;
+      for (const Passer& other : passers)
+        if (other.robot != self.robot) count += may_pass_first(other, self, t, kPeriod) ? 1 : 0;
+      ahead.push_back(count);
+    }
+    std::ranges::sort(ahead);
+    CHECK(ahead == std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7});
+  }
+}
+
+TEST_CASE("right of way: of robots with equal orders in a passage, each comes first soon") {
+  std::vector<int> first(6, 0);
+  for (int period = 0; period < 600; ++period)
+    for (RobotId robot = 0; robot < 6; ++robot) {
+      bool is_first = true;
+      for (RobotId other = 0; other < 6; ++other)
+        if (other != robot && may_pass_first({other, 1}, {robot, 1}, in_period(period), kPeriod))
+          is_first = false;
+      if (is_first) ++first[robot];
+    }
+  for (const int count : first) CHECK(count > 60);
+}
+
+}  // namespace sidestep
