@@ -31,9 +31,9 @@ struct GiveWayQuery {
   Vec2 position_m{0, 0};
   std::vector<std::pair<Vec2, Vec2>> trips;  ///< of the robots with the right of way: from where to where
   std::vector<Vec2> others_m;                ///< where all other robots are
-  std::vector<Vec2> way;            ///< along which the robot already gives way; empty: it does not yet
-  std::vector<Vec2> unreachable_m;  ///< no places near these
-  double range_m = 1;               ///< how far away places may be
+  std::vector<Vec2> way;              ///< along which the robot already gives way; empty: it does not yet
+  double range_m = 1;                 ///< how far away places may be
+  std::vector<Vec2> unreachable_m{};  ///< no places near these
 };
 
 /// Finds out whether a robot is in the way of others that cannot drive around it, and if so, the nearest

@@ -67,6 +67,8 @@ void add_buildings_study(const CliCommand& study, std::function<int()>& action) 
       .comma_separated()
       .check(one_of(driving_planners()))
       .show_default();
+  buildings.add_flag("--dds", options->over_dds,
+                     "over DDS and in real time, with a process for each part of the system");
   buildings.add_option("--seconds", options->seconds, "virtual time of each run")
       .check(in_range(1, 86400))
       .show_default();

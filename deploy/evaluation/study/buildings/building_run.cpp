@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/buildings/building_run.hpp"
 
+#include "common/messaging/sim/bus.hpp"
 #include "deploy/simulate/campaign/distance_meter.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
@@ -17,7 +18,9 @@ Scenario without_goals(Scenario scenario) {
   return scenario;
 }
 
-BuildingResult result_of(const Report& report, const TripCounts& trips, double distance_m) {
+}  // namespace
+
+BuildingResult building_result(const Report& report, const TripCounts& trips, double distance_m) {
   BuildingResult result;
   result.trips = trips;
   result.contacts = report.contacts;
@@ -27,18 +30,21 @@ BuildingResult result_of(const Report& report, const TripCounts& trips, double d
   result.route_changes = report.route_changes;
   result.plan_p99_us = microseconds(report.plan.quantile(0.99));
   result.plan_max_us = microseconds(report.plan.max());
-  result.audit_passed = report.audit && report.audit->verdict() == AuditVerdict::kPassed;
+  if (report.cycles > 0)
+    result.missed_percent =
+        100 * static_cast<double>(report.missed_cycles) / static_cast<double>(report.cycles);
+  result.audit_passed =
+      report.deaths.empty() && report.audit && report.audit->verdict() == AuditVerdict::kPassed;
   return result;
 }
-
-}  // namespace
 
 BuildingResult run_building(const Scenario& scenario, Duration duration, std::uint64_t seed) {
   SimSystem system(without_goals(scenario), seed);
   DistanceMeter meter(system.begin());
   system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
   const TripSettings settings;
-  RandomTrips trips(system.network(), scenario, seed, settings);
+  SimBus bus(system.network());
+  RandomTrips trips(bus, scenario, seed, settings);
   system.run_for(kStartup);
   const Time end = system.now() + duration;
   while (system.now() < end) {
@@ -51,7 +57,7 @@ BuildingResult run_building(const Scenario& scenario, Duration duration, std::ui
     trips.update(system.now());
     system.run_for(kStep);
   }
-  return result_of(system.metrics().report(), trips.counts(system.now()), meter.total_m());
+  return building_result(system.metrics().report(), trips.counts(system.now()), meter.total_m());
 }
 
 }  // namespace sidestep

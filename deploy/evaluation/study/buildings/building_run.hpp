@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "deploy/evaluation/study/buildings/random_trips.hpp"
+#include "deploy/monitor/metrics/report.hpp"
 
 namespace sidestep {
 
@@ -13,11 +14,16 @@ struct BuildingResult {
   double distance_m = 0;  ///< sum over all robots
   std::uint64_t route_changes = 0;
   double plan_p99_us = 0, plan_max_us = 0;  ///< processor time of one decision
-  bool audit_passed = false;
+  double missed_percent = 0;                ///< of the agents' cycles
+  bool audit_passed = false;                ///< and no process died
 
   /// Whether nothing went wrong: all goals were reached or reported as blocked, nothing was touched.
   bool is_good() const { return trips.stuck == 0 && contacts == 0 && crashes_in_motion == 0 && audit_passed; }
 };
+
+/// What all runs have in common, from the report of a run.
+[[nodiscard]] BuildingResult building_result(const Report& report, const TripCounts& trips,
+                                             double distance_m);
 
 /// Sends the robots of a scenario to random places for some virtual time, and lets them finish. Their goals
 /// in the scenario are only places.

@@ -12,8 +12,9 @@ struct BuildingsOptions {
   StudyOptions study;
   std::vector<std::string> scenario_files;
   std::vector<std::string> planners{"lazy-visibility", "errt", "estar", "nf1"};
-  double seconds = 600;  ///< virtual time of each run
-  int trials = 2;        ///< with consecutive seeds
+  double seconds = 600;   ///< virtual time of each run, or real time
+  bool over_dds = false;  ///< with a process for each part of the system
+  int trials = 2;         ///< with consecutive seeds
 };
 
 /// Robots that drive to random places among people again and again, in the scenarios and by the planners of

@@ -11,11 +11,9 @@ constexpr double kExtraSeparation_m = 0.02;
 
 }  // namespace
 
-RandomTrips::RandomTrips(SimNetwork& network, const Scenario& scenario, std::uint64_t seed,
-                         const TripSettings& settings)
+RandomTrips::RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed, const TripSettings& settings)
     : settings_(settings),
-      bus_(network),
-      client_(bus_, client_id("random trips")),
+      client_(bus, client_id("random trips")),
       rng_(seed),
       separation_m_(2 * scenario.radius_m + scenario.margin_m + kExtraSeparation_m) {
   for (const RobotSpec& robot : scenario.robots) {

@@ -30,8 +30,8 @@ struct TripCounts {
 /// the scenario. No two robots have places that overlap.
 class RandomTrips {
  public:
-  RandomTrips(SimNetwork& network, const Scenario& scenario, std::uint64_t seed,
-              const TripSettings& settings = {});
+  /// `bus` must outlive this object.
+  RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed, const TripSettings& settings = {});
 
   /// Follows the orders, and sends robots that have none to their next places. Call it several times a
   /// second.
@@ -55,7 +55,6 @@ class RandomTrips {
   void end(Trip& trip, Time now);
 
   TripSettings settings_;
-  SimBus bus_;
   OrderClient client_;
   Rng rng_;
   double separation_m_;  // of places

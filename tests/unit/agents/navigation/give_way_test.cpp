@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/give_way.hpp"
 
+#include <cmath>
+#include <vector>
+
 #include "tests/catch.hpp"
 
 namespace sidestep::give_way_test {
@@ -111,6 +114,51 @@ TEST_CASE("a robot does not take a place that another robot covers") {
   OtherRobot in_bay{1, true, {-1, 0.3}}, behind{2, true, {-1.6, 0}};
   const std::vector<OtherRobot> others{coming_from(0.2, -4.9), in_bay, behind};
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
+}
+
+TEST_CASE("robots that block each other move to and fro, which is no progress") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  const std::vector<OtherRobot> facing{coming_from(0.5, -4.9)};
+  std::optional<Vec2> place;
+  for (int i = 0; i < 30 && !place; ++i)
+    place = robot.decide(0.1 * i, {0.15 * std::sin(0.1 * i * 7), 0}, facing, fixed);
+  CHECK(place);
+}
+
+TEST_CASE("a robot gives way until the other has passed, also while that is far away") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
+  const std::optional<Vec2> place = robot.give_way.place_m();
+  REQUIRE(place);
+  const auto yields_to = robot.give_way.yields_to();
+  REQUIRE(std::vector(yields_to.begin(), yields_to.end()) == std::vector<RobotId>{7});
+  OtherRobot far{7, false};
+  far.has_right_of_way = GENERATE(false, true);
+  CHECK(robot.decide(5, *place, {far}, fixed) == place);
+  // Without it, the robot's order is over, or it is held.
+  CHECK_FALSE(robot.decide(6, *place, {}, fixed));
+}
+
+TEST_CASE("a robot takes another place if its place is taken, or if it comes no nearer") {
+  // A bay above the corridor, and another one below it.
+  const ObstacleWorld fixed({Box{{-5, -2}, {-2.2, -0.15}}, Box{{-1.8, -2}, {5, -0.15}},
+                             Box{{-2.2, -2}, {-1.8, -0.5}}, Box{{-5, 0.15}, {-1.2, 2}},
+                             Box{{-0.8, 0.15}, {5, 2}}, Box{{-1.2, 0.5}, {-0.8, 2}}});
+  Robot robot;
+  std::vector<OtherRobot> others{coming_from(0.2, -4.9)};
+  (void)robot.decide(2.5, {0, 0}, others, fixed);
+  const std::optional<Vec2> first = robot.give_way.place_m();
+  REQUIRE(first);
+  CHECK(first->y() > 0);
+  const bool is_taken = GENERATE(true, false);
+  CAPTURE(is_taken);
+  if (is_taken) others.push_back({1, true, *first});
+  std::optional<Vec2> place;
+  for (double t = 2.6; t < 9; t += 0.1) place = robot.decide(t, {0, 0}, others, fixed);
+  REQUIRE(place);
+  CHECK(place->y() < 0);
 }
 
 TEST_CASE("a robot goes on giving way when the right of way changes, until the other has passed") {
