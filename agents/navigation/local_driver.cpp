@@ -30,7 +30,9 @@ LocalDriver::LocalDriver(const LocalMethods& methods, const Field& field, double
       radius_m_(radius_m),
       separation_m_(separation_m - kTolerance_m),
       settings_(settings),
-      band_(separation_m - kTolerance_m) {
+      band_(separation_m - kTolerance_m),
+      field_force_(separation_m - kTolerance_m, kDrivingField),
+      max_speed_mps_(limits.speed_mps) {
   if (methods.uses_window) window_.emplace(separation_m - kTolerance_m, limits, settings.window);
   points_m_.reserve(settings.rays + 1);
   preferred_mps_.reserve(settings.max_preferred);
@@ -44,7 +46,9 @@ LocalChoice LocalDriver::choose(const LocalQuery& query) {
   if (methods_.uses_band) update_band(query);
   LocalChoice choice{methods_.ignores_path ? query.path_m.back() : target_m(query)};
   const double length = length_m(query.at.position_m, query.path_m);
-  if (window_ && length > settings_.final_approach_m) choose_velocity(query, length, choice);
+  if (length <= settings_.final_approach_m) return choice;
+  if (window_) choose_velocity(query, length, choice);
+  if (methods_.uses_field) follow_force(query, choice);
   return choice;
 }
 
@@ -130,6 +134,17 @@ void LocalDriver::choose_velocity(const LocalQuery& query, double length, LocalC
   for (std::size_t i = 1; i < found.admissible.size() && i <= settings_.max_preferred; ++i)
     preferred_mps_.push_back(found.admissible[i].velocity_mps);
   choice.preferred_mps = preferred_mps_;
+}
+
+void LocalDriver::follow_force(const LocalQuery& query, LocalChoice& choice) const {
+  const DistanceFunction free([&](const Vec2& at) { return distance_m(query, at); });
+  const Vec2& at = query.at.position_m;
+  const FreeDistance nearest = free(at, 0);
+  if (nearest.distance_m <= separation_m_) return;
+  const Vec2 force = field_force_.force(at, choice.target_m, nearest);
+  const Vec2 velocity = max_speed_mps_ * force.stableNormalized();
+  if (velocity.dot((choice.target_m - at).stableNormalized()) < settings_.min_progress_mps) return;
+  choice.velocity_mps = velocity;
 }
 
 }  // namespace sidestep

@@ -9,6 +9,7 @@
 
 #include "agents/navigation/bubble_band/bubble_band.hpp"
 #include "agents/navigation/dynamic_window/disc_window.hpp"
+#include "agents/navigation/potential_field/potential_field.hpp"
 #include "agents/planning/named_planner.hpp"
 #include "common/collision/obstacle_world.hpp"
 #include "common/motion/trajectory.hpp"
@@ -18,7 +19,7 @@ namespace sidestep {
 struct LocalDriverSettings {
   // On a polyline or band: steers for the first of these distances that is free on a straight line.
   std::array<double, 4> look_ahead_m{0.8, 0.4, 0.2, 0.1};
-  double final_approach_m = 0.25;  ///< nearer to the goal, the window's grid of velocities is too coarse
+  double final_approach_m = 0.25;  ///< nearer to the goal, a window's grid of velocities is too coarse
   std::size_t rays = 64;           ///< on which the window sees the nearest obstacles
   double range_m = 1.6;            ///< of the rays
   double reaction_s = 0.35;        ///< velocities that are reachable in this time are considered
@@ -31,6 +32,9 @@ struct LocalDriverSettings {
                             .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
 };
 
+/// Turns to the right around whatever is ahead, so that two robots that meet do not push each other.
+inline constexpr PotentialFieldSettings kDrivingField{.reach_m = 0.4, .rotation = 0.6};
+
 /// What local methods decide on. Must outlive the call only.
 struct LocalQuery {
   State at;
@@ -42,13 +46,14 @@ struct LocalQuery {
 
 struct LocalChoice {
   Vec2 target_m{0, 0};  ///< the point to steer to
-  /// What the window chose. None: without a window, near the goal, too near to an obstacle for the window, or
-  /// if its best velocity makes no progress.
+  /// What the window or the field chose. None: without them, near the goal, too near to an obstacle, or if
+  /// that velocity makes no progress.
   std::optional<Vec2> velocity_mps{};
   std::span<const Vec2> preferred_mps{};  ///< the next best velocities; valid until the next call
 };
 
-/// Follows a planner's path with local methods: a band finds the point to steer to, a window the velocity.
+/// Follows a planner's path with local methods: a band finds the point to steer to, a window or a
+/// potential field the velocity.
 /// Safety does not depend on it. Does not allocate once warm.
 class LocalDriver {
  public:
@@ -71,6 +76,7 @@ class LocalDriver {
   /// Fills points_m_ with the first obstacles on the rays, relative to the robot.
   void cast_rays(const LocalQuery& query);
   void choose_velocity(const LocalQuery& query, double length_m, LocalChoice& choice);
+  void follow_force(const LocalQuery& query, LocalChoice& choice) const;
 
   LocalMethods methods_;
   Field field_;
@@ -78,6 +84,8 @@ class LocalDriver {
   LocalDriverSettings settings_;
   BubbleBand band_;
   std::optional<DiscWindow> window_;
+  PotentialField field_force_;
+  double max_speed_mps_;
   std::vector<Vec2> path_m_, points_m_, preferred_mps_;
 };
 

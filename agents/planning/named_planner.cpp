@@ -202,11 +202,13 @@ struct LocalEntry {
   std::string_view name, path_planner;
   LocalMethods methods;
 };
-constexpr std::array<LocalEntry, 4> kLocalEntries{
+constexpr std::array<LocalEntry, 6> kLocalEntries{
     {{"dynamic-window", "lazy-visibility", {.uses_window = true, .ignores_path = true}},
      {"nf1-dynamic-window", "nf1", {.uses_window = true}},
      {"bubble-band", "lazy-visibility", {.uses_band = true}},
-     {"nf1-band-dynamic-window", "nf1", {.uses_band = true, .uses_window = true}}}};
+     {"nf1-band-dynamic-window", "nf1", {.uses_band = true, .uses_window = true}},
+     {"potential-field", "lazy-visibility", {.uses_field = true, .ignores_path = true}},
+     {"nf1-potential-field", "nf1", {.uses_field = true}}}};
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = [] {

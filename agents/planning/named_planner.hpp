@@ -32,7 +32,8 @@ enum class PlannerKind {
 struct LocalMethods {
   bool uses_band = false;     ///< the path becomes a bubble band
   bool uses_window = false;   ///< a dynamic window chooses the velocity
-  bool ignores_path = false;  ///< the window heads for the end of the path
+  bool uses_field = false;    ///< a potential field chooses it
+  bool ignores_path = false;  ///< the window or field heads for the end of the path
 };
 
 /// A planner of agents/planning, chosen by name, and the domain settings that belong to it.

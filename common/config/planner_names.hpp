@@ -11,10 +11,10 @@ namespace sidestep {
 struct Scenario;
 
 /// The planners that can drive robots, for the key `planner` of scenarios. agents/planning/named_planner.hpp
-/// makes them. The last four are local methods that follow another planner's paths. The others are for
+/// makes them. The last six are local methods that follow another planner's paths. The others are for
 /// comparison: they keep a graph of one world, use up all time, examine the whole floor, or keep clear of
 /// obstacles, which the shortcuts of routes undo.
-inline constexpr std::array<std::string_view, 16> kDrivingPlanners{
+inline constexpr std::array<std::string_view, 18> kDrivingPlanners{
     "lazy-visibility", "errt",
     "bi-errt",         "rrt",
     "rrt-connect",     "one-shot-prm",
@@ -22,7 +22,8 @@ inline constexpr std::array<std::string_view, 16> kDrivingPlanners{
     "estar",           "nf1",
     "quad-tree",       "trapezoids",
     "dynamic-window",  "nf1-dynamic-window",
-    "bubble-band",     "nf1-band-dynamic-window"};
+    "bubble-band",     "nf1-band-dynamic-window",
+    "potential-field", "nf1-potential-field"};
 
 /// The same, for options of programs.
 inline std::vector<std::string> driving_planners() {

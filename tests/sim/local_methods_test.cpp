@@ -35,8 +35,8 @@ Scenario random_crossing(const std::string& planner, std::uint64_t seed) {
 }
 
 TEST_CASE("local methods that follow a path drive robots among each other to their goals, without contact") {
-  const std::string planner =
-      GENERATE(as<std::string>(), "nf1-dynamic-window", "bubble-band", "nf1-band-dynamic-window");
+  const std::string planner = GENERATE(as<std::string>(), "nf1-dynamic-window", "bubble-band",
+                                       "nf1-band-dynamic-window", "nf1-potential-field");
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 9));
   CAPTURE(planner, seed);
   SimSystem system(random_crossing(planner, seed), seed);
@@ -44,11 +44,12 @@ TEST_CASE("local methods that follow a path drive robots among each other to the
   require_safe(system);
 }
 
-TEST_CASE("a dynamic window without a path drives a robot over an open floor, without contact") {
+TEST_CASE("a local method without a path drives robots over an open floor, without contact") {
+  const std::string planner = GENERATE(as<std::string>(), "dynamic-window", "potential-field");
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 9));
-  CAPTURE(seed);
+  CAPTURE(planner, seed);
   Rng rng(seed);
-  const std::string text = "planner: dynamic-window\nfield: {length_m: 6, width_m: 5}\nrobots:\n" +
+  const std::string text = "planner: " + planner + "\nfield: {length_m: 6, width_m: 5}\nrobots:\n" +
                            fmt::format("  - {{id: 0, start_m: [-2.6, {}], goals_m: [[2.6, {}]]}}\n",
                                        rng.uniform(-2, 2), rng.uniform(-2, 2)) +
                            fmt::format("  - {{id: 1, start_m: [2.6, {}], goals_m: [[-2.6, {}]]}}\n",

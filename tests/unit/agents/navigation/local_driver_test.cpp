@@ -82,6 +82,30 @@ TEST_CASE("every velocity of the window lets the robot stop before all discs and
   CHECK(chosen >= 10);
 }
 
+TEST_CASE("a field turns robots that meet to the right, and pushes away from a wall") {
+  LocalDriver local = driver({.uses_field = true});
+  const std::vector<Vec2> path{{3, 0}};
+  const ObstacleWorld open;
+  const LocalChoice alone = local.choose({{{-2, 0}, {0, 0}}, path, &open, {}, kCycle_s});
+  REQUIRE(alone.velocity_mps);
+  CHECK((*alone.velocity_mps - Vec2(kLimits.speed_mps, 0)).norm() < 1e-9);
+  const std::vector<Circle> ahead{{{-1.65, 0}, kRadius_m}};
+  const LocalChoice meeting = local.choose({{{-2, 0}, {0, 0}}, path, &open, ahead, kCycle_s});
+  REQUIRE(meeting.velocity_mps);
+  CHECK(meeting.velocity_mps->y() < -0.01);
+  const ObstacleWorld wall({Box{{-4, 0.2}, {4, 0.3}}});
+  const LocalChoice along = local.choose({{{-2, 0.05}, {0, 0}}, path, &wall, {}, kCycle_s});
+  REQUIRE(along.velocity_mps);
+  CHECK(along.velocity_mps->y() < -0.01);
+}
+
+TEST_CASE("a field chooses no velocity in a local minimum") {
+  LocalDriver local = driver({.uses_field = true});
+  const std::vector<Vec2> path{{3, 0}};
+  const ObstacleWorld wall({Box{{-1.85, -1}, {-1.8, 1}}});
+  CHECK_FALSE(local.choose({{{-1.97, 0}, {0, 0}}, path, &wall, {}, kCycle_s}).velocity_mps);
+}
+
 TEST_CASE("a band leads around a body on the path, and its target can be reached on a straight line") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
