@@ -21,6 +21,7 @@
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/order/order_command.hpp"
 #include "deploy/order/referee_command.hpp"
+#include "deploy/simulate/building/building_command.hpp"
 #include "deploy/simulate/simulate_command.hpp"
 
 namespace {
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   add_run_command(app, action);
   add_simulate_command(app, action);
+  add_building_command(app, action);
   add_topic_command(app, action);
   add_fault_command(app, action);
   add_test_command(app, action);

@@ -89,7 +89,9 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const State at_start = base.trajectory.state_at(start);
   update_route_planner(target, now);
   const Route straight{target, target, (target - at_start.position_m).norm(), target};
-  const Route route = route_planner_->route_from(at_start.position_m, rng_).value_or(straight);
+  const std::optional<Route> found = route_planner_->route_from(at_start.position_m, rng_);
+  if (route_planner_->is_searching()) return std::nullopt;
+  const Route route = found.value_or(straight);
   route_length_m_ = route.length_m;
   if (!gives_way) update_blockage(route, now);
   const bool leads_to_goal = !gives_way && route.reaches_goal;
@@ -140,6 +142,9 @@ std::vector<OtherRobot> Agent::others_in_passages(Time now) {
     const OtherAssignment orders = assignment_.other(version->robot);
     if (version->intent && !orders.is_held) {
       other.goals_m = {version->intent->goal_m, version->intent->target_m};
+      // A route across a large floor would take too long.
+      for (std::optional<Vec2>& goal : other.goals_m)
+        if ((*goal - other.position_m).norm() > settings_.longest_trip_m) goal = version->intent->waypoint_m;
       other.has_right_of_way = may_pass_first({version->robot, orders.number}, self, now, passage_period_);
     }
     others.push_back(other);

@@ -69,7 +69,8 @@ void Agent::update_route_planner(const Vec2& target, Time now) {
   is_route_outdated_ |= route_obstacles_->set_temporary(temporary_obstacles(target, now));
   const bool is_new = !has_route_ || target != route_planner_->goal_m();
   // A route that is still free is kept for a while, although there may be a shorter one.
-  const bool is_old = std::chrono::abs(now - routed_at_) >= settings_.max_route_age;
+  const Duration max_age = from_seconds(to_seconds(settings_.max_route_age) * route_planner_->effort());
+  const bool is_old = std::chrono::abs(now - routed_at_) >= max_age;
   if (is_new || (is_route_outdated_ && (is_old || !route_planner_->is_free_from(estimate_.position_m)))) {
     route_planner_->begin(target);
     routed_at_ = now;

@@ -49,6 +49,7 @@ struct PlanningSettings {
   Duration right_of_way_period{10'000'000'000};  ///< lower ids, then higher ids, have priority for this long
   // Where robots cannot pass each other, for the time to drive this far and a while:
   double passage_m = 40, passage_s = 10;
+  double longest_trip_m = 20;           ///< of other robots; for longer ones, the next waypoint counts
   double standstill_mps = 0.01;         ///< intended speeds below this count as standing still
   double waiting_speed_fraction = 0.5;  ///< intended speeds below this fraction of the limit count as waiting
   double recovery_clear_path_m = 0.5;   ///< length of free path that a recovery direction requires

@@ -10,6 +10,8 @@ namespace {
 
 // Paths may touch the obstacles that they lead around.
 constexpr double kTolerance_m = 0.002;
+// The end of a band is on the path if it is not farther away.
+constexpr double kOnPath_m = 1e-6;
 
 double length_m(const Vec2& from_m, std::span<const Vec2> path_m) {
   double length = 0;
@@ -79,17 +81,41 @@ bool LocalDriver::is_line_free(const LocalQuery& query, const Vec2& to) const {
 void LocalDriver::update_band(const LocalQuery& query) {
   const auto distance = [&](const Vec2& at) { return distance_m(query, at); };
   const DistanceFunction free(distance);
-  const std::span<const Bubble> bubbles = band_.bubbles();
-  const double longest_m =
-      settings_.max_detour * length_m(query.at.position_m, query.path_m) + settings_.max_detour_m;
-  if (!bubbles.empty() && !band_.is_broken() && bubbles.back().centre_m == query.path_m.back() &&
-      band_.length_m() <= longest_m) {
+  if (fits_path(query)) {
     band_.update(query.at.position_m, free);
     if (!band_.is_broken()) return;
   }
   path_m_.assign(1, query.at.position_m);
-  path_m_.insert(path_m_.end(), query.path_m.begin(), query.path_m.end());
+  double length = 0;
+  for (const Vec2& next : query.path_m) {
+    const Vec2 leg = next - path_m_.back();
+    const double left_m = settings_.band_m - length;
+    if (leg.norm() > left_m) {
+      path_m_.emplace_back(path_m_.back() + left_m * leg.stableNormalized());
+      break;
+    }
+    length += leg.norm();
+    path_m_.push_back(next);
+  }
   band_.start(path_m_, free);
+}
+
+bool LocalDriver::fits_path(const LocalQuery& query) const {
+  const std::span<const Bubble> bubbles = band_.bubbles();
+  if (bubbles.empty() || band_.is_broken()) return false;
+  const Vec2 end = bubbles.back().centre_m;
+  if (end != query.path_m.back() && band_.length_m() < settings_.band_m / 2) return false;
+  double length = 0;
+  Vec2 last = query.at.position_m;
+  for (const Vec2& next : query.path_m) {
+    if (squared_distance(end, Segment{last, next}) < kOnPath_m * kOnPath_m) {
+      length += (end - last).norm();
+      return band_.length_m() <= settings_.max_detour * length + settings_.max_detour_m;
+    }
+    length += (next - last).norm();
+    last = next;
+  }
+  return false;
 }
 
 Vec2 LocalDriver::target_m(const LocalQuery& query) const {

@@ -27,6 +27,7 @@ struct LocalDriverSettings {
   std::size_t max_preferred = 4;   ///< velocities offered besides the best one
   // A band is started again if it is longer than the path by this factor plus this length.
   double max_detour = 1.2, max_detour_m = 0.3;
+  double band_m = 10;  ///< of a longer path, only the beginning becomes a band
   /// On a path chosen by a planner, the heading counts most. The table would only round times down.
   DiscWindowSettings window{.method = CollisionMethod::kExact,
                             .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
@@ -72,6 +73,8 @@ class LocalDriver {
   double distance_m(const LocalQuery& query, const Vec2& at_m) const;
   bool is_line_free(const LocalQuery& query, const Vec2& to_m) const;
   void update_band(const LocalQuery& query);
+  /// Whether the band still leads to a place on the path that is far enough ahead, without a long detour.
+  bool fits_path(const LocalQuery& query) const;
   Vec2 target_m(const LocalQuery& query) const;
   /// Fills points_m_ with the first obstacles on the rays, relative to the robot.
   void cast_rays(const LocalQuery& query);

@@ -13,20 +13,14 @@ namespace {
 constexpr double kReplanIncrease_m = 0.05;
 // A waypoint that the robot has to pass is reached at this distance.
 constexpr double kReached_m = 0.1;
-// Enough for about a hundred obstacles. Without a route the robot heads straight for its goal while that is
-// safe.
-constexpr std::size_t kMaxSamples = 5000;
 // Random samples cost more, and are all spent when there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Of roadmaps, which would otherwise grow with each query that they do not solve.
 constexpr std::size_t kMaxRandomNodes = 2000;
-
-Budget cycle_budget(const NamedPlanner& planner) {
-  Budget budget;
-  budget.samples = planner.is_random ? kMaxRandomSamples : kMaxSamples;
-  if (planner.is_random) budget.nodes = kMaxRandomNodes;
-  return budget;
-}
+// Enough for buildings of 100 by 100 m. Then the robot heads straight for its goal while that is safe.
+constexpr std::size_t kMostSamples = 320'000;
+// Where the last route is farther away than this, changes nearby do not change it.
+constexpr double kFar_m = 20;
 
 }  // namespace
 
@@ -43,12 +37,38 @@ RoutePlanner::RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obs
   if (!planner.is_shortest) exact_.emplace(make_driving_planner("lazy-visibility"));
 }
 
+Budget RoutePlanner::budget(const NamedPlanner& planner) const {
+  Budget budget;
+  budget.samples = planner.is_random ? kMaxRandomSamples : samples_;
+  if (planner.is_random) budget.nodes = kMaxRandomNodes;
+  return budget;
+}
+
+bool RoutePlanner::allow_more() {
+  if (samples_ >= kMostSamples) return false;
+  samples_ *= 2;
+  return true;
+}
+
 void RoutePlanner::begin(const Vec2& goal_m) {
+  if (goal_m == goal_m_) {
+    remember_route();
+  } else {
+    samples_ = kCycleSamples;
+    last_route_.clear();
+  }
   goal_m_ = goal_m;
   clearance_m_ = preferred_m_.back();
   has_tight_end_ = false;
   waypoints_.clear();
   next_waypoint_ = 0;
+}
+
+void RoutePlanner::remember_route() {
+  if (waypoints_.empty() || waypoints_.back() != goal_m_) return;
+  const auto remaining = remaining_waypoints_m();
+  last_route_.assign(remaining.begin(), remaining.end());
+  has_last_tight_end_ = has_tight_end_;
 }
 
 /// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
@@ -106,7 +126,9 @@ bool RoutePlanner::follow(const NamedPlanner& planner, const DiscDomain& domain,
 bool RoutePlanner::replan(const NamedPlanner& planner, const Vec2& start, double clearance, Rng& rng) {
   clearance_m_ = clearance;
   const DiscDomain here = domain(start, goal_m_);
-  return follow(planner, here, planner.plan(here, start, cycle_budget(planner), rng));
+  const Plan<Vec2>& plan = planner.plan(here, start, budget(planner), rng);
+  is_cut_short_ |= plan.reason == PlanReason::kBudgetSpent && !planner.is_random;
+  return follow(planner, here, plan);
 }
 
 bool RoutePlanner::replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start, double clearance,
@@ -126,16 +148,58 @@ bool RoutePlanner::replan_to_nearest(const Vec2& start, double clearance, Rng& r
   if (!nearest) return false;
   const DiscDomain there = here.with_goal_at(*nearest);
   const NamedPlanner& planner = exact();
-  return follow(planner, there, planner.plan(there, start, cycle_budget(planner), rng));
+  return follow(planner, there, planner.plan(there, start, budget(planner), rng));
 }
 
 std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
+  is_searching_ = false;
   if (auto route = continued_from(start)) return route;
-  const bool is_found = find_route(*planner_, start, rng) || (exact_ && find_route(*exact_, start, rng)) ||
-                        find_route_to_nearest(start, rng);
-  if (!is_found) return way_out(start);
+  remember_route();
+  is_cut_short_ = false;
+  bool is_found = find_detour(*planner_, start, rng) || (exact_ && find_detour(*exact_, start, rng)) ||
+                  find_route(*planner_, start, rng);
+  if (!is_found && exact_ && !is_cut_short_) is_found = find_route(*exact_, start, rng);
+  if (!is_found && is_cut_short_ && allow_more()) {
+    is_searching_ = true;
+    return std::nullopt;
+  }
+  if (!is_found && !find_route_to_nearest(start, rng)) return way_out(start);
   min_remaining_m_ = remaining_length_m(start);
   return route(min_remaining_m_);
+}
+
+std::optional<std::size_t> RoutePlanner::far_waypoint(const Vec2& start) const {
+  double along_m = 0;
+  Vec2 last = start;
+  for (std::size_t i = 0; i + 1 < last_route_.size(); ++i) {
+    along_m += (last_route_[i] - last).norm();
+    last = last_route_[i];
+    if (along_m < kFar_m) continue;
+    for (std::size_t k = i + 1; k < last_route_.size(); ++k)
+      if (world_->touches(last_route_[k - 1], last_route_[k], required_m_)) return std::nullopt;
+    return i;
+  }
+  return std::nullopt;
+}
+
+bool RoutePlanner::find_detour(const NamedPlanner& planner, const Vec2& start, Rng& rng) {
+  const std::optional<std::size_t> far = far_waypoint(start);
+  if (!far || !replan_until(planner, start, *far, rng)) return false;
+  waypoints_.insert(waypoints_.end(), last_route_.begin() + static_cast<std::ptrdiff_t>(*far) + 1,
+                    last_route_.end());
+  has_tight_end_ = has_last_tight_end_;
+  return true;
+}
+
+bool RoutePlanner::replan_until(const NamedPlanner& planner, const Vec2& start, std::size_t waypoint,
+                                Rng& rng) {
+  const Vec2& via = last_route_[waypoint];
+  const auto replan_with = [&](double clearance_m) {
+    clearance_m_ = clearance_m;
+    const DiscDomain here = domain(start, via);
+    return follow(planner, here, planner.plan(here, start, budget(planner), rng)) && waypoints_.back() == via;
+  };
+  return std::ranges::any_of(preferred_m_, replan_with) || replan_with(required_m_);
 }
 
 bool RoutePlanner::find_route(const NamedPlanner& planner, const Vec2& start, Rng& rng) {
@@ -143,13 +207,14 @@ bool RoutePlanner::find_route(const NamedPlanner& planner, const Vec2& start, Rn
       obstacle_on_goal() ? std::numeric_limits<double>::infinity() : world_->nearest(goal_m_).distance_m;
   for (const double clearance : preferred_m_) {
     const bool is_last = clearance == preferred_m_.back();
+    if (is_cut_short_) return false;
     if (goal_room_m > clearance) {
       if (replan(planner, start, clearance, rng)) return true;
     } else if (!is_last && replan_to_tight_goal(planner, start, clearance, rng)) {
       return true;
     }
   }
-  return replan(planner, start, required_m_, rng);
+  return !is_cut_short_ && replan(planner, start, required_m_, rng);
 }
 
 bool RoutePlanner::find_route_to_nearest(const Vec2& start, Rng& rng) {

@@ -27,7 +27,8 @@ struct Route {
 /// free and its remaining length does not grow, so that the robot does not alternate between two routes of
 /// equal length. Grids miss narrow passages, and random samples may: if the planner finds no path, the lazy
 /// visibility graph decides whether there is one. If obstacles cover or enclose the goal, routes lead to the
-/// nearest place that can be reached.
+/// nearest place that can be reached. On large floors, the search for a route may take several cycles, and
+/// a new route around changed obstacles keeps the part of the last one that is far away.
 class RoutePlanner {
  public:
   RoutePlanner(const RoutePlanner&) = delete;
@@ -41,7 +42,8 @@ class RoutePlanner {
   RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
                double radius_m, double margin_m, std::span<const double> extra_clearances_m);
 
-  /// Gives up the last route: for another goal, or when obstacles have changed. Call it before all others.
+  /// Gives up the last route: for another goal, or when obstacles have changed; its end may become the end of
+  /// the next route to the same goal. Call it before all others.
   void begin(const Vec2& goal_m);
   const Vec2& goal_m() const { return goal_m_; }
 
@@ -49,6 +51,11 @@ class RoutePlanner {
   /// obstacle may be left on a straight line away from it. If several obstacles leave no such line, the route
   /// leads straight to the nearest free position.
   [[nodiscard]] std::optional<Route> route_from(const Vec2& start_m, Rng& rng);
+  /// Whether the last call of route_from() found no route because the search takes longer than one cycle. It
+  /// goes on with the next call.
+  bool is_searching() const { return is_searching_; }
+  /// What it took to find the last route, in cycles; at least one.
+  double effort() const { return static_cast<double>(samples_) / static_cast<double>(kCycleSamples); }
   /// The last route from its next waypoint on.
   std::span<const Vec2> remaining_waypoints_m() const {
     return std::span(waypoints_).subspan(std::min(next_waypoint_, waypoints_.size()));
@@ -71,6 +78,16 @@ class RoutePlanner {
   bool replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
   /// Plans a new route with the largest clearance possible. Returns whether there is one.
   bool find_route(const NamedPlanner& planner, const Vec2& start_m, Rng& rng);
+  void remember_route();
+  /// Plans a route that leads around what has changed nearby and then along the last route. Returns whether
+  /// the last route is so long, and there is one.
+  bool find_detour(const NamedPlanner& planner, const Vec2& start_m, Rng& rng);
+  bool replan_until(const NamedPlanner& planner, const Vec2& start_m, std::size_t waypoint, Rng& rng);
+  /// Where the last route may be joined: its first waypoint that is far away, if all beyond it is free.
+  std::optional<std::size_t> far_waypoint(const Vec2& start_m) const;
+  /// After a search that spent its budget: lets the next one take longer. Returns whether it may.
+  bool allow_more();
+  Budget budget(const NamedPlanner& planner) const;
   bool may_skip_waypoint(const Vec2& start_m) const;
   /// Plans a new route to the nearest place that can be reached.
   bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
@@ -87,6 +104,9 @@ class RoutePlanner {
   double remaining_length_m(const Vec2& start_m) const;
   Route route(double length_m) const;
 
+  /// Of a search in one cycle: enough for about a hundred obstacles.
+  static constexpr std::size_t kCycleSamples = 5000;
+
   const ObstacleWorld* world_;
   Field field_;
   double radius_m_;
@@ -100,6 +120,11 @@ class RoutePlanner {
   DiscDomainSettings domain_settings_;
   std::vector<Vec2> waypoints_;  // of the last route
   std::size_t next_waypoint_ = 0;
+  std::vector<Vec2> last_route_;  // from the next waypoint on, before begin(); empty: none to this goal
+  bool has_last_tight_end_ = false;
+  std::size_t samples_ = kCycleSamples;  // of one search
+  bool is_cut_short_ = false;            // a search of this cycle spent its budget
+  bool is_searching_ = false;
   double min_remaining_m_ = 0;  // smallest remaining length of the last route so far
 };
 

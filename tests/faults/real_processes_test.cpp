@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <regex>
+#include <sstream>
+#include <unistd.h>
 
+#include "deploy/simulate/building/building.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
@@ -17,6 +22,27 @@ TEST_CASE("robots as processes cross the field over DDS and arrive without conta
   CHECK(report["arrived"] == 8);
   CHECK(run.children().size() == 11);
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
+}
+
+TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,000 cells") {
+  const auto folder = std::filesystem::temp_directory_path() / ("sidestep-large-" + std::to_string(getpid()));
+  BuildingOptions options;
+  options.folder = folder.string();
+  options.seed = 3;
+  options.resolution_m = 0.02;
+  options.robots = 3;
+  options.goals = 1;
+  write_building(options);
+  std::ostringstream scenario;
+  scenario << std::ifstream(folder / "scenario.yaml").rdbuf();
+  LaunchedRun run(std::regex_replace(scenario.str(), std::regex("map: "), "map: " + folder.string() + "/"));
+  const std::string ended = run.wait_for_end();
+  std::filesystem::remove_all(folder);
+  INFO(run.output());
+  CHECK(ended == "exit code 0");
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 3);
 }
 
 TEST_CASE("with --log-level debug, the log of a run names each registration, with time, level and process") {

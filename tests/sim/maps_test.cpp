@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Floors whose obstacles are the blocked cells of a map, in whole systems.
+#include <filesystem>
+#include <unistd.h>
+
+#include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/map/floor_plan.hpp"
+#include "deploy/simulate/building/building.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -96,6 +101,33 @@ TEST_CASE("robots that meet in a corridor as wide as one of them let each other 
   CAPTURE(seed);
   SimSystem system(random_corridor(seed), seed);
   CHECK(system.run_until_arrived(system.begin() + std::chrono::seconds(240)));
+  require_safe(system);
+}
+
+/// A building of 2,000 by 2,000 cells, written as a user does it.
+Scenario large_building(const std::string& kind, std::uint64_t seed) {
+  const auto folder = std::filesystem::temp_directory_path() / ("sidestep-maps-" + std::to_string(getpid()));
+  BuildingOptions options;
+  options.folder = folder.string();
+  options.kind = kind;
+  options.seed = seed;
+  options.robots = 4;
+  options.goals = 1;
+  write_building(options);
+  Scenario scenario = load_scenario((folder / "scenario.yaml").string());
+  std::filesystem::remove_all(folder);
+  return scenario;
+}
+
+TEST_CASE("robots find their ways through buildings of 100 x 100 m, without contact") {
+  const auto kind = GENERATE(from_range(kBuildingKinds));
+  const auto planner = GENERATE(as<std::string>(), "lazy-visibility", "estar");
+  const std::uint64_t seed = GENERATE(11u, 12u);
+  CAPTURE(kind, planner, seed);
+  Scenario scenario = large_building(kind, seed);
+  use_planner(scenario, planner);
+  SimSystem system(scenario, seed);
+  CHECK(system.run_until_arrived(system.begin() + from_seconds(scenario.time_limit_s)));
   require_safe(system);
 }
 

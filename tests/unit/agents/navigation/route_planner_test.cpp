@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/route_planner.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <queue>
+#include <span>
 
 #include "common/config/planner_names.hpp"
+#include "common/map/floor_map.hpp"
+#include "common/map/floor_plan.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
@@ -377,6 +381,79 @@ TEST_CASE("a goal near obstacles is reached from the nearest place with the full
   const auto [nearest_m, before_m] = drive(planner, {-1.7, -1.2}, goal, 0.6);
   CHECK(nearest_m >= kRadius_m + kMargin_m - 1e-6);
   CHECK(before_m >= kRadius_m + kMargin_m + 0.4 - 1e-6);
+}
+
+/// A corridor of 60 m, in which walls with gaps on alternating sides make the route long.
+std::vector<Shape> slalom() {
+  std::vector<Shape> walls;
+  for (int i = 0; i < 80; ++i) {
+    const double x = -28 + 0.7 * i;
+    walls.emplace_back(i % 2 == 0 ? Box{{x, -2}, {x + 0.1, 1.4}} : Box{{x, -1.4}, {x + 0.1, 2}});
+  }
+  return walls;
+}
+
+TEST_CASE("a search for a long route goes on in the next cycles, and finds the shortest route") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  CAPTURE(seed);
+  const Field field{80, 80};
+  MapGrid grid;
+  grid.columns = grid.rows = 1600;
+  grid.origin_m = {-40, -40};
+  const FloorMap map(make_floor_plan(seed, grid));
+  const auto free_near = [&](Vec2 p) {
+    while (map.cells().distance_m(p, 1) < 0.3) p -= 0.01 * p.normalized();
+    return p;
+  };
+  const Vec2 start = free_near({-39, -39}), goal = free_near({39, 39});
+  const std::vector<Box> boxes = map.boxes_on(field);
+  PlannerInWorld planner(shortest(), {boxes.begin(), boxes.end()}, field, kRadius_m, kMargin_m, 0.02, goal);
+  std::optional<Route> route;
+  int cycles = 0;
+  do {
+    route = planner.route_from(start, random());
+    ++cycles;
+    CHECK(route.has_value() != planner.is_searching());
+  } while (!route && cycles < 20);
+  REQUIRE(route);
+  CHECK(cycles > 1);
+  CHECK(route->reaches_goal);
+  CHECK(planner.effort() == Approx(1 << (cycles - 1)));
+  const DiscDomain domain(planner.world, {80.04, 80.04}, kRadius_m + kMargin_m + 0.02, start, goal,
+                          shortest().domain_settings(field, kRadius_m));
+  Budget unlimited;
+  unlimited.samples = unlimited.nodes = 100'000'000;
+  CHECK(route->length_m == Approx(shortest().plan(domain, start, unlimited, random()).length).margin(0.01));
+}
+
+TEST_CASE("around what changes nearby, a route leads back to the part that is far away") {
+  const Vec2 start(-29.5, 0), goal(29.5, 0);
+  PlannerInWorld planner(shortest(), slalom(), {60, 4}, kRadius_m, kMargin_m, 0.02, goal);
+  std::optional<Route> route;
+  for (int i = 0; i < 20 && !route; ++i) route = planner.route_from(start, random());
+  REQUIRE(route);
+  const std::vector<Vec2> before(planner.remaining_waypoints_m().begin(),
+                                 planner.remaining_waypoints_m().end());
+  const double effort = planner.effort();
+  // On the first leg, and a little aside of it.
+  planner.world.add(Circle{(start + before.front()) / 2 + Vec2(0, 0.02), 0.1});
+  planner.begin(goal);
+  const std::optional<Route> around = planner.route_from(start, random());
+  REQUIRE(around);
+  CHECK(around->reaches_goal);
+  CHECK(around->length_m > route->length_m);
+  CHECK(around->length_m < route->length_m + 0.5);
+  CHECK(planner.effort() == effort);
+  const std::span<const Vec2> after = planner.remaining_waypoints_m();
+  CHECK(after.front() != before.front());
+  CHECK(std::equal(before.end() - 40, before.end(), after.end() - 40));
+  // Where the far part is blocked, the whole route is planned again.
+  planner.world.add(Box{{10, -2}, {10.05, 2}});
+  planner.begin(goal);
+  std::optional<Route> blocked;
+  for (int i = 0; i < 20 && !blocked; ++i) blocked = planner.route_from(start, random());
+  REQUIRE(blocked);
+  CHECK_FALSE(blocked->reaches_goal);
 }
 
 }  // namespace sidestep::route_planner_test

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// The kinds of random buildings: rooms with corridors, doors and some shelves; or halls full of shelves.
+inline const std::vector<std::string> kBuildingKinds{"offices", "warehouse"};
+
+struct BuildingOptions {
+  std::string folder;
+  std::string kind = kBuildingKinds.front();
+  std::uint64_t seed = 1;
+  int cells = 2000;            ///< along each side
+  double resolution_m = 0.05;  ///< side of a cell
+  int robots = 6;
+  int goals = 3;  ///< of each robot
+};
+
+/// Writes a random building into a folder, which it creates: its map as `map.yaml` and `map.pgm`, and
+/// `scenario.yaml` with robots and goals at random places, all of which can be reached. The same options give
+/// the same files. Throws std::invalid_argument if the building has no room for so many robots, and
+/// std::runtime_error if a file cannot be written.
+void write_building(const BuildingOptions& options);
+
+}  // namespace sidestep

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+
+/// Adds `sidestep building`. Parsing it sets `action`, which returns 0 and throws as write_building() does.
+void add_building_command(const CliCommand& root, std::function<int()>& action);
+
+}  // namespace sidestep
