@@ -13,6 +13,8 @@ namespace {
 constexpr double kReplanIncrease_m = 0.05;
 // A waypoint that the robot has to pass is reached at this distance.
 constexpr double kReached_m = 0.1;
+// A path that keeps clear of obstacles is straightened by at most this.
+constexpr double kAside_m = 0.02;
 // Random samples cost more, and are all spent when there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Of roadmaps, which would otherwise grow with each query that they do not solve.
@@ -115,12 +117,30 @@ bool RoutePlanner::follow(const NamedPlanner& planner, const DiscDomain& domain,
   };
   if (planner.is_shortest) {
     take(plan);
+  } else if (planner.keeps_clear) {
+    take_straightened(plan.states);
   } else {
     Plan<Vec2> smoothed = plan;
     LeaderFollower<DiscDomain>().smooth(domain, smoothed);
     take(smoothed);
   }
   return !waypoints_.empty();
+}
+
+void RoutePlanner::take_straightened(std::span<const Vec2> path) {
+  waypoints_.clear();
+  for (std::size_t from = 0; from + 1 < path.size();) {
+    std::size_t to = from + 1;
+    const auto is_straight = [&](std::size_t end) {
+      const Segment line{path[from], path[end]};
+      const auto is_near = [&](const Vec2& p) { return squared_distance(p, line) < kAside_m * kAside_m; };
+      return std::ranges::all_of(path.subspan(from + 1, end - from - 1), is_near) &&
+             is_line_free(path[from], path[end]);
+    };
+    while (to + 1 < path.size() && is_straight(to + 1)) ++to;
+    waypoints_.push_back(path[to]);
+    from = to;
+  }
 }
 
 bool RoutePlanner::replan(const NamedPlanner& planner, const Vec2& start, double clearance, Rng& rng) {
@@ -245,6 +265,7 @@ std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
 }
 
 bool RoutePlanner::may_skip_waypoint(const Vec2& start) const {
+  if (planner_->keeps_clear && (start - waypoints_[next_waypoint_]).norm() > kReached_m) return false;
   // The last leg must not be entered earlier: it would lead along obstacles.
   const bool is_before_tight_end = has_tight_end_ && next_waypoint_ + 2 == waypoints_.size();
   if (is_before_tight_end && (start - waypoints_[next_waypoint_]).norm() > kReached_m) return false;

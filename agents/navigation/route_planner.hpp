@@ -92,6 +92,8 @@ class RoutePlanner {
   /// Plans a new route to the nearest place that can be reached.
   bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
   bool find_route_to_nearest(const Vec2& start_m, Rng& rng);
+  /// Joins states of a path that are almost on a straight line.
+  void take_straightened(std::span<const Vec2> path_m);
   bool follow(const NamedPlanner& planner, const DiscDomain& domain, const Plan<Vec2>& plan);
   /// The planner whose answer that there is no path can be relied on.
   const NamedPlanner& exact() const { return exact_ ? *exact_ : *planner_; }

@@ -254,7 +254,11 @@ NamedPlanner make_driving_planner(const std::string& name) {
   if (!std::ranges::count(kDrivingPlanners, name))
     refuse(name, {kDrivingPlanners.begin(), kDrivingPlanners.end()});
   const auto local = std::ranges::find(kLocalEntries, name, &LocalEntry::name);
-  if (local == kLocalEntries.end()) return make_planner(name);
+  if (local == kLocalEntries.end()) {
+    NamedPlanner planner = make_planner(name);
+    planner.keeps_clear = name == "estar-clearance";
+    return planner;
+  }
   NamedPlanner planner = make_planner(std::string(local->path_planner));
   planner.name = name;
   planner.local = local->methods;

@@ -47,6 +47,7 @@ struct NamedPlanner {
   std::function<PlanDrawing()> draw;
   std::function<DiscDomainSettings(const Field&, double radius_m)> domain_settings;
   bool is_shortest = false;             ///< its paths cannot be shortened
+  bool keeps_clear = false;             ///< its paths keep away from obstacles, which shortcuts would undo
   bool is_random = false;               ///< grows by random samples, and never knows that there is no path
   std::optional<LocalMethods> local{};  ///< none: steering among the other robots follows the path
 };

@@ -11,10 +11,9 @@ namespace sidestep {
 struct Scenario;
 
 /// The planners that can drive robots, for the key `planner` of scenarios. agents/planning/named_planner.hpp
-/// makes them. The last six are local methods that follow another planner's paths. The others are for
-/// comparison: they keep a graph of one world, use up all time, examine the whole floor, or keep clear of
-/// obstacles, which the shortcuts of routes undo.
-inline constexpr std::array<std::string_view, 18> kDrivingPlanners{
+/// makes them. Six are local methods that follow another planner's paths. The others are for
+/// comparison: they keep a graph of one world, use up all time, or examine the whole floor.
+inline constexpr std::array<std::string_view, 19> kDrivingPlanners{
     "lazy-visibility", "errt",
     "bi-errt",         "rrt",
     "rrt-connect",     "one-shot-prm",
@@ -23,7 +22,8 @@ inline constexpr std::array<std::string_view, 18> kDrivingPlanners{
     "quad-tree",       "trapezoids",
     "dynamic-window",  "nf1-dynamic-window",
     "bubble-band",     "nf1-band-dynamic-window",
-    "potential-field", "nf1-potential-field"};
+    "potential-field", "nf1-potential-field",
+    "estar-clearance"};
 
 /// The same, for options of programs.
 inline std::vector<std::string> driving_planners() {

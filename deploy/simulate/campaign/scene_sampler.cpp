@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "common/config/planner_names.hpp"
 #include "common/config/scenario_check.hpp"
 #include "deploy/simulate/campaign/building_sampler.hpp"
 #include "deploy/simulate/campaign/position_sampler.hpp"
@@ -164,16 +165,28 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
   }
 }
 
+void sample_planners(Scenario& scenario, Rng& rng) {
+  if (rng.chance(0.5)) return;
+  std::vector<std::string> planners = driving_planners();
+  std::erase_if(planners, [](const std::string& name) {
+    return name == "dynamic-window" || name == "potential-field";
+  });
+  const auto draw = [&] { return planners[rng.below(planners.size())]; };
+  scenario.planner = draw();
+  if (rng.chance(0.5)) return;
+  for (RobotSpec& robot : scenario.robots) robot.planner = draw();
+}
+
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} {}, {} coordinators; at most {:.2f} m/s; "
-      "command loss "
-      "{:.1f} %, "
+      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} {}, {} coordinators; {}; "
+      "at most {:.2f} m/s; command loss {:.1f} %, "
       "vision delay {:.1f} ms, missed detections {:.1f} %, ghosts {:.1f} % robots and {:.1f} % obstacles",
       scenario.robots.size(), scenario.field.length_m, scenario.field.width_m,
       scenario.map ? "a building, " : "", scenario.obstacles.size(), scenario.opponents.size(),
-      scenario.map ? "people" : "opponents", scenario.coordinators, scenario.limits.speed_mps,
-      100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
+      scenario.map ? "people" : "opponents", scenario.coordinators,
+      scenario.robots.front().planner.empty() ? scenario.planner : "a planner for each robot",
+      scenario.limits.speed_mps, 100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
       100 * scenario.vision.miss_probability, 100 * scenario.vision.ghost_probability,
       100 * scenario.vision.ghost_obstacle_probability);
 }

@@ -226,6 +226,52 @@ TEST_CASE("every planner leads through a passage that is hardly wider than the r
   }
 }
 
+/// Drives a route to its end, and returns its length and the least distance from obstacles where the route is
+/// not bound to be near them.
+std::pair<double, double> length_and_clearance(const NamedPlanner& named, const std::vector<Shape>& obstacles,
+                                               const Vec2& start, const Vec2& goal) {
+  const ObstacleWorld world(obstacles);
+  PlannerInWorld planner(named, obstacles, kField, kRadius_m, kMargin_m, 0.03, goal);
+  Rng rng(1);
+  Vec2 here = start;
+  double length = 0, clearance = 1;
+  for (int i = 0; i < 2000 && here != goal; ++i) {
+    const auto route = planner.route_from(here, rng);
+    if (!route || !route->reaches_goal) break;
+    const Vec2 ahead = route->waypoint_m - here;
+    const Vec2 next = ahead.norm() <= 0.02 ? route->waypoint_m : Vec2(here + 0.02 * ahead.normalized());
+    length += (next - here).norm();
+    here = next;
+    if ((here - start).norm() > 0.7 && (here - goal).norm() > 0.7)
+      clearance = std::min(clearance, world.nearest(here).distance_m - kRadius_m);
+  }
+  return {here == goal ? length : std::numeric_limits<double>::infinity(), clearance};
+}
+
+TEST_CASE("with clearance as a cost, robots drive through the middle of gaps, at little more length") {
+  const NamedPlanner plain = make_driving_planner("estar"), clear = make_driving_planner("estar-clearance");
+  int scenes = 0, clearer = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    // Two walls, each with a gap of 0.5 to 0.8 m.
+    std::vector<Shape> walls;
+    for (const double x : {-0.5, 0.5}) {
+      const double middle = rng.uniform(-1.2, 1.2), half = rng.uniform(0.25, 0.4);
+      walls.emplace_back(Box{{x - 0.05, -2}, {x + 0.05, middle - half}});
+      walls.emplace_back(Box{{x - 0.05, middle + half}, {x + 0.05, 2}});
+    }
+    const Vec2 start(-1.6, rng.uniform(-1.5, 1.5)), goal(1.6, rng.uniform(-1.5, 1.5));
+    const auto [plain_m, plain_clearance_m] = length_and_clearance(plain, walls, start, goal);
+    const auto [clear_m, clear_clearance_m] = length_and_clearance(clear, walls, start, goal);
+    REQUIRE(clear_m < 1.3 * plain_m);
+    CHECK(clear_clearance_m > 0.1);
+    ++scenes;
+    clearer += clear_clearance_m > plain_clearance_m + 0.03 ? 1 : 0;
+  }
+  CHECK(clearer > scenes / 2);
+}
+
 TEST_CASE("a robot too near an obstacle may leave it but not drive through it") {
   PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0, {1, 0});
   const Vec2 near(-0.25, 0);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/campaign/scene_sampler.hpp"
+
+#include <map>
+
+#include "common/config/planner_names.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep {
+
+TEST_CASE("about half of the random scenes have the usual planner, and all that reach goals occur") {
+  std::map<std::string, int> scenes, robots;
+  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+    Rng rng(seed);
+    Scenario scenario;
+    scenario.robots.resize(3);
+    sample_planners(scenario, rng);
+    ++scenes[scenario.planner];
+    for (const RobotSpec& robot : scenario.robots)
+      if (!robot.planner.empty()) ++robots[robot.planner];
+  }
+  CHECK(scenes["lazy-visibility"] > 250);
+  CHECK(scenes["lazy-visibility"] < 370);
+  for (const std::string_view planner : kDrivingPlanners) {
+    CAPTURE(planner);
+    const bool ignores_path = planner == "dynamic-window" || planner == "potential-field";
+    CHECK((scenes[std::string(planner)] > 0) != ignores_path);
+    CHECK((robots[std::string(planner)] > 0) != ignores_path);
+  }
+}
+
+}  // namespace sidestep
