@@ -20,6 +20,7 @@ struct PlanDrawing {
   std::vector<Segment> goal_tree;  ///< or lines of equal cost
   std::vector<ConvexPolygon> cells;
   std::vector<Vec2> cache;
+  std::vector<Circle> band{};  ///< the bubbles along the path, of a local method with a band
 };
 
 enum class PlannerKind {

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <memory>
 
+#include "agents/navigation/local_driver.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
+#include "common/config/planner_names.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -37,6 +39,32 @@ PlanWorld world_of(const PlanOptions& options) {
                  : load_plan_world(options.world);
 }
 
+/// All planners, also those that only drive.
+std::vector<std::string> names() {
+  std::vector<std::string> names = planner_names();
+  for (const std::string& name : driving_planners())
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  return names;
+}
+
+NamedPlanner planner_of(const std::string& name) {
+  const bool only_drives = std::ranges::find(planner_names(), name) == planner_names().end();
+  return only_drives ? make_driving_planner(name) : make_planner(name);
+}
+
+/// The bubbles of a local method's band along a path, once the forces on them hardly move it any more.
+std::vector<Circle> band_along(const std::vector<Vec2>& path_m, const NamedPlanner& planner,
+                               const PlanWorld& world, const ObstacleWorld& obstacles) {
+  constexpr int kUpdates = 100;
+  LocalDriver driver(*planner.local, world.field, world.radius_m, world.radius_m, MotionLimits{});
+  for (int i = 0; i < kUpdates; ++i)
+    (void)driver.choose(
+        {.at = {path_m.front(), {0, 0}}, .path_m = std::span(path_m).subspan(1), .world = &obstacles});
+  std::vector<Circle> band;
+  for (const Bubble& bubble : driver.bubbles()) band.push_back({bubble.centre_m, bubble.radius_m});
+  return band;
+}
+
 int plan(const PlanOptions& options) {
   const PlanWorld world = world_of(options);
   if (options.query >= world.queries.size()) {
@@ -46,7 +74,7 @@ int plan(const PlanOptions& options) {
   }
   const PlanQuery& query = world.queries[options.query];
   const ObstacleWorld obstacles(world.obstacles);
-  const NamedPlanner planner = make_planner(options.planner);
+  const NamedPlanner planner = planner_of(options.planner);
   const DiscDomain domain(obstacles, world.field, world.radius_m, query.start_m, query.goal_m,
                           planner.domain_settings(world.field, world.radius_m));
   Rng rng(options.seed);
@@ -61,9 +89,12 @@ int plan(const PlanOptions& options) {
              world.name, name_of(found.reason), found.start_blocked ? ", start blocked" : "",
              found.goal_blocked ? ", goal blocked" : "", found.length, 1e6 * to_seconds(planned - begin),
              smoothed.length, 1e6 * to_seconds(end - planned), found.nodes, found.samples);
-  if (!options.picture_file.empty())
-    write_file(options.picture_file,
-               plan_picture(world, query, planner.draw(), found.states, smoothed.states));
+  if (!options.picture_file.empty()) {
+    PlanDrawing drawing = planner.draw();
+    if (planner.local && planner.local->uses_band && found.arrives() && smoothed.states.size() > 1)
+      drawing.band = band_along(smoothed.states, planner, world, obstacles);
+    write_file(options.picture_file, plan_picture(world, query, drawing, found.states, smoothed.states));
+  }
   return found.arrives() ? 0 : kExitFailure;
 }
 
@@ -78,10 +109,11 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
                               fmt::join(world_names(), ", ")))
       .required();
   command.add_option("--planner", options->planner, "name of the planner")
-      .check(one_of(planner_names()))
+      .check(one_of(names()))
       .show_default();
-  command.add_option("--svg", options->picture_file,
-                     "draw the world, the tree, the cache and the path into this file");
+  command.add_option(
+      "--svg", options->picture_file,
+      "draw the world, the tree, the cache, the path and a local method's band into this file");
   command.add_option("--query", options->query, "number of the world's query, from 0")
       .check(non_negative())
       .show_default();

@@ -49,6 +49,8 @@ std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const P
   for (const Shape& shape : world.obstacles) svg += svg_obstacle(shape, kPixelsPerMetre);
   svg += lines(drawing.tree, "#1f6feb") + lines(drawing.goal_tree, "#bf8700");
   for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
+  for (const Circle& bubble : drawing.band)
+    svg += disc(bubble.centre_m, bubble.radius_m, "fill='#bf8700' fill-opacity='0.15' stroke='#bf8700'");
   svg += polyline(path_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
   svg += polyline(smoothed_m, "stroke='#cf222e' stroke-width='4'");
   svg += disc(query.start_m, world.radius_m, "fill='#2da44e'");

@@ -60,6 +60,10 @@ TEST_CASE("every planner plans by its name and draws what it explored") {
     CHECK(count(svg, "<polygon") == world.obstacles.size() + drawing.cells.size());
     CHECK(count(svg, "<circle") == 2 + drawing.cache.size());
     CHECK(svg.find("nan") == std::string::npos);
+    PlanDrawing with_band = drawing;
+    with_band.band = {Circle{{0, 0}, 0.5}, Circle{{0.3, 0}, 0.4}, Circle{{0.6, 0}, 0.3}};
+    CHECK(count(plan_picture(world, query, with_band, plan.states, plan.states), "<circle") ==
+          5 + drawing.cache.size());
   }
 }
 
