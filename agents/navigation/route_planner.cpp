@@ -19,8 +19,6 @@ constexpr double kAside_m = 0.02;
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Of roadmaps, which would otherwise grow with each query that they do not solve.
 constexpr std::size_t kMaxRandomNodes = 2000;
-// Enough for buildings of 100 by 100 m. Then the robot heads straight for its goal while that is safe.
-constexpr std::size_t kMostSamples = 320'000;
 // Where the last route is farther away than this, changes nearby do not change it.
 constexpr double kFar_m = 20;
 
@@ -44,12 +42,6 @@ Budget RoutePlanner::budget(const NamedPlanner& planner) const {
   budget.samples = planner.is_random ? kMaxRandomSamples : samples_;
   if (planner.is_random) budget.nodes = kMaxRandomNodes;
   return budget;
-}
-
-bool RoutePlanner::allow_more() {
-  if (samples_ >= kMostSamples) return false;
-  samples_ *= 2;
-  return true;
 }
 
 void RoutePlanner::begin(const Vec2& goal_m) {
@@ -178,8 +170,12 @@ std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   is_cut_short_ = false;
   bool is_found = find_detour(*planner_, start, rng) || (exact_ && find_detour(*exact_, start, rng)) ||
                   find_route(*planner_, start, rng);
-  if (!is_found && exact_ && !is_cut_short_) is_found = find_route(*exact_, start, rng);
-  if (!is_found && is_cut_short_ && allow_more()) {
+  if (!is_found && exact_ && !may_go_on()) {
+    is_cut_short_ = false;
+    is_found = find_route(*exact_, start, rng);
+  }
+  if (!is_found && may_go_on()) {
+    samples_ *= 2;
     is_searching_ = true;
     return std::nullopt;
   }
@@ -217,7 +213,9 @@ bool RoutePlanner::replan_until(const NamedPlanner& planner, const Vec2& start, 
   const auto replan_with = [&](double clearance_m) {
     clearance_m_ = clearance_m;
     const DiscDomain here = domain(start, via);
-    return follow(planner, here, planner.plan(here, start, budget(planner), rng)) && waypoints_.back() == via;
+    Budget near = budget(planner);
+    near.samples = std::min(near.samples, kCycleSamples);
+    return follow(planner, here, planner.plan(here, start, near, rng)) && waypoints_.back() == via;
   };
   return std::ranges::any_of(preferred_m_, replan_with) || replan_with(required_m_);
 }

@@ -85,8 +85,8 @@ class RoutePlanner {
   bool replan_until(const NamedPlanner& planner, const Vec2& start_m, std::size_t waypoint, Rng& rng);
   /// Where the last route may be joined: its first waypoint that is far away, if all beyond it is free.
   std::optional<std::size_t> far_waypoint(const Vec2& start_m) const;
-  /// After a search that spent its budget: lets the next one take longer. Returns whether it may.
-  bool allow_more();
+  /// Whether a search of this cycle spent its budget, and the next one may take longer.
+  bool may_go_on() const { return is_cut_short_ && samples_ < kMostSamples; }
   Budget budget(const NamedPlanner& planner) const;
   bool may_skip_waypoint(const Vec2& start_m) const;
   /// Plans a new route to the nearest place that can be reached.
@@ -108,6 +108,9 @@ class RoutePlanner {
 
   /// Of a search in one cycle: enough for about a hundred obstacles.
   static constexpr std::size_t kCycleSamples = 5000;
+  /// Enough for buildings of 100 by 100 m. Without a route, the robot heads straight for its goal while that
+  /// is safe.
+  static constexpr std::size_t kMostSamples = 64 * kCycleSamples;
 
   const ObstacleWorld* world_;
   Field field_;

@@ -58,10 +58,10 @@ void add_runs(Experiment& experiment, const std::string& file, double number,
 }  // namespace
 
 int study_buildings(const BuildingsOptions& options) {
-  require_study_output(options.study);
   Experiment experiment = experiment_of(options.study);
   for (std::size_t i = 0; i < options.scenario_files.size(); ++i)
     add_runs(experiment, options.scenario_files[i], static_cast<double>(i + 1), options);
+  require_study_output(options.study);
   measure(experiment);
   fmt::print("{}", markdown_of(experiment.table));
   const std::string command = fmt::format(
