@@ -78,9 +78,12 @@ void GiveWaySearch::check_passage(Rng& rng) {
   while (next_ < routes_.size()) {
     const Way& route = routes_[next_++];
     if (!is_place_on_route(route, query_.position_m, floor_.min_separation_m)) continue;
-    const ObstacleId self = fixed_.add(disc_at(query_.position_m));
+    // Several robots together may close a way that each of them alone leaves open.
+    std::vector<ObstacleId> robots{fixed_.add(disc_at(query_.position_m))};
+    for (const Vec2& other : query_.others_m)
+      if (other != route.front()) robots.push_back(fixed_.add(disc_at(other)));
     const std::optional<Way> around = path(route.front(), route.back(), rng);
-    fixed_.remove(self);
+    for (const ObstacleId robot : robots) fixed_.remove(robot);
     is_in_the_way_ = !around || around->back() != route.back();
     if (is_in_the_way_) begin_places();
     return;

@@ -51,8 +51,9 @@ class GiveWaySearch {
   void step(Rng& rng);
 
   // Results, once a search is not active any more.
-  /// Whether the robot at its position is in the way of another one that cannot drive around it or, if it
-  /// already gives way, whether it would be in the way of another one anywhere along its way.
+  /// Whether the robot at its position is in the way of another one that cannot drive around it and all
+  /// others or, if it already gives way, whether it would be in the way of another one anywhere along its
+  /// way.
   bool is_in_the_way() const { return is_in_the_way_; }
   /// The way to the place; empty if it is not needed, or if there is no such place.
   const std::vector<Vec2>& way() const { return way_; }

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/map/bit_grid.hpp"
+#include "common/map/map_grid.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {
 
-/// Samples positions of robots clear of walls, of obstacles and, on request, of other positions.
+/// Samples positions of robots clear of walls, of obstacles and, on request, of other positions. A robot can
+/// drive from each of them to each other one: pockets that no robot can enter or leave get none.
 class PositionSampler {
  public:
   /// Both arguments must outlive the sampler.
-  PositionSampler(const Scenario& scenario, Rng& rng) : scenario_(scenario), rng_(rng) {}
+  PositionSampler(const Scenario& scenario, Rng& rng);
 
   /// Within the central `share` of the field if a free position is found there, else anywhere.
   Vec2 sample(double share = 1);
@@ -21,11 +25,16 @@ class PositionSampler {
   Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others);
 
  private:
+  bool is_clear(const Vec2& p) const;
   bool is_free(const Vec2& p) const;
+  /// Sets the cells of the largest part of the floor that robots can drive through.
+  void find_largest_part();
   bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const;
 
   const Scenario& scenario_;
   Rng& rng_;
+  MapGrid grid_;
+  std::optional<BitGrid> largest_part_;  ///< nullopt: all of the floor, which has neither obstacles nor walls
 };
 
 }  // namespace sidestep

@@ -141,6 +141,20 @@ TEST_CASE("a robot gives way until the other has passed, also while that is far 
   CHECK_FALSE(robot.decide(6, *place, {}, fixed));
 }
 
+TEST_CASE("robots that close a door together give way, although each of them alone would not close it") {
+  // A wall with a door as wide as two robots, in which two stand side by side.
+  const ObstacleWorld fixed({Box{{-0.05, -2}, {0.05, -0.24}}, Box{{-0.05, 0.24}, {0.05, 2}}});
+  const OtherRobot beside{1, true, {0, -0.125}};
+  Robot robot;
+  std::optional<Vec2> place;
+  for (double t = 0; t < 6 && !place; t += 0.1)
+    place = robot.decide(t, {0, 0.125}, {coming_from(0.4, -4.9), beside}, fixed);
+  CHECK(place);
+  Robot alone;
+  for (int i = 0; i < 60; ++i)
+    CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {coming_from(0.4, -4.9)}, fixed));
+}
+
 TEST_CASE("a robot takes another place if its place is taken, or if it comes no nearer") {
   // A bay above the corridor, and another one below it.
   const ObstacleWorld fixed({Box{{-5, -2}, {-2.2, -0.15}}, Box{{-1.8, -2}, {5, -0.15}},

@@ -4,6 +4,8 @@
 #include <map>
 
 #include "common/config/planner_names.hpp"
+#include "deploy/simulate/campaign/trial.hpp"
+#include "deploy/simulate/campaign/walk_sampler.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep {
@@ -26,6 +28,22 @@ TEST_CASE("about half of the random scenes have the usual planner, and all that 
     const bool ignores_path = planner == "dynamic-window" || planner == "potential-field";
     CHECK((scenes[std::string(planner)] > 0) != ignores_path);
     CHECK((robots[std::string(planner)] > 0) != ignores_path);
+  }
+}
+
+TEST_CASE("in random scenes, robots can reach all of their goals") {
+  int scenes = 0;
+  // Scene 647 has a pocket between an obstacle and the border that no robot can enter.
+  for (std::uint64_t seed = 647; scenes < 8; ++seed) {
+    CAPTURE(seed);
+    const Scenario scenario = sample_trial(seed, std::chrono::seconds(60), {}, true).scenario;
+    if (!scenario.map && scenario.obstacles.empty()) continue;
+    ++scenes;
+    Rng rng(seed);
+    WalkSampler walks(scenario, scenario.radius_m + scenario.margin_m, rng);
+    for (const RobotSpec& robot : scenario.robots)
+      for (std::size_t i = 0; i < robot.goals.size(); i += 10)
+        REQUIRE(walks.path(robot.start_m, robot.goals[i].position_m));
   }
 }
 
