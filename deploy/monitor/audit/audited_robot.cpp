@@ -72,11 +72,21 @@ KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
   return *place;
 }
 
-ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number, VersionNumber candidate) {
+ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number) {
   const std::size_t count = std::min<std::size_t>(proposal_count, kMaxProposals);
   for (std::size_t back = 1; back <= count; ++back) {
     ProposalRecord& record = proposals[(proposal_count - back) % kMaxProposals];
-    if (number != 0 ? record.number == number : record.find(candidate) != nullptr) return &record;
+    if (record.number == number) return &record;
+  }
+  return nullptr;
+}
+
+const ProposalRecord* AuditedRobot::find_proposal_of(const msg::Version& candidate) const {
+  const std::size_t count = std::min<std::size_t>(proposal_count, kMaxProposals);
+  for (std::size_t back = 1; back <= count; ++back) {
+    const ProposalRecord& record = proposals[(proposal_count - back) % kMaxProposals];
+    const msg::Version* found = record.find(candidate.version_number());
+    if (found && found->incarnation() == candidate.incarnation()) return &record;
   }
   return nullptr;
 }

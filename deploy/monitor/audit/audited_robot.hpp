@@ -158,8 +158,11 @@ class AuditedRobot {
   ExecutedVersions executed_versions() const;
   /// The version's record, inserted if it is new. When full, evicts the least relevant record.
   KnownVersion& find_or_insert(VersionNumber number);
-  /// The proposal with this number, or, for number 0, the newest one with this candidate.
-  ProposalRecord* find_proposal(std::uint64_t number, VersionNumber candidate);
+  /// The newest proposal with this number. Those of several agents of the robot may share it: a restarted
+  /// agent does not know the last numbers of the one before it.
+  ProposalRecord* find_proposal(std::uint64_t number);
+  /// The newest proposal with this candidate of the same agent.
+  const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
   /// Removes versions that were excluded before `before_ns`.
   void forget(std::int64_t before_ns);
   /// Advances first_recent past versions excluded before `since_ns`: they are no longer compared with other

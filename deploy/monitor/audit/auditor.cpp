@@ -138,7 +138,9 @@ void Auditor::on_proposal(const msg::Proposal& proposal, Time now) {
     return;
   }
   const std::uint64_t number = proposal.candidates().front().version_number();
-  if (robot->find_proposal(number, 0)) return;
+  const ProposalRecord* same_number = robot->find_proposal(number);
+  const std::uint64_t incarnation = proposal.candidates().front().incarnation();
+  if (same_number && same_number->candidates.front().incarnation() == incarnation) return;
   ProposalRecord& record = robot->add_proposal();
   record.number = number;
   record.epoch = proposal.epoch();
@@ -234,7 +236,7 @@ void Auditor::on_command(const msg::Command& command, Time now) {
 void Auditor::check_forwarded(AuditedRobot& robot, VersionNumber number) {
   KnownVersion* known = robot.find(number);
   if (!known || known->sent_ns == kNever || known->is_reported_unsent) return;
-  const ProposalRecord* proposal = robot.find_proposal(0, number);
+  const ProposalRecord* proposal = robot.find_proposal_of(known->version);
   const bool was_denied = proposal && proposal->is_decided && proposal->granted != number;
   const bool was_never_granted =
       input_.is_complete && known->granted_in == 0 && known->number > robot.max_evicted_version;

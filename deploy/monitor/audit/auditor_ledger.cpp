@@ -35,7 +35,7 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   AuditedRobot& robot = robots_[index_[verdict.robot()]];
   const Reception reception = trace(kVerdictKind, robot.id, verdict.header());
   if (verdict.proposal_number() == 0) return;
-  ProposalRecord* proposal = robot.find_proposal(verdict.proposal_number(), 0);
+  ProposalRecord* proposal = robot.find_proposal(verdict.proposal_number());
   if (!proposal && is_final(verdict)) {
     robot.early_verdicts[robot.early_verdict_count++ % robot.early_verdicts.size()] = {
         verdict.proposal_number(), verdict.epoch(), verdict.granted_version()};
@@ -157,7 +157,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     KnownVersion* stored = store(robot, version);
     if (!stored || stored->is_in(page.epoch()) || stored->granted_in != 0) continue;
     // A version that an agent proposed or sent is not the robot's own stop, so its verdict was missed.
-    const bool was_proposed = robot.find_proposal(0, stored->number) != nullptr;
+    const bool was_proposed = robot.find_proposal_of(stored->version) != nullptr;
     const bool was_granted = !input_.is_complete && (stored->sent_ns != kNever || was_proposed);
     if (!stored->is_own_stop && !was_granted) continue;
     if (was_proposed) stored->is_proposed = true;

@@ -253,6 +253,42 @@ TEST_CASE("a verdict that is repeated much later breaks no rule") {
   CHECK(totals.violations == 0);
 }
 
+TEST_CASE("a version that was granted stays granted if a later agent proposes its number in vain") {
+  // A restarted agent may number its versions like those that its predecessor sent last.
+  const std::uint64_t numbers_before = GENERATE(0u, 2u);
+  const AuditTotals totals = audit_of_tampered([&](History& h) {
+    const Switch s = example_switch(h);
+    std::optional<msg::Proposal> proposal;
+    h.each<msg::Proposal>([&](msg::Proposal& p, Time) {
+      if (p.robot() == s.robot && p.candidates().front().version_number() == s.number) proposal = p;
+    });
+    REQUIRE(proposal);
+    proposal->header().incarnation(proposal->header().incarnation() + 1);
+    proposal->candidate_count(5);
+    for (std::size_t i = 0; i < 5; ++i) {
+      proposal->candidates()[i] = proposal->candidates()[0];
+      proposal->candidates()[i].incarnation(proposal->header().incarnation());
+      proposal->candidates()[i].version_number(s.number - numbers_before + i);
+    }
+    const auto is_sent = [&](const ReceivedMessage& m) {
+      const auto* command = std::get_if<msg::Command>(&m.message);
+      return command && command->robot() == s.robot && command->has_version() &&
+             command->version().version_number() == s.number;
+    };
+    const auto sent = std::ranges::find_if(h.messages, is_sent);
+    REQUIRE(sent != h.messages.end());
+    msg::Verdict verdict;
+    verdict.robot(s.robot);
+    verdict.epoch(proposal->epoch());
+    verdict.proposal_number(s.number - numbers_before);
+    verdict.reasons().fill(msg::Reason::REASON_CONFLICT);
+    const Time at = sent->at;
+    h.messages.insert(h.messages.insert(sent + 1, {at, verdict}), {at, *proposal});
+  });
+  INFO(lines(totals));
+  CHECK(totals.violations == 0);
+}
+
 TEST_CASE("an operator's attestation of absence stands for a robot's registration") {
   const AuditTotals totals = audit_of_tampered([](History& h) {
     h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
