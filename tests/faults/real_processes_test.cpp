@@ -30,7 +30,7 @@ TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,
   options.folder = folder.string();
   options.seed = 4;
   options.resolution_m = 0.02;
-  options.robots = 3;
+  options.robots = 6;
   options.goals = 1;
   write_building(options);
   std::ostringstream scenario;
@@ -42,7 +42,7 @@ TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,
   CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
-  CHECK(report["arrived"] == 3);
+  CHECK(report["arrived"] == 6);
 }
 
 TEST_CASE("with --log-level debug, the log of a run names each registration, with time, level and process") {
