@@ -17,7 +17,9 @@
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/run_command.hpp"
 #include "deploy/monitor/audit/audit_command.hpp"
+#include "deploy/monitor/record/bag_command.hpp"
 #include "deploy/monitor/record/record_command.hpp"
+#include "deploy/monitor/record/replay_command.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/order/order_command.hpp"
 #include "deploy/order/referee_command.hpp"
@@ -61,6 +63,8 @@ int main(int argc, char** argv) {
   add_referee_command(app, action);
   add_audit_command(app, action);
   add_record_command(app, action);
+  add_bag_command(app, action);
+  add_replay_command(app, action);
   add_plan_command(app, action);
   add_frame_command(app, action);
   add_pattern_command(app, action);

@@ -130,7 +130,7 @@ std::string obstacle_text(const Shape& shape) {
   return std::visit([](const auto& s) { return text_of(s); }, shape);
 }
 
-std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map) {
+std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap* cells) {
   const YAML::Node node = map.find("map");
   if (!node.IsDefined()) return nullptr;
   const YamlLocation location = map.location_of("map");
@@ -138,7 +138,7 @@ std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map) {
   if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");
   const std::string path = (std::filesystem::path(location.file).parent_path() / name).string();
   try {
-    return std::make_shared<const FloorMap>(load_occupancy_map(path), name);
+    return std::make_shared<const FloorMap>(cells != nullptr ? *cells : load_occupancy_map(path), name);
   } catch (const std::exception& error) {
     location.fail(error.what());
   }

@@ -20,7 +20,8 @@ namespace sidestep {
 [[nodiscard]] std::string obstacle_text(const Shape& shape);
 
 /// Reads the optional key `map` of the same files: the path of a map's YAML file, relative to the file that
-/// has the key. Throws ConfigError.
-[[nodiscard]] std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map);
+/// has the key. With `cells`, these are the map, and no file is read. Throws ConfigError.
+[[nodiscard]] std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map,
+                                                             const OccupancyMap* cells = nullptr);
 
 }  // namespace sidestep

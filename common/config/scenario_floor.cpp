@@ -60,9 +60,9 @@ void read_ball(YamlMap& map, Scenario& scenario) {
 
 }  // namespace
 
-void read_floor(YamlMap& map, Scenario& scenario) {
+void read_floor(YamlMap& map, const OccupancyMap* cells, Scenario& scenario) {
   scenario.obstacles = read_obstacles(map, kMaxObstacles);
-  scenario.map = read_floor_map(map);
+  scenario.map = read_floor_map(map, cells);
   read_opponents(map, scenario);
   read_ball(map, scenario);
 }

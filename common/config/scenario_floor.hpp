@@ -6,7 +6,8 @@
 
 namespace sidestep {
 
-/// Reads the obstacles, the opponents and the ball. Throws ConfigError.
-void read_floor(YamlMap& map, Scenario& scenario);
+/// Reads the obstacles, the map, the opponents and the ball. `cells`: see read_floor_map(). Throws
+/// ConfigError.
+void read_floor(YamlMap& map, const OccupancyMap* cells, Scenario& scenario);
 
 }  // namespace sidestep

@@ -183,13 +183,14 @@ void read_restart(YamlMap& map, RestartSpec& restart) {
 
 }  // namespace
 
-Scenario parse_scenario(const std::string& text, const std::string& file_name) {
+Scenario parse_scenario(const std::string& text, const std::string& file_name,
+                        const OccupancyMap* map_cells) {
   YamlMap map = document_map(text, file_name, kExpected);
   Scenario scenario;
   read_name(map, file_name, scenario);
   read_field_and_limits(map, scenario);
   read_budget(map, scenario);
-  read_floor(map, scenario);
+  read_floor(map, map_cells, scenario);
   read_vision(map, scenario.vision);
   read_odometry(map, scenario.odometry);
   read_laser(map, scenario);

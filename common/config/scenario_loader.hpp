@@ -12,7 +12,8 @@ namespace sidestep {
 [[nodiscard]] Scenario load_scenario(const std::string& path);
 
 /// The same from text. `file_name` appears in error messages, and its stem is the default name of the
-/// scenario.
-[[nodiscard]] Scenario parse_scenario(const std::string& text, const std::string& file_name);
+/// scenario. With `map_cells`, these replace the file that the key `map` names.
+[[nodiscard]] Scenario parse_scenario(const std::string& text, const std::string& file_name,
+                                      const OccupancyMap* map_cells = nullptr);
 
 }  // namespace sidestep

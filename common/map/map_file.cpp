@@ -104,21 +104,29 @@ OccupancyMap load_occupancy_map(const std::string& path) {
   return {grid, std::move(blocked)};
 }
 
-void write_occupancy_map(const OccupancyMap& map, const std::string& path) {
+MapFiles map_files(const OccupancyMap& map, const std::string& image_name) {
   const MapGrid& grid = map.grid();
-  std::string image = fmt::format("P5\n{} {}\n255\n", grid.columns, grid.rows);
-  image.reserve(image.size() + static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  MapFiles files;
+  files.image = fmt::format("P5\n{} {}\n255\n", grid.columns, grid.rows);
+  files.image.reserve(files.image.size() +
+                      static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   for (int row = grid.rows - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns; ++column)
-      image += map.blocked().get(column, row) ? kBlockedPixel : kFreePixel;
-  write_file(path + ".pgm", image);
+      files.image += map.blocked().get(column, row) ? kBlockedPixel : kFreePixel;
   YAML::Emitter name;
-  name << YAML::DoubleQuoted << std::filesystem::path(path).filename().string() + ".pgm";
+  name << YAML::DoubleQuoted << image_name;
   // Numbers are written so that reading them gives the same ones.
-  write_file(path + ".yaml",
-             fmt::format("image: {}\nresolution: {}\norigin: [{}, {}, 0]\nnegate: 0\n"
-                         "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
-                         name.c_str(), grid.resolution_m, grid.origin_m.x(), grid.origin_m.y()));
+  files.yaml = fmt::format(
+      "image: {}\nresolution: {}\norigin: [{}, {}, 0]\nnegate: 0\n"
+      "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+      name.c_str(), grid.resolution_m, grid.origin_m.x(), grid.origin_m.y());
+  return files;
+}
+
+void write_occupancy_map(const OccupancyMap& map, const std::string& path) {
+  const MapFiles files = map_files(map, std::filesystem::path(path).filename().string() + ".pgm");
+  write_file(path + ".pgm", files.image);
+  write_file(path + ".yaml", files.yaml);
 }
 
 }  // namespace sidestep

@@ -15,8 +15,16 @@ namespace sidestep {
 /// (yaw 0).
 [[nodiscard]] OccupancyMap load_occupancy_map(const std::string& path);
 
-/// Writes `path`.pgm and `path`.yaml, which load_occupancy_map reads as the same map. Throws
-/// std::runtime_error if a file cannot be written.
+/// The contents of the two files of a map.
+struct MapFiles {
+  std::string yaml;
+  std::string image;  ///< PGM
+};
+
+/// What load_occupancy_map reads as this map, if the image is stored as `image_name`.
+[[nodiscard]] MapFiles map_files(const OccupancyMap& map, const std::string& image_name);
+
+/// Writes them as `path`.pgm and `path`.yaml. Throws std::runtime_error if a file cannot be written.
 void write_occupancy_map(const OccupancyMap& map, const std::string& path);
 
 }  // namespace sidestep

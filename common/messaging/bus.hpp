@@ -88,6 +88,10 @@ class Bus {
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {
     return Writer<Message>(make_writer(topic, channel_name(topic, robot)), rules_);
   }
+  /// For messages that keep the headers that they have, e.g. those of a recording.
+  std::unique_ptr<RawWriter> relay(const TopicInfo& topic, const std::string& channel) {
+    return make_writer(topic, channel);
+  }
   /// `callback` takes a const Message&.
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {

@@ -4,13 +4,9 @@
 namespace sidestep {
 
 std::vector<TopicInfo> all_topics() {
-  return {topics::kImages,      topics::kDetections,  topics::kWorld,        topics::kObstacles,
-          topics::kCommand,     topics::kFeedback,    topics::kRegistration, topics::kProposal,
-          topics::kVerdict,     topics::kLedger,      topics::kCoordinator,  topics::kStatus,
-          topics::kDisturbance, topics::kAttestation, topics::kNetworkFault, topics::kTruth,
-          topics::kRules,       topics::kCounters,    topics::kOrder,        topics::kOrderAnswer,
-          topics::kOrderMemory, topics::kOrderStatus, topics::kClockProbe,   topics::kClockReading,
-          topics::kScan};
+  std::vector<TopicInfo> topics;
+  for_each_topic([&](const TopicInfo& topic) { topics.push_back(topic); });
+  return topics;
 }
 
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {

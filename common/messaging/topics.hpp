@@ -165,6 +165,36 @@ inline constexpr Topic<msg::SharedRules> kRules{
 
 }  // namespace topics
 
+/// Calls `visit` with each Topic<Message> of the table.
+template <typename Visitor>
+void for_each_topic(Visitor visit) {
+  visit(topics::kImages);
+  visit(topics::kDetections);
+  visit(topics::kWorld);
+  visit(topics::kObstacles);
+  visit(topics::kCommand);
+  visit(topics::kFeedback);
+  visit(topics::kScan);
+  visit(topics::kRegistration);
+  visit(topics::kProposal);
+  visit(topics::kVerdict);
+  visit(topics::kLedger);
+  visit(topics::kCoordinator);
+  visit(topics::kStatus);
+  visit(topics::kAttestation);
+  visit(topics::kOrder);
+  visit(topics::kOrderAnswer);
+  visit(topics::kOrderMemory);
+  visit(topics::kOrderStatus);
+  visit(topics::kDisturbance);
+  visit(topics::kNetworkFault);
+  visit(topics::kTruth);
+  visit(topics::kRules);
+  visit(topics::kCounters);
+  visit(topics::kClockProbe);
+  visit(topics::kClockReading);
+}
+
 /// All rows of the table.
 std::vector<TopicInfo> all_topics();
 

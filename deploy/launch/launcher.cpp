@@ -55,7 +55,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
   });
   listen(bus_, scenario, auditor_);
   if (!options.recording_file.empty()) {
-    recording_.emplace(options.recording_file, recording_header(scenario.name, options.scenario_file));
+    recording_.emplace(options.recording_file, recording_header(scenario, options.scenario_file));
     record(bus_, scenario, *recording_);
   }
   listen(bus_, metrics_);
@@ -82,7 +82,6 @@ Report Launcher::run() {
     print_new_epochs();
     if (!options_.is_quiet) display_.update(metrics_, bus_.now());
   }
-  if (recording_) recording_->close();
   Report report = metrics_.report();
   for (const std::string& name : group_.terminate(kTerminationTimeout))
     print(name + " did not stop in time and was killed", LogLevel::kWarning);
@@ -94,6 +93,10 @@ Report Launcher::run() {
   report.fast_dds = fast_dds_version();
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
   report.processes = group_.resource_use();
+  if (recording_) {
+    recording_->add_report(bus_.now(), to_json(report));
+    recording_->close();
+  }
   return report;
 }
 

@@ -69,24 +69,36 @@ std::string run_until_arrived(SimSystem& system, double limit_s) {
 /// the construction of the system: during construction no message about versions is sent.
 class SimRecorder {
  public:
-  SimRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options) : bus_(network) {
-    if (options.recording_file.empty()) return;
+  explicit SimRecorder(const SimulateOptions& options) : options_(options) {}
+
+  void start(SimNetwork& network, const Scenario& scenario) {
+    if (options_.recording_file.empty()) return;
     RecordingHeader header;
     header.scenario_name = scenario.name;
-    if (!options.scenario_file.empty()) header = recording_header(scenario.name, options.scenario_file);
+    if (!options_.scenario_file.empty()) header = recording_header(scenario, options_.scenario_file);
     header.is_complete = true;
-    writer_.emplace(options.recording_file, header);
-    bus_.become_observer();
-    record(bus_, scenario, *writer_);
+    writer_.emplace(options_.recording_file, header);
+    bus_.emplace(network);
+    bus_->become_observer();
+    record(*bus_, scenario, *writer_);
+  }
+  /// Call it while the network exists.
+  void stop() {
+    if (bus_) stopped_at_ = bus_->now();
+    bus_.reset();
   }
   /// Throws std::runtime_error when a write has failed.
-  void close() {
-    if (writer_) writer_->close();
+  void close(const Report& report) {
+    if (!writer_) return;
+    writer_->add_report(stopped_at_, to_json(report));
+    writer_->close();
   }
 
  private:
+  const SimulateOptions& options_;
   std::optional<RecordingWriter> writer_;
-  SimBus bus_;
+  std::optional<SimBus> bus_;
+  Time stopped_at_{};
 };
 
 /// Listens to the scans of one robot for a picture, if the options ask for one.
@@ -114,14 +126,15 @@ class SightRecorder {
 };
 
 /// Completes, writes and prints the report, and returns the exit code.
-int finish(const SimulateOptions& options, Report& report, const std::function<std::string()>& picture,
-           steady_clock::time_point begin) {
+int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder,
+           const std::function<std::string()>& picture, steady_clock::time_point begin) {
   report.program = "simulate";
   report.seed = options.seed;
   report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
   const std::string path =
       options.report_file.empty() ? default_report_path(report.scenario, options.seed) : options.report_file;
   write_report(report, path);
+  recorder.close(report);
   if (!options.picture_file.empty()) write_file(options.picture_file, picture());
   fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
              summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
@@ -146,19 +159,19 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   for (const std::string& line : to_lines(trial.plan)) fmt::print("  {}\n", line);
   RunPicture picture(trial.scenario);
   Report report;
-  std::optional<SimRecorder> recorder;
+  SimRecorder recorder(options);
   TrialHooks hooks;
   hooks.on_start = [&](SimSystem& system) {
     log_events_of(system, options.log_level);
-    recorder.emplace(system.network(), trial.scenario, options);
+    recorder.start(system.network(), trial.scenario);
   };
   hooks.on_truth = [&](const msg::GroundTruth& truth) {
     if (!options.picture_file.empty()) picture.add(truth);
   };
-  hooks.on_end = [&] { recorder->close(), recorder.reset(); };
+  hooks.on_end = [&] { recorder.stop(); };
   run_trial(trial, &report, hooks);
   return finish(
-      options, report, [&] { return picture.svg(); }, begin);
+      options, report, recorder, [&] { return picture.svg(); }, begin);
 }
 
 int simulate(const SimulateOptions& options) {
@@ -177,13 +190,14 @@ int simulate(const SimulateOptions& options) {
       sight.picture() ? sight.picture()->add(truth) : picture.add(truth);
     });
   }
-  SimRecorder recorder(system.network(), scenario, options);
+  SimRecorder recorder(options);
+  recorder.start(system.network(), scenario);
   const std::string abort_reason = run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
-  recorder.close();
+  recorder.stop();
   Report report = system.metrics().report();
   report.abort_reason = abort_reason;
   const auto draw = [&] { return sight.picture() ? sight.picture()->svg() : picture.svg(); };
-  return finish(options, report, draw, begin);
+  return finish(options, report, recorder, draw, begin);
 }
 
 }  // namespace sidestep

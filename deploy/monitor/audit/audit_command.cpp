@@ -10,7 +10,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
-#include "deploy/monitor/record/recording.hpp"
+#include "deploy/monitor/record/playback_bus.hpp"
 
 namespace sidestep {
 namespace {
@@ -64,9 +64,7 @@ int finish(const AuditTotals& totals) {
 int audit_recording(const AuditOptions& options) {
   PlaybackBus bus(options.recording_file);
   const Scenario scenario =
-      options.scenario_file.empty()
-          ? parse_scenario(bus.header().scenario_text, bus.header().scenario_name + ".yaml")
-          : load_scenario(options.scenario_file);
+      options.scenario_file.empty() ? bus.scenario() : load_scenario(options.scenario_file);
   AuditInput input;
   input.is_complete = bus.header().is_complete;
   Auditor auditor(scenario, input);

@@ -18,12 +18,14 @@ struct RecordOptions {
   std::string scenario_file;
   std::string recording_file;
   std::optional<double> seconds;
+  bool is_compressed = false;
   DdsSettings dds;
 };
 
 int record_messages(const RecordOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
-  RecordingWriter writer(options.recording_file, recording_header(scenario.name, options.scenario_file));
+  RecordingWriter writer(options.recording_file, recording_header(scenario, options.scenario_file),
+                         {.is_compressed = options.is_compressed});
   DdsBus bus(options.dds);
   record(bus, scenario, writer);
   fmt::print(stderr, "recording domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
@@ -45,7 +47,8 @@ void add_record_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand command =
       root.add_subcommand("record", "Records all messages of a running system except camera images");
   command.add_option("SCENARIO", options->scenario_file, "scenario file").required();
-  command.add_option("--out", options->recording_file, "recording to write").required();
+  command.add_option("--out", options->recording_file, "MCAP file to write").required();
+  command.add_flag("--compress", options->is_compressed, "compress the messages with zstd");
   command.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   add_dds_options(command, options->dds);
   command.on_parsed([options, &action] { action = [options] { return record_messages(*options); }; });

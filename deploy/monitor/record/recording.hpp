@@ -1,108 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <cstdio>
-#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
+#include "deploy/monitor/record/mcap/mcap_writer.hpp"
 
 namespace sidestep {
 
-/// The first block of a recording.
+/// The metadata of our recordings.
+inline constexpr const char* kRecordingMetadata = "sidestep";
+// Their attachments.
+inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.yaml",
+                            *kMapImageFile = "map.pgm";
+
+/// What a recording says about itself.
 struct RecordingHeader {
   std::string scenario_name;
-  std::string scenario_text;  ///< the scenario file
-  bool is_complete = false;   ///< holds every message from the start on, with its time of sending
+  std::string scenario_text;            ///< the scenario file
+  std::shared_ptr<const FloorMap> map;  ///< the scenario's
+  bool is_complete = false;             ///< holds every message from the start on, with its time of sending
 };
 
 /// Header of an incomplete recording. Throws std::runtime_error when the scenario file cannot be read.
-[[nodiscard]] RecordingHeader recording_header(const std::string& scenario_name,
-                                               const std::string& scenario_file);
+[[nodiscard]] RecordingHeader recording_header(const Scenario& scenario, const std::string& scenario_file);
 
-/// Writes messages with their time of reception to a file. The file is a magic number and a sequence of
-/// blocks, each with its length and a checksum, so a truncated file is readable up to its last whole block.
-/// All numbers are little-endian.
+/// Writes messages with their time of reception to an MCAP file, as CDR with the IDL of their types. The
+/// header becomes the metadata "sidestep" and the attachments scenario.yaml, map.yaml and map.pgm.
 class RecordingWriter {
  public:
   /// Throws std::runtime_error with the reason when the file cannot be written.
-  RecordingWriter(const std::string& path, const RecordingHeader& header);
+  RecordingWriter(const std::string& path, const RecordingHeader& header,
+                  const McapWriterSettings& settings = {});
 
-  void add(Time received, const TopicInfo& topic, const std::string& channel, const void* message);
-  std::uint64_t messages() const { return messages_; }
-  /// Flushes the file; throws std::runtime_error when any write has failed.
-  void close();
+  void add(Time received, const TopicInfo& topic, const std::string& channel, const msg::Header& header,
+           const void* message);
+  /// Attaches the report of the run.
+  void add_report(Time now, const std::string& json);
+  /// Writes what has been added so far to the file.
+  void flush() { mcap_.end_chunk(); }
+  std::uint64_t messages() const { return mcap_.messages(); }
+  /// Finishes the file; throws std::runtime_error when any write has failed.
+  void close() { mcap_.close(); }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  void write_block(const std::vector<std::uint8_t>& block);
+  std::uint16_t channel_id(const TopicInfo& topic, const std::string& channel);
 
-  std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::map<std::string, std::uint32_t> channels_;
-  std::vector<std::uint8_t> block_;
-  std::uint64_t messages_ = 0;
-  bool has_failed_ = false;
+  McapWriter mcap_;
+  std::map<std::string, std::uint16_t> channels_;
+  std::map<std::string, std::uint16_t> schemas_;  // by type
 };
 
 /// Subscribes to all channels of all topics except camera images (about 100 MB/s), and records their messages
-/// until the bus stops.
+/// until the bus stops. At most a second of messages is lost if the process is killed. The writer must
+/// outlive the bus.
 void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer);
-
-/// The result of playing a recording.
-struct PlaybackResult {
-  std::uint64_t messages = 0;
-  std::uint64_t unreadable = 0;  ///< messages that could not be decoded as their topic's type
-  std::string damage;            ///< why playback stopped before the end of the file; empty: it did not
-};
-
-/// A bus that plays a recording: subscribe, then play. Arbitrary file contents are handled safely; the worst
-/// outcome is that playback ends early.
-class PlaybackBus : public Bus {
- public:
-  /// Throws std::runtime_error when the file cannot be read or is not a recording.
-  explicit PlaybackBus(const std::string& path);
-
-  const RecordingHeader& header() const { return header_; }
-  /// The time of reception of the current message.
-  Time now() const override { return now_; }
-  /// Timers never fire during playback.
-  void at(Time, std::function<void()>) override {}
-  /// Delivers all messages in the file's order.
-  [[nodiscard]] PlaybackResult play();
-
- protected:
-  /// Discards everything that is written.
-  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
-  void make_reader(const TopicInfo& topic, const std::string& channel,
-                   std::function<void(const void*)> callback) override;
-
- private:
-  struct Channel {
-    TopicInfo topic;
-    std::string name;
-  };
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  /// False at the end of the file, or on damage, which is then described in `damage`.
-  bool read_block(std::string& damage);
-  bool deliver_block(PlaybackResult& result);
-
-  std::unique_ptr<std::FILE, Closer> file_;
-  RecordingHeader header_;
-  Time now_{};
-  std::vector<std::uint8_t> block_;
-  std::vector<Channel> channels_;
-  std::map<std::string, std::vector<std::function<void(const void*)>>> readers_;
-};
 
 }  // namespace sidestep

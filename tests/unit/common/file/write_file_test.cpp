@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <unistd.h>
 
+#include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep {
@@ -13,18 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class TemporaryFolder {
- public:
-  TemporaryFolder() { fs::create_directories(path_); }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-  }
-
- private:
-  fs::path path_ = fs::temp_directory_path() / ("sidestep-write-file-test-" + std::to_string(getpid()));
-};
+std::size_t count_files(const TemporaryFolder& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
+}
 
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -35,23 +27,23 @@ std::string content(const fs::path& path) {
 
 TEST_CASE("a file is written with its folder, and replaced as a whole") {
   const TemporaryFolder folder;
-  const std::string path = folder / "a/b/report.json";
+  const std::string path = folder.file("a/b/report.json");
   write_file(path, "a long text\n");
   CHECK(content(path) == "a long text\n");
   write_file(path, "short");
   CHECK(content(path) == "short");
-  CHECK(folder.files() == 1);
-  CHECK(std::distance(fs::directory_iterator(folder / "a/b"), fs::directory_iterator()) == 1);
+  CHECK(count_files(folder) == 1);
+  CHECK(std::distance(fs::directory_iterator(folder.file("a/b")), fs::directory_iterator()) == 1);
 }
 
 TEST_CASE("a file that cannot be written is reported with the reason, and nothing is left behind") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(write_file("/dev/null/x", "text"), "cannot write /dev/null/x: Not a directory");
-  fs::create_directories(folder / "folder");
-  CHECK_THROWS_WITH(write_file(folder / "folder", "text"),
+  fs::create_directories(folder.file("folder"));
+  CHECK_THROWS_WITH(write_file(folder.file("folder"), "text"),
                     ContainsSubstring("cannot write ") && ContainsSubstring("directory"));
   CHECK_THROWS_WITH(write_file("", "text"), ContainsSubstring("cannot write"));
-  CHECK(folder.files() == 1);
+  CHECK(count_files(folder) == 1);
 }
 
 TEST_CASE("a full disk is reported") {
@@ -61,11 +53,11 @@ TEST_CASE("a full disk is reported") {
 
 TEST_CASE("links and devices are written in place") {
   const TemporaryFolder folder;
-  write_file(folder / "target", "old");
-  fs::create_symlink(folder / "target", folder / "link");
-  write_file(folder / "link", "new");
-  CHECK(fs::is_symlink(folder / "link"));
-  CHECK(content(folder / "target") == "new");
+  write_file(folder.file("target"), "old");
+  fs::create_symlink(folder.file("target"), folder.file("link"));
+  write_file(folder.file("link"), "new");
+  CHECK(fs::is_symlink(folder.file("link")));
+  CHECK(content(folder.file("target")) == "new");
   CHECK_NOTHROW(write_file("/dev/null", "text"));
 }
 

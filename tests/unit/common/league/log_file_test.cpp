@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <sstream>
-#include <unistd.h>
 
+#include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
 
@@ -16,16 +16,14 @@ const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 class TemporaryFile {
  public:
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  const std::string& path() const { return path_; }
+  std::string path() const { return folder_.file("log"); }
   std::string content() const {
-    std::ifstream file(path_, std::ios::binary);
+    std::ifstream file(path(), std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
  private:
-  std::string path_ =
-      (std::filesystem::temp_directory_path() / ("sidestep-log-test-" + std::to_string(getpid()))).string();
+  TemporaryFolder folder_;
 };
 
 /// Alternating vision and tracked packets every 10 ms.

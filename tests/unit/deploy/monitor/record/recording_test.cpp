@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/record/recording.hpp"
 
-#include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <set>
-#include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/temporary_folder.hpp"
 #include "common/messaging/cdr.hpp"
 #include "common/random/rng.hpp"
+#include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -20,13 +18,6 @@ namespace sidestep::recording_test {
 using namespace std::chrono_literals;
 
 const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
-
-/// A file that is removed at the end of the test.
-struct TemporaryFile {
-  std::string path =
-      (std::filesystem::temp_directory_path() / ("recording_test_" + std::to_string(::getpid()))).string();
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
 
 std::vector<char> contents(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -37,15 +28,16 @@ void write(const std::string& path, const std::vector<char>& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Records the crossing for this long; returns the findings of the live auditor. `prepare` may change the
+/// Records a scenario for this long; returns the findings of the live auditor. `prepare` may change the
 /// system before it runs.
 AuditTotals record_run(
     const std::string& path, Duration duration,
-    const std::function<void(SimSystem&)>& prepare = [](SimSystem&) {}) {
-  const Scenario scenario = load_scenario(kScenario);
-  RecordingHeader header = recording_header(scenario.name, kScenario);
+    const std::function<void(SimSystem&)>& prepare = [](SimSystem&) {},
+    const std::string& scenario_file = kScenario, const McapWriterSettings& settings = {}) {
+  const Scenario scenario = load_scenario(scenario_file);
+  RecordingHeader header = recording_header(scenario, scenario_file);
   header.is_complete = true;
-  RecordingWriter writer(path, header);
+  RecordingWriter writer(path, header, settings);
   SimSystem system(scenario, 3);
   SimBus bus(system.network());
   bus.become_observer();
@@ -63,7 +55,7 @@ struct AuditedPlayback {
 
 AuditedPlayback play(const std::string& path) {
   PlaybackBus bus(path);
-  const Scenario scenario = parse_scenario(bus.header().scenario_text, "crossing.yaml");
+  const Scenario scenario = bus.scenario();
   Auditor auditor(scenario, {bus.header().is_complete, {}});
   refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
@@ -72,9 +64,10 @@ AuditedPlayback play(const std::string& path) {
 }
 
 TEST_CASE("a recording plays back the messages of the run") {
-  const TemporaryFile file;
-  const AuditTotals live = record_run(file.path, 2s);
-  const AuditedPlayback again = play(file.path);
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  const AuditTotals live = record_run(file, 2s);
+  const AuditedPlayback again = play(file);
   CHECK(again.result.damage == "");
   CHECK(again.result.unreadable == 0);
   CHECK(again.result.messages > live.received);  // detection frames and agent status, too
@@ -88,63 +81,83 @@ TEST_CASE("a recording plays back the messages of the run") {
 }
 
 TEST_CASE("the audit of a recording refuses messages of processes with other rules, and counts them") {
-  const TemporaryFile file;
-  record_run(file.path, 500ms, [](SimSystem& system) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  record_run(file, 500ms, [](SimSystem& system) {
     Scenario changed = load_scenario(kScenario);
     changed.margin_m = 0.05;
     system.use_scenario(twin_process(3), changed);
     system.restart(twin_process(3));
   });
-  const AuditedPlayback played = play(file.path);
+  const AuditedPlayback played = play(file);
   CHECK(played.audit.refused > 10);
   CHECK(played.audit.violations == 0);
 }
 
-/// The ends of all blocks. A file is 8 bytes of magic, then blocks of a size, a checksum and `size` bytes.
-std::set<std::size_t> block_ends(const std::vector<char>& whole) {
-  std::set<std::size_t> ends;
-  for (std::size_t at = 8; at + 8 <= whole.size();) {
-    std::uint32_t size = 0;
-    std::memcpy(&size, whole.data() + at, sizeof size);
-    at += 8 + size;
-    ends.insert(at);
-  }
-  return ends;
+TEST_CASE("a recording that was compressed plays back the same messages, and is smaller") {
+  const TemporaryFolder folder;
+  const std::string plain = folder.file("plain.mcap"), compressed = folder.file("compressed.mcap");
+  record_run(plain, 1s);
+  record_run(compressed, 1s, [](SimSystem&) {}, kScenario, {.is_compressed = true});
+  const AuditedPlayback first = play(plain), second = play(compressed);
+  CHECK(first.result.messages == second.result.messages);
+  CHECK(first.audit.compared_pairs == second.audit.compared_pairs);
+  CHECK(second.result.damage == "");
+  CHECK(contents(compressed).size() < contents(plain).size() / 2);
 }
 
-TEST_CASE("a truncated recording is played up to its last whole block, and the truncation is reported") {
-  const TemporaryFile file;
-  record_run(file.path, 1s);
-  const auto whole = contents(file.path);
-  const auto ends = block_ends(whole);
-  REQUIRE(ends.contains(whole.size()));
+TEST_CASE("a recording in a building holds the map") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  const std::string house = SIDESTEP_SOURCE_DIR "/deploy/scenarios/house.yaml";
+  const AuditTotals live = record_run(
+      file, 1s, [](SimSystem&) {}, house);
+  CHECK(PlaybackBus(file).scenario().map->fingerprint() == load_scenario(house).map->fingerprint());
+  const AuditedPlayback again = play(file);
+  CHECK(again.audit.compared_pairs == live.compared_pairs);
+  CHECK(again.audit.verdict() == AuditVerdict::kPassed);
+}
+
+TEST_CASE("a truncated recording is played up to the cut, and the truncation is reported") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  const bool is_compressed = GENERATE(false, true);
+  CAPTURE(is_compressed);
+  record_run(file, 3s, [](SimSystem&) {}, kScenario, {.is_compressed = is_compressed});
+  const auto whole = contents(file);
+  const std::uint64_t all = play(file).result.messages;
   std::uint64_t before = 0;
-  const std::size_t header = 8 + 8 + 2000;  // magic, frame, and more than the size of the scenario file
-  for (std::size_t size = whole.size() / 10 + header; size < whole.size(); size += whole.size() / 10 + 1) {
-    CAPTURE(size);
-    write(file.path, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
-    const AuditedPlayback played = play(file.path);
+  for (std::size_t tenth = 2; tenth < 10; ++tenth) {
+    CAPTURE(tenth);
+    const std::size_t size = whole.size() * tenth / 10;
+    write(file, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+    const AuditedPlayback played = play(file);
     CHECK(played.result.messages > before);
-    CHECK(played.result.damage == (ends.contains(size) ? "" : "the file ends in the middle of a block"));
+    // The file's size grows nearly evenly with the messages; less so in the middle of compressed blocks.
+    CHECK(played.result.messages > all * tenth / 10 * (is_compressed ? 0.6 : 0.9));
+    CHECK(played.result.messages < all);
+    CHECK(played.result.damage != "");
     CHECK(played.audit.violations == 0);
     before = played.result.messages;
   }
 }
 
 TEST_CASE("playing a corrupted recording ends without harm") {
-  const TemporaryFile file;
-  record_run(file.path, 300ms);
-  const auto whole = contents(file.path);
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  record_run(file, 300ms);
+  const auto whole = contents(file);
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     auto broken = whole;
     const std::size_t from = seed % 3 == 0 ? 0 : 8;
     for (std::uint64_t i = 0; i <= rng.below(8); ++i)
       broken[from + rng.below(broken.size() - from)] = static_cast<char>(rng.bits());
-    write(file.path, broken);
+    write(file, broken);
     try {
-      const PlaybackResult result = PlaybackBus(file.path).play();
+      const PlaybackResult result = PlaybackBus(file).play();
+      INFO(result.damage);
       CHECK((broken == whole || !result.damage.empty()));
     } catch (const std::runtime_error&) {
       SUCCEED("its header was refused");
@@ -178,10 +191,10 @@ TEST_CASE("bytes that do not decode as a message of their topic are refused") {
 }
 
 TEST_CASE("a file that is not a recording is refused with its name") {
-  const TemporaryFile file;
-  write(file.path, {'n', 'o'});
-  CHECK_THROWS_WITH(PlaybackBus(file.path),
-                    ContainsSubstring(file.path) && ContainsSubstring("is not a recording"));
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  write(file, {'n', 'o'});
+  CHECK_THROWS_WITH(PlaybackBus(file), ContainsSubstring(file) && ContainsSubstring("is not an MCAP file"));
   CHECK_THROWS_WITH(PlaybackBus("/nowhere/at/all"), ContainsSubstring("cannot be read"));
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), ContainsSubstring("cannot be written"));
 }

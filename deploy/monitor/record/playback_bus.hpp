@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messaging/bus.hpp"
+#include "deploy/monitor/record/mcap/mcap_reader.hpp"
+#include "deploy/monitor/record/recording.hpp"
+
+namespace sidestep {
+
+/// The result of playing a recording.
+struct PlaybackResult {
+  std::uint64_t messages = 0;
+  std::uint64_t unreadable = 0;  ///< messages that could not be decoded as their topic's type
+  std::string damage;            ///< why playback stopped before the end of the file; empty: it did not
+};
+
+/// A bus that plays a recording: subscribe, then play. Arbitrary file contents are handled safely; the worst
+/// outcome is that playback ends early. Channels of other programs' topics are passed over.
+class PlaybackBus : public Bus {
+ public:
+  /// Throws std::runtime_error when the file cannot be read or is not a recording of Sidestep.
+  explicit PlaybackBus(const std::string& path);
+
+  const RecordingHeader& header() const { return header_; }
+  /// The recorded scenario with its map. Throws ConfigError.
+  [[nodiscard]] Scenario scenario() const;
+  /// The time of reception of the current message.
+  Time now() const override { return now_; }
+  /// Timers never fire during playback.
+  void at(Time, std::function<void()>) override {}
+  /// Delivers all messages in the file's order, or those before stop().
+  [[nodiscard]] PlaybackResult play();
+  /// For callbacks: no further message is delivered.
+  void stop() { is_stopped_ = true; }
+
+ protected:
+  /// Discards everything that is written.
+  std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
+  void make_reader(const TopicInfo& topic, const std::string& channel,
+                   std::function<void(const void*)> callback) override;
+
+ private:
+  /// Reads up to the first message.
+  void read_header(const std::string& path);
+  /// False: the message is damaged.
+  bool deliver(const McapMessage& message, PlaybackResult& result);
+  /// The row of the topic table that a channel belongs to; nullptr: none.
+  const TopicInfo* topic_of(const McapMessage& message);
+
+  McapReader reader_;
+  McapRecord next_;
+  RecordingHeader header_;
+  Time now_{};
+  bool is_stopped_ = false;
+  std::vector<TopicInfo> topics_ = all_topics();
+  std::map<std::uint16_t, const TopicInfo*> topic_of_channel_;
+  std::map<std::string, std::vector<std::function<void(const void*)>>> readers_;
+};
+
+}  // namespace sidestep
