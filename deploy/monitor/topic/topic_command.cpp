@@ -29,8 +29,26 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand echo =
       topic.add_subcommand("echo", "Prints the messages of a topic as JSON, one per line");
   echo.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
-  echo.add_option("--count", options->count, "number of messages [until Ctrl-C]").check(positive());
-  echo.on_parsed([options, &action] { action = [options] { return echo_topic(*options); }; });
+  echo.add_option("--count", options->printer.count, "number of messages [until Ctrl-C]").check(positive());
+  const auto is_once = std::make_shared<bool>(false);
+  const auto filters = std::make_shared<std::vector<std::string>>();
+  echo.add_flag("--once", *is_once, "one message, the same as --count 1");
+  echo.add_option("--filter", *filters,
+                  "only messages with these values, e.g. robot=3 or robot=3,header.sender=10000")
+      .comma_separated();
+  echo.add_flag("--csv", options->printer.is_csv, "print CSV, with a column for each member");
+  echo.add_option("--recording", options->recording_file,
+                  "print the messages of this recording instead of a running system's");
+  echo.on_parsed([options, is_once, filters, &action] {
+    if (*is_once) options->printer.count = 1;
+    try {
+      for (const std::string& filter : *filters)
+        options->printer.filters.push_back(parse_message_filter(filter));
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("--filter: ") + error.what());
+    }
+    action = [options] { return echo_topic(*options); };
+  });
 
   for (const CliCommand& command : {list, hz, echo}) add_dds_options(command, options->dds);
 }

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
+#include "deploy/monitor/topic/message_printer.hpp"
 
 namespace sidestep {
 
 struct TopicOptions {
   DdsSettings dds;
-  std::string topic;        ///< the DDS topic name, e.g. feedback/3
-  double seconds = 0;       ///< 0: until Ctrl-C
-  std::uint64_t count = 0;  ///< 0: until Ctrl-C
+  std::string topic;   ///< the DDS topic name, e.g. feedback/3
+  double seconds = 0;  ///< 0: until Ctrl-C
+  MessagePrinterSettings printer;
+  std::string recording_file;  ///< empty: a running system
 };
 
 /// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit
-/// code, and throws std::runtime_error as DdsBus does.
+/// code, and throws std::runtime_error as DdsBus and PlaybackBus do, and std::invalid_argument for a filter
+/// that fits no message.
 int list_topics(const TopicOptions& options);
 int measure_rate(const TopicOptions& options);
 int echo_topic(const TopicOptions& options);

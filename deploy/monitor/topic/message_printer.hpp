@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sidestep {
+
+/// A condition on a message, e.g. robot=3 or header.sender=3.
+struct MessageFilter {
+  std::vector<std::string> path;  ///< names of members, or indices of lists
+  std::string value;
+};
+
+/// Throws std::invalid_argument if the text is not MEMBER=VALUE.
+[[nodiscard]] MessageFilter parse_message_filter(const std::string& text);
+
+struct MessagePrinterSettings {
+  std::vector<MessageFilter> filters;  ///< only messages that meet all of them
+  bool is_csv = false;
+  std::uint64_t count = 0;  ///< messages to print; 0: all
+};
+
+/// Turns described messages of one type into lines: JSON, or CSV with a column for each member, in which
+/// lists are JSON.
+class MessagePrinter {
+ public:
+  /// `print` gets each line without its end.
+  MessagePrinter(MessagePrinterSettings settings, std::function<void(const std::string&)> print)
+      : settings_(std::move(settings)), print_(std::move(print)) {}
+
+  /// Throws std::invalid_argument if messages have no such member as a filter names.
+  void add(const nlohmann::ordered_json& message);
+  bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
+  std::uint64_t printed() const { return printed_; }
+
+ private:
+  [[nodiscard]] bool is_wanted(const nlohmann::ordered_json& message) const;
+
+  MessagePrinterSettings settings_;
+  std::function<void(const std::string&)> print_;
+  std::uint64_t printed_ = 0;
+};
+
+}  // namespace sidestep
