@@ -36,6 +36,16 @@ bool share_partition(const DiscoveredEndpoint& writer, const DiscoveredEndpoint&
 
 }  // namespace
 
+std::string qos_in_words(const DiscoveredEndpoint& endpoint) {
+  std::string text =
+      fmt::format("{}, {}, {}, ownership {}, deadline {}, liveliness {} (lease {})",
+                  word(endpoint.is_reliable), word(endpoint.durability),
+                  endpoint.is_keyed ? "keyed" : "without key", endpoint.is_exclusive ? "exclusive" : "shared",
+                  in_words(endpoint.deadline), word(endpoint.liveliness), in_words(endpoint.lease));
+  for (const std::string& partition : endpoint.partitions) text += ", partition " + partition;
+  return text;
+}
+
 std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer, const DiscoveredEndpoint& reader) {
   std::vector<std::string> result;
   const auto differ = [&](const char* policy, const std::string& requested, const std::string& offered) {

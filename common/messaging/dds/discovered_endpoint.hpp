@@ -32,6 +32,9 @@ struct DiscoveredEndpoint {
 /// What discovery reports of an endpoint.
 enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };
 
+/// All policies of an endpoint, e.g. "best effort, volatile, keyed, liveliness automatic (no limit), …".
+[[nodiscard]] std::string qos_in_words(const DiscoveredEndpoint& endpoint);
+
 /// The reasons why this writer and this reader of one topic do not match, in plain words; empty if they
 /// match.
 [[nodiscard]] std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer,

@@ -47,13 +47,32 @@ void print_rate(const char* label, const Rate& rate) {
   std::fflush(stdout);
 }
 
+void print_missing_topic(const TopicOptions& options, const char* what, const DdsListener& listener) {
+  const std::string known = topic_names(listener.endpoints());
+  fmt::print(stderr, "topic '{}' has {} in domain {}; topics in this domain: {}\n", options.topic, what,
+             options.dds.domain, known.empty() ? "none" : known);
+}
+
 }  // namespace
 
 int list_topics(const TopicOptions& options) {
   DdsListener listener(settings(options));
   const StopSignals stop_signals([&listener] { listener.stop(); });
-  listener.run_until(listener.now() + from_seconds(options.seconds));
+  listener.run_until(listener.now() + from_seconds(options.discovery_s));
   fmt::print("{}", topic_table(listener.endpoints()));
+  return 0;
+}
+
+int show_topic(const TopicOptions& options) {
+  DdsListener listener(settings(options));
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  listener.run_until(listener.now() + from_seconds(options.discovery_s));
+  const std::string details = topic_details(listener.endpoints(), options.topic);
+  if (details.empty()) {
+    print_missing_topic(options, "neither a writer nor a reader", listener);
+    return kExitFailure;
+  }
+  fmt::print("{}", details);
   return 0;
 }
 
@@ -63,9 +82,7 @@ int measure_rate(const TopicOptions& options) {
   const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options.topic);
   if (!writer) {
     if (listener.stopped()) return 0;
-    const std::string known = topic_names(listener.endpoints());
-    fmt::print(stderr, "topic '{}' has no writer in domain {}; topics in this domain: {}\n", options.topic,
-               options.dds.domain, known.empty() ? "none" : known);
+    print_missing_topic(options, "no writer", listener);
     return kExitFailure;
   }
   RateMeter meter;

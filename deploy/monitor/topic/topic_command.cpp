@@ -17,7 +17,9 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
 
   const CliCommand list =
       topic.add_subcommand("list", "Lists all topics: type, writers, readers, QoS, mismatches");
-  list.add_option("--seconds", options->seconds, "duration of discovery").check(positive()).show_default();
+  list.add_option("--seconds", options->discovery_s, "duration of discovery")
+      .check(positive())
+      .show_default();
   list.on_parsed([options, &action] { action = [options] { return list_topics(*options); }; });
 
   const CliCommand hz =
@@ -25,6 +27,23 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   hz.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
   hz.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   hz.on_parsed([options, &action] { action = [options] { return measure_rate(*options); }; });
+
+  const CliCommand info =
+      topic.add_subcommand("info", "Shows a topic's type, and each of its writers and readers with its QoS");
+  info.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
+  info.add_option("--seconds", options->discovery_s, "duration of discovery")
+      .check(positive())
+      .show_default();
+  info.on_parsed([options, &action] { action = [options] { return show_topic(*options); }; });
+
+  const CliCommand delay = topic.add_subcommand(
+      "delay",
+      "Measures for each sender of a topic how late messages arrive, and what is lost or out of order");
+  delay.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
+  delay.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
+  delay.add_option("--recording", options->recording_file,
+                   "measure in this recording instead of a running system");
+  delay.on_parsed([options, &action] { action = [options] { return measure_delay(*options); }; });
 
   const CliCommand echo =
       topic.add_subcommand("echo", "Prints the messages of a topic as JSON, one per line");
@@ -50,7 +69,7 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
     action = [options] { return echo_topic(*options); };
   });
 
-  for (const CliCommand& command : {list, hz, echo}) add_dds_options(command, options->dds);
+  for (const CliCommand& command : {list, info, hz, delay, echo}) add_dds_options(command, options->dds);
 }
 
 }  // namespace sidestep

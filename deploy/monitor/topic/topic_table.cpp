@@ -6,6 +6,9 @@
 #include <fmt/core.h>
 #include <map>
 #include <set>
+#include <stdexcept>
+
+#include "common/messaging/message_schema.hpp"
 
 namespace sidestep {
 namespace {
@@ -99,6 +102,26 @@ std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints) {
     const Row& row = rows[i];
     result += fmt::format("{:{}}  {:{}}  {:{}}  {:{}}  {}\n{}", row[0], widths[0], row[1], widths[1], row[2],
                           widths[2], row[3], widths[3], row[4], notes[i]);
+  }
+  return result;
+}
+
+std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints, const std::string& topic) {
+  Group group;
+  for (const DiscoveredEndpoint& endpoint : endpoints)
+    if (endpoint.topic == topic) group.push_back(&endpoint);
+  if (group.empty()) return "";
+  std::string result = fmt::format("{}: {}\n", topic, types(group));
+  for (const bool is_writer : {true, false})
+    for (const DiscoveredEndpoint* endpoint : group)
+      if (endpoint->is_writer == is_writer)
+        result += fmt::format("{} {}: {}\n", is_writer ? "writer" : "reader", name_of(*endpoint),
+                              qos_in_words(*endpoint));
+  result += mismatches(group);
+  try {
+    result += '\n' + message_schema(group.front()->type);
+  } catch (const std::invalid_argument&) {
+    // Another program's type, of which DDS tells the name only.
   }
   return result;
 }

@@ -12,6 +12,11 @@ namespace sidestep {
 /// by one line per reason for a mismatch.
 [[nodiscard]] std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints);
 
+/// The output of `sidestep topic info`: the type of a topic, with its IDL if it is one of ours, and each
+/// endpoint with its QoS and its mismatches. Empty if the topic has no endpoint.
+[[nodiscard]] std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints,
+                                        const std::string& topic);
+
 /// The topic names, separated by spaces.
 [[nodiscard]] std::string topic_names(const std::vector<DiscoveredEndpoint>& endpoints);
 

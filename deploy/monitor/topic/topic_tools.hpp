@@ -10,8 +10,9 @@ namespace sidestep {
 
 struct TopicOptions {
   DdsSettings dds;
-  std::string topic;   ///< the DDS topic name, e.g. feedback/3
-  double seconds = 0;  ///< 0: until Ctrl-C
+  std::string topic;         ///< the DDS topic name, e.g. feedback/3
+  double seconds = 0;        ///< 0: until Ctrl-C
+  double discovery_s = 1.5;  ///< participants announce themselves once per second
   MessagePrinterSettings printer;
   std::string recording_file;  ///< empty: a running system
 };
@@ -20,7 +21,9 @@ struct TopicOptions {
 /// code, and throws std::runtime_error as DdsBus and PlaybackBus do, and std::invalid_argument for a filter
 /// that fits no message.
 int list_topics(const TopicOptions& options);
+int show_topic(const TopicOptions& options);
 int measure_rate(const TopicOptions& options);
+int measure_delay(const TopicOptions& options);
 int echo_topic(const TopicOptions& options);
 
 }  // namespace sidestep

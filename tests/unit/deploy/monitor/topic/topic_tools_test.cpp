@@ -7,6 +7,7 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/monitor/topic/rate_meter.hpp"
+#include "deploy/monitor/topic/sender_meter.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/monitor/topic/topic_table.hpp"
 #include "tests/catch.hpp"
@@ -168,9 +169,68 @@ TEST_CASE("the table shows a mismatch with the affected endpoints") {
                         "(vision -> logger)"));
 }
 
+TEST_CASE("topic info shows the type, every endpoint with its QoS, and mismatches") {
+  DiscoveredEndpoint reader = endpoint("logger", false, true);
+  reader.deadline = Duration{500'000'000};
+  reader.durability = DiscoveredEndpoint::Durability::kTransientLocal;
+  reader.partitions = {"a"};
+  const std::string details =
+      topic_details({endpoint("vision", true, false), reader, endpoint("agent", false, false)}, "world");
+  CHECK_THAT(details, StartsWith("world: Type\nwriter vision: best effort, volatile, without key, ownership "
+                                 "shared, deadline no limit, liveliness automatic (lease no limit)\n"
+                                 "reader logger: reliable, transient local, without key, ownership shared, "
+                                 "deadline 0.5 s, liveliness automatic (lease no limit), partition a\n"
+                                 "reader agent: best effort"));
+  CHECK_THAT(details, ContainsSubstring("MISMATCH reliability") && ContainsSubstring("(vision -> logger)"));
+  CHECK(topic_details({endpoint("vision", true, false)}, "truth") == "");
+}
+
+TEST_CASE("topic info of a topic of ours shows its IDL") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"info", "world", "--seconds", "1.5"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out,
+             StartsWith("world: sidestep::msg::WorldState\nwriter vision: best effort, volatile, ") &&
+                 ContainsSubstring("struct WorldState {"));
+  CHECK(topic({"info", "nothing", "--seconds", "0.1"}).exit_code == kExitFailure);
+}
+
+TEST_CASE("what arrives of a topic is counted by sender: lost, repeated, out of order, late") {
+  SenderMeter meter;
+  const auto add = [&](std::uint32_t sender, std::uint64_t incarnation, std::uint64_t number, int delay_ms) {
+    msg::Header header;
+    header.sender(sender);
+    header.incarnation(incarnation);
+    header.message_number(number);
+    header.stamp_ns(to_ns(at_ms(1000)));
+    meter.add(header, at_ms(1000 + delay_ms));
+  };
+  add(3, 1, 10, 5);
+  add(3, 1, 14, 20);
+  add(3, 1, 12, 30);
+  add(3, 1, 12, 31);
+  add(10'000, 1, 1, -2);
+  add(10'000, 2, 1, 0);
+  const std::string table = meter.table();
+  CAPTURE(table);
+  CHECK_THAT(table, Matches("SENDER[^]*\nagent 3 +4 +2 +1 +1  5\\.000  [^]*31\\.000\n[^]*"));
+  CHECK_THAT(table, Matches("[^]*\ncoordinator \\(1\\) +1 +0 +0 +0  -2\\.000 [^]*"));
+  CHECK_THAT(table, Matches("[^]*\ncoordinator \\(2\\) +1 +0 +0 +0  0\\.000 [^]*"));
+}
+
+TEST_CASE("topic delay measures the senders of a topic") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"delay", "world", "--seconds", "1"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Matches("SENDER[^]*\nagent 0 +[1-9][0-9]+ +0 +0 +0 [^]*"));
+  CHECK(topic({"delay", "nothing", "--seconds", "1"}).exit_code == kExitFailure);
+}
+
 TEST_CASE("topic list finds the topics of a running process") {
   const Publisher publisher;
-  const Outcome outcome = topic({"list", "--seconds", "1.5"});
+  const Outcome outcome = topic({"list"});
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.out, ContainsSubstring("world") && ContainsSubstring("sidestep::msg::WorldState") &&

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+
+namespace sidestep {
+
+/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the
+/// channel does not belong to the topic.
+[[nodiscard]] std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel);
+
+/// Says on stderr that a channel belongs to no topic, and which topics there are.
+void print_unknown_topic(const std::string& channel);
+
+/// Says on stderr why only the beginning of a recording was used, if so.
+void print_damage(const std::string& recording_file, const std::string& damage);
+
+/// Calls `use` with each message of a channel. False, after print_unknown_topic(): it belongs to no topic.
+template <typename Use>
+[[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
+  bool is_known = false;
+  for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
+    const std::optional<std::uint32_t> robot = channel_robot(topic, channel);
+    if (!robot) return;
+    is_known = true;
+    bus.subscribe<Message>(topic, *robot, [use](const Message& message) { use(message); });
+  });
+  if (!is_known) print_unknown_topic(channel);
+  return is_known;
+}
+
+}  // namespace sidestep
