@@ -2,13 +2,18 @@
 #include <fmt/core.h>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "common/messaging/dds/listener.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/monitor/topic/describe.hpp"
+#include "deploy/monitor/topic/idl/idl_decoder.hpp"
+#include "deploy/monitor/topic/idl/idl_parser.hpp"
 #include "deploy/monitor/topic/topic_channel.hpp"
 #include "deploy/monitor/topic/topic_tools.hpp"
+#include "deploy/monitor/topic/topic_writer.hpp"
 
 namespace sidestep {
 namespace {
@@ -30,6 +35,41 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
   return printer.printed() > 0 ? 0 : kExitFailure;
 }
 
+/// The type of a foreign topic. Throws IdlError if the file does not have it.
+IdlTypePtr find_type(const TopicOptions& options, const std::string& announced) {
+  const IdlTypes types = load_idl(options.idl_file);
+  const std::string& name = options.type.empty() ? announced : options.type;
+  const auto found = types.find(name);
+  if (found != types.end() && found->second->kind == IdlType::Kind::kStruct) return found->second;
+  std::string known;
+  for (const auto& [known_name, type] : types)
+    if (type->kind == IdlType::Kind::kStruct) known += (known.empty() ? "" : ", ") + known_name;
+  throw IdlError(fmt::format("{} has no struct '{}', expected one of: {}", options.idl_file, name,
+                             known.empty() ? "none" : known));
+}
+
+int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
+  DdsSettings dds = options.dds;
+  dds.participant = "sidestep-topic";
+  DdsListener listener(dds);
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
+  if (!writer) return listener.stopped() ? 0 : kExitFailure;
+  const IdlTypePtr type = find_type(options, writer->type);
+  bool is_decodable = true;
+  listener.listen(*writer, [&](const RawSample& sample) {
+    try {
+      printer.add(decode_by_idl(*type, sample.bytes));
+    } catch (const IdlDecodingError& error) {
+      fmt::print(stderr, "a message of '{}' is no {}: {}\n", options.topic, type->name, error.what());
+      is_decodable = false;
+    }
+    if (printer.is_done() || !is_decodable) listener.stop();
+  });
+  while (!listener.stopped()) listener.run_until(listener.now() + Duration{1'000'000'000});
+  return is_decodable ? 0 : kExitFailure;
+}
+
 }  // namespace
 
 int echo_topic(const TopicOptions& options) {
@@ -38,6 +78,7 @@ int echo_topic(const TopicOptions& options) {
     std::fflush(stdout);
   });
   if (!options.recording_file.empty()) return echo_recording(options, printer);
+  if (!options.idl_file.empty()) return echo_foreign(options, printer);
   DdsSettings dds = options.dds;
   dds.participant = "sidestep-topic";
   DdsBus bus(dds);

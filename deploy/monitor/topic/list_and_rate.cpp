@@ -10,30 +10,17 @@
 #include "deploy/monitor/topic/rate_meter.hpp"
 #include "deploy/monitor/topic/topic_table.hpp"
 #include "deploy/monitor/topic/topic_tools.hpp"
+#include "deploy/monitor/topic/topic_writer.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr Duration kSecond{1'000'000'000};
-constexpr Duration kDiscoveryTimeout = 5 * kSecond;  ///< participants announce themselves once per second
-constexpr Duration kPollPeriod{50'000'000};
 
 DdsSettings settings(const TopicOptions& options) {
   DdsSettings result = options.dds;
   result.participant = "sidestep-topic";
   return result;
-}
-
-/// Waits for a participant that writes the topic.
-std::optional<DiscoveredEndpoint> find_writer(DdsListener& listener, const std::string& topic) {
-  const Time deadline = listener.now() + kDiscoveryTimeout;
-  while (!listener.stopped() && listener.now() < deadline) {
-    for (const DiscoveredEndpoint& endpoint : listener.endpoints()) {
-      if (endpoint.is_writer && endpoint.topic == topic) return endpoint;
-    }
-    listener.run_until(listener.now() + kPollPeriod);
-  }
-  return std::nullopt;
 }
 
 void print_rate(const char* label, const Rate& rate) {
@@ -45,12 +32,6 @@ void print_rate(const char* label, const Rate& rate) {
                rate.bytes_per_second * 1e-3);
   }
   std::fflush(stdout);
-}
-
-void print_missing_topic(const TopicOptions& options, const char* what, const DdsListener& listener) {
-  const std::string known = topic_names(listener.endpoints());
-  fmt::print(stderr, "topic '{}' has {} in domain {}; topics in this domain: {}\n", options.topic, what,
-             options.dds.domain, known.empty() ? "none" : known);
 }
 
 }  // namespace
@@ -79,12 +60,8 @@ int show_topic(const TopicOptions& options) {
 int measure_rate(const TopicOptions& options) {
   DdsListener listener(settings(options));
   const StopSignals stop_signals([&listener] { listener.stop(); });
-  const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options.topic);
-  if (!writer) {
-    if (listener.stopped()) return 0;
-    print_missing_topic(options, "no writer", listener);
-    return kExitFailure;
-  }
+  const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
+  if (!writer) return listener.stopped() ? 0 : kExitFailure;
   RateMeter meter;
   listener.listen(*writer, [&meter](const RawSample& s) { meter.add(s.received, s.bytes.size()); });
   const Time begin = listener.now();

@@ -58,6 +58,10 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   echo.add_flag("--csv", options->printer.is_csv, "print CSV, with a column for each member");
   echo.add_option("--recording", options->recording_file,
                   "print the messages of this recording instead of a running system's");
+  const Option idl =
+      echo.add_option("--idl", options->idl_file, "IDL file with the type of another program's topic");
+  echo.add_option("--type", options->type, "name of that type [as the topic's writer announces it]")
+      .needs(idl);
   echo.on_parsed([options, is_once, filters, &action] {
     if (*is_once) options->printer.count = 1;
     try {
@@ -66,6 +70,8 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
     } catch (const std::invalid_argument& error) {
       throw UsageError(std::string("--filter: ") + error.what());
     }
+    if (!options->idl_file.empty() && !options->recording_file.empty())
+      throw UsageError("--idl is for running systems: a recording holds the types of its topics");
     action = [options] { return echo_topic(*options); };
   });
 

@@ -15,6 +15,8 @@ struct TopicOptions {
   double discovery_s = 1.5;  ///< participants announce themselves once per second
   MessagePrinterSettings printer;
   std::string recording_file;  ///< empty: a running system
+  std::string idl_file;        ///< has the topic's type, which need not be one of ours; empty: it is
+  std::string type;            ///< its name; empty: as the topic's writer announces it
 };
 
 /// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit

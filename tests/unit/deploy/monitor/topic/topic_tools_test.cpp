@@ -4,6 +4,9 @@
 #include <thread>
 #include <unistd.h>
 
+#include "common/file/temporary_folder.hpp"
+#include "common/file/write_file.hpp"
+#include "common/messaging/message_schema.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/monitor/topic/rate_meter.hpp"
@@ -262,6 +265,25 @@ TEST_CASE("topic echo prints the requested number of messages, each as a line of
     CHECK(nlohmann::json::parse(line)["frames"] == 77);
   }
   CHECK(count == 2);
+}
+
+TEST_CASE("topic echo prints topics of other programs by the IDL that the user names") {
+  const Publisher publisher;
+  const TemporaryFolder folder;
+  write_file(folder.file("world.idl"), kIdlText);
+  const Outcome outcome =
+      topic({"echo", "world", "--idl", folder.file("world.idl"), "--count", "2", "--csv"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Matches("[^\n]*frames[^\n]*\n[^\n]*77[^\n]*\n[^\n]*77[^\n]*\n"));
+  // As another type, bytes are no message.
+  const Outcome wrong = topic(
+      {"echo", "world", "--idl", folder.file("world.idl"), "--type", "sidestep::msg::GroundTruth", "--once"});
+  CHECK(wrong.exit_code == kExitFailure);
+  CHECK_THAT(wrong.err, ContainsSubstring("a message of 'world' is no sidestep::msg::GroundTruth"));
+  CHECK_THROWS_WITH(topic({"echo", "world", "--idl", folder.file("world.idl"), "--type", "Nothing"}),
+                    ContainsSubstring("has no struct 'Nothing', expected one of: ") &&
+                        ContainsSubstring("sidestep::msg::WorldState"));
 }
 
 TEST_CASE("topic echo of an unknown topic lists the known ones") {

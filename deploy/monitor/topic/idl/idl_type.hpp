@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+struct IdlType;
+using IdlTypePtr = std::shared_ptr<const IdlType>;
+
+struct IdlMember {
+  std::string name;
+  IdlTypePtr type;
+  bool is_key = false;
+  bool is_optional = false;
+};
+
+/// A type of OMG IDL 4.2, as far as messages over DDS use it.
+struct IdlType {
+  enum class Kind : std::uint8_t {
+    kBoolean,
+    kOctet,  ///< also uint8
+    kChar,
+    kInt8,
+    kInt16,
+    kInt32,
+    kInt64,
+    kUint16,
+    kUint32,
+    kUint64,
+    kFloat,
+    kDouble,
+    kString,
+    kSequence,
+    kArray,
+    kEnum,
+    kStruct,
+  };
+  enum class Extensibility : std::uint8_t { kFinal, kAppendable, kMutable };
+
+  Kind kind = Kind::kBoolean;
+  std::string name{};                ///< of an enum or a struct, e.g. sidestep::msg::Order
+  std::uint32_t bound = 0;           ///< of a string or a sequence; 0: none. Of an array: its size
+  IdlTypePtr element{};              ///< of a sequence or an array
+  std::vector<IdlMember> members{};  ///< of a struct, those that it inherits first
+  std::map<std::uint32_t, std::string> enumerators{};        ///< of an enum
+  Extensibility extensibility = Extensibility::kAppendable;  ///< of a struct
+};
+
+}  // namespace sidestep
