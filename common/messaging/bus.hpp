@@ -135,4 +135,13 @@ class Bus {
   DropCounters drops_;
 };
 
+/// Calls back after each period, until the bus stops. What the callback refers to must outlive the bus.
+template <typename Callback>
+void call_periodically(Bus& bus, Duration period, Callback callback) {
+  bus.at(bus.now() + period, [&bus, period, callback] {
+    callback();
+    call_periodically(bus, period, callback);
+  });
+}
+
 }  // namespace sidestep

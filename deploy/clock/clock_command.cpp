@@ -90,12 +90,12 @@ int show_clocks(const ClockOptions& options) {
     bus.run_until(bus.now() + kOnceDuration);
     fmt::print("{}", to_table(rows(), options.reference_name));
   } else {
-    const std::function<void()> refresh = [&] {
-      bus.at(bus.now() + kTablePeriod, refresh);
+    const auto refresh = [&] {
       fmt::print("\x1b[H\x1b[J{}", to_table(rows(), options.reference_name));
       std::fflush(stdout);
     };
     refresh();
+    call_periodically(bus, kTablePeriod, refresh);
     bus.run();
   }
   if (rows().empty()) fmt::print(stderr, "sidestep: no process is heard on this domain and interface\n");

@@ -113,12 +113,12 @@ int show_status(const OrderOptions& options) {
     bus.run_until(bus.now() + kOnceDuration);
     fmt::print("{}", to_table(client.reports()));
   } else {
-    const std::function<void()> refresh = [&] {
-      bus.at(bus.now() + kTablePeriod, refresh);
+    const auto refresh = [&] {
       fmt::print("\x1b[H\x1b[J{}", to_table(client.reports()));
       std::fflush(stdout);
     };
     refresh();
+    call_periodically(bus, kTablePeriod, refresh);
     bus.run();
   }
   if (!client.reports().empty()) return 0;

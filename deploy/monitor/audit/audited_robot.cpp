@@ -6,6 +6,21 @@
 #include <functional>
 
 namespace sidestep {
+namespace {
+
+/// The latest known proposal of a robot that matches; nullptr: none.
+template <typename Robot, typename Matches>
+auto last_proposal(Robot& robot, Matches matches) -> decltype(&robot.proposals[0]) {
+  constexpr std::size_t kMax = AuditedRobot::kMaxProposals;
+  const std::size_t count = std::min<std::size_t>(robot.proposal_count, kMax);
+  for (std::size_t back = 1; back <= count; ++back) {
+    auto& record = robot.proposals[(robot.proposal_count - back) % kMax];
+    if (matches(record)) return &record;
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 void EpochMemory::add(Epoch epoch) {
   if (epoch == 0 || holds(epoch)) return;
@@ -73,22 +88,14 @@ KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
 }
 
 ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number) {
-  const std::size_t count = std::min<std::size_t>(proposal_count, kMaxProposals);
-  for (std::size_t back = 1; back <= count; ++back) {
-    ProposalRecord& record = proposals[(proposal_count - back) % kMaxProposals];
-    if (record.number == number) return &record;
-  }
-  return nullptr;
+  return last_proposal(*this, [number](const ProposalRecord& record) { return record.number == number; });
 }
 
 const ProposalRecord* AuditedRobot::find_proposal_of(const msg::Version& candidate) const {
-  const std::size_t count = std::min<std::size_t>(proposal_count, kMaxProposals);
-  for (std::size_t back = 1; back <= count; ++back) {
-    const ProposalRecord& record = proposals[(proposal_count - back) % kMaxProposals];
+  return last_proposal(*this, [&candidate](const ProposalRecord& record) {
     const msg::Version* found = record.find(candidate.version_number());
-    if (found && found->incarnation() == candidate.incarnation()) return &record;
-  }
-  return nullptr;
+    return found && found->incarnation() == candidate.incarnation();
+  });
 }
 
 bool AuditedRobot::continues(VersionNumber from, VersionNumber to) const {

@@ -10,7 +10,7 @@
 
 #include "common/motion/version.hpp"
 #include "deploy/monitor/audit/audit_path.hpp"
-#include "deploy/monitor/audit/message_trace.hpp"
+#include "deploy/monitor/senders/message_trace.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/robot.hpp"
 

@@ -28,14 +28,6 @@ double sight_allowance_m(const Scenario& scenario) {
   return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
 }
 
-/// Lets the auditor know the time, also when no message arrives.
-void advance_periodically(Bus& bus, Auditor& auditor) {
-  bus.at(bus.now() + kAdvancePeriod, [&bus, &auditor] {
-    auditor.advance(bus.now());
-    advance_periodically(bus, auditor);
-  });
-}
-
 }  // namespace
 
 Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
@@ -267,7 +259,8 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     subscribe(topics::kCommand, robot.id, &Auditor::on_command);
     subscribe(topics::kFeedback, robot.id, &Auditor::on_feedback);
   }
-  advance_periodically(bus, auditor);
+  // Also when no message arrives.
+  call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });
 }
 
 void refuse_other_rules(Bus& bus, const Scenario& scenario, Auditor& auditor) {

@@ -19,8 +19,8 @@
 #include "deploy/monitor/audit/audited_robot.hpp"
 #include "deploy/monitor/audit/disturbances.hpp"
 #include "deploy/monitor/audit/heard_time.hpp"
-#include "deploy/monitor/audit/message_trace.hpp"
 #include "deploy/monitor/audit/seen_contacts.hpp"
+#include "deploy/monitor/senders/message_trace.hpp"
 
 namespace sidestep {
 

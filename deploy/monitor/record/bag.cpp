@@ -75,6 +75,29 @@ void mark_incomplete(McapMetadata& metadata) {
   if (metadata.name == kRecordingMetadata) metadata.texts["complete"] = "false";
 }
 
+/// The scenario that is attached before the first message.
+std::optional<McapBytes> recorded_scenario(const std::string& path) {
+  McapReader reader(path);
+  for (McapRecord record = reader.next();; record = reader.next()) {
+    if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
+      if (attachment->name == kScenarioFile) return attachment->content;
+    } else if (!std::holds_alternative<McapMetadata>(record)) {
+      return std::nullopt;
+    }
+  }
+}
+
+/// Throws std::invalid_argument if two recordings have different scenarios.
+void require_same_scenario(const std::vector<std::string>& paths) {
+  std::optional<McapBytes> first;
+  for (const std::string& path : paths) {
+    const std::optional<McapBytes> scenario = recorded_scenario(path);
+    if (first && scenario && *scenario != *first)
+      throw std::invalid_argument(path + ": this recording is of another scenario than those before it");
+    if (scenario) first = scenario;
+  }
+}
+
 bool is_chosen(const std::set<std::string>& topics, const std::string& channel) {
   return topics.empty() || topics.contains(channel) || topics.contains(channel.substr(0, channel.rfind('/')));
 }
@@ -164,9 +187,9 @@ std::string merge_bags(const std::vector<std::string>& paths, const std::string&
     McapReader reader;
     McapRecord record;
   };
+  require_same_scenario(paths);
   Copier copier(out);
   std::vector<std::unique_ptr<Source>> sources;
-  std::optional<McapBytes> scenario;
   // What comes before the first message, too, because playback expects it there.
   const auto advance = [&](Source& source) {
     for (;;) {
@@ -175,11 +198,6 @@ std::string merge_bags(const std::vector<std::string>& paths, const std::string&
         mark_incomplete(*metadata);
         copier.copy(*metadata);
       } else if (const auto* attachment = std::get_if<McapAttachment>(&source.record)) {
-        if (attachment->name == kScenarioFile) {
-          if (scenario && *scenario != attachment->content)
-            throw std::invalid_argument("the recordings are of different scenarios");
-          scenario = attachment->content;
-        }
         copier.copy(*attachment);
       } else {
         return;

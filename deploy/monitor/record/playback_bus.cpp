@@ -26,11 +26,11 @@ std::string text_of(const McapAttachment& attachment) {
   return {attachment.content.begin(), attachment.content.end()};
 }
 
-std::shared_ptr<const FloorMap> map_of(const MapFiles& files) {
+std::shared_ptr<const OccupancyMap> map_of(const MapFiles& files) {
   const TemporaryFolder folder;
   write_file(folder.file(kMapFile), files.yaml);
   write_file(folder.file(kMapImageFile), files.image);
-  return std::make_shared<const FloorMap>(load_occupancy_map(folder.file(kMapFile)));
+  return std::make_shared<const OccupancyMap>(load_occupancy_map(folder.file(kMapFile)));
 }
 
 }  // namespace
@@ -75,8 +75,7 @@ void PlaybackBus::read_header(const std::string& path) {
 }
 
 Scenario PlaybackBus::scenario() const {
-  return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml",
-                        header_.map ? &header_.map->cells() : nullptr);
+  return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml", header_.map.get());
 }
 
 PlaybackResult PlaybackBus::play() {

@@ -6,9 +6,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
 
 #include "common/map/map_file.hpp"
@@ -35,7 +33,8 @@ McapAttachment attachment(const std::string& name, const std::string& media_type
 
 RecordingHeader recording_header(const Scenario& scenario, const std::string& scenario_file) {
   std::ifstream file(scenario_file);
-  RecordingHeader header{scenario.name, {std::istreambuf_iterator<char>(file), {}}, scenario.map, false};
+  RecordingHeader header{scenario.name, {std::istreambuf_iterator<char>(file), {}}, {}, false};
+  if (scenario.map) header.map = {scenario.map, &scenario.map->cells()};
   if (!file) throw std::runtime_error(scenario_file + ": cannot be read");
   return header;
 }
@@ -44,26 +43,24 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingHeader&
                                  const McapWriterSettings& settings)
     : mcap_(path, settings) {
   mcap_.add_metadata(
-      {"sidestep",
+      {kRecordingMetadata,
        {{"scenario", header.scenario_name}, {"complete", header.is_complete ? "true" : "false"}}});
   mcap_.add_attachment(attachment(kScenarioFile, "application/yaml", header.scenario_text));
   if (!header.map) return;
-  const MapFiles files = map_files(header.map->cells(), kMapImageFile);
+  const MapFiles files = map_files(*header.map, kMapImageFile);
   mcap_.add_attachment(attachment(kMapFile, "application/yaml", files.yaml));
   mcap_.add_attachment(attachment(kMapImageFile, "image/x-portable-graymap", files.image));
 }
 
-std::uint16_t RecordingWriter::channel_id(const TopicInfo& topic, const std::string& channel) {
-  const auto known = channels_.find(channel);
-  if (known != channels_.end()) return known->second;
+std::uint16_t RecordingWriter::add_channel(const TopicInfo& topic, const std::string& channel) {
   const std::string type = topic.type.name;
   if (!schemas_.contains(type)) schemas_[type] = mcap_.add_schema({type, "omgidl", message_schema(type)});
-  return channels_[channel] = mcap_.add_channel({schemas_[type], channel, "cdr", {}});
+  return mcap_.add_channel({schemas_[type], channel, "cdr", {}});
 }
 
-void RecordingWriter::add(Time received, const TopicInfo& topic, const std::string& channel,
+void RecordingWriter::add(Time received, const TopicInfo& topic, std::uint16_t channel,
                           const msg::Header& header, const void* message) {
-  const McapMessage head{channel_id(topic, channel), static_cast<std::uint32_t>(header.message_number()),
+  const McapMessage head{channel, static_cast<std::uint32_t>(header.message_number()),
                          unsigned_ns(to_ns(received)), unsigned_ns(header.stamp_ns())};
   mcap_.add_message(head, [&](McapBytes& bytes) {
     bytes.insert(bytes.end(), kEncapsulation.begin(), kEncapsulation.end());
@@ -86,19 +83,13 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
       for (const RobotSpec& spec : scenario.robots) robots.push_back(spec.id);
     }
     for (const RobotId robot : robots) {
-      bus.observe<Message>(
-          topic, robot, [&bus, &writer, topic, channel = channel_name(topic, robot)](const Message& message) {
-            writer.add(bus.now(), topic, channel, message.header(), &message);
-          });
+      const std::uint16_t channel = writer.add_channel(topic, channel_name(topic, robot));
+      bus.observe<Message>(topic, robot, [&bus, &writer, topic, channel](const Message& message) {
+        writer.add(bus.now(), topic, channel, message.header(), &message);
+      });
     }
   });
-  // Sets itself again; owned by the bus.
-  const auto flush = std::make_shared<std::function<void()>>();
-  *flush = [&bus, &writer, again = std::weak_ptr(flush)] {
-    writer.flush();
-    if (const auto next = again.lock()) bus.at(bus.now() + kFlushPeriod, [next] { (*next)(); });
-  };
-  bus.at(bus.now() + kFlushPeriod, [flush] { (*flush)(); });
+  call_periodically(bus, kFlushPeriod, [&writer] { writer.flush(); });
 }
 
 }  // namespace sidestep

@@ -19,9 +19,9 @@ inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.y
 /// What a recording says about itself.
 struct RecordingHeader {
   std::string scenario_name;
-  std::string scenario_text;            ///< the scenario file
-  std::shared_ptr<const FloorMap> map;  ///< the scenario's
-  bool is_complete = false;             ///< holds every message from the start on, with its time of sending
+  std::string scenario_text;                ///< the scenario file
+  std::shared_ptr<const OccupancyMap> map;  ///< the scenario's
+  bool is_complete = false;  ///< holds every message from the start on, with its time of sending
 };
 
 /// Header of an incomplete recording. Throws std::runtime_error when the scenario file cannot be read.
@@ -35,7 +35,9 @@ class RecordingWriter {
   RecordingWriter(const std::string& path, const RecordingHeader& header,
                   const McapWriterSettings& settings = {});
 
-  void add(Time received, const TopicInfo& topic, const std::string& channel, const msg::Header& header,
+  /// Returns the channel's id.
+  std::uint16_t add_channel(const TopicInfo& topic, const std::string& channel);
+  void add(Time received, const TopicInfo& topic, std::uint16_t channel, const msg::Header& header,
            const void* message);
   /// Attaches the report of the run.
   void add_report(Time now, const std::string& json);
@@ -46,10 +48,7 @@ class RecordingWriter {
   void close() { mcap_.close(); }
 
  private:
-  std::uint16_t channel_id(const TopicInfo& topic, const std::string& channel);
-
   McapWriter mcap_;
-  std::map<std::string, std::uint16_t> channels_;
   std::map<std::string, std::uint16_t> schemas_;  // by type
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ namespace {
 
 constexpr const char* kParticipant = "sidestep-replay";
 constexpr Duration kDiscovery{1'500'000'000};  // participants announce themselves once a second
+/// Readers drop what they have not taken yet of a writer that is gone.
+constexpr Duration kLinger{300'000'000};
 constexpr Duration kCheckPeriod{1'000'000'000};
 
 struct ReplayOptions {
@@ -49,20 +52,20 @@ class Replay {
       listener_.stop();
       bus_.stop();
     });
-    const std::vector<TopicInfo> topics = chosen_topics();
-    commands_ = std::ranges::any_of(topics, is_commanding);
+    commands_ = std::ranges::any_of(
+        all_topics(), [this](const TopicInfo& topic) { return is_chosen(topic) && is_commanding(topic); });
     listener_.run_until(listener_.now() + kDiscovery);
     if (!is_allowed()) return kExitFailure;
     const Scenario scenario = playback_.scenario();
     for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
-      if (std::ranges::none_of(topics, [&](const TopicInfo& t) { return std::string(t.name) == topic.name; }))
-        return;
+      if (!is_chosen(topic)) return;
       for (std::size_t i = 0; i < (topic.per_robot ? scenario.robots.size() : 1); ++i)
         relay(topic, scenario.robots.empty() ? 0 : scenario.robots[i].id);
     });
     // Readers must know the writers before the first message.
     bus_.run_until(bus_.now() + kDiscovery);
     const PlaybackResult result = playback_.play();
+    bus_.run_until(bus_.now() + kLinger);
     fmt::print("{} messages written\n", written_);
     if (!result.damage.empty())
       fmt::print(stderr, "{}: {}; the messages before that were written\n", options_.file, result.damage);
@@ -70,13 +73,8 @@ class Replay {
   }
 
  private:
-  std::vector<TopicInfo> chosen_topics() const {
-    std::vector<TopicInfo> chosen = all_topics();
-    if (!options_.topics.empty())
-      std::erase_if(chosen, [&](const TopicInfo& topic) {
-        return std::ranges::find(options_.topics, topic.name) == options_.topics.end();
-      });
-    return chosen;
+  bool is_chosen(const TopicInfo& topic) const {
+    return options_.topics.empty() || std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }
 
   bool is_allowed() {

@@ -4,7 +4,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
-#include "deploy/monitor/topic/sender_meter.hpp"
+#include "deploy/monitor/senders/sender_meter.hpp"
 #include "deploy/monitor/topic/topic_channel.hpp"
 #include "deploy/monitor/topic/topic_tools.hpp"
 
@@ -27,9 +27,7 @@ int measure_delay(const TopicOptions& options) {
     const PlaybackResult result = bus.play();
     print_damage(options.recording_file, result.damage);
   } else {
-    DdsSettings settings = options.dds;
-    settings.participant = "sidestep-topic";
-    DdsBus bus(settings);
+    DdsBus bus(options.dds);
     if (!measure(bus, options.topic, meter)) return kExitFailure;
     const StopSignals stop_signals([&bus] { bus.stop(); });
     if (options.seconds > 0)

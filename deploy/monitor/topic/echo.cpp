@@ -49,9 +49,7 @@ IdlTypePtr find_type(const TopicOptions& options, const std::string& announced) 
 }
 
 int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
-  DdsSettings dds = options.dds;
-  dds.participant = "sidestep-topic";
-  DdsListener listener(dds);
+  DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
   if (!writer) return listener.stopped() ? 0 : kExitFailure;
@@ -79,9 +77,7 @@ int echo_topic(const TopicOptions& options) {
   });
   if (!options.recording_file.empty()) return echo_recording(options, printer);
   if (!options.idl_file.empty()) return echo_foreign(options, printer);
-  DdsSettings dds = options.dds;
-  dds.participant = "sidestep-topic";
-  DdsBus bus(dds);
+  DdsBus bus(options.dds);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   bus.run();

@@ -17,12 +17,6 @@ namespace {
 
 constexpr Duration kSecond{1'000'000'000};
 
-DdsSettings settings(const TopicOptions& options) {
-  DdsSettings result = options.dds;
-  result.participant = "sidestep-topic";
-  return result;
-}
-
 void print_rate(const char* label, const Rate& rate) {
   if (!rate.min_gap) {
     fmt::print("{}{} sample(s)\n", label, rate.samples);
@@ -37,7 +31,7 @@ void print_rate(const char* label, const Rate& rate) {
 }  // namespace
 
 int list_topics(const TopicOptions& options) {
-  DdsListener listener(settings(options));
+  DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   fmt::print("{}", topic_table(listener.endpoints()));
@@ -45,7 +39,7 @@ int list_topics(const TopicOptions& options) {
 }
 
 int show_topic(const TopicOptions& options) {
-  DdsListener listener(settings(options));
+  DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   const std::string details = topic_details(listener.endpoints(), options.topic);
@@ -58,7 +52,7 @@ int show_topic(const TopicOptions& options) {
 }
 
 int measure_rate(const TopicOptions& options) {
-  DdsListener listener(settings(options));
+  DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
   if (!writer) return listener.stopped() ? 0 : kExitFailure;

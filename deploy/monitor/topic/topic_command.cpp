@@ -14,6 +14,7 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand topic = root.add_subcommand("topic", "Inspects the topics of a DDS domain");
   topic.require_subcommand();
   const auto options = std::make_shared<TopicOptions>();
+  options->dds.participant = "sidestep-topic";
 
   const CliCommand list =
       topic.add_subcommand("list", "Lists all topics: type, writers, readers, QoS, mismatches");

@@ -41,6 +41,7 @@ McapWriter::McapWriter(McapWriter&&) noexcept = default;
 McapWriter& McapWriter::operator=(McapWriter&&) noexcept = default;
 
 void McapWriter::write(std::span<const std::uint8_t> bytes) {
+  if (!file_) return;
   has_failed_ = has_failed_ || std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size();
   size_ += bytes.size();
   checksum_ = mcap_checksum(bytes, checksum_);
@@ -153,7 +154,7 @@ void McapWriter::end_chunk() {
   ++chunks_;
   chunk_.records.clear();
   chunk_.messages = chunk_.begin_ns = chunk_.end_ns = 0;
-  has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
+  if (file_) has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
 }
 
 McapBytes McapWriter::write_message_index() {
@@ -284,7 +285,7 @@ void McapWriter::close() {
   encoder.number(mcap_checksum(bytes));
   encoder.raw(kMcapMagic);
   write(bytes);
-  has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
+  has_failed_ = std::fclose(file_.release()) != 0 || has_failed_;
   if (has_failed_) throw std::runtime_error(path_ + ": some writes failed");
 }
 

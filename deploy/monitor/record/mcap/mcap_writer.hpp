@@ -49,7 +49,7 @@ class McapWriter {
   void end_chunk();
 
   std::uint64_t messages() const { return messages_; }
-  /// Writes the summary; nothing may be added afterwards. Throws std::runtime_error when any write has
+  /// Writes the summary. What is added afterwards is discarded. Throws std::runtime_error when any write has
   /// failed.
   void close();
 

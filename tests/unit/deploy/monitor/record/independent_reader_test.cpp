@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -28,12 +29,16 @@ TEST_CASE("an independent reader of recordings agrees on every field of every to
     std::int64_t now_ns = 0;
     for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
       ++topics;
+      std::array<std::uint16_t, 3> channels{};
+      for (std::uint32_t robot = 0; robot < (topic.per_robot ? 3 : 1); ++robot)
+        channels.at(robot) = writer.add_channel(topic, channel_name(topic, robot));
       for (std::uint32_t i = 0; i < 40; ++i) {
         const bool has_sequence = topic.type.max_elements > 0;
         const auto elements =
             static_cast<std::uint32_t>(std::min<std::size_t>(i % 5, topic.type.max_elements));
         const auto message = random_message<Message>(rng, has_sequence, elements);
-        writer.add(time_from_ns(++now_ns), topic, channel_name(topic, i % 3), message.header(), &message);
+        writer.add(time_from_ns(++now_ns), topic, channels.at(topic.per_robot ? i % 3 : 0), message.header(),
+                   &message);
         lines << describe(message).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
       }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "common/file/temporary_folder.hpp"
@@ -24,6 +25,8 @@ struct RecordedFile {
 
   RecordedFile() {
     RecordingWriter writer(path, {"one", kScenario, nullptr, true});
+    const std::uint16_t feedbacks = writer.add_channel(topics::kFeedback, "feedback/0");
+    const std::uint16_t truths = writer.add_channel(topics::kTruth, "truth");
     msg::Feedback feedback;
     msg::GroundTruth truth;
     for (std::uint64_t i = 1; i <= 10; ++i) {
@@ -32,8 +35,8 @@ struct RecordedFile {
       feedback.header().message_number(i);
       feedback.header().stamp_ns(to_ns(now));
       truth.header() = feedback.header();
-      writer.add(now, topics::kFeedback, "feedback/0", feedback.header(), &feedback);
-      writer.add(now, topics::kTruth, "truth", truth.header(), &truth);
+      writer.add(now, topics::kFeedback, feedbacks, feedback.header(), &feedback);
+      writer.add(now, topics::kTruth, truths, truth.header(), &truth);
     }
     writer.close();
   }
@@ -102,6 +105,21 @@ TEST_CASE("a replay writes no messages that command beside a process that drives
   CHECK(replay_beside(bus, {file.path, "--topics", "truth"}) == 0);
   CHECK(feedbacks == 0);
   CHECK(truths == 10);
+}
+
+TEST_CASE("a replay ends when a process that drives or coordinates appears") {
+  const RecordedFile file;
+  DdsBus bus(test_settings());
+  std::optional<Writer<msg::Verdict>> writer;
+  int feedbacks = 0;
+  bus.observe<msg::Feedback>(topics::kFeedback, 0, [&](const msg::Feedback&) {
+    ++feedbacks;
+    if (!writer) writer.emplace(bus.advertise(topics::kVerdict, 3));
+  });
+  // The last message would be due after 9 s.
+  CHECK(replay_beside(bus, {file.path, "--speed", "0.02"}) == kExitFailure);
+  CHECK(feedbacks > 0);
+  CHECK(feedbacks < 10);
 }
 
 TEST_CASE("what agents, coordinators, robots and operators write commands") {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/time/histogram.hpp"
-#include "deploy/monitor/audit/message_trace.hpp"
+#include "deploy/monitor/senders/message_trace.hpp"
 #include "idl/header.hpp"
 
 namespace sidestep {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/monitor/topic/sender_meter.hpp"
+#include "deploy/monitor/senders/sender_meter.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

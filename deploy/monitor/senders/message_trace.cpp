@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/monitor/audit/message_trace.hpp"
+#include "deploy/monitor/senders/message_trace.hpp"
 
 #include <algorithm>
 
