@@ -17,6 +17,7 @@
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/run_command.hpp"
 #include "deploy/monitor/audit/audit_command.hpp"
+#include "deploy/monitor/monitor_command.hpp"
 #include "deploy/monitor/record/bag_command.hpp"
 #include "deploy/monitor/record/record_command.hpp"
 #include "deploy/monitor/record/replay_command.hpp"
@@ -62,6 +63,7 @@ int main(int argc, char** argv) {
   add_clock_command(app, action);
   add_referee_command(app, action);
   add_audit_command(app, action);
+  add_monitor_command(app, action);
   add_record_command(app, action);
   add_bag_command(app, action);
   add_replay_command(app, action);

@@ -78,14 +78,26 @@ Scenario PlaybackBus::scenario() const {
   return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml", header_.map.get());
 }
 
+bool PlaybackBus::play_next(PlaybackResult& result) {
+  while (!is_stopped_ && !std::holds_alternative<std::monostate>(next_)) {
+    const auto* message = std::get_if<McapMessage>(&next_);
+    const bool is_readable = message == nullptr || deliver(*message, result);
+    const bool was_message = message != nullptr;
+    if (!is_readable) {
+      is_stopped_ = true;
+      return false;
+    }
+    next_ = reader_.next();
+    if (was_message) return true;
+  }
+  if (result.damage.empty()) result.damage = reader_.damage();
+  return false;
+}
+
 PlaybackResult PlaybackBus::play() {
   PlaybackResult result;
-  while (!is_stopped_ && !std::holds_alternative<std::monostate>(next_)) {
-    if (const auto* message = std::get_if<McapMessage>(&next_))
-      if (!deliver(*message, result)) return result;
-    next_ = reader_.next();
+  while (play_next(result)) {
   }
-  result.damage = reader_.damage();
   return result;
 }
 

@@ -37,6 +37,10 @@ class PlaybackBus : public Bus {
   void at(Time, std::function<void()>) override {}
   /// Delivers all messages in the file's order, or those before stop().
   [[nodiscard]] PlaybackResult play();
+  /// Delivers the next message. False: there is none, or stop() was called.
+  [[nodiscard]] bool play_next(PlaybackResult& result);
+  /// The share of the file that has been read, 0 to 1.
+  double progress() const { return reader_.progress(); }
   /// For callbacks: no further message is delivered.
   void stop() { is_stopped_ = true; }
 

@@ -27,6 +27,8 @@ McapReader::McapReader(const std::string& path) : file_(std::fopen(path.c_str(),
   if (!file_) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   if (!std::ranges::equal(read(kMcapMagic.size()), kMcapMagic))
     throw std::runtime_error(path + ": is not an MCAP file");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error) file_bytes_ = size;
 }
 
 void McapReader::fail(const std::string& damage) {
@@ -147,6 +149,13 @@ bool McapReader::read_chunk_frame(Frame& frame) {
   fail("a record in a chunk is damaged");
   records_ = McapDecoder({});
   return false;
+}
+
+double McapReader::progress() const {
+  const long position = std::ftell(file_.get());
+  return file_bytes_ > 0 && position > 0
+             ? std::min(1.0, static_cast<double>(position) / static_cast<double>(file_bytes_))
+             : 0;
 }
 
 McapRecord McapReader::next() {

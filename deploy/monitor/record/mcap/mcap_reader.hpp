@@ -25,6 +25,8 @@ class McapReader {
 
   /// Messages in the order of the file. After the end of the data, all that follows is checked, too.
   [[nodiscard]] McapRecord next();
+  /// The share of the file that has been read, 0 to 1.
+  double progress() const;
   /// Why the file ended early; empty: it did not, or has not ended yet.
   const std::string& damage() const { return damage_; }
 
@@ -60,6 +62,7 @@ class McapReader {
   void fail(const std::string& damage);
 
   std::unique_ptr<std::FILE, Closer> file_;
+  std::uint64_t file_bytes_ = 0;
   std::uint32_t checksum_ = 0;  // of all that was read
   McapBytes bytes_, chunk_;
   McapDecoder records_{{}};  // of the open chunk

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/monitor/monitor_command.hpp"
+
+#include <atomic>
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/monitor/control/control_api.hpp"
+#include "deploy/monitor/page/page_files.hpp"
+#include "deploy/monitor/record/playback_bus.hpp"
+#include "deploy/monitor/record/recording.hpp"
+#include "deploy/monitor/server/web_server.hpp"
+#include "deploy/monitor/view/monitor.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kPollPeriod = 5ms;
+constexpr const char* kPageProtocol = "sidestep.monitor.v1";
+
+struct MonitorOptions {
+  std::string file;            ///< a scenario or a recording; empty: an unknown scenario
+  std::string recording_file;  ///< to write; empty: none
+  AccessSettings access;
+  std::uint32_t port = 8080;
+  bool has_control = false;
+  DdsSettings dds;
+
+  bool shows_recording() const { return file.ends_with(".mcap"); }
+};
+
+WebResponse not_found(const std::string& path) {
+  return {404, "text/plain", fmt::format("there is no {}\n", path)};
+}
+
+WebResponse page_file(const WebRequest& request) {
+  if (request.method != "GET" && request.method != "HEAD") return {405, "text/plain", "expected GET\n"};
+  const PageFile* file = find_page_file(request.path);
+  if (file == nullptr) return not_found(request.path);
+  return {200, file->content_type, request.method == "GET" ? std::string(file->content) : std::string()};
+}
+
+/// A monitor and its server.
+class MonitorServer {
+ public:
+  MonitorServer(const MonitorOptions& options, Monitor& monitor, ControlApi* control)
+      : monitor_(monitor),
+        control_(control),
+        server_(options.access, {kPageProtocol},
+                {[this](const WebRequest& request) { return respond(request); },
+                 [this](WebSocket& socket, const std::string&) { monitor_.add_viewer(socket); },
+                 [this](WebSocket& socket, const std::string& message, bool is_binary) {
+                   return !is_binary && monitor_.on_message(socket, message, DdsBus::clock());
+                 },
+                 [this](WebSocket& socket) { monitor_.remove_viewer(socket); }}) {
+    const AccessSettings& access = server_.access();
+    fmt::print("monitor: http://{}:{}/{}\n", access.address, access.port,
+               access.token.empty() ? "" : "#token=" + access.token);
+    std::fflush(stdout);
+  }
+
+  WebServer& server() { return server_; }
+
+ private:
+  WebResponse respond(const WebRequest& request) {
+    if (!request.path.starts_with("/api/")) return page_file(request);
+    if (auto response = monitor_.respond(request)) return *response;
+    if (control_)
+      if (auto response = control_->respond(request)) return *response;
+    if (request.method != "GET" && !request.command_refusal.empty())
+      return {401, "text/plain", request.command_refusal + "\n"};
+    return not_found(request.path);
+  }
+
+  Monitor& monitor_;
+  ControlApi* control_;
+  WebServer server_;
+};
+
+int monitor_system(const MonitorOptions& options) {
+  std::optional<Scenario> scenario;
+  if (!options.file.empty()) scenario = load_scenario(options.file);
+  std::optional<RecordingWriter> recording;
+  if (!options.recording_file.empty())
+    recording.emplace(options.recording_file, recording_header(*scenario, options.file));
+  DdsBus bus(options.dds);
+  MonitorSettings settings;
+  settings.scenario = scenario ? &*scenario : nullptr;
+  settings.can_command = options.has_control;
+  Monitor monitor(bus, settings);
+  if (recording) record(bus, *scenario, *recording);
+  std::optional<ControlApi> control;
+  if (options.has_control)
+    control.emplace(bus, [&](const std::string& text) {
+      monitor.events().add({0, bus.now(), Severity::kInfo, "bookmark", text});
+    });
+  MonitorServer server(options, monitor, control ? &*control : nullptr);
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  call_periodically(bus, Monitor::kFramePeriod, [&] {
+    monitor.take_snapshot();
+    monitor.update_viewers(bus.now());
+  });
+  call_periodically(bus, kPollPeriod, [&] { server.server().poll(); });
+  bus.run();
+  if (recording) recording->close();
+  return 0;
+}
+
+int monitor_recording(const MonitorOptions& options) {
+  PlaybackBus bus(options.file);
+  const Scenario scenario = bus.scenario();
+  MonitorSettings settings;
+  settings.scenario = &scenario;
+  settings.is_recording = true;
+  settings.audit.is_complete = bus.header().is_complete;
+  Monitor monitor(bus, settings);
+  MonitorServer server(options, monitor, nullptr);
+  std::atomic<bool> is_stopped = false;
+  const StopSignals stop_signals([&is_stopped] { is_stopped = true; });
+  PlaybackResult result;
+  Time next_snapshot{}, next_update{};
+  bool is_over = false;
+  while (!is_stopped) {
+    // Reads on as fast as it can, and serves viewers meanwhile.
+    for (int i = 0; i < 500 && !is_over; ++i) {
+      is_over = !bus.play_next(result);
+      if (!is_over && bus.now() < next_snapshot) continue;
+      monitor.take_snapshot();
+      next_snapshot = bus.now() + Monitor::kFramePeriod;
+      monitor.set_progress(is_over ? 1 : bus.progress());
+      if (is_over && !result.damage.empty())
+        fmt::print(stderr, "{}: {}; the messages before that are shown\n", options.file, result.damage);
+    }
+    if (const Time clock = DdsBus::clock(); clock >= next_update) {
+      monitor.update_viewers(clock);
+      next_update = clock + Monitor::kFramePeriod;
+    }
+    is_over ? server.server().run_for(kPollPeriod) : server.server().poll();
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<MonitorOptions>();
+  options->dds.participant = "sidestep-monitor";
+  const CliCommand command =
+      root.add_subcommand("monitor", "Shows a running system or a recording in the browser");
+  command.add_option("FILE", options->file,
+                     "scenario of the running system, or a recording (.mcap); without it, nothing is judged");
+  command.add_option("--port", options->port, "TCP port; 0: any free one")
+      .check(in_range(0, 65535))
+      .show_default();
+  command.add_option("--address", options->access.address, "address to listen on").show_default();
+  command
+      .add_option("--allow-origin", options->access.allowed_origins,
+                  "pages of these servers may use this one, e.g. https://example.org")
+      .comma_separated();
+  command.add_flag("--control", options->has_control,
+                   "viewers who have the token that is printed may give orders and cause faults");
+  command.add_option("--record", options->recording_file, "also write all messages to this MCAP file");
+  add_dds_options(command, options->dds);
+  command.on_parsed([options, &action] {
+    if (options->shows_recording() && options->has_control)
+      throw UsageError("--control: a recording cannot be commanded");
+    if (!options->recording_file.empty() && (options->file.empty() || options->shows_recording()))
+      throw UsageError("--record: needs the scenario file of a running system");
+    options->access.port = static_cast<std::uint16_t>(options->port);
+    if (options->has_control) {
+      options->access.token = random_token();
+      options->dds.is_operator = true;
+    }
+    action = [options] {
+      return options->shows_recording() ? monitor_recording(*options) : monitor_system(*options);
+    };
+  });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages of one channel, and plots of their numbers over time.
+import {create, number} from "./format.js";
+
+const kColours = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e00"];
+const kSpan_s = 30;
+const kMaxPoints = 6000;
+
+/** The numbers of a message by their paths, e.g. "executing.x_m". @param {any} value @param {string} path @param {Map<string, number>} found */
+export function numbersOf(value, path, found) {
+  if (typeof value === "number") found.set(path, value);
+  else if (typeof value === "boolean") found.set(path, value ? 1 : 0);
+  else if (value && typeof value === "object")
+    for (const [key, inner] of Object.entries(value)) numbersOf(inner, path ? `${path}.${key}` : key, found);
+  return found;
+}
+
+/** A plot that keeps the least and the most of each column of pixels. */
+export class Plot {
+  constructor() {
+    this.canvas = create("canvas", {class: "plot", role: "img", "aria-label": "Plot"});
+    /** @type {Map<string, {t: number[], y: number[]}>} */
+    this.series = new Map();
+  }
+
+  /** @param {string} name @param {number} t @param {number} y */
+  add(name, t, y) {
+    let series = this.series.get(name);
+    if (!series) this.series.set(name, (series = {t: [], y: []}));
+    series.t.push(t);
+    series.y.push(y);
+    if (series.t.length > kMaxPoints) {
+      series.t.splice(0, 1000);
+      series.y.splice(0, 1000);
+    }
+  }
+
+  draw() {
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (!width) return;
+    this.canvas.width = width;
+    this.canvas.height = height;
+    const c = this.canvas.getContext("2d");
+    let end = -Infinity, low = Infinity, high = -Infinity;
+    for (const {t} of this.series.values()) end = Math.max(end, t[t.length - 1] ?? -Infinity);
+    for (const {t, y} of this.series.values())
+      for (let i = 0; i < t.length; ++i)
+        if (t[i] >= end - kSpan_s && Number.isFinite(y[i])) [low, high] = [Math.min(low, y[i]), Math.max(high, y[i])];
+    if (!(high >= low)) return;
+    if (high === low) [low, high] = [low - 1, high + 1];
+    c.font = "11px sans-serif";
+    c.fillStyle = "#8b96a1";
+    c.fillText(number(high, 3), 2, 11);
+    c.fillText(number(low, 3), 2, height - 3);
+    let index = 0;
+    for (const [name, {t, y}] of this.series) {
+      const colour = kColours[index % kColours.length];
+      const least = new Float64Array(width).fill(Infinity), greatest = new Float64Array(width).fill(-Infinity);
+      for (let i = 0; i < t.length; ++i) {
+        const x = Math.floor((width - 1) * (1 - (end - t[i]) / kSpan_s));
+        if (x < 0 || !Number.isFinite(y[i])) continue;
+        least[x] = Math.min(least[x], y[i]);
+        greatest[x] = Math.max(greatest[x], y[i]);
+      }
+      const toY = (/** @type {number} */ value) => 4 + (height - 8) * (1 - (value - low) / (high - low));
+      c.strokeStyle = c.fillStyle = colour;
+      c.beginPath();
+      for (let x = 0, begun = false; x < width; ++x) {
+        if (least[x] > greatest[x]) continue;
+        begun ? c.lineTo(x, toY(least[x])) : c.moveTo(x, toY(least[x]));
+        c.lineTo(x, toY(greatest[x]) + 0.5);
+        begun = true;
+      }
+      c.stroke();
+      c.fillText(`${name}: ${number(y[y.length - 1], 4)}`, 70, 12 + 12 * index);
+      ++index;
+    }
+  }
+}
+
+/** The panel in which a person looks at one channel. */
+export class Inspector {
+  /** @param {(message: object) => void} send */
+  constructor(send) {
+    this.send = send;
+    this.channel = create("select", {id: "inspected", "aria-label": "Channel"});
+    this.field = create("select", {id: "plotted", "aria-label": "Number to plot"});
+    this.text = create("pre", {id: "inspected-message", tabindex: "0"});
+    this.plot = new Plot();
+    this.received = 0;
+    /** @type {Set<string>} */
+    this.plotted = new Set();
+    /** @type {Set<string>} */
+    this.fields = new Set();
+    const clear = create("button", {}, "Clear plot");
+    this.node = create("div", {}, create("div", {class: "buttons"}, create("label", {}, "Channel ", this.channel),
+                       create("label", {}, "Plot ", this.field), clear), this.plot.canvas, this.text);
+    this.channel.addEventListener("change", () => this.choose());
+    this.field.addEventListener("change", () => {
+      if (this.field.value) this.plotted.add(this.field.value);
+      this.field.value = "";
+    });
+    clear.addEventListener("click", () => {
+      this.plotted.clear();
+      this.plot.series.clear();
+    });
+  }
+
+  /** @param {string[]} channels */
+  setChannels(channels) {
+    const chosen = this.channel.value;
+    this.channel.replaceChildren(create("option", {value: ""}, "none"), ...channels.map((c) => create("option", {value: c}, c)));
+    this.channel.value = chosen;
+  }
+
+  choose() {
+    this.fields.clear();
+    this.field.replaceChildren(create("option", {value: ""}, "add a number"));
+    this.text.textContent = "";
+    this.send({op: "inspect", channel: this.channel.value || null});
+  }
+
+  /** @param {{channel: string, messages: {at_s: number, message: any}[]}} batch */
+  update(batch) {
+    if (batch.channel !== this.channel.value) return;
+    this.received += batch.messages.length;
+    for (const {at_s, message} of batch.messages) {
+      const numbers = numbersOf(message, "", new Map());
+      for (const [path, value] of numbers) {
+        if (!this.fields.has(path)) {
+          this.fields.add(path);
+          this.field.append(create("option", {value: path}, path));
+        }
+        if (this.plotted.has(path)) this.plot.add(`${batch.channel} ${path}`, at_s, value);
+      }
+    }
+    this.text.textContent = JSON.stringify(batch.messages[batch.messages.length - 1].message, null, 1);
+    this.plot.draw();
+  }
+}

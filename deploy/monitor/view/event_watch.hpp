@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/view/event_log.hpp"
+#include "deploy/monitor/view/floor_state.hpp"
+#include "idl/disturbance.hpp"
+
+namespace sidestep {
+
+/// Finds in the messages of a run what a person wants to know of, and adds it to a log.
+class EventWatch {
+ public:
+  /// The log must outlive this object.
+  explicit EventWatch(EventLog& log) : log_(log) {}
+
+  void on(const msg::GroundTruth& truth, Time now);
+  void on(const msg::Feedback& feedback, Time now);
+  void on(const msg::AgentStatus& status, Time now);
+  void on(const msg::OrderStatus& status, Time now);
+  void on(const msg::CoordinatorState& state, Time now);
+  void on(const msg::Order& order, Time now);
+  void on(const msg::OrderAnswer& answer, Time now);
+  void on(const msg::Disturbance& disturbance, Time now);
+  void on(const msg::NetworkFault& fault, Time now);
+  void on(const msg::AbsenceAttestation& attestation, Time now);
+  void on_violation(const Violation& violation);
+  /// Messages of a process with other rules are refused.
+  void on_refused(std::uint32_t sender, Time now);
+  /// Looks for robots and coordinators that have fallen silent.
+  void tick(const FloorState& floor, Time now);
+
+  /// Silence of an agent, a robot or an active coordinator that is an event.
+  static constexpr Duration kSilence = std::chrono::milliseconds(1000);
+
+ private:
+  /// What of each robot or coordinator was last, to find changes.
+  enum class Watched : std::uint8_t {
+    kOffReference,
+    kLifted,
+    kAgent,
+    kAgentState,
+    kHeld,
+    kOrder,
+    kCoordinator,
+    kNotice,
+    kSilent,
+    kSentOrder,
+    kRefused
+  };
+
+  void add(Severity severity, std::string kind, std::string text, Time at, std::vector<RobotId> robots = {});
+  /// Whether the value differs from the last one with this key. The first one does if it is not `normal`.
+  bool has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
+  void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
+
+  EventLog& log_;
+  std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;
+  struct TruthTotals {
+    std::uint64_t incarnation = 0, contacts = 0, crashes = 0, violations = 0;
+  };
+  std::optional<TruthTotals> totals_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/motion/version.hpp"
+#include "common/protocol/order_book.hpp"
+#include "common/time/time.hpp"
+#include "idl/laser.hpp"
+#include "idl/monitor.hpp"
+#include "idl/negotiation.hpp"
+#include "idl/order.hpp"
+#include "idl/robot.hpp"
+#include "idl/vision.hpp"
+
+namespace sidestep {
+
+/// A value and when it was received.
+template <typename Value>
+struct Received {
+  Value value;
+  Time at{};
+};
+
+/// What was received longer ago is not shown.
+inline constexpr Duration kMaxShownAge = std::chrono::seconds(1);
+
+/// The value, if it is recent enough to be shown; otherwise nullptr.
+template <typename Value>
+const Value* fresh(const std::optional<Received<Value>>& received, Time now) {
+  return received && now - received->at <= kMaxShownAge ? &received->value : nullptr;
+}
+
+/// A candidate that the coordinator did not grant.
+struct Denial {
+  msg::Reason reason = msg::Reason::REASON_NOT_EVALUATED;
+  RobotId blocker = 0;  ///< valid for REASON_CONFLICT
+};
+
+/// The newest that is known about one robot.
+struct RobotView {
+  std::optional<Received<msg::TrueRobotState>> truth;
+  std::optional<Received<msg::TrackedRobot>> seen;
+  std::optional<Received<msg::Feedback>> feedback;
+  std::optional<Received<msg::AgentStatus>> status;
+  std::optional<Received<msg::OrderStatus>> order;
+  std::optional<Received<msg::Proposal>> proposal;
+  std::optional<Received<msg::Version>> granted;
+  std::optional<Received<Denial>> denial;  ///< since the last grant
+  std::optional<Received<msg::LaserScan>> scan;
+  std::map<std::uint32_t, std::uint64_t> denials;  ///< of first candidates, by msg::Reason
+};
+
+/// The newest state of the floor, as messages tell it. Values of messages are not trusted: robots and
+/// coordinators beyond the numbers that the protocol allows are ignored.
+class FloorState {
+ public:
+  void on(const msg::GroundTruth& truth, Time now);
+  void on(const msg::WorldState& world, Time now);
+  void on(const msg::ObstacleList& list, Time now);
+  void on(const msg::DetectionFrame& frame, Time now);
+  void on(const msg::Feedback& feedback, Time now);
+  void on(const msg::AgentStatus& status, Time now);
+  void on(const msg::OrderStatus& status, Time now);
+  void on(const msg::Proposal& proposal, Time now);
+  void on(const msg::Verdict& verdict, Time now);
+  void on(const msg::LedgerPage& page, Time now);
+  void on(const msg::CoordinatorState& state, Time now);
+  void on(const msg::OrderMemory& memory, Time now);
+  void on(const msg::LaserScan& scan, Time now);
+
+  const std::map<RobotId, RobotView>& robots() const { return robots_; }
+  const std::optional<Received<msg::GroundTruth>>& truth() const { return truth_; }
+  const std::optional<Received<msg::WorldState>>& world() const { return world_; }
+  const std::optional<Received<msg::ObstacleList>>& obstacles() const { return obstacles_; }
+  /// The latest frame of each camera.
+  const std::map<std::uint32_t, Received<msg::DetectionFrame>>& detections() const { return detections_; }
+  const std::map<std::uint32_t, Received<msg::CoordinatorState>>& coordinators() const {
+    return coordinators_;
+  }
+  /// The pages of the ledger, by index.
+  const std::map<std::uint32_t, Received<msg::LedgerPage>>& ledger() const { return ledger_; }
+  /// Grows with each order that was not known.
+  const OrderBook& orders() const { return orders_; }
+  std::uint64_t orders_changed() const { return orders_changed_; }
+
+ private:
+  RobotView* robot(std::uint32_t id);
+
+  std::map<RobotId, RobotView> robots_;
+  std::optional<Received<msg::GroundTruth>> truth_;
+  std::optional<Received<msg::WorldState>> world_;
+  std::optional<Received<msg::ObstacleList>> obstacles_;
+  std::map<std::uint32_t, Received<msg::DetectionFrame>> detections_;
+  std::map<std::uint32_t, Received<msg::CoordinatorState>> coordinators_;
+  std::map<std::uint32_t, Received<msg::LedgerPage>> ledger_;
+  OrderBook orders_;
+  std::uint64_t orders_changed_ = 0;
+};
+
+}  // namespace sidestep

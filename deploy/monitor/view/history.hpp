@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// What viewers get for one time: a frame, and the panels as they were then.
+struct Snapshot {
+  Time at{};
+  std::shared_ptr<const std::string> frame, panels;
+};
+
+/// Snapshots in order of time, of bounded size. When it is full, it either forgets the oldest or, to keep the
+/// whole time, every other one.
+class History {
+ public:
+  enum class WhenFull : std::uint8_t { kForgetOldest, kThinOut };
+
+  History(std::size_t max_bytes, WhenFull when_full) : max_bytes_(max_bytes), when_full_(when_full) {}
+
+  /// Snapshots that are not later than the last one are ignored. While it is thinned out, some others too.
+  void add(Snapshot snapshot);
+  bool empty() const { return snapshots_.empty(); }
+  std::size_t size() const { return snapshots_.size(); }
+  std::size_t bytes() const { return bytes_; }
+  /// Precondition of all functions below: it is not empty.
+  const Snapshot& first() const { return snapshots_.front(); }
+  const Snapshot& last() const { return snapshots_.back(); }
+  /// The last snapshot at or before a time; the first one if there is none.
+  const Snapshot& at(Time time) const { return snapshots_[index_at(time)]; }
+  /// The snapshot that is `steps` after the one at a time (or before, if negative), as far as there are so
+  /// many.
+  const Snapshot& stepped(Time time, int steps) const;
+
+ private:
+  std::size_t index_at(Time time) const;
+  void thin_out();
+
+  std::size_t max_bytes_;
+  WhenFull when_full_;
+  std::deque<Snapshot> snapshots_;
+  std::size_t bytes_ = 0;
+  std::size_t stride_ = 1, skipped_ = 0;  // of the snapshots that are added, one in `stride` is kept
+};
+
+}  // namespace sidestep

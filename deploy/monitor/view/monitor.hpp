@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "common/messaging/bus.hpp"
+#include "deploy/monitor/server/web_server.hpp"
+#include "deploy/monitor/view/closest_pair.hpp"
+#include "deploy/monitor/view/event_log.hpp"
+#include "deploy/monitor/view/event_watch.hpp"
+#include "deploy/monitor/view/floor_state.hpp"
+#include "deploy/monitor/view/history.hpp"
+#include "deploy/monitor/view/run_judges.hpp"
+#include "deploy/monitor/view/topic_traffic.hpp"
+#include "deploy/monitor/view/viewer_time.hpp"
+
+namespace sidestep {
+
+struct MonitorSettings {
+  const Scenario* scenario = nullptr;  ///< nullptr: unknown, so that nothing can be judged
+  AuditInput audit;
+  bool is_recording = false;  ///< the messages come from a recording
+  bool can_command = false;   ///< the page shows what commands
+  std::size_t history_bytes = 512 << 20;
+};
+
+/// Shows a run to viewers: collects its messages, remembers what the floor looked like, and sends each viewer
+/// the moment that it looks at. Messages of a viewer: see README.md in this folder.
+class Monitor {
+ public:
+  /// Subscribes to all topics except images. The bus must not be used otherwise, and outlive this object; so
+  /// must the scenario.
+  Monitor(Bus& bus, const MonitorSettings& settings);
+  ~Monitor();
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+
+  static constexpr Duration kFramePeriod = std::chrono::milliseconds(25);
+  static constexpr Duration kPanelPeriod = std::chrono::milliseconds(500);
+
+  /// Takes a picture of the floor. Call it every kFramePeriod of the run.
+  void take_snapshot();
+  /// Sends all viewers what they look at. Call it often. `clock`: the real time.
+  void update_viewers(Time clock);
+  /// Of a recording: how much of it has been read, 0 to 1.
+  void set_progress(double progress) { progress_ = progress; }
+
+  /// Answers GET requests of paths that begin with /api/; nullopt: there is no such path.
+  std::optional<WebResponse> respond(const WebRequest& request);
+  void add_viewer(WebSocket& socket);
+  void remove_viewer(WebSocket& socket);
+  /// False: the message makes no sense.
+  [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message, Time clock);
+
+  EventLog& events() { return events_; }
+  const History& history() const { return history_; }
+  const FloorState& floor() const { return floor_; }
+
+ private:
+  struct Viewer {
+    ViewerTime time;
+    Time shown{};
+    std::shared_ptr<const std::string> frame, panels, time_text;
+    std::optional<std::string> inspected;  ///< channel
+  };
+  struct Inspection {
+    std::deque<std::string> messages;  ///< JSON, since they were last sent
+  };
+
+  struct Channel {
+    TopicInfo topic;
+    std::string name;
+    std::uint64_t number;
+  };
+  template <typename Message>
+  void subscribe(const Topic<Message>& topic, RobotId robot);
+  template <typename Message>
+  void receive(const Channel& channel, const Message& message);
+  /// Subscribes to the channels of a robot, once.
+  void follow_robot(RobotId robot);
+  void follow(const msg::WorldState& world);
+  void follow(const msg::AgentStatus& status) { follow_robot(status.robot()); }
+  template <typename Message>
+  void follow(const Message&) {}
+  nlohmann::ordered_json panels();
+  nlohmann::ordered_json scene() const;
+  void send_time(WebSocket& socket, Viewer& viewer, Time clock);
+  void send_inspections();
+
+  Bus& bus_;
+  MonitorSettings settings_;
+  FloorState floor_;
+  EventLog events_;
+  EventWatch event_watch_{events_};
+  TopicTraffic traffic_;
+  std::unique_ptr<RunJudges> judges_;  ///< null: the scenario is unknown
+  History history_;
+  std::set<RobotId> followed_;
+  std::set<std::string> channels_;
+  std::map<WebSocket*, Viewer> viewers_;
+  std::map<std::string, Inspection> inspections_;  ///< by channel
+  std::shared_ptr<const std::string> latest_panels_;
+  Time panels_at_{}, heard_at_{};
+  std::optional<ClosestPair> closest_, smallest_;
+  double progress_ = 1;
+};
+
+}  // namespace sidestep

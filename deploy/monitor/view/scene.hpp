@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "common/config/scenario.hpp"
+#include "common/map/occupancy_map.hpp"
+
+namespace sidestep {
+
+/// What does not change during a run, for the page: field, obstacles, robots, limits, and the frame_layout().
+/// `scenario`: nullptr: unknown, robots then have the default radius.
+[[nodiscard]] nlohmann::ordered_json scene_json(const Scenario* scenario);
+
+/// The cells of a map for the page: a bit each, 1 for blocked, rows from the bottom, each padded to a byte;
+/// the first cell is the lowest bit.
+[[nodiscard]] std::string map_bits(const OccupancyMap& map);
+
+}  // namespace sidestep
