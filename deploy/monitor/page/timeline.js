@@ -38,6 +38,7 @@ export class Timeline {
     element("play").textContent = this.mode === "paused" ? "play" : "||";
     element("live").setAttribute("aria-pressed", String(this.mode === "live"));
     this.progress = message.progress;
+    this.show(this.shown_s);
     this.draw();
   }
 

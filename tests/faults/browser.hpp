@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/file/temporary_folder.hpp"
+#include "deploy/launch/process_group.hpp"
+
+namespace sidestep {
+
+/// A headless Chromium, driven by WebDriver (w3.org/TR/webdriver2) over HTTP. It ends with this object.
+class Browser {
+ public:
+  /// Throws std::runtime_error if it does not start.
+  explicit Browser(int width_px = 1400, int height_px = 900);
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void open(const std::string& url);
+  /// The value of a JavaScript function body, e.g. "return document.title".
+  nlohmann::json run(const std::string& script);
+  /// The text of the element with this id.
+  std::string text(const std::string& id);
+  void click(const std::string& id);
+  /// Presses a key of the page.
+  void press(const std::string& key);
+  /// Waits until a JavaScript expression is true, at most 20 s, and calls `meanwhile` again and again.
+  bool wait_until(const std::string& expression, const std::function<void()>& meanwhile = [] {});
+  /// What the page has complained of: errors of scripts and of loading.
+  std::string complaints();
+  /// Writes a PNG.
+  void save_screenshot(const std::string& path);
+
+ private:
+  nlohmann::json call(const std::string& method, const std::string& path,
+                      const nlohmann::json& body = nlohmann::json::object());
+
+  TemporaryFolder folder_;
+  ProcessGroup group_;
+  std::uint16_t port_;
+  std::string session_;
+  pid_t pid_ = 0;  ///< of Chromium
+};
+
+}  // namespace sidestep

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// The monitor with real processes and a real browser.
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <signal.h>
+#include <thread>
+
+#include "common/file/temporary_folder.hpp"
+#include "tests/catch.hpp"
+#include "tests/faults/browser.hpp"
+#include "tests/faults/launched_run.hpp"
+#include "tests/faults/process_usage.hpp"
+#include "tests/unit/deploy/monitor/server/web_client.hpp"
+
+namespace sidestep::monitor_faults_test {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+/// A monitor beside a run.
+struct MonitorProcess {
+  LaunchedRun& run;
+  std::string name;
+  std::uint16_t port = 0;
+  std::string token;
+  pid_t pid = 0;
+
+  MonitorProcess(LaunchedRun& launched, const std::vector<std::string>& extra = {}, std::uint16_t wanted_port = 0,
+                 const std::string& process_name = "monitor")
+      : run(launched), name(process_name) {
+    std::vector<std::string> arguments{"monitor", run.scenario_file(), "--port", std::to_string(wanted_port)};
+    for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    pid = run.start(name, "sidestep", arguments);
+    const std::string begin = name + ": monitor: http://127.0.0.1:";
+    REQUIRE(run.wait_until([&] { return run.printed(begin); }));
+    std::string line = run.output().substr(run.output().rfind(begin) + begin.size());
+    line.resize(line.find('\n'));
+    port = static_cast<std::uint16_t>(std::stoi(line));
+    const std::size_t hash = line.find("#token=");
+    if (hash != std::string::npos) token = line.substr(hash + 7);
+  }
+  std::string url() const { return fmt::format("http://127.0.0.1:{}/{}", port, token.empty() ? "" : "#token=" + token); }
+  Json state() const { return Json::parse(http_request(port, "GET", "/api/state").body); }
+};
+
+/// Keeps the bus of the run from falling behind while a browser is waited for.
+std::function<void()> polling(LaunchedRun& run) {
+  return [&run] { (void)run.wait_until([] { return true; }); };
+}
+
+/// Robots that wait for orders, with two coordinators.
+const std::string kWaitingRobots =
+    "coordinators: 2\nrobots:\n  - {id: 0, start_m: [-2, 0]}\n  - {id: 1, start_m: [2, 0.5]}\n  - {id: 2, "
+    "start_m: [0, 2]}\n";
+
+TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]") {
+  LaunchedRun run(kWaitingRobots);
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  const MonitorProcess monitor(run, {"--control"});
+  Browser page;
+  page.open(monitor.url());
+  REQUIRE(page.wait_until("window.monitor && monitor.panels && monitor.panels.promise.state === 'kept'"));
+  CHECK(page.text("lamp-text") == "promise kept");
+  CHECK(page.text("connection") == "connected");
+
+  // Where robots are, as ground truth says.
+  REQUIRE(page.wait_until("monitor.frame.sections.robots.rows === 3"));
+  (void)run.wait_until([&] { return run.truth().robots().size() == 3; });
+  for (const msg::TrueRobotState& robot : run.truth().robots()) {
+    const Json place = page.run(fmt::format(
+        "const s = monitor.frame.sections.robots, c = monitor.scene.layout.columns.robots; return "
+        "[s.values[{0} * s.stride + c.true_x], s.values[{0} * s.stride + c.true_y]]",
+        robot.robot()));
+    CHECK(place[0].get<double>() == Approx(robot.x_m()).margin(0.01));
+    CHECK(place[1].get<double>() == Approx(robot.y_m()).margin(0.01));
+  }
+
+  // The panels.
+  CHECK(page.run("return document.querySelectorAll('#panel-robots tbody tr').length") == 3);
+  page.click("tab-coordinators");
+  CHECK(page.wait_until("document.querySelector('#panel-coordinators').textContent.includes('granting')"));
+  CHECK(page.wait_until("document.querySelector('#panel-coordinators').textContent.includes('standby')"));
+  page.click("tab-topics");
+  for (const char* topic : {"world", "feedback", "command", "ledger", "truth"})
+    CHECK(page.wait_until(fmt::format("document.querySelector('#panel-topics [data-key=\"{}\"]')", topic)));
+  page.click("tab-inspect");
+  page.run("const c = document.getElementById('inspected'); c.value = 'feedback/1'; c.dispatchEvent(new Event('change'))");
+  CHECK(page.wait_until("document.getElementById('inspected-message').textContent.includes('\"tracking_error_m\"')"));
+  page.run("const p = document.getElementById('plotted'); p.value = 'x_m'; p.dispatchEvent(new Event('change'))");
+
+  // An order by drag and drop, and one by HTTP.
+  page.click("tab-control");
+  page.run(R"(
+    const canvas = document.getElementById('floor'), box = canvas.getBoundingClientRect();
+    const scale = Math.min(canvas.clientWidth / 10, canvas.clientHeight / 7);
+    const at = (x, y) => ({clientX: box.x + box.width / 2 + x * scale, clientY: box.y + box.height / 2 - y * scale, pointerId: 1, bubbles: true});
+    canvas.setPointerCapture = () => {};
+    canvas.dispatchEvent(new PointerEvent('pointerdown', at(-2, 0)));
+    canvas.dispatchEvent(new PointerEvent('pointermove', at(-1, -1)));
+    canvas.dispatchEvent(new PointerEvent('pointerup', at(-1, -1)));)");
+  CHECK(page.wait_until("document.getElementById('command-result').textContent === '/api/robots/0/order: sent'"));
+  CHECK(http_request(monitor.port, "POST", "/api/robots/1/order", {}, R"({"goals": [[3, 1]]})").status == 401);
+  CHECK(http_request(monitor.port, "POST", "/api/robots/1/order", {{"Authorization", "Bearer " + monitor.token}},
+                     R"({"goals": [[3, 1]]})")
+            .status == 200);
+  const auto is_at = [&](RobotId robot, double x_m, double y_m) {
+    for (const msg::TrueRobotState& r : run.truth().robots())
+      if (r.robot() == robot) return std::hypot(r.x_m() - x_m, r.y_m() - y_m) < 0.05;
+    return false;
+  };
+  CHECK(run.wait_until([&] { return is_at(0, -1, -1) && is_at(1, 3, 1); }));
+  page.click("tab-topics");
+  for (const char* topic : {"proposal", "verdict"})
+    CHECK(page.wait_until(fmt::format("document.querySelector('#panel-topics [data-key=\"{}\"]')", topic)));
+  page.click("command-hold-all");
+  CHECK(page.wait_until("monitor.events.filter((e) => e.kind === 'hold').length === 3", polling(run)));
+
+  // Each order is an event. Each key has a meaning, and what the page asks for is allowed.
+  CHECK(page.wait_until("monitor.events.some((e) => e.text === 'operator sends robot 0 to a goal')"));
+  for (const char* key : {"1", "2", "m", "t", "f", "[", "]", ",", ".", "l"}) page.press(key);
+  CHECK(page.complaints() == "");
+}
+
+TEST_CASE("the page shows how a coordinator dies and another takes over, and connects again to a monitor", "[both-cores]") {
+  LaunchedRun run(kWaitingRobots);
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  auto monitor = std::make_unique<MonitorProcess>(run);
+  Browser page;
+  page.open(monitor->url());
+  REQUIRE(page.wait_until("window.monitor && monitor.panels && monitor.panels.coordinators.length === 2"));
+  const Json granting = page.run("return monitor.panels.coordinators.find((c) => c.mode === 'granting').name");
+  const pid_t pid = run.pid_of(granting);
+  REQUIRE(pid > 0);
+  REQUIRE(kill(pid, SIGKILL) == 0);
+  CHECK(page.wait_until(fmt::format("monitor.events.some((e) => e.kind === 'silent' && e.text === '{} is silent')",
+                                    granting.get<std::string>()),
+                        polling(run)));
+  CHECK(page.wait_until("monitor.events.some((e) => e.kind === 'epoch' && e.text.includes('no heartbeat of coordinator'))"));
+  CHECK(page.wait_until("monitor.panels.coordinators.filter((c) => c.mode === 'granting' && c.age_s < 1).length === 1"));
+
+  // Without --control nothing commands.
+  CHECK(page.run("return document.getElementById('tab-control')").is_null());
+  CHECK(http_request(monitor->port, "POST", "/api/hold", {{"Authorization", "Bearer "}}).status == 401);
+
+  const std::uint16_t port = monitor->port;
+  REQUIRE(kill(monitor->pid, SIGINT) == 0);
+  CHECK(page.wait_until("monitor.connection === 'lost'", polling(run)));
+  CHECK(run.wait_until([&] { return run.exit_reason("monitor").has_value(); }));
+  CHECK(*run.exit_reason("monitor") == "exit code 0");
+  monitor = std::make_unique<MonitorProcess>(run, std::vector<std::string>{}, port, "monitor again");
+  CHECK(page.wait_until("monitor.connection === 'connected' && monitor.panels.robots.length === 3", polling(run)));
+}
+
+TEST_CASE("a viewer seeks 60 seconds back while the run goes on, within 200 ms", "[both-cores]") {
+  LaunchedRun run(kWaitingRobots);
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  const MonitorProcess monitor(run);
+  SocketClient viewer(monitor.port);
+  double begin_s = 0, end_s = 0;
+  const auto receive_frame = [&]() -> double {
+    for (;;) {
+      const auto message = viewer.receive();
+      REQUIRE(message);
+      if (message->is_binary) {
+        double time_s = 0;
+        std::memcpy(&time_s, message->text.data(), sizeof time_s);
+        return time_s;
+      }
+      const Json json = Json::parse(message->text);
+      if (json.at("type") != "time") continue;
+      begin_s = json.at("begin_s");
+      end_s = json.at("end_s");
+    }
+  };
+  int frames = 0;
+  const double first_s = receive_frame();
+  double last_s = first_s;
+  while (last_s < first_s + 61) {
+    last_s = receive_frame();
+    ++frames;
+  }
+  CHECK(frames >= 61 * 30);
+  std::vector<double> delays_ms;
+  for (int i = 0; i < 20; ++i) {
+    const double wanted_s = first_s + 0.05 * i;
+    const auto asked = std::chrono::steady_clock::now();
+    viewer.send(fmt::format(R"({{"op":"seek","at_s":{:.6f}}})", wanted_s));
+    while (std::abs(receive_frame() - wanted_s) > 0.06) {
+    }
+    delays_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - asked).count());
+  }
+  std::ranges::sort(delays_ms);
+  WARN(fmt::format("{} frames in 61 s; seek 60 s back: median {:.1f} ms, longest {:.1f} ms", frames, delays_ms[10],
+                   delays_ms.back()));
+  CHECK(begin_s <= first_s + 0.1);
+  CHECK(end_s >= last_s - 0.2);
+  CHECK(delays_ms.back() < 200);
+}
+
+TEST_CASE("the page shows a recording, and a moment by its link") {
+  const TemporaryFolder folder;
+  const std::string program = sibling_program_path("sidestep"), recording = folder.file("run.mcap");
+  ProcessGroup group(folder.file("log"));
+  group.start({"simulate",
+               {program, "simulate", SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml", "--record", recording,
+                "--report", folder.file("report.json")},
+               false});
+  bool is_recorded = false;
+  for (int i = 0; i < 3000 && !is_recorded; ++i)
+    for (const ChildEvent& event : group.poll(20ms)) {
+      CHECK(event.reason == "exit code 0");
+      is_recorded = true;
+    }
+  REQUIRE(is_recorded);
+  group.start({"monitor", {program, "monitor", recording, "--port", "0"}, false});
+  std::string line;
+  for (int i = 0; i < 500 && line.find("http://") == std::string::npos; ++i) {
+    (void)group.poll(20ms);
+    std::ifstream log(folder.file("log"));
+    while (std::getline(log, line) && line.find("http://") == std::string::npos) {
+    }
+  }
+  const std::string url = line.substr(line.find("http://"));
+  Browser page;
+  page.open(url);
+  REQUIRE(page.wait_until("window.monitor && monitor.frame && document.getElementById('clock').textContent.startsWith('00:')"));
+  page.click("live");
+  REQUIRE(page.wait_until("monitor.panels.promise.state === 'kept'"));
+  CHECK(page.run("return monitor.panels.promise.contacts") == 0);
+  CHECK(page.run("return monitor.events.filter((e) => e.kind === 'arrived').length") ==
+        page.run("return monitor.panels.robots.length"));
+  const Json at_s = page.run("return monitor.events.find((e) => e.kind === 'arrived').at_s");
+  page.press("]");
+  page.press("[");
+  page.open("about:blank");
+  page.open(fmt::format("{}#t={:.3f}", url, at_s.get<double>()));
+  CHECK(page.wait_until(fmt::format("window.monitor && monitor.frame && Math.abs(monitor.frame.time - {:.3f}) < 0.05",
+                                    at_s.get<double>())));
+  CHECK(page.complaints() == "");
+  CHECK(group.terminate(5s).empty());
+}
+
+}  // namespace sidestep::monitor_faults_test
