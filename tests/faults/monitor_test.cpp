@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The monitor with real processes and a real browser.
+#include <atomic>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <signal.h>
 #include <thread>
 
+#include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/browser.hpp"
@@ -240,6 +242,84 @@ TEST_CASE("the page shows a recording, and a moment by its link") {
                                     at_s.get<double>())));
   CHECK(page.complaints() == "");
   CHECK(group.terminate(5s).empty());
+}
+
+/// The scenario two-teams-22, whose teams change sides again and again.
+std::string two_teams_for(int changes) {
+  const Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml");
+  std::string text = "field: {length_m: 12, width_m: 9}\ntime_limit_s: 3000\nvision: {columns: 2, rows: 2}\nball: "
+                     "{position_m: [0, 0]}\nrobots:\n";
+  for (const RobotSpec& robot : scenario.robots) {
+    const Vec2 goal = robot.goals.at(0).position_m, start = robot.start_m;
+    text += fmt::format("  - {{id: {}, team: {}, start_m: [{}, {}], heading_rad: {}, goals_m: [", robot.id,
+                        robot.team == Team::kBlue ? "blue" : "yellow", start.x(), start.y(), robot.start_heading_rad);
+    for (int i = 0; i < changes; ++i) {
+      const Vec2& next = i % 2 ? start : goal;
+      text += fmt::format("{}[{}, {}]", i > 0 ? ", " : "", next.x(), next.y());
+    }
+    text += "]}\n";
+  }
+  return text;
+}
+
+/// A viewer that counts what it gets, in a thread of its own.
+class CountingViewer {
+ public:
+  explicit CountingViewer(std::uint16_t port)
+      : thread_([this, port] {
+          SocketClient viewer(port);
+          while (!is_over_ && viewer.is_connected()) {
+            const auto message = viewer.receive(100ms);
+            if (message && message->is_binary) ++frames_;
+          }
+        }) {}
+  ~CountingViewer() {
+    is_over_ = true;
+    thread_.join();
+  }
+  int frames() const { return frames_; }
+
+ private:
+  std::atomic<bool> is_over_ = false;
+  std::atomic<int> frames_ = 0;
+  std::thread thread_;
+};
+
+TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-cores]") {
+  LaunchedRun run(two_teams_for(20));
+  const MonitorProcess monitor(run);
+  const std::vector<std::string> dds = run.dds_arguments();
+  const pid_t subscriber = run.start("subscriber", "discarding_subscriber", {run.scenario_file(), dds[1], dds[3]});
+  std::vector<std::unique_ptr<CountingViewer>> viewers;
+  for (int i = 0; i < 3; ++i) viewers.push_back(std::make_unique<CountingViewer>(monitor.port));
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  const auto wait = [&](Duration duration) {
+    const Time end = run.bus().now() + duration;
+    REQUIRE(run.wait_until([&] { return run.bus().now() > end; }));
+  };
+  wait(2s);
+  const ProcessUsage monitor_before = usage_of(monitor.pid), subscriber_before = usage_of(subscriber);
+  std::vector<int> frames_before;
+  for (const auto& viewer : viewers) frames_before.push_back(viewer->frames());
+  constexpr auto kDuration = 20s;
+  wait(kDuration);
+  const ProcessUsage monitor_after = usage_of(monitor.pid), subscriber_after = usage_of(subscriber);
+  double least_rate_hz = 1e9;
+  for (std::size_t i = 0; i < viewers.size(); ++i)
+    least_rate_hz = std::min(least_rate_hz, (viewers[i]->frames() - frames_before[i]) / to_seconds(kDuration));
+  const Json promise = monitor.state().at("promise");
+  viewers.clear();
+  const double monitor_cpu = (monitor_after.cpu_s - monitor_before.cpu_s) / to_seconds(kDuration);
+  const double subscriber_cpu = (subscriber_after.cpu_s - subscriber_before.cpu_s) / to_seconds(kDuration);
+  const double missed = promise.at("missed_cycles").get<double>() / promise.at("cycles").get<double>();
+  WARN(fmt::format("monitor {:.1f} % of a core, a subscriber that discards {:.1f} %, ratio {:.2f}; {:.1f} updates a second "
+                   "at least; {:.2f} % of the cycles missed; memory {:.0f} MB; {} contacts, coverage {:.1f} %",
+                   100 * monitor_cpu, 100 * subscriber_cpu, monitor_cpu / subscriber_cpu, least_rate_hz, 100 * missed,
+                   monitor_after.memory_mb, promise.at("contacts").get<int>(),
+                   100 * promise.at("coverage").get<double>()));
+  CHECK(promise.at("contacts") == 0);
+  CHECK(promise.at("violations") == 0);
+  CHECK(least_rate_hz >= 30);
 }
 
 }  // namespace sidestep::monitor_faults_test
