@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/control/control_api.hpp"
+#include "deploy/monitor/foxglove/foxglove_server.hpp"
 #include "deploy/monitor/page/page_files.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/monitor/record/recording.hpp"
@@ -55,13 +57,17 @@ class MonitorServer {
   MonitorServer(const MonitorOptions& options, Monitor& monitor, ControlApi* control)
       : monitor_(monitor),
         control_(control),
-        server_(options.access, {kPageProtocol},
+        server_(options.access, protocols(),
                 {[this](const WebRequest& request) { return respond(request); },
-                 [this](WebSocket& socket, const std::string&) { monitor_.add_viewer(socket); },
+                 [this](WebSocket& socket, const std::string& protocol) { add(socket, protocol); },
                  [this](WebSocket& socket, const std::string& message, bool is_binary) {
-                   return !is_binary && monitor_.on_message(socket, message, DdsBus::clock());
+                   if (is_binary) return false;
+                   return foxglove_viewers_.contains(&socket)
+                              ? foxglove_.on_message(socket, message)
+                              : monitor_.on_message(socket, message, DdsBus::clock());
                  },
-                 [this](WebSocket& socket) { monitor_.remove_viewer(socket); }}) {
+                 [this](WebSocket& socket) { remove(socket); }}) {
+    monitor_.on_any_message([this](const AnyMessage& message) { foxglove_.publish(message, monitor_.now()); });
     const AccessSettings& access = server_.access();
     fmt::print("monitor: http://{}:{}/{}\n", access.address, access.port,
                access.token.empty() ? "" : "#token=" + access.token);
@@ -69,8 +75,32 @@ class MonitorServer {
   }
 
   WebServer& server() { return server_; }
+  /// Sends what is shown at present. `clock`: the real time.
+  void update(Time clock) {
+    monitor_.update_viewers(clock);
+    foxglove_.publish_scene(monitor_.floor(), monitor_.radius_m(), monitor_.now());
+  }
 
  private:
+  static std::vector<std::string> protocols() {
+    std::vector<std::string> names{kPageProtocol};
+    for (const std::string& name : FoxgloveServer::protocols()) names.push_back(name);
+    return names;
+  }
+
+  void add(WebSocket& socket, const std::string& protocol) {
+    if (protocol == kPageProtocol) return monitor_.add_viewer(socket);
+    foxglove_viewers_.insert(&socket);
+    foxglove_.add(socket);
+  }
+
+  void remove(WebSocket& socket) {
+    if (foxglove_viewers_.erase(&socket) > 0)
+      foxglove_.remove(socket);
+    else
+      monitor_.remove_viewer(socket);
+  }
+
   WebResponse respond(const WebRequest& request) {
     if (!request.path.starts_with("/api/")) return page_file(request);
     if (auto response = monitor_.respond(request)) return *response;
@@ -83,6 +113,8 @@ class MonitorServer {
 
   Monitor& monitor_;
   ControlApi* control_;
+  FoxgloveServer foxglove_;
+  std::set<WebSocket*> foxglove_viewers_;
   WebServer server_;
 };
 
@@ -107,7 +139,7 @@ int monitor_system(const MonitorOptions& options) {
   const StopSignals stop_signals([&bus] { bus.stop(); });
   call_periodically(bus, Monitor::kFramePeriod, [&] {
     monitor.take_snapshot();
-    monitor.update_viewers(bus.now());
+    server.update(bus.now());
   });
   call_periodically(bus, kPollPeriod, [&] { server.server().poll(); });
   bus.run();
@@ -141,7 +173,7 @@ int monitor_recording(const MonitorOptions& options) {
         fmt::print(stderr, "{}: {}; the messages before that are shown\n", options.file, result.damage);
     }
     if (const Time clock = DdsBus::clock(); clock >= next_update) {
-      monitor.update_viewers(clock);
+      server.update(clock);
       next_update = clock + Monitor::kFramePeriod;
     }
     is_over ? server.server().run_for(kPollPeriod) : server.server().poll();

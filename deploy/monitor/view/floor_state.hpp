@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/messaging/topics.hpp"
 #include "common/motion/version.hpp"
 #include "common/protocol/order_book.hpp"
 #include "common/time/time.hpp"
@@ -33,6 +34,14 @@ template <typename Value>
 const Value* fresh(const std::optional<Received<Value>>& received, Time now) {
   return received && now - received->at <= kMaxShownAge ? &received->value : nullptr;
 }
+
+/// A message of any topic.
+struct AnyMessage {
+  const TopicInfo& topic;
+  std::uint32_t channel;  ///< of the topics of robots, each robot has another one
+  const msg::Header& header;
+  const void* message;
+};
 
 /// A candidate that the coordinator did not grant.
 struct Denial {

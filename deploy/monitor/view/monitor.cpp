@@ -86,7 +86,8 @@ void Monitor::follow_robot(RobotId robot) {
 
 template <typename Message>
 void Monitor::subscribe(const Topic<Message>& topic, RobotId robot) {
-  const Channel channel{topic, channel_name(topic, robot), channels_.size()};
+  const Channel channel{topic, channel_name(topic, robot),
+                        static_cast<std::uint32_t>(channels_.size())};
   channels_.insert(channel.name);
   bus_.subscribe<Message>(topic, robot,
                           [this, channel](const Message& message) { receive(channel, message); });
@@ -105,6 +106,7 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   if constexpr (requires { event_watch_.on(message, now); }) event_watch_.on(message, now);
   if constexpr (requires { judges_->on(message, now); })
     if (judges_) judges_->on(message, now);
+  if (on_any_message_) on_any_message_({channel.topic, channel.number, message.header(), &message});
   if (!settings_.scenario) follow(message);
   if (inspections_.empty()) return;
   const auto inspection = inspections_.find(channel.name);
@@ -127,11 +129,14 @@ Json Monitor::panels() {
   return json;
 }
 
+double Monitor::radius_m() const {
+  return settings_.scenario ? settings_.scenario->radius_m : Scenario().radius_m;
+}
+
 void Monitor::take_snapshot() {
   const Time now = bus_.now();
   if (judges_) judges_->auditor.advance(now);
-  const double radius_m = settings_.scenario ? settings_.scenario->radius_m : Scenario().radius_m;
-  closest_ = closest_pair(places_of(floor_, now), radius_m, now);
+  closest_ = closest_pair(places_of(floor_, now), radius_m(), now);
   if (closest_ && (!smallest_ || closest_->clearance_m < smallest_->clearance_m)) smallest_ = closest_;
   const Duration period = floor_.robots().size() > kLargeFleet ? 4 * kPanelPeriod : kPanelPeriod;
   if (now - panels_at_ >= period) {

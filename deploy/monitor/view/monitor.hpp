@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -58,6 +59,14 @@ class Monitor {
   /// False: the message makes no sense.
   [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message, Time clock);
 
+  /// Calls back with every message that is received.
+  void on_any_message(std::function<void(const AnyMessage&)> callback) {
+    on_any_message_ = std::move(callback);
+  }
+  double radius_m() const;
+  /// The time of the run.
+  Time now() const { return bus_.now(); }
+
   EventLog& events() { return events_; }
   const History& history() const { return history_; }
   const FloorState& floor() const { return floor_; }
@@ -76,7 +85,7 @@ class Monitor {
   struct Channel {
     TopicInfo topic;
     std::string name;
-    std::uint64_t number;
+    std::uint32_t number;
   };
   template <typename Message>
   void subscribe(const Topic<Message>& topic, RobotId robot);
@@ -109,6 +118,7 @@ class Monitor {
   Time panels_at_{}, heard_at_{};
   std::optional<ClosestPair> closest_, smallest_;
   double progress_ = 1;
+  std::function<void(const AnyMessage&)> on_any_message_;
 };
 
 }  // namespace sidestep

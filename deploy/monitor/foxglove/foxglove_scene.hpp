@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "deploy/monitor/view/floor_state.hpp"
+
+namespace sidestep {
+
+/// The floor as a foxglove.SceneUpdate, in JSON: robots, moving obstacles, the ball, and the stop that each
+/// robot executes. All of it is in the frame "floor".
+[[nodiscard]] nlohmann::json scene_update(const FloorState& floor, double radius_m, Time now);
+
+/// Where robots are, as foxglove.FrameTransforms, in JSON: from "floor" to "robot 3".
+[[nodiscard]] nlohmann::json frame_transforms(const FloorState& floor, Time now);
+
+}  // namespace sidestep
