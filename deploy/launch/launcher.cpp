@@ -25,6 +25,7 @@ constexpr Duration kSettlingTime = 500ms;   // after all arrivals, for the final
 constexpr Duration kStuckTimeout = 2s;      // since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
+constexpr const char* kMonitor = "monitor";
 
 std::vector<std::string> split_words(const std::string& text) {
   std::istringstream stream(text);
@@ -74,6 +75,7 @@ Report Launcher::run() {
         "--domain {} --interface {}",
         network_->bridge(), options_.dds.domain, options_.dds.interface));
   }
+  if (options_.monitor_port) start_monitor();
   start_core();
   while (!is_over()) {
     start_due_agents();
@@ -154,6 +156,14 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
   start(spec, placement_.host_of(agent_process(robot)));
 }
 
+void Launcher::start_monitor() {
+  group_.start({kMonitor,
+                {sibling_program_path("sidestep"), "monitor", options_.scenario_file, "--port", *options_.monitor_port,
+                 "--domain", std::to_string(options_.dds.domain), "--interface", options_.dds.interface},
+                false});
+  print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
+}
+
 void Launcher::start_core() {
   const RestartSpec& restart = scenario_.restart;
   std::vector<std::string> simulator = split_words(options_.simulator_options);
@@ -177,6 +187,11 @@ void Launcher::start_due_agents() {
 }
 
 void Launcher::handle(const ChildEvent& event) {
+  if (event.name == kMonitor) {
+    // The run does not need it.
+    print(fmt::format("the monitor ended: {}", event.reason), LogLevel::kWarning);
+    return print_last_lines(kMonitor);
+  }
   if (event.kind == ChildEvent::Kind::kStarted) {
     print(fmt::format("started {} again as pid {}", event.name, event.pid));
     return;
@@ -186,14 +201,18 @@ void Launcher::handle(const ChildEvent& event) {
   print(fmt::format("{} (pid {}) died: {}{}", event.name, event.pid, event.reason,
                     event.will_restart ? "; it will be restarted" : ""),
         LogLevel::kWarning);
-  const auto lines = group_.last_lines(event.name);
-  for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
-    if (!options_.is_quiet) display_.print("  " + lines[i]);
-  }
+  print_last_lines(event.name);
   if (event.will_restart) return;
   dead_.insert(event.name);
   last_death_ = now;
   if (!is_ready_) abort_reason_ = fmt::format("{} died during startup: {}", event.name, event.reason);
+}
+
+void Launcher::print_last_lines(const std::string& process) {
+  const auto lines = group_.last_lines(process);
+  for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
+    if (!options_.is_quiet) display_.print("  " + lines[i]);
+  }
 }
 
 bool Launcher::is_over() {

@@ -72,6 +72,9 @@ class Launcher {
   void start_due_agents();
   Time next_poll();
   void handle(const ChildEvent& event);
+  /// Starts the process that shows the run in the browser.
+  void start_monitor();
+  void print_last_lines(const std::string& process);
   /// Whether the run is over; then abort_reason_ says why if it was aborted.
   bool is_over();
   bool is_startup_over();

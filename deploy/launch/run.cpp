@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/launch/hosts/run_hosts.hpp"
@@ -21,6 +22,9 @@ int run(const RunOptions& given) {
       options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file),
       scenario);
   options.dds.interface = hosts.hosts().interface;
+  if (options.monitor_port && hosts.network())
+    throw std::invalid_argument(
+        "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` there");
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();

@@ -18,6 +18,7 @@ struct RunOptions {
   std::string hosts_file;      ///< empty: all processes on this machine, on the interface of `dds`
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
+  std::optional<std::string> monitor_port;  ///< of a page that shows the run; nullopt: none
   DdsSettings dds;
   std::uint64_t seed = 1;                         ///< of the simulator's noise
   std::optional<double> seconds;                  ///< overrides the scenario's time limit

@@ -11,6 +11,15 @@
 
 namespace sidestep {
 
+namespace {
+
+void require_port(const std::string& text) {
+  const std::string problem = in_range(1, 65535).problem(text);
+  if (!problem.empty()) throw UsageError("--monitor: " + problem);
+}
+
+}  // namespace
+
 void add_run_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<RunOptions>();
   options->dds.participant = "sidestep-run";
@@ -19,6 +28,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
       .required();
   command.add_option("--record", options->recording_file, "record all messages to this file");
+  command.add_optional_value("--monitor", options->monitor_port, "8080",
+                             "show the run in the browser, on this port of this machine [8080]");
   command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
   command.add_option("--seed", options->seed, "random seed of the simulator's noise")
       .check(non_negative())
@@ -38,7 +49,10 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
                      "extra options for sidestep-vision, e.g. --vision=\"--tracked --colours hall.yaml\"");
   command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/launch/README.md")
       .excludes(command.option("--interface"));
-  command.on_parsed([options, &action] { action = [options] { return run(*options); }; });
+  command.on_parsed([options, &action] {
+    if (options->monitor_port) require_port(*options->monitor_port);
+    action = [options] { return run(*options); };
+  });
 }
 
 }  // namespace sidestep

@@ -285,6 +285,27 @@ class CountingViewer {
   std::thread thread_;
 };
 
+TEST_CASE("a run shows itself in the browser, and goes on without the monitor") {
+  // Any free port: that of a monitor which has just ended.
+  std::uint16_t port = 0;
+  {
+    LaunchedRun first(kWaitingRobots);
+    port = MonitorProcess(first).port;
+  }
+  LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port), "--seconds", "4"});
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  CHECK(Json::parse(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
+  CHECK(http_request(port, "GET", "/").body.find("<title>Sidestep monitor</title>") != std::string::npos);
+  CHECK(run.wait_for_end() == "exit code 0");
+  // The port is taken: the run says so.
+  LaunchedRun holder(kWaitingRobots);
+  const MonitorProcess taken(holder);
+  LaunchedRun other(kWaitingRobots, {fmt::format("--monitor={}", taken.port), "--seconds", "2"});
+  CHECK(other.wait_for_end() == "exit code 0");
+  CHECK(other.printed("the monitor ended: exit code 1"));
+  CHECK(other.printed("Address already in use"));
+}
+
 TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-cores]") {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
