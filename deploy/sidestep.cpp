@@ -21,6 +21,7 @@
 #include "deploy/monitor/record/bag_command.hpp"
 #include "deploy/monitor/record/record_command.hpp"
 #include "deploy/monitor/record/replay_command.hpp"
+#include "deploy/monitor/topic/graph_command.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/order/order_command.hpp"
 #include "deploy/order/referee_command.hpp"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   add_simulate_command(app, action);
   add_building_command(app, action);
   add_topic_command(app, action);
+  add_graph_command(app, action);
   add_fault_command(app, action);
   add_test_command(app, action);
   add_attest_command(app, action);

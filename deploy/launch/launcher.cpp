@@ -157,10 +157,11 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
 }
 
 void Launcher::start_monitor() {
-  group_.start({kMonitor,
-                {sibling_program_path("sidestep"), "monitor", options_.scenario_file, "--port", *options_.monitor_port,
-                 "--domain", std::to_string(options_.dds.domain), "--interface", options_.dds.interface},
-                false});
+  group_.start(
+      {kMonitor,
+       {sibling_program_path("sidestep"), "monitor", options_.scenario_file, "--port", *options_.monitor_port,
+        "--domain", std::to_string(options_.dds.domain), "--interface", options_.dds.interface},
+       false});
   print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
 }
 
@@ -194,10 +195,12 @@ void Launcher::handle(const ChildEvent& event) {
   }
   if (event.kind == ChildEvent::Kind::kStarted) {
     print(fmt::format("started {} again as pid {}", event.name, event.pid));
+    if (recording_) recording_->add_event(bus_.now(), "restart", event.name + " was started again");
     return;
   }
   const Time now = bus_.now();
   metrics_.on_death(event.name, event.reason, now, event.will_restart);
+  if (recording_) recording_->add_event(now, "death", fmt::format("{} died: {}", event.name, event.reason));
   print(fmt::format("{} (pid {}) died: {}{}", event.name, event.pid, event.reason,
                     event.will_restart ? "; it will be restarted" : ""),
         LogLevel::kWarning);

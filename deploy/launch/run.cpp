@@ -24,7 +24,8 @@ int run(const RunOptions& given) {
   options.dds.interface = hosts.hosts().interface;
   if (options.monitor_port && hosts.network())
     throw std::invalid_argument(
-        "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` there");
+        "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` "
+        "there");
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();

@@ -2,6 +2,7 @@
 #include "deploy/monitor/monitor_command.hpp"
 
 #include <atomic>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
@@ -15,9 +16,11 @@
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/control/control_api.hpp"
 #include "deploy/monitor/foxglove/foxglove_server.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+#include "deploy/monitor/monitor_recorder.hpp"
+#include "deploy/monitor/network_view.hpp"
 #include "deploy/monitor/page/page_files.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
-#include "deploy/monitor/record/recording.hpp"
 #include "deploy/monitor/server/web_server.hpp"
 #include "deploy/monitor/view/monitor.hpp"
 
@@ -26,7 +29,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPollPeriod = 5ms;
+constexpr Duration kPollPeriod = 5ms, kFlushPeriod = 1s;
 constexpr const char* kPageProtocol = "sidestep.monitor.v1";
 
 struct MonitorOptions {
@@ -54,9 +57,12 @@ WebResponse page_file(const WebRequest& request) {
 /// A monitor and its server.
 class MonitorServer {
  public:
-  MonitorServer(const MonitorOptions& options, Monitor& monitor, ControlApi* control)
+  /// nullptr: `control`: nobody may command; `network`: there is none; `recorder`: nothing is recorded.
+  MonitorServer(const MonitorOptions& options, Monitor& monitor, ControlApi* control, NetworkView* network,
+                MonitorRecorder* recorder)
       : monitor_(monitor),
         control_(control),
+        network_(network),
         server_(options.access, protocols(),
                 {[this](const WebRequest& request) { return respond(request); },
                  [this](WebSocket& socket, const std::string& protocol) { add(socket, protocol); },
@@ -67,7 +73,10 @@ class MonitorServer {
                               : monitor_.on_message(socket, message, DdsBus::clock());
                  },
                  [this](WebSocket& socket) { remove(socket); }}) {
-    monitor_.on_any_message([this](const AnyMessage& message) { foxglove_.publish(message, monitor_.now()); });
+    monitor_.on_any_message([this, recorder](const AnyMessage& message) {
+      foxglove_.publish(message, monitor_.now());
+      if (recorder) recorder->add(message, monitor_.now());
+    });
     const AccessSettings& access = server_.access();
     fmt::print("monitor: http://{}:{}/{}\n", access.address, access.port,
                access.token.empty() ? "" : "#token=" + access.token);
@@ -104,6 +113,8 @@ class MonitorServer {
   WebResponse respond(const WebRequest& request) {
     if (!request.path.starts_with("/api/")) return page_file(request);
     if (auto response = monitor_.respond(request)) return *response;
+    if (network_ && request.method == "GET" && request.path == "/api/network")
+      return {200, "application/json", network_->json()};
     if (control_)
       if (auto response = control_->respond(request)) return *response;
     if (request.method != "GET" && !request.command_refusal.empty())
@@ -113,37 +124,66 @@ class MonitorServer {
 
   Monitor& monitor_;
   ControlApi* control_;
+  NetworkView* network_;
   FoxgloveServer foxglove_;
   std::set<WebSocket*> foxglove_viewers_;
   WebServer server_;
 };
 
+/// A name for a recording that a viewer starts, e.g. recordings/crossing-20261125T180509.mcap; its folder
+/// exists.
+std::string new_recording_file(const Scenario& scenario) {
+  const std::string report = default_report_path(scenario.name, std::nullopt);
+  const std::filesystem::path folder = "recordings";
+  std::filesystem::create_directories(folder);
+  return (folder / std::filesystem::path(report).filename().replace_extension(".mcap")).string();
+}
+
 int monitor_system(const MonitorOptions& options) {
   std::optional<Scenario> scenario;
   if (!options.file.empty()) scenario = load_scenario(options.file);
-  std::optional<RecordingWriter> recording;
-  if (!options.recording_file.empty())
-    recording.emplace(options.recording_file, recording_header(*scenario, options.file));
+  std::optional<MonitorRecorder> recorder;
+  if (scenario) recorder.emplace(*scenario, options.file);
+  if (!options.recording_file.empty()) recorder->start(options.recording_file);
   DdsBus bus(options.dds);
   MonitorSettings settings;
   settings.scenario = scenario ? &*scenario : nullptr;
   settings.can_command = options.has_control;
   Monitor monitor(bus, settings);
-  if (recording) record(bus, *scenario, *recording);
   std::optional<ControlApi> control;
-  if (options.has_control)
-    control.emplace(bus, [&](const std::string& text) {
+  if (options.has_control) {
+    ControlHooks hooks;
+    hooks.bookmark = [&](const std::string& text) {
       monitor.events().add({0, bus.now(), Severity::kInfo, "bookmark", text});
-    });
-  MonitorServer server(options, monitor, control ? &*control : nullptr);
+      if (recorder) recorder->add_event(bus.now(), "bookmark", text);
+    };
+    if (recorder)
+      hooks.record = [&](bool begins) -> std::string {
+        if (begins == recorder->is_recording()) return "";
+        if (!begins) {
+          recorder->stop();
+          return "";
+        }
+        const std::string path = new_recording_file(*scenario);
+        recorder->start(path);
+        return path;
+      };
+    control.emplace(bus, hooks);
+  }
+  NetworkView network(options.dds);
+  MonitorServer server(options, monitor, control ? &*control : nullptr, &network,
+                       recorder ? &*recorder : nullptr);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   call_periodically(bus, Monitor::kFramePeriod, [&] {
     monitor.take_snapshot();
     server.update(bus.now());
   });
   call_periodically(bus, kPollPeriod, [&] { server.server().poll(); });
+  call_periodically(bus, kFlushPeriod, [&] {
+    if (recorder) recorder->flush();
+  });
   bus.run();
-  if (recording) recording->close();
+  if (recorder) recorder->stop();
   return 0;
 }
 
@@ -155,7 +195,10 @@ int monitor_recording(const MonitorOptions& options) {
   settings.is_recording = true;
   settings.audit.is_complete = bus.header().is_complete;
   Monitor monitor(bus, settings);
-  MonitorServer server(options, monitor, nullptr);
+  MonitorServer server(options, monitor, nullptr, nullptr, nullptr);
+  bus.on_event([&monitor](Time at, const std::string& kind, const std::string& text) {
+    monitor.events().add({0, at, Severity::kInfo, kind, text});
+  });
   std::atomic<bool> is_stopped = false;
   const StopSignals stop_signals([&is_stopped] { is_stopped = true; });
   PlaybackResult result;

@@ -96,12 +96,11 @@ std::string Browser::text(const std::string& id) {
   return run(fmt::format("return document.getElementById('{}').textContent", id));
 }
 
-void Browser::click(const std::string& id) {
-  run(fmt::format("document.getElementById('{}').click()", id));
-}
+void Browser::click(const std::string& id) { run(fmt::format("document.getElementById('{}').click()", id)); }
 
 void Browser::press(const std::string& key) {
-  run(fmt::format("document.body.dispatchEvent(new KeyboardEvent('keydown', {{key: '{}', bubbles: true}}))", key));
+  run(fmt::format("document.body.dispatchEvent(new KeyboardEvent('keydown', {{key: '{}', bubbles: true}}))",
+                  key));
 }
 
 bool Browser::wait_until(const std::string& expression, const std::function<void()>& meanwhile) {

@@ -30,7 +30,8 @@ class Browser {
   /// Presses a key of the page.
   void press(const std::string& key);
   /// Waits until a JavaScript expression is true, at most 20 s, and calls `meanwhile` again and again.
-  bool wait_until(const std::string& expression, const std::function<void()>& meanwhile = [] {});
+  bool wait_until(
+      const std::string& expression, const std::function<void()>& meanwhile = [] {});
   /// What the page has complained of: errors of scripts and of loading.
   std::string complaints();
   /// Writes a PNG.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subscribes to everything that the monitor subscribes to, and discards it, until it is interrupted: what listening
-// costs at least.
+// Subscribes to everything that the monitor subscribes to, and discards it, until it is interrupted: what
+// listening costs at least.
 #include <cstdio>
 #include <cstdlib>
 

@@ -136,9 +136,9 @@ WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", 
 
 }  // namespace
 
-ControlApi::ControlApi(Bus& bus, std::function<void(const std::string&)> bookmark)
+ControlApi::ControlApi(Bus& bus, ControlHooks hooks)
     : bus_(bus),
-      bookmark_(std::move(bookmark)),
+      hooks_(std::move(hooks)),
       client_(bus, static_cast<ClientId>(Sender::kOperator)),
       disturbances_(bus.advertise(topics::kDisturbance)) {}
 
@@ -167,15 +167,26 @@ WebResponse ControlApi::command(const WebRequest& request, std::span<const std::
   if (path.size() == 1 && path[0] == "bookmark") {
     const Json text = parse_body(request.body).value("text", Json(""));
     if (!text.is_string()) throw BodyError("text: expected a text");
-    bookmark_(text.get<std::string>());
+    hooks_.bookmark(text.get<std::string>());
     return json_response(200, Json::object());
   }
+  if (path.size() == 2 && path[0] == "recording" && (path[1] == "start" || path[1] == "stop"))
+    return record(path[1] == "start");
   if (path.size() == 3 && path[0] == "robots") {
     const auto robot = parse_number<RobotId>(path[1]);
     if (!robot || *robot >= kMaxRobots) return error_response(404, "there is no robot " + path[1]);
     return command_robot(*robot, path[2], request.body);
   }
   return error_response(404, "there is no " + request.path);
+}
+
+WebResponse ControlApi::record(bool begins) {
+  if (!hooks_.record) return error_response(409, "without a scenario file, nothing can be recorded");
+  try {
+    return json_response(200, {{"file", hooks_.record(begins)}});
+  } catch (const std::runtime_error& error) {
+    return error_response(500, error.what());
+  }
 }
 
 WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, const std::string& body) {

@@ -11,6 +11,14 @@
 
 namespace sidestep {
 
+/// What a ControlApi cannot do itself.
+struct ControlHooks {
+  std::function<void(const std::string& text)> bookmark;
+  /// Begins or ends a recording; returns the file that it begins, or "" if there is nothing to do. Throws
+  /// std::runtime_error when the file cannot be written. Empty: nothing can be recorded.
+  std::function<std::string(bool begins)> record;
+};
+
 /// Orders and faults by HTTP, in JSON:
 ///
 /// | request | body |
@@ -21,6 +29,7 @@ namespace sidestep {
 /// | POST /api/zones/1 | {"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1, "speed_limit_mps": 0.5} |
 /// | DELETE /api/zones/1 | none |
 /// | POST /api/robots/3/fault | {"kind": "push", "vx_mps": 1, "vy_mps": 0} and others, see below |
+/// | POST /api/recording/start, stop | none; answer {"file": …} |
 /// | POST /api/bookmark | {"text": "here"} |
 /// | GET /api/orders/17 | none; what has become of an order |
 ///
@@ -28,8 +37,7 @@ namespace sidestep {
 /// (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.
 class ControlApi {
  public:
-  /// `bookmark` is called with the text of each bookmark.
-  ControlApi(Bus& bus, std::function<void(const std::string&)> bookmark);
+  ControlApi(Bus& bus, ControlHooks hooks);
 
   /// nullopt: there is no such path. Requests that may not command are refused with status 401.
   std::optional<WebResponse> respond(const WebRequest& request);
@@ -38,11 +46,12 @@ class ControlApi {
   WebResponse command(const WebRequest& request, std::span<const std::string> path);
   WebResponse command_robot(RobotId robot, const std::string& what, const std::string& body);
   WebResponse command_zone(std::uint32_t number, const WebRequest& request);
+  WebResponse record(bool begins);
   WebResponse disturb(RobotId robot, const std::string& body);
   WebResponse order_state(OrderHandle handle) const;
 
   Bus& bus_;
-  std::function<void(const std::string&)> bookmark_;
+  ControlHooks hooks_;
   OrderClient client_;
   Writer<msg::Disturbance> disturbances_;
 };

@@ -51,7 +51,8 @@ std::optional<RobotPose> pose_of(const RobotView& robot, Time now) {
   return found;
 }
 
-Json cylinder(double x_m, double y_m, double radius_m, double height_m, double heading_rad, const Json& tint) {
+Json cylinder(double x_m, double y_m, double radius_m, double height_m, double heading_rad,
+              const Json& tint) {
   return {{"pose", pose(x_m, y_m, height_m / 2, heading_rad)},
           {"size", point(2 * radius_m, 2 * radius_m, height_m)},
           {"bottom_scale", 1},
@@ -97,7 +98,8 @@ Json scene_update(const FloorState& floor, double radius_m, Time now) {
                      {"color", colour(1, 1, 1, 1)},
                      {"text", std::to_string(id)}});
     if (const msg::Feedback* feedback = fresh(robot.feedback, now))
-      if (Json line = stop_line(feedback->executing(), now); !line.is_null()) lines.push_back(std::move(line));
+      if (Json line = stop_line(feedback->executing(), now); !line.is_null())
+        lines.push_back(std::move(line));
   }
   if (const msg::ObstacleList* list = fresh(floor.obstacles(), now))
     for (const msg::TrackedObstacle& o : list->obstacles())

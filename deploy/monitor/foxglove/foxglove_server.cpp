@@ -39,7 +39,9 @@ std::optional<std::uint32_t> id_in(const Json& json, const char* key) {
   return found->get<std::uint32_t>();
 }
 
-WebMessage text_message(const Json& json) { return {std::make_shared<const std::string>(json.dump()), false}; }
+WebMessage text_message(const Json& json) {
+  return {std::make_shared<const std::string>(json.dump()), false};
+}
 
 }  // namespace
 
@@ -51,7 +53,8 @@ const std::vector<std::string>& FoxgloveServer::protocols() {
 FoxgloveServer::FoxgloveServer() {
   for (const TopicInfo& topic : all_topics())
     if (topic.qos != Qos::kImage) channels_[topic.name] = static_cast<ChannelId>(channels_.size() + 1);
-  for (const char* topic : {kScene, kTransforms}) channels_[topic] = static_cast<ChannelId>(channels_.size() + 1);
+  for (const char* topic : {kScene, kTransforms})
+    channels_[topic] = static_cast<ChannelId>(channels_.size() + 1);
 }
 
 void FoxgloveServer::add(WebSocket& socket) {
@@ -105,7 +108,9 @@ bool FoxgloveServer::on_message(WebSocket& socket, const std::string& message) {
   if (!op.is_string()) return false;
   constexpr int kWarning = 1;
   socket.send_event(text_message(
-      {{"op", "status"}, {"level", kWarning}, {"message", "this server only publishes; not supported: " + op.get<std::string>().substr(0, 100)}}));
+      {{"op", "status"},
+       {"level", kWarning},
+       {"message", "this server only publishes; not supported: " + op.get<std::string>().substr(0, 100)}}));
   return true;
 }
 
@@ -127,7 +132,8 @@ void FoxgloveServer::send(ChannelId channel, std::uint32_t key, Time now, const 
       append(bytes, static_cast<std::uint64_t>(to_ns(now)));
       bytes += payload;
       constexpr std::uint32_t kKeys = 1u << 20;
-      socket->send_state(channel * kKeys + key % kKeys, {std::make_shared<const std::string>(std::move(bytes)), true});
+      socket->send_state(channel * kKeys + key % kKeys,
+                         {std::make_shared<const std::string>(std::move(bytes)), true});
     }
   }
 }

@@ -43,7 +43,7 @@ export class Controls {
     this.post(`/api/robots/${this.robot}/${what}`, body);
   }
 
-  /** @param {string} path @param {any} [body] */
+  /** Whether it was accepted. @param {string} path @param {any} [body] @returns {Promise<boolean>} */
   async post(path, body) {
     try {
       const response = await fetch(path, {method: "POST", headers: {Authorization: `Bearer ${this.token}`},
@@ -56,8 +56,10 @@ export class Controls {
         // Not JSON: shown as it is.
       }
       this.result.textContent = `${path}: ${response.ok ? "sent" : text}`;
+      return response.ok;
     } catch (error) {
       this.result.textContent = `${path}: ${error}`;
+      return false;
     }
   }
 }

@@ -7,7 +7,7 @@ import {create, element} from "./format.js";
 import {Frame, Layout} from "./frame.js";
 import {layers, shared} from "./layers.js";
 import {coordinatorPanel, eventPanel, onSeek, robotTable, Tabs, topicPanel, updateCoordinators, updateEvents, updateLamp,
-        updateRobots, updateTopics} from "./panels.js";
+        updateNetwork, updateRobots, updateTopics} from "./panels.js";
 import {Inspector} from "./plots.js";
 import {Timeline} from "./timeline.js";
 
@@ -36,6 +36,13 @@ tabs.add("coordinators", "Coordinators", coordinatorPanel);
 tabs.add("topics", "Topics", topicPanel);
 tabs.add("inspect", "Messages and plots", inspector.node);
 
+// Asked for only while it is looked at, because discovery costs the run something.
+setInterval(async () => {
+  if (tabs.shown !== "topics" || !monitor.scene || monitor.scene.is_recording || monitor.connection !== "connected") return;
+  const response = await fetch("/api/network").catch(() => null);
+  if (response && response.ok) updateNetwork(await response.json());
+}, 2000);
+
 /** @param {number} robot */
 function select(robot) {
   floor.selected = robot;
@@ -63,7 +70,7 @@ function useScene(scene) {
   element("live").textContent = scene.is_recording ? "End" : "Live";
   inspector.setChannels(scene.channels);
   if (scene.can_command && isFirst) tabs.add("control", "Control", controls.node);
-  element("bookmark").hidden = !scene.can_command;
+  element("bookmark").hidden = element("record").hidden = !scene.can_command;
   if (isFirst) floor.fit();
   if (inspector.channel.value) inspector.choose();
   const at_s = Number(link.get("t"));
@@ -140,6 +147,14 @@ element("lamp").addEventListener("click", () => {
 function bookmark() {
   if (monitor.scene.can_command) controls.post("/api/bookmark", {text: `at ${element("clock").textContent}`});
 }
+async function record() {
+  const button = element("record");
+  const begins = button.getAttribute("aria-pressed") !== "true";
+  const answer = await controls.post(`/api/recording/${begins ? "start" : "stop"}`);
+  if (!answer) return;
+  button.setAttribute("aria-pressed", String(begins));
+  button.textContent = begins ? "Stop recording" : "Record";
+}
 function copyLink() {
   const hash = new URLSearchParams(link);
   hash.set("t", timeline.shown_s.toFixed(3));
@@ -151,6 +166,7 @@ function changeTheme() {
   root.dataset.theme = root.dataset.theme === "light" ? "dark" : "light";
 }
 element("bookmark").addEventListener("click", bookmark);
+element("record").addEventListener("click", record);
 element("link").addEventListener("click", copyLink);
 element("theme").addEventListener("click", changeTheme);
 if (matchMedia("(prefers-color-scheme: light)").matches) changeTheme();

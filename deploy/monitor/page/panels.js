@@ -173,8 +173,10 @@ export function updateTopics(panels) {
               `${number(most(t.senders, "delay_p50_ms"), 2)} / ${number(most(t.senders, "delay_p99_ms"), 2)}`, who],
     };
   }));
-  const network = panels.network;
-  if (!network) return;
+}
+
+/** What DDS tells of processes and hosts. @param {{hosts: any[], mismatches: string[]}} network */
+export function updateNetwork(network) {
   mismatchList.replaceChildren(...network.mismatches.map((/** @type {string} */ m) => create("li", {class: "error"}, m)));
   hostList.textContent = network.hosts.map((/** @type {any} */ h) => `${h.host}: ${h.participants.join(", ")}`).join(" · ");
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -37,7 +38,7 @@ class Copier {
     if (attachments_.emplace(attachment.name, attachment.content).second) writer_.add_attachment(attachment);
   }
   void copy(const McapMetadata& metadata) {
-    if (metadata_.insert(metadata.name).second) writer_.add_metadata(metadata);
+    if (metadata_.insert({metadata.name, metadata.texts}).second) writer_.add_metadata(metadata);
   }
   void close() { writer_.close(); }
 
@@ -67,7 +68,7 @@ class Copier {
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
   std::map<std::uint16_t, McapChannel> channels_;
   std::set<std::pair<std::string, McapBytes>> attachments_;
-  std::set<std::string> metadata_;
+  std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;
 };
 
 /// A part of a recording, or one that was put together, does not hold every message of a run.
@@ -104,6 +105,20 @@ bool is_chosen(const std::set<std::string>& topics, const std::string& channel) 
 
 }  // namespace
 
+namespace {
+
+/// "12.345 s: bookmark: here".
+std::string event_line(const McapMetadata& event) {
+  const auto text = [&](const char* key) {
+    const auto found = event.texts.find(key);
+    return found == event.texts.end() ? std::string("?") : found->second;
+  };
+  const std::string at = text("at_ns");
+  return fmt::format("{:.3f} s: {}: {}", std::strtod(at.c_str(), nullptr) * 1e-9, text("kind"), text("text"));
+}
+
+}  // namespace
+
 BagInfo bag_info(const std::string& path) {
   McapReader reader(path);
   BagInfo info;
@@ -129,6 +144,10 @@ BagInfo bag_info(const std::string& path) {
       info.attachments.push_back(fmt::format("{} ({}), {} bytes", attachment->name, attachment->media_type,
                                              attachment->content.size()));
     } else if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
+      if (metadata->name == kEventMetadata) {
+        info.events.push_back(event_line(*metadata));
+        continue;
+      }
       for (const auto& [key, value] : metadata->texts) info.metadata[metadata->name + "." + key] = value;
     }
   }
@@ -143,6 +162,7 @@ std::string to_text(const BagInfo& info) {
                                  seconds(info.last_ns - info.first_ns), seconds(info.first_ns));
   for (const auto& [key, value] : info.metadata) text += fmt::format("{}: {}\n", key, value);
   for (const std::string& attachment : info.attachments) text += fmt::format("attachment: {}\n", attachment);
+  for (const std::string& event : info.events) text += fmt::format("event at {}\n", event);
   std::size_t topic_width = 5, type_width = 4;
   for (const auto& [topic, channel] : info.channels) {
     topic_width = std::max(topic_width, topic.size());

@@ -20,6 +20,7 @@ struct BagInfo {
   std::map<std::string, Channel> channels;  ///< by topic
   std::vector<std::string> attachments;     ///< "map.pgm (image/x-portable-graymap), 3,000 bytes"
   std::map<std::string, std::string> metadata;
+  std::vector<std::string> events;  ///< "12.345 s: bookmark: here"
   std::uint64_t file_bytes = 0, messages = 0;
   std::uint64_t first_ns = 0, last_ns = 0;  ///< times of the first and the last message
   std::string damage;                       ///< why the file ended early; empty: it did not

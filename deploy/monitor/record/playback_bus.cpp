@@ -2,6 +2,7 @@
 #include "deploy/monitor/record/playback_bus.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fmt/format.h>
 #include <stdexcept>
 #include <utility>
@@ -43,6 +44,7 @@ void PlaybackBus::read_header(const std::string& path) {
   for (;;) {
     next_ = reader_.next();
     if (const auto* metadata = std::get_if<McapMetadata>(&next_)) {
+      if (metadata->name == kEventMetadata) early_events_.push_back(*metadata);
       if (metadata->name != kRecordingMetadata) continue;
       is_ours = true;
       const auto text = [&](const char* key) {
@@ -78,11 +80,26 @@ Scenario PlaybackBus::scenario() const {
   return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml", header_.map.get());
 }
 
+void PlaybackBus::deliver_event(const McapMetadata& metadata) {
+  if (metadata.name != kEventMetadata || !on_event_) return;
+  const auto text = [&](const char* key) {
+    const auto found = metadata.texts.find(key);
+    return found == metadata.texts.end() ? std::string() : found->second;
+  };
+  const std::string at = text("at_ns");
+  std::int64_t at_ns = 0;
+  const auto end = std::from_chars(at.data(), at.data() + at.size(), at_ns);
+  if (end.ec == std::errc() && end.ptr == at.data() + at.size() && at_ns >= 0 && at_ns < kMaxTime_ns)
+    on_event_(time_from_ns(at_ns), text("kind"), text("text"));
+}
+
 bool PlaybackBus::play_next(PlaybackResult& result) {
+  for (const McapMetadata& event : std::exchange(early_events_, {})) deliver_event(event);
   while (!is_stopped_ && !std::holds_alternative<std::monostate>(next_)) {
     const auto* message = std::get_if<McapMessage>(&next_);
     const bool is_readable = message == nullptr || deliver(*message, result);
     const bool was_message = message != nullptr;
+    if (const auto* metadata = std::get_if<McapMetadata>(&next_)) deliver_event(*metadata);
     if (!is_readable) {
       is_stopped_ = true;
       return false;

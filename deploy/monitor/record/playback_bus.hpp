@@ -41,6 +41,10 @@ class PlaybackBus : public Bus {
   [[nodiscard]] bool play_next(PlaybackResult& result);
   /// The share of the file that has been read, 0 to 1.
   double progress() const { return reader_.progress(); }
+  /// Calls back for each event of the recording (RecordingWriter::add_event).
+  void on_event(std::function<void(Time, const std::string& kind, const std::string& text)> callback) {
+    on_event_ = std::move(callback);
+  }
   /// For callbacks: no further message is delivered.
   void stop() { is_stopped_ = true; }
 
@@ -53,6 +57,7 @@ class PlaybackBus : public Bus {
  private:
   /// Reads up to the first message.
   void read_header(const std::string& path);
+  void deliver_event(const McapMetadata& metadata);
   /// False: the message is damaged.
   bool deliver(const McapMessage& message, PlaybackResult& result);
   /// The row of the topic table that a channel belongs to; nullptr: none.
@@ -60,12 +65,14 @@ class PlaybackBus : public Bus {
 
   McapReader reader_;
   McapRecord next_;
+  std::vector<McapMetadata> early_events_;  ///< before the first message
   RecordingHeader header_;
   Time now_{};
   bool is_stopped_ = false;
   std::vector<TopicInfo> topics_ = all_topics();
   std::map<std::uint16_t, const TopicInfo*> topic_of_channel_;
   std::map<std::string, std::vector<std::function<void(const void*)>>> readers_;
+  std::function<void(Time, const std::string&, const std::string&)> on_event_;
 };
 
 }  // namespace sidestep

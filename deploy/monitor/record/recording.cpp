@@ -68,6 +68,11 @@ void RecordingWriter::add(Time received, const TopicInfo& topic, std::uint16_t c
   });
 }
 
+void RecordingWriter::add_event(Time at, const std::string& kind, const std::string& text) {
+  mcap_.add_metadata(
+      {kEventMetadata, {{"at_ns", std::to_string(to_ns(at))}, {"kind", kind}, {"text", text}}});
+}
+
 void RecordingWriter::add_report(Time now, const std::string& json) {
   McapAttachment report = attachment("report.json", "application/json", json);
   report.logged_ns = unsigned_ns(to_ns(now));

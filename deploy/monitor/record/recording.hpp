@@ -12,6 +12,7 @@ namespace sidestep {
 
 /// The metadata of our recordings.
 inline constexpr const char* kRecordingMetadata = "sidestep";
+inline constexpr const char* kEventMetadata = "sidestep event";
 // Their attachments.
 inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.yaml",
                             *kMapImageFile = "map.pgm";
@@ -39,6 +40,9 @@ class RecordingWriter {
   std::uint16_t add_channel(const TopicInfo& topic, const std::string& channel);
   void add(Time received, const TopicInfo& topic, std::uint16_t channel, const msg::Header& header,
            const void* message);
+  /// Something that happened and that no message tells, e.g. a bookmark: metadata of the name
+  /// kEventMetadata with the keys at_ns, kind and text.
+  void add_event(Time at, const std::string& kind, const std::string& text);
   /// Attaches the report of the run.
   void add_report(Time now, const std::string& json);
   /// Writes what has been added so far to the file.

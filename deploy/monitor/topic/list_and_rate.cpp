@@ -28,6 +28,15 @@ void print_rate(const char* label, const Rate& rate) {
   std::fflush(stdout);
 }
 
+void print_bandwidth(const char* label, const Rate& rate) {
+  if (rate.samples == 0)
+    fmt::print("{}nothing\n", label);
+  else
+    fmt::print("{}{} samples  {:.2f} kB/s  size min {} B  mean {:.0f} B  max {} B\n", label, rate.samples,
+               rate.bytes_per_second * 1e-3, rate.min_bytes, rate.mean_bytes, rate.max_bytes);
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int list_topics(const TopicOptions& options) {
@@ -51,7 +60,11 @@ int show_topic(const TopicOptions& options) {
   return 0;
 }
 
-int measure_rate(const TopicOptions& options) {
+namespace {
+
+/// Listens to a topic of any type, and prints by `print(label, rate)` every second and in total.
+template <typename Print>
+int measure(const TopicOptions& options, Print print) {
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
@@ -63,10 +76,15 @@ int measure_rate(const TopicOptions& options) {
   for (Time next = begin; !listener.stopped() && next < end;) {
     next = std::min(next + kSecond, end);
     listener.run_until(next);
-    print_rate("", meter.take_recent());
+    print("", meter.take_recent());
   }
-  print_rate("total: ", meter.total());
+  print("total: ", meter.total());
   return 0;
 }
+
+}  // namespace
+
+int measure_rate(const TopicOptions& options) { return measure(options, print_rate); }
+int measure_bandwidth(const TopicOptions& options) { return measure(options, print_bandwidth); }
 
 }  // namespace sidestep

@@ -7,6 +7,9 @@ namespace sidestep {
 
 void RateMeter::Span::add(Time received, std::size_t size) {
   ++samples;
+  all_bytes += size;
+  min_bytes = samples == 1 ? size : std::min(min_bytes, size);
+  max_bytes = std::max(max_bytes, size);
   if (has_last) {
     const Duration gap = received - last;
     min_gap = std::min(min_gap, gap);
@@ -23,6 +26,9 @@ void RateMeter::Span::add(Time received, std::size_t size) {
 Rate RateMeter::Span::rate() const {
   Rate result;
   result.samples = samples;
+  result.min_bytes = min_bytes;
+  result.max_bytes = max_bytes;
+  if (samples > 0) result.mean_bytes = static_cast<double>(all_bytes) / static_cast<double>(samples);
   if (gaps == 0) return result;
   result.min_gap = min_gap;
   result.max_gap = max_gap;

@@ -15,7 +15,9 @@ struct Rate {
   double rate_hz = 0;  ///< gaps per second from the first to the last sample; 0 for less than two
   std::optional<Duration> min_gap;  ///< none for less than two samples
   std::optional<Duration> max_gap;
-  double bytes_per_second = 0;  ///< payload of all samples but the first, per second
+  double bytes_per_second = 0;               ///< payload of all samples but the first, per second
+  std::size_t min_bytes = 0, max_bytes = 0;  ///< of one sample's payload
+  double mean_bytes = 0;
 };
 
 /// Rate, gaps and bandwidth of a stream of samples, since the start and since the last call.
@@ -39,6 +41,8 @@ class RateMeter {
     Duration min_gap = Duration::max();
     Duration max_gap{0};
     std::uint64_t bytes = 0;  ///< since `first`
+    std::uint64_t all_bytes = 0;
+    std::size_t min_bytes = 0, max_bytes = 0;
   };
 
   Span total_;

@@ -29,6 +29,12 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   hz.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   hz.on_parsed([options, &action] { action = [options] { return measure_rate(*options); }; });
 
+  const CliCommand bw = topic.add_subcommand(
+      "bw", "Measures the bandwidth of a topic of any type, and the sizes of its messages");
+  bw.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
+  bw.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
+  bw.on_parsed([options, &action] { action = [options] { return measure_bandwidth(*options); }; });
+
   const CliCommand info =
       topic.add_subcommand("info", "Shows a topic's type, and each of its writers and readers with its QoS");
   info.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
@@ -76,7 +82,19 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
     action = [options] { return echo_topic(*options); };
   });
 
-  for (const CliCommand& command : {list, info, hz, delay, echo}) add_dds_options(command, options->dds);
+  const CliCommand pub =
+      topic.add_subcommand("pub", "Publishes a message, given as JSON, to a topic of any type");
+  pub.add_option("TOPIC", options->topic, "topic name, e.g. order").required();
+  pub.add_option("MESSAGE", options->message, "JSON with the members of the type's IDL; those left out are 0")
+      .required();
+  pub.add_option("--count", options->printer.count, "number of messages [1]").check(positive());
+  pub.add_option("--rate", options->rate_hz, "messages per second").check(positive()).show_default();
+  pub.add_option("--idl", options->idl_file, "IDL file with the type of another program's topic");
+  pub.add_option("--type", options->type, "name of that type [as the topic's endpoints announce it]");
+  pub.on_parsed([options, &action] { action = [options] { return publish_topic(*options); }; });
+
+  for (const CliCommand& command : {list, info, hz, bw, delay, echo, pub})
+    add_dds_options(command, options->dds);
 }
 
 }  // namespace sidestep

@@ -66,7 +66,7 @@ std::string qos(const Group& group) {
 }
 
 /// One line per reason, with the pairs of endpoints that it keeps from communicating.
-std::string mismatches(const Group& group) {
+std::vector<std::string> mismatches(const Group& group) {
   std::map<std::string, std::set<std::string>> pairs;
   for (const DiscoveredEndpoint* writer : group) {
     for (const DiscoveredEndpoint* reader : group) {
@@ -76,10 +76,16 @@ std::string mismatches(const Group& group) {
       }
     }
   }
-  std::string result;
+  std::vector<std::string> result;
   for (const auto& [reason, endpoints] : pairs)
-    result += fmt::format("  MISMATCH {} ({})\n", reason, join(endpoints, ", "));
+    result.push_back(fmt::format("{} ({})", reason, join(endpoints, ", ")));
   return result;
+}
+
+std::string mismatch_text(const Group& group) {
+  std::string text;
+  for (const std::string& mismatch : mismatches(group)) text += "  MISMATCH " + mismatch + "\n";
+  return text;
 }
 
 }  // namespace
@@ -91,7 +97,7 @@ std::string topic_table(const std::vector<DiscoveredEndpoint>& endpoints) {
   std::vector<std::string> notes{""};
   for (const auto& [topic, group] : by_topic(endpoints)) {
     rows.push_back({topic, types(group), names(group, true), names(group, false), qos(group)});
-    notes.push_back(mismatches(group));
+    notes.push_back(mismatch_text(group));
   }
   std::array<std::size_t, 4> widths{};
   for (const Row& row : rows) {
@@ -117,13 +123,20 @@ std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints, cons
       if (endpoint->is_writer == is_writer)
         result += fmt::format("{} {}: {}\n", is_writer ? "writer" : "reader", name_of(*endpoint),
                               qos_in_words(*endpoint));
-  result += mismatches(group);
+  result += mismatch_text(group);
   try {
     result += '\n' + message_schema(group.front()->type);
   } catch (const std::invalid_argument&) {
     // Another program's type, of which DDS tells the name only.
   }
   return result;
+}
+
+std::vector<std::string> mismatch_lines(const std::vector<DiscoveredEndpoint>& endpoints) {
+  std::vector<std::string> lines;
+  for (const auto& [topic, group] : by_topic(endpoints))
+    for (const std::string& mismatch : mismatches(group)) lines.push_back(topic + ": " + mismatch);
+  return lines;
 }
 
 std::string topic_names(const std::vector<DiscoveredEndpoint>& endpoints) {

@@ -17,6 +17,9 @@ namespace sidestep {
 [[nodiscard]] std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints,
                                         const std::string& topic);
 
+/// Why writers and readers of one topic do not match: "feedback/3: reason (writer -> reader, …)".
+[[nodiscard]] std::vector<std::string> mismatch_lines(const std::vector<DiscoveredEndpoint>& endpoints);
+
 /// The topic names, separated by spaces.
 [[nodiscard]] std::string topic_names(const std::vector<DiscoveredEndpoint>& endpoints);
 

@@ -17,6 +17,8 @@ struct TopicOptions {
   std::string recording_file;  ///< empty: a running system
   std::string idl_file;        ///< has the topic's type, which need not be one of ours; empty: it is
   std::string type;            ///< its name; empty: as the topic's writer announces it
+  std::string message;         ///< JSON to publish
+  double rate_hz = 1;          ///< of several messages to publish
 };
 
 /// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit
@@ -25,7 +27,9 @@ struct TopicOptions {
 int list_topics(const TopicOptions& options);
 int show_topic(const TopicOptions& options);
 int measure_rate(const TopicOptions& options);
+int measure_bandwidth(const TopicOptions& options);
 int measure_delay(const TopicOptions& options);
 int echo_topic(const TopicOptions& options);
+int publish_topic(const TopicOptions& options);
 
 }  // namespace sidestep

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/messaging/topics.hpp"
@@ -39,6 +40,7 @@ const Value* fresh(const std::optional<Received<Value>>& received, Time now) {
 struct AnyMessage {
   const TopicInfo& topic;
   std::uint32_t channel;  ///< of the topics of robots, each robot has another one
+  const std::string& channel_name;
   const msg::Header& header;
   const void* message;
 };

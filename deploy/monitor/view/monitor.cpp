@@ -86,8 +86,7 @@ void Monitor::follow_robot(RobotId robot) {
 
 template <typename Message>
 void Monitor::subscribe(const Topic<Message>& topic, RobotId robot) {
-  const Channel channel{topic, channel_name(topic, robot),
-                        static_cast<std::uint32_t>(channels_.size())};
+  const Channel channel{topic, channel_name(topic, robot), static_cast<std::uint32_t>(channels_.size())};
   channels_.insert(channel.name);
   bus_.subscribe<Message>(topic, robot,
                           [this, channel](const Message& message) { receive(channel, message); });
@@ -106,7 +105,8 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   if constexpr (requires { event_watch_.on(message, now); }) event_watch_.on(message, now);
   if constexpr (requires { judges_->on(message, now); })
     if (judges_) judges_->on(message, now);
-  if (on_any_message_) on_any_message_({channel.topic, channel.number, message.header(), &message});
+  if (on_any_message_)
+    on_any_message_({channel.topic, channel.number, channel.name, message.header(), &message});
   if (!settings_.scenario) follow(message);
   if (inspections_.empty()) return;
   const auto inspection = inspections_.find(channel.name);
@@ -126,6 +126,7 @@ Json Monitor::panels() {
   json["epochs"] = epochs_json(judges_.get());
   json["zones"] = zones_json(floor_);
   json["topics"] = traffic_.take(now);
+  json["history_bytes"] = history_.bytes();
   return json;
 }
 

@@ -18,7 +18,14 @@ struct ControlledRun {
   SimSystem system{scenario, 1};
   SimBus bus{system.network()};
   std::string bookmarks;
-  ControlApi api{bus, [this](const std::string& text) { bookmarks += text; }};
+  std::string recordings;
+  ControlApi api{bus,
+                 {[this](const std::string& text) { bookmarks += text; },
+                  [this](bool begins) {
+                    if (recordings == "full") throw std::runtime_error("the disk is full");
+                    recordings += begins ? "begin " : "end ";
+                    return std::string(begins ? "a.mcap" : "");
+                  }}};
   msg::GroundTruth truth;
 
   ControlledRun() {
@@ -80,6 +87,11 @@ TEST_CASE("zones are set and removed, and faults caused, by HTTP") {
   CHECK(run.x_m(1) > 2.02);
   CHECK(run.request("POST", "/api/bookmark", R"({"text": "here"})").status == 200);
   CHECK(run.bookmarks == "here");
+  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("file") == "a.mcap");
+  CHECK(run.request("POST", "/api/recording/stop").status == 200);
+  CHECK(run.recordings == "begin end ");
+  run.recordings = "full";
+  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
 }
 
 TEST_CASE("requests without the right to command have no effect") {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/monitor/foxglove/foxglove_server.hpp"
-
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +9,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "deploy/monitor/foxglove/foxglove_server.hpp"
 #include "deploy/monitor/view/monitor.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -78,7 +77,8 @@ TEST_CASE("the client that Lichtblick uses decodes the messages of a run by the 
   REQUIRE(status == 0);
   const Json arrived = Json::parse(output("out"));
   CHECK(arrived.size() == all_topics().size() - 1 + 2);  // no images, but scene and transforms
-  for (const char* topic : {"world", "truth", "feedback", "command", "proposal", "verdict", "ledger", "coordinator", "status"}) {
+  for (const char* topic :
+       {"world", "truth", "feedback", "command", "proposal", "verdict", "ledger", "coordinator", "status"}) {
     INFO(topic);
     CHECK(arrived.at(topic).at("messages") > 10);
   }
@@ -106,19 +106,22 @@ TEST_CASE("a client gets messages of the channels that it subscribes to only") {
   std::uint32_t feedback = 0;
   for (const Json& channel : client.texts[1].at("channels"))
     if (channel.at("topic") == "feedback") feedback = channel.at("id");
-  const auto subscribe = Json{{"op", "subscribe"}, {"subscriptions", {{{"id", 9}, {"channelId", feedback}}}}}.dump();
+  const auto subscribe =
+      Json{{"op", "subscribe"}, {"subscriptions", {{{"id", 9}, {"channelId", feedback}}}}}.dump();
   msg::Feedback message;
   const auto publish = [&] {
-    server.publish({topics::kFeedback, 1, message.header(), &message}, time_from_ns(0x0102030405060708));
+    server.publish({topics::kFeedback, 1, "feedback/0", message.header(), &message},
+                   time_from_ns(0x0102030405060708));
     const msg::GroundTruth truth;
-    server.publish({topics::kTruth, 2, truth.header(), &truth}, {});
+    server.publish({topics::kTruth, 2, "truth", truth.header(), &truth}, {});
   };
   publish();
   CHECK(client.received.empty());
   CHECK(server.on_message(client, subscribe));
   publish();
   REQUIRE(client.received.size() == 1);
-  CHECK(client.received[0].substr(0, 17) == std::string("\x01\x09\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01\0\x01\0\0", 17));
+  CHECK(client.received[0].substr(0, 17) ==
+        std::string("\x01\x09\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01\0\x01\0\0", 17));
   CHECK(server.on_message(client, R"({"op":"unsubscribe","subscriptionIds":[9]})"));
   publish();
   CHECK(client.received.size() == 1);
@@ -131,10 +134,12 @@ TEST_CASE("messages of clients that make no sense are told apart, and writing is
   FakeClient client;
   server.add(client);
   for (const char* bad :
-       {"", "x", "[]", "{}", R"({"op":1})", R"({"op":"subscribe"})", R"({"op":"subscribe","subscriptions":[1]})",
-        R"({"op":"subscribe","subscriptions":[{"id":1}]})", R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})",
+       {"", "x", "[]", "{}", R"({"op":1})", R"({"op":"subscribe"})",
+        R"({"op":"subscribe","subscriptions":[1]})", R"({"op":"subscribe","subscriptions":[{"id":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})",
         R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":9999}]})",
-        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})", R"({"op":"unsubscribe","subscriptionIds":3})"})
+        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})",
+        R"({"op":"unsubscribe","subscriptionIds":3})"})
     CHECK_FALSE(server.on_message(client, bad));
   CHECK(server.on_message(client, R"({"op":"advertise","channels":[]})"));
   CHECK(client.texts.back().at("op") == "status");

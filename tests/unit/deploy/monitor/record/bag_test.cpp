@@ -32,6 +32,8 @@ void record(const std::string& file, int from_ms, int to_ms, const std::string& 
     }
     writer.add(now, topics::kTruth, truths, truth.header(), &truth);
   }
+  writer.add_event(time_from_ns(0), "bookmark", "a");
+  writer.add_event(time_from_ns(0), "bookmark", "b");
   writer.add_report(time_from_ns(0), "{}");
   writer.close();
 }
@@ -64,6 +66,7 @@ TEST_CASE("bag info lists topics, attachments and metadata") {
   const std::string text = to_text(info);
   CHECK_THAT(text, ContainsSubstring("303 messages, 1.000 s from 1.000 s") &&
                        ContainsSubstring("sidestep.complete: true") &&
+                       ContainsSubstring("event at 0.000 s: bookmark: a\nevent at 0.000 s: bookmark: b\n") &&
                        ContainsSubstring("attachment: report.json (application/json), 2 bytes"));
   CHECK_THAT(text, Catch::Matchers::Matches("[^]*feedback/1 +sidestep::msg::Feedback +101 +100\\.0 [^]*"));
 }
@@ -78,6 +81,7 @@ TEST_CASE("bag cut keeps the messages of an interval and of topics, and is not c
   CHECK_FALSE(PlaybackBus(folder.file("b.mcap")).header().is_complete);
   CHECK(PlaybackBus(folder.file("b.mcap")).header().scenario_text == kScenario);
   CHECK(bag_info(folder.file("b.mcap")).attachments.size() == 2);
+  CHECK(bag_info(folder.file("b.mcap")).events.size() == 2);
 
   CHECK(cut_bag(folder.file("a.mcap"), {0, INFINITY, {"feedback/1"}}, folder.file("c.mcap")) == "");
   CHECK(bag_info(folder.file("c.mcap")).channels.size() == 1);

@@ -199,4 +199,25 @@ TEST_CASE("a file that is not a recording is refused with its name") {
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), ContainsSubstring("cannot be written"));
 }
 
+TEST_CASE("events that no message tells are recorded, and played back in order") {
+  const TemporaryFolder folder;
+  {
+    RecordingWriter writer(folder.file("a.mcap"), {"one", "robots: []\n", nullptr, true});
+    writer.add_event(time_from_ns(5'000'000'000), "bookmark", "here: \"äö\"");
+    const msg::GroundTruth truth;
+    writer.add(time_from_ns(6'000'000'000), topics::kTruth, writer.add_channel(topics::kTruth, "truth"),
+               truth.header(), &truth);
+    writer.add_event(time_from_ns(7'000'000'000), "death", "agent 3 died");
+    writer.close();
+  }
+  PlaybackBus bus(folder.file("a.mcap"));
+  std::string events;
+  bus.on_event([&](Time at, const std::string& kind, const std::string& text) {
+    events += std::to_string(to_ns(at) / 1'000'000'000) + " " + kind + " " + text + ";";
+  });
+  bus.observe<msg::GroundTruth>(topics::kTruth, 0, [&](const msg::GroundTruth&) { events += "truth;"; });
+  CHECK(bus.play().damage.empty());
+  CHECK(events == "5 bookmark here: \"äö\";truth;7 death agent 3 died;");
+}
+
 }  // namespace sidestep::recording_test

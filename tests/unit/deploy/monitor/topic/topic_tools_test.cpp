@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/monitor/senders/sender_meter.hpp"
+#include "deploy/monitor/topic/graph.hpp"
 #include "deploy/monitor/topic/rate_meter.hpp"
 #include "deploy/monitor/topic/topic_command.hpp"
 #include "deploy/monitor/topic/topic_table.hpp"
@@ -172,6 +174,39 @@ TEST_CASE("the table shows a mismatch with the affected endpoints") {
                         "(vision -> logger)"));
 }
 
+TEST_CASE("the graph shows processes by host, what they write and read, and mismatches") {
+  DiscoveredEndpoint writer, reader, other;
+  writer.guid = "01.0f.aa.01.17.00";
+  writer.participant = "agent-3 <&>";
+  writer.topic = "command/3";
+  writer.is_writer = true;
+  reader = writer;
+  reader.participant = "simulator";
+  reader.is_writer = false;
+  reader.is_reliable = true;
+  other = reader;
+  other.guid = "01.0f.bb.02.17.00";
+  other.participant = "vision";
+  other.topic = "world";
+  other.is_writer = true;
+  const ProcessGraph graph = graph_of({writer, reader, other});
+  REQUIRE(graph.processes.size() == 3);
+  CHECK(graph.processes[0].host == "01.0f.aa.01");
+  CHECK(graph.processes[0].writes == std::set<std::string>{"command/*"});
+  CHECK(graph.processes[1].reads == std::set<std::string>{"command/*"});
+  CHECK(graph.processes[2].host == "01.0f.bb.02");
+  CHECK(graph.topics == std::vector<std::string>{"command/*", "world"});
+  REQUIRE(graph.mismatches.size() == 1);
+  CHECK_THAT(graph.mismatches[0], StartsWith("command/3: ") && EndsWith("(agent-3 <&> -> simulator)"));
+  CHECK_THAT(to_text(graph),
+             ContainsSubstring("host 01.0f.bb.02\n  vision\n    writes world\n    reads  -\n"));
+  const std::string svg = to_svg(graph);
+  CHECK_THAT(svg, ContainsSubstring("agent-3 &lt;&amp;&gt;"));
+  std::size_t lines = 0;
+  for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at + 1)) ++lines;
+  CHECK(lines == 3);
+}
+
 TEST_CASE("topic info shows the type, every endpoint with its QoS, and mismatches") {
   DiscoveredEndpoint reader = endpoint("logger", false, true);
   reader.deadline = Duration{500'000'000};
@@ -284,6 +319,51 @@ TEST_CASE("topic echo prints topics of other programs by the IDL that the user n
   CHECK_THROWS_WITH(topic({"echo", "world", "--idl", folder.file("world.idl"), "--type", "Nothing"}),
                     ContainsSubstring("has no struct 'Nothing', expected one of: ") &&
                         ContainsSubstring("sidestep::msg::WorldState"));
+}
+
+TEST_CASE("topic pub publishes messages of our topics") {
+  DdsBus bus(test_settings());
+  std::vector<msg::Disturbance> received;
+  bus.observe<msg::Disturbance>(topics::kDisturbance, 0,
+                                [&](const msg::Disturbance& m) { received.push_back(m); });
+  std::atomic<bool> is_over = false;
+  Outcome outcome{};
+  std::thread thread([&] {
+    outcome =
+        topic({"pub", "disturbance", R"({"robot": 3, "disturbance_kind": "DISTURBANCE_SLIP", "grip": 0.25})",
+               "--count", "2", "--rate", "20"});
+    is_over = true;
+  });
+  CHECK(run_until([&] { return is_over.load(); }, bus));
+  thread.join();
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out == "sent to 1 reader(s)\n");
+  REQUIRE(received.size() == 2);
+  CHECK(received[0].robot() == 3);
+  CHECK(received[0].disturbance_kind() == msg::DisturbanceKind::DISTURBANCE_SLIP);
+  CHECK(received[0].grip() == 0.25);
+}
+
+TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it") {
+  CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("no valid JSON"));
+  CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
+                    ContainsSubstring("robot: expected a whole number"));
+  CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("name its type by --type"));
+  const Outcome outcome = topic({"pub", "disturbance", "{}"});
+  CHECK(outcome.exit_code == kExitFailure);
+  CHECK(outcome.err == "topic 'disturbance' has no reader that matches\n");
+}
+
+TEST_CASE("topic bw measures bandwidth and sizes") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"bw", "world", "--seconds", "1"});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(
+      outcome.out,
+      Matches(
+          "[^]*total: [0-9]+ samples  [0-9.]+ kB/s  size min ([0-9]+) B  mean ([0-9]+) B  max [0-9]+ B\n"));
 }
 
 TEST_CASE("topic echo of an unknown topic lists the known ones") {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/raw_publisher.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "common/messaging/dds/participant.hpp"
+#include "common/messaging/dds/types.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace fast_dds::dds;
+
+/// The key of the message that is written next comes from outside, because nobody here knows the type.
+class KeyedRawType : public RawType {
+ public:
+  using RawType::RawType;
+
+  bool key(const void*, fast_dds::rtps::InstanceHandle_t& handle) override {
+    std::copy(next_key.begin(), next_key.end(), &handle.value[0]);
+    return true;
+  }
+
+  CdrKey next_key{};
+};
+
+DataWriterQos generous_qos() {
+  DataWriterQos qos = dds_writer_qos(Qos::kEvent);
+  qos.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
+  return qos;
+}
+
+}  // namespace
+
+struct DdsRawPublisher::Impl {
+  Impl(const DdsSettings& settings, const std::string& topic, const std::string& name, bool is_keyed)
+      : participant(settings, nullptr),
+        type(new KeyedRawType(name, is_keyed)),
+        support(type),
+        writer(participant.create_writer(topic, support, generous_qos(), nullptr)) {}
+  ~Impl() { participant.delete_writer(writer); }
+
+  DdsParticipant participant;
+  KeyedRawType* type;  ///< of `support`
+  TypeSupport support;
+  DataWriter* writer;
+};
+
+DdsRawPublisher::DdsRawPublisher(const DdsSettings& settings, const std::string& topic,
+                                 const std::string& type, bool is_keyed)
+    : impl_(std::make_unique<Impl>(settings, topic, type, is_keyed)) {}
+
+DdsRawPublisher::~DdsRawPublisher() = default;
+
+void DdsRawPublisher::write(std::span<const std::uint8_t> bytes, const CdrKey& key) {
+  std::vector<std::uint8_t> sample(bytes.begin(), bytes.end());
+  impl_->type->next_key = key;
+  if (!fast_dds::write(*impl_->writer, &sample)) throw std::runtime_error("DDS failed to send the message");
+}
+
+int DdsRawPublisher::readers() const {
+  PublicationMatchedStatus status;
+  impl_->writer->get_publication_matched_status(status);
+  return status.current_count;
+}
+
+bool DdsRawPublisher::wait_until_acknowledged(Duration timeout) {
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(timeout);
+  const fast_dds::Duration_t wait(static_cast<std::int32_t>(whole_s.count()),
+                                  static_cast<std::uint32_t>((timeout - whole_s).count()));
+  return fast_dds::is_ok(impl_->writer->wait_for_acknowledgments(wait));
+}
+
+}  // namespace sidestep

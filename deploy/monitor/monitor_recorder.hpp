@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/config/scenario.hpp"
+#include "deploy/monitor/record/recording.hpp"
+#include "deploy/monitor/view/floor_state.hpp"
+
+namespace sidestep {
+
+/// Records what the monitor receives, from any moment to any other.
+class MonitorRecorder {
+ public:
+  /// The scenario must outlive this object.
+  MonitorRecorder(const Scenario& scenario, const std::string& scenario_file)
+      : scenario_(scenario), scenario_file_(scenario_file) {}
+
+  bool is_recording() const { return writer_.has_value(); }
+  /// Precondition: it does not record. Throws std::runtime_error when the file cannot be written.
+  void start(const std::string& path);
+  /// Throws std::runtime_error when a write has failed.
+  void stop();
+  void add(const AnyMessage& message, Time now);
+  void add_event(Time at, const std::string& kind, const std::string& text);
+  /// Writes what has been added so far to the file.
+  void flush();
+
+ private:
+  const Scenario& scenario_;
+  std::string scenario_file_;
+  std::optional<RecordingWriter> writer_;
+  std::map<std::uint32_t, std::uint16_t> channels_;  ///< of the file, by AnyMessage::channel
+};
+
+}  // namespace sidestep
