@@ -23,6 +23,7 @@
 #include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/monitor/server/web_server.hpp"
 #include "deploy/monitor/view/monitor.hpp"
+#include "deploy/monitor/view/recorded_messages.hpp"
 
 namespace sidestep {
 namespace {
@@ -194,6 +195,10 @@ int monitor_recording(const MonitorOptions& options) {
   settings.scenario = &scenario;
   settings.is_recording = true;
   settings.audit.is_complete = bus.header().is_complete;
+  RecordedMessages recorded(options.file, bus);
+  settings.recorded_messages = [&recorded](const std::string& channel, Time from, Time to) {
+    return recorded.between(channel, from, to);
+  };
   Monitor monitor(bus, settings);
   MonitorServer server(options, monitor, nullptr, nullptr, nullptr);
   bus.on_event([&monitor](Time at, const std::string& kind, const std::string& text) {

@@ -277,7 +277,35 @@ TEST_CASE("the page shows a recording, and a moment by its link") {
   CHECK(page.wait_until(
       fmt::format("window.monitor && monitor.frame && Math.abs(monitor.frame.time - {:.3f}) < 0.05",
                   at_s.get<double>())));
+  // Messages of the moment that is shown.
+  page.click("tab-inspect");
+  page.run(
+      "const c = document.getElementById('inspected'); c.value = 'feedback/0'; c.dispatchEvent(new "
+      "Event('change'))");
+  const std::string message = "JSON.parse(document.getElementById('inspected-message').textContent || '{}')";
+  CHECK(page.wait_until(
+      fmt::format("Math.abs({}.header?.stamp_ns * 1e-9 - {:.3f}) < 0.1", message, at_s.get<double>())));
+  page.click("step-back");
+  page.run(
+      "document.getElementById('time').value = 1.5; document.getElementById('time').dispatchEvent(new "
+      "Event('input'))");
+  CHECK(
+      page.wait_until(fmt::format("Math.abs({}.header?.stamp_ns * 1e-9 - monitor.frame.time) < 0.1 && "
+                                  "monitor.frame.time < {:.3f}",
+                                  message, at_s.get<double>())));
   CHECK(page.complaints() == "");
+
+  // The floor is drawn also when nothing moves, and after it was resized and moved.
+  const std::string drawn =
+      "(() => { const c = document.getElementById('floor'); return c.getContext('2d').getImageData(0, 0, "
+      "c.width, "
+      "c.height).data.some((v) => v > 0); })()";
+  CHECK(page.wait_until(drawn));
+  page.run("document.getElementById('side').hidden = true");
+  CHECK(page.wait_until("document.getElementById('floor').clientWidth > 1000 && " + drawn));
+  page.run("document.getElementById('floor').dispatchEvent(new WheelEvent('wheel', {deltaY: 50}))");
+  CHECK(page.wait_until(drawn));
+  page.run("document.getElementById('side').hidden = false");
   recording.end();
 }
 

@@ -11,6 +11,7 @@ export class Floor {
     this.centre = {x: 0, y: 0};
     this.scale = 0;  // CSS pixels per metre; 0: not known yet
     this.isFitted = true;
+    this.isStale = true;  // what is shown is not what there is
     /** @type {any} */
     this.scene = null;
     /** @type {any} */
@@ -33,6 +34,7 @@ export class Floor {
     this.canvas.width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     this.canvas.height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     this.ratio = ratio;
+    this.isStale = true;
     if (this.isFitted) this.fit();
   }
 
@@ -46,7 +48,7 @@ export class Floor {
       this.centre = {x: (min[0] + max[0]) / 2, y: (min[1] + max[1]) / 2};
     }
     this.scale = Math.min(this.canvas.clientWidth / (length_m + 1), this.canvas.clientHeight / (width_m + 1));
-    this.isFitted = true;
+    this.isFitted = this.isStale = true;
   }
 
   /** @param {{offsetX: number, offsetY: number}} e */
@@ -64,6 +66,7 @@ export class Floor {
     this.centre.x += before.x - after.x;
     this.centre.y += before.y - after.y;
     this.isFitted = false;
+    this.isStale = true;
   }
 
   /** The robot at a place, or -1. @param {{x: number, y: number}} p */
@@ -92,6 +95,7 @@ export class Floor {
     if (!this.drag) return;
     if (Math.hypot(e.offsetX - this.drag.offsetX, e.offsetY - this.drag.offsetY) > 4) this.drag.has_moved = true;
     this.drag.at = this.toMetres(e);
+    this.isStale = true;
     if (this.drag.robot >= 0 || !this.drag.has_moved) return;
     this.centre.x += this.drag.from.x - this.drag.at.x;
     this.centre.y += this.drag.from.y - this.drag.at.y;
@@ -103,6 +107,7 @@ export class Floor {
   release(e) {
     const drag = this.drag;
     this.drag = null;
+    this.isStale = true;
     if (!drag) return;
     if (!drag.has_moved) return this.onSelect(drag.robot);
     const at = this.toMetres(e);
@@ -110,6 +115,7 @@ export class Floor {
   }
 
   draw() {
+    this.isStale = false;
     if (!this.frame || !this.scene || !this.scale) return;
     const c = this.context;
     c.setTransform(1, 0, 0, 1, 0, 0);

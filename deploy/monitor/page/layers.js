@@ -34,6 +34,12 @@ function addPolygon(path, corners) {
   path.closePath();
 }
 
+let mapLoaded = () => {};
+/** Calls back when the map can be drawn. @param {() => void} callback */
+export function onMapLoaded(callback) {
+  mapLoaded = callback;
+}
+
 /** @type {Map<any, HTMLCanvasElement>} */
 const maps = new Map();
 
@@ -55,6 +61,7 @@ function pictureOf(map) {
         if (bits[row * stride + (column >> 3)] & (1 << (column & 7)))
           image.data.set([139, 150, 161, 255], 4 * ((map.rows - 1 - row) * map.columns + column));
     c.putImageData(image, 0, 0);
+    mapLoaded();
   });
   return canvas;
 }

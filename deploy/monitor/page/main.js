@@ -5,7 +5,7 @@ import {Controls} from "./controls.js";
 import {Floor} from "./floor.js";
 import {create, element} from "./format.js";
 import {Frame, Layout} from "./frame.js";
-import {layers, shared} from "./layers.js";
+import {layers, onMapLoaded, shared} from "./layers.js";
 import {coordinatorPanel, eventPanel, onSeek, robotTable, Tabs, topicPanel, updateCoordinators, updateEvents, updateLamp,
         updateNetwork, updateRobots, updateTopics} from "./panels.js";
 import {Inspector} from "./plots.js";
@@ -28,7 +28,6 @@ const controls = new Controls(token);
 const tabs = new Tabs();
 /** @type {Layout | null} */
 let layout = null;
-let isNew = false;
 
 tabs.add("robots", "Robots", robotTable.node);
 tabs.add("events", "Events", eventPanel);
@@ -47,7 +46,7 @@ setInterval(async () => {
 function select(robot) {
   floor.selected = robot;
   controls.select(robot);
-  isNew = true;
+  floor.isStale = true;
   if (monitor.panels) updateRobots(monitor.panels, monitor.scene, robot);
 }
 floor.onSelect = select;
@@ -57,6 +56,7 @@ floor.onDrag = (robot, x, y) => {
   controls.post(`/api/robots/${robot}/order`, {goals: [[x, y]]});
 };
 robotTable.onClick = select;
+onMapLoaded(() => (floor.isStale = true));
 onSeek((at_s) => timeline.seek(at_s));
 
 /** @param {any} scene */
@@ -118,7 +118,7 @@ const connection = new Connection(
       if (!layout) return;
       monitor.frame = floor.frame = new Frame(buffer, layout);
       ++monitor.frames;
-      isNew = true;
+      floor.isStale = true;
     },
     (state) => {
       monitor.connection = state;
@@ -128,8 +128,7 @@ const connection = new Connection(
 
 function draw() {
   requestAnimationFrame(draw);
-  if (!floor.frame || (!isNew && !floor.drag)) return;
-  isNew = false;
+  if (!floor.frame || !floor.isStale) return;
   const begin = performance.now();
   floor.draw();
   timeline.show(floor.frame.time);
@@ -192,7 +191,7 @@ for (const layer of layers) {
   box.checked = layer.on;
   const set = (/** @type {boolean} */ on) => {
     layer.on = box.checked = on;
-    isNew = true;
+    floor.isStale = true;
   };
   box.addEventListener("change", () => set(box.checked));
   element("layers").append(create("label", {}, box, ` ${layer.name} `, create("kbd", {}, layer.key.toUpperCase())));

@@ -2,15 +2,18 @@
 // The tables beside the floor.
 import {create, element, number, percent, timeOfDay} from "./format.js";
 
-/** @typedef {{title: string, text?: boolean}} Column */
+/** @typedef {{title: string, text?: boolean, wraps?: boolean}} Column */
 /** @typedef {{text: string, level?: string}} Cell */
+
+/** @param {Column} column */
+const classOf = (column) => (column.wraps ? "text wraps" : column.text ? "text" : "");
 
 /** A table whose cells are changed in place. */
 export class Table {
   /** @param {Column[]} columns @param {string} label */
   constructor(columns, label) {
     this.columns = columns;
-    const head = create("tr", {}, ...columns.map((c) => create("th", {scope: "col", class: c.text ? "text" : ""}, c.title)));
+    const head = create("tr", {}, ...columns.map((c) => create("th", {scope: "col", class: classOf(c)}, c.title)));
     this.body = create("tbody");
     this.node = create("table", {"aria-label": label}, create("thead", {}, head), this.body);
     /** @type {(key: any) => void} */
@@ -24,7 +27,7 @@ export class Table {
       const row = this.body.insertRow();
       row.className = "clickable";
       row.addEventListener("click", () => this.onClick(row.key));
-      for (const column of this.columns) row.insertCell().className = column.text ? "text" : "";
+      for (const column of this.columns) row.insertCell().className = classOf(column);
     }
     rows.forEach((row, i) => {
       const node = this.body.rows[i];
@@ -36,7 +39,7 @@ export class Table {
         const level = typeof cell === "string" ? "" : cell.level || "";
         const td = node.cells[k];
         if (td.textContent !== text) td.textContent = text;
-        const name = `${this.columns[k].text ? "text" : ""} ${level}`.trim();
+        const name = `${classOf(this.columns[k])} ${level}`.trim();
         if (td.className !== name) td.className = name;
       });
     });
@@ -118,10 +121,10 @@ export function updateRobots(panels, scene, selected) {
 
 const coordinatorTable = new Table(
     [{title: "Coordinator", text: true}, {title: "Mode", text: true}, {title: "Epoch"}, {title: "Heard s ago"},
-     {title: "Granted"}, {title: "Denied"}, {title: "Conflicts"}, {title: "Not registered", text: true}],
+     {title: "Granted"}, {title: "Denied"}, {title: "Conflicts"}, {title: "Not registered", wraps: true}],
     "Coordinators");
 const epochTable = new Table(
-    [{title: "Epoch"}, {title: "Begun", text: true}, {title: "By", text: true}, {title: "Why", text: true}], "Epochs");
+    [{title: "Epoch"}, {title: "Begun", text: true}, {title: "By", text: true}, {title: "Why", wraps: true}], "Epochs");
 export const coordinatorPanel = create("div", {}, coordinatorTable.node, create("h2", {}, "Epochs"), epochTable.node);
 
 /** @param {any} panels */
@@ -181,7 +184,7 @@ export function updateNetwork(network) {
   hostList.textContent = network.hosts.map((/** @type {any} */ h) => `${h.host}: ${h.participants.join(", ")}`).join(" · ");
 }
 
-const eventTable = new Table([{title: "Time", text: true}, {title: "What", text: true}, {title: "", text: true}], "Events");
+const eventTable = new Table([{title: "Time", text: true}, {title: "What", text: true}, {title: "", wraps: true}], "Events");
 export const eventPanel = eventTable.node;
 const kShownEvents = 300;
 eventTable.onClick = (at) => seekTo(at);

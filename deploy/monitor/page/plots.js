@@ -120,9 +120,10 @@ export class Inspector {
     this.send({op: "inspect", channel: this.channel.value || null});
   }
 
-  /** @param {{channel: string, messages: {at_s: number, message: any}[]}} batch */
+  /** @param {{channel: string, is_new: boolean, messages: {at_s: number, message: any}[]}} batch */
   update(batch) {
     if (batch.channel !== this.channel.value) return;
+    if (batch.is_new) this.plot.series.clear();
     this.received += batch.messages.length;
     for (const {at_s, message} of batch.messages) {
       const numbers = numbersOf(message, "", new Map());
@@ -134,7 +135,8 @@ export class Inspector {
         if (this.plotted.has(path)) this.plot.add(`${batch.channel} ${path}`, at_s, value);
       }
     }
-    this.text.textContent = JSON.stringify(batch.messages[batch.messages.length - 1].message, null, 1);
+    const last = batch.messages[batch.messages.length - 1];
+    this.text.textContent = last ? JSON.stringify(last.message, null, 1) : "no message in the half minute before";
     this.plot.draw();
   }
 }

@@ -141,6 +141,8 @@ bool PlaybackBus::deliver(const McapMessage& message, PlaybackResult& result) {
     return false;
   }
   now_ = time_from_ns(static_cast<std::int64_t>(message.logged_ns));
+  if (chunks_.empty() || chunks_.back().offset != reader_.chunk_offset())
+    chunks_.push_back({now_, reader_.chunk_offset()});
   ++result.messages;
   const auto readers = readers_.find(reader_key(*topic, reader_.channel(message).topic));
   const auto use = [&](const void* decoded) {

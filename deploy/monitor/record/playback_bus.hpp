@@ -39,6 +39,14 @@ class PlaybackBus : public Bus {
   [[nodiscard]] PlaybackResult play();
   /// Delivers the next message. False: there is none, or stop() was called.
   [[nodiscard]] bool play_next(PlaybackResult& result);
+  /// A part of the file that was read, and the time of its first message.
+  struct ChunkPosition {
+    Time first_at;
+    std::uint64_t offset;
+  };
+  /// In the order of the file.
+  const std::vector<ChunkPosition>& chunks() const { return chunks_; }
+  const McapReader& reader() const { return reader_; }
   /// The share of the file that has been read, 0 to 1.
   double progress() const { return reader_.progress(); }
   /// Calls back for each event of the recording (RecordingWriter::add_event).
@@ -65,6 +73,7 @@ class PlaybackBus : public Bus {
 
   McapReader reader_;
   McapRecord next_;
+  std::vector<ChunkPosition> chunks_;
   std::vector<McapMetadata> early_events_;  ///< before the first message
   RecordingHeader header_;
   Time now_{};

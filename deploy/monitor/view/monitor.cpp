@@ -31,6 +31,17 @@ std::shared_ptr<const std::string> shared_text(const Json& json) {
   return std::make_shared<const std::string>(text_of(json));
 }
 
+/// `is_new`: they do not follow the messages that were sent before.
+template <typename Messages>
+std::shared_ptr<const std::string> messages_text(const std::string& channel, bool is_new,
+                                                 const Messages& messages) {
+  std::string text = R"({"type":"messages","channel":)" + text_of(channel);
+  text += std::string(R"(,"is_new":)") + (is_new ? "true" : "false") + R"(,"messages":[)";
+  std::string separator;
+  for (const std::string& message : messages) text += std::exchange(separator, ",") + message;
+  return std::make_shared<const std::string>(text + "]}");
+}
+
 std::optional<double> number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) return std::nullopt;
@@ -108,7 +119,7 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   if (on_any_message_)
     on_any_message_({channel.topic, channel.number, channel.name, message.header(), &message});
   if (!settings_.scenario) follow(message);
-  if (inspections_.empty()) return;
+  if (inspections_.empty() || settings_.recorded_messages) return;
   const auto inspection = inspections_.find(channel.name);
   if (inspection == inspections_.end()) return;
   std::deque<std::string>& messages = inspection->second.messages;
@@ -186,12 +197,13 @@ void Monitor::update_viewers(Time clock) {
       viewer.panels = snapshot.panels;
       socket->send_state(kPanelSlot, {snapshot.panels, false});
     }
-    send_time(*socket, viewer, clock);
+    send_time(*socket, viewer);
+    if (settings_.recorded_messages) send_recorded_messages(*socket, viewer, clock);
   }
   send_inspections();
 }
 
-void Monitor::send_time(WebSocket& socket, Viewer& viewer, Time clock) {
+void Monitor::send_time(WebSocket& socket, Viewer& viewer) {
   constexpr std::array kModes{"live", "paused", "playing"};
   // The ends of the history need no more than ten updates a second.
   const auto rounded = [](Time time) { return std::floor(unix_seconds(time) * 10) / 10; };
@@ -201,20 +213,31 @@ void Monitor::send_time(WebSocket& socket, Viewer& viewer, Time clock) {
                                  {"begin_s", rounded(history_.first().at)},
                                  {"end_s", rounded(history_.last().at)},
                                  {"progress", std::floor(progress_ * 100) / 100}});
-  (void)clock;
   if (viewer.time_text && *viewer.time_text == *text) return;
   viewer.time_text = text;
   socket.send_state(kTimeSlot, {text, false});
 }
 
+void Monitor::send_recorded_messages(WebSocket& socket, Viewer& viewer, Time clock) {
+  constexpr Duration kPlotted = std::chrono::seconds(30), kMaxStep = std::chrono::seconds(5);
+  constexpr Duration kPeriod = std::chrono::milliseconds(100);
+  if (!viewer.inspected || clock < viewer.next_inspection) return;
+  const std::optional<Time> until = viewer.inspected_until;
+  if (until == viewer.shown) return;
+  const bool is_jump = !until || viewer.shown < *until || viewer.shown - *until > kMaxStep;
+  const Time from = is_jump ? viewer.shown - kPlotted : *until;
+  viewer.next_inspection = clock + kPeriod;
+  viewer.inspected_until = viewer.shown;
+  const auto messages = settings_.recorded_messages(*viewer.inspected, from, viewer.shown);
+  if (messages.empty() && !is_jump) return;
+  socket.send_event({messages_text(*viewer.inspected, is_jump, messages), false});
+}
+
 void Monitor::send_inspections() {
   for (auto& [channel, inspection] : inspections_) {
     if (inspection.messages.empty()) continue;
-    std::string text = R"({"type":"messages","channel":)" + text_of(channel) + R"(,"messages":[)";
-    for (std::size_t i = 0; i < inspection.messages.size(); ++i)
-      text += (i > 0 ? "," : "") + inspection.messages[i];
+    const auto shared = messages_text(channel, false, inspection.messages);
     inspection.messages.clear();
-    const auto shared = std::make_shared<const std::string>(text + "]}");
     for (auto& [socket, viewer] : viewers_)
       if (viewer.inspected == channel) socket->send_state(kInspectionSlot, {shared, false});
   }
@@ -231,6 +254,7 @@ bool Monitor::on_message(WebSocket& socket, const std::string& message, Time clo
     if (!channel.is_null() && !(channel.is_string() && channels_.contains(channel.get<std::string>())))
       return false;
     viewer.inspected.reset();
+    viewer.inspected_until.reset();
     if (channel.is_string()) {
       viewer.inspected = channel.get<std::string>();
       inspections_[*viewer.inspected];

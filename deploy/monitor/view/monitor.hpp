@@ -29,6 +29,9 @@ struct MonitorSettings {
   bool is_recording = false;  ///< the messages come from a recording
   bool can_command = false;   ///< the page shows what commands
   std::size_t history_bytes = 512 << 20;
+  /// Of a recording: the messages of a channel in an interval (see RecordedMessages). Empty: viewers get
+  /// messages as they are received.
+  std::function<std::vector<std::string>(const std::string& channel, Time from, Time to)> recorded_messages;
 };
 
 /// Shows a run to viewers: collects its messages, remembers what the floor looked like, and sends each viewer
@@ -77,6 +80,8 @@ class Monitor {
     Time shown{};
     std::shared_ptr<const std::string> frame, panels, time_text;
     std::optional<std::string> inspected;  ///< channel
+    std::optional<Time> inspected_until;   ///< of a recording: what has been sent of it
+    Time next_inspection{};                ///< by the clock
   };
   struct Inspection {
     std::deque<std::string> messages;  ///< JSON, since they were last sent
@@ -99,8 +104,9 @@ class Monitor {
   void follow(const Message&) {}
   nlohmann::ordered_json panels();
   nlohmann::ordered_json scene() const;
-  void send_time(WebSocket& socket, Viewer& viewer, Time clock);
+  void send_time(WebSocket& socket, Viewer& viewer);
   void send_inspections();
+  void send_recorded_messages(WebSocket& socket, Viewer& viewer, Time clock);
 
   Bus& bus_;
   MonitorSettings settings_;

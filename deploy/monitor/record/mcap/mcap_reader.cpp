@@ -52,6 +52,7 @@ Bytes McapReader::read(std::size_t size) {
 }
 
 bool McapReader::read_frame(Frame& frame) {
+  const long position = std::ftell(file_.get());
   const std::uint32_t sum_before = checksum_;
   const Bytes head = read(kMcapFrameSize);
   if (head.size() < kMcapFrameSize) {
@@ -71,6 +72,7 @@ bool McapReader::read_frame(Frame& frame) {
     fail("the file ends in the middle of a record");
     if (frame.kind != Kind::kChunk) return false;
   }
+  if (frame.kind == Kind::kChunk && position > 0) chunk_offset_ = static_cast<std::uint64_t>(position);
   if (frame.kind == Kind::kDataEnd) {
     check_end(frame.content, sum_before);
     return false;
@@ -80,6 +82,7 @@ bool McapReader::read_frame(Frame& frame) {
 
 void McapReader::check_end(Bytes data_end, std::uint32_t sum) {
   is_at_end_ = true;
+  if (is_sought_) return;
   const auto expected = McapDecoder(data_end).number<std::uint32_t>();
   if (expected != 0 && expected != sum) return fail("the checksum of the data is wrong");
   // The summary. Its checksum is the last field of the footer, which ends the file together with the magic.
@@ -149,6 +152,17 @@ bool McapReader::read_chunk_frame(Frame& frame) {
   fail("a record in a chunk is damaged");
   records_ = McapDecoder({});
   return false;
+}
+
+void McapReader::seek(const McapReader& known, std::uint64_t chunk_offset) {
+  schemas_ = known.schemas_;
+  channels_ = known.channels_;
+  records_ = McapDecoder({});
+  is_cut_ = is_at_end_ = false;
+  is_sought_ = true;
+  damage_.clear();
+  if (std::fseek(file_.get(), static_cast<long>(chunk_offset), SEEK_SET) != 0)
+    fail("the file cannot be sought");
 }
 
 double McapReader::progress() const {

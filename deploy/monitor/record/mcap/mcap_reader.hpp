@@ -27,6 +27,11 @@ class McapReader {
   [[nodiscard]] McapRecord next();
   /// The share of the file that has been read, 0 to 1.
   double progress() const;
+  /// Where the chunk of the last record begins in the file; 0: in no chunk yet.
+  std::uint64_t chunk_offset() const { return chunk_offset_; }
+  /// Continues at a chunk that another reader of the same file has found. From then on, the checksum of the
+  /// whole file is not checked.
+  void seek(const McapReader& known, std::uint64_t chunk_offset);
   /// Why the file ended early; empty: it did not, or has not ended yet.
   const std::string& damage() const { return damage_; }
 
@@ -68,6 +73,8 @@ class McapReader {
   McapDecoder records_{{}};  // of the open chunk
   bool is_cut_ = false;      // the open chunk is the last that there is
   bool is_at_end_ = false;
+  bool is_sought_ = false;
+  std::uint64_t chunk_offset_ = 0;
   std::string damage_;
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;

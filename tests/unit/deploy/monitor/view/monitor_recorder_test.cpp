@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/monitor_recorder.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/monitor/view/monitor.hpp"
+#include "deploy/monitor/view/recorded_messages.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -56,6 +59,44 @@ TEST_CASE("a monitor records from one moment to another, several times") {
     for (const RobotSpec& robot : scenario.robots) CHECK(feedbacks[robot.id] >= 90);  // about sixty a second
     CHECK_FALSE(playback.header().is_complete);
   }
+}
+
+TEST_CASE("the messages of a channel of a recording are found in any interval") {
+  const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+  const Scenario scenario = load_scenario(file);
+  const TemporaryFolder folder;
+  std::vector<std::pair<Time, double>> received;
+  {
+    SimSystem system(scenario, 1);
+    SimBus bus(system.network());
+    bus.become_observer();
+    // Small chunks, so that there are many to find.
+    RecordingWriter writer(folder.file("a.mcap"), recording_header(scenario, file),
+                           {true, 1'000'000'000, 20'000});
+    record(bus, scenario, writer);
+    SimBus other(system.network());
+    other.become_observer();
+    other.observe<msg::Feedback>(topics::kFeedback, 1, [&](const msg::Feedback& feedback) {
+      received.emplace_back(other.now(), feedback.x_m());
+    });
+    system.run_for(6s);
+    writer.close();
+  }
+  PlaybackBus playback(folder.file("a.mcap"));
+  RecordedMessages recorded(folder.file("a.mcap"), playback);
+  CHECK(recorded.between("feedback/1", Time{}, Time::max() - 1h).empty());  // nothing has been read yet
+  CHECK(playback.play().damage.empty());
+  CHECK(playback.chunks().size() > 20);
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::size_t, std::size_t>>{{0, 50}, {100, 101}, {200, 300}, {10, 40}}) {
+    const std::vector<std::string> found =
+        recorded.between("feedback/1", received[from].first, received[to].first);
+    REQUIRE(found.size() == to - from);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      CHECK(nlohmann::json::parse(found[i]).at("message").at("x_m") == Approx(received[from + 1 + i].second));
+  }
+  CHECK(recorded.between("feedback/1", received.back().first, received.back().first + 1h).empty());
+  CHECK(recorded.between("feedback/x", Time{}, received.back().first).empty());
 }
 
 }  // namespace sidestep::monitor_recorder_test
