@@ -4,7 +4,9 @@
 #include <atomic>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -20,6 +22,7 @@
 #include "deploy/monitor/monitor_recorder.hpp"
 #include "deploy/monitor/network_view.hpp"
 #include "deploy/monitor/page/page_files.hpp"
+#include "deploy/monitor/planning/planning_scene.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
 #include "deploy/monitor/server/web_server.hpp"
 #include "deploy/monitor/view/monitor.hpp"
@@ -31,7 +34,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kPollPeriod = 5ms, kFlushPeriod = 1s;
-constexpr const char* kPageProtocol = "sidestep.monitor.v1";
+constexpr const char *kPageProtocol = "sidestep.monitor.v1", *kPlanningProtocol = "sidestep.planning.v1";
 
 struct MonitorOptions {
   std::string file;            ///< a scenario or a recording; empty: an unknown scenario
@@ -69,6 +72,7 @@ class MonitorServer {
                  [this](WebSocket& socket, const std::string& protocol) { add(socket, protocol); },
                  [this](WebSocket& socket, const std::string& message, bool is_binary) {
                    if (is_binary) return false;
+                   if (planning_.contains(&socket)) return plan(socket, message);
                    return foxglove_viewers_.contains(&socket)
                               ? foxglove_.on_message(socket, message)
                               : monitor_.on_message(socket, message, DdsBus::clock());
@@ -93,18 +97,34 @@ class MonitorServer {
 
  private:
   static std::vector<std::string> protocols() {
-    std::vector<std::string> names{kPageProtocol};
+    std::vector<std::string> names{kPageProtocol, kPlanningProtocol};
     for (const std::string& name : FoxgloveServer::protocols()) names.push_back(name);
     return names;
   }
 
   void add(WebSocket& socket, const std::string& protocol) {
     if (protocol == kPageProtocol) return monitor_.add_viewer(socket);
+    if (protocol == kPlanningProtocol) {
+      planning_[&socket];
+      return send_plan(socket);
+    }
     foxglove_viewers_.insert(&socket);
     foxglove_.add(socket);
   }
 
+  /// False: the message makes no sense.
+  bool plan(WebSocket& socket, const std::string& message) {
+    if (!planning_[&socket].apply(nlohmann::json::parse(message, nullptr, false))) return false;
+    send_plan(socket);
+    return true;
+  }
+
+  void send_plan(WebSocket& socket) {
+    socket.send_state(0, {std::make_shared<const std::string>(planning_[&socket].json().dump()), false});
+  }
+
   void remove(WebSocket& socket) {
+    if (planning_.erase(&socket) > 0) return;
     if (foxglove_viewers_.erase(&socket) > 0)
       foxglove_.remove(socket);
     else
@@ -128,6 +148,7 @@ class MonitorServer {
   NetworkView* network_;
   FoxgloveServer foxglove_;
   std::set<WebSocket*> foxglove_viewers_;
+  std::map<WebSocket*, PlanningScene> planning_;
   WebServer server_;
 };
 

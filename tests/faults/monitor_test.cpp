@@ -309,6 +309,42 @@ TEST_CASE("the page shows a recording, and a moment by its link") {
   recording.end();
 }
 
+TEST_CASE("a roadmap adapts while obstacles are dragged on the page") {
+  ShownRecording recording("crossing.yaml", {"--seconds", "1"});
+  Browser page;
+  page.open(recording.url() + "planning.html");
+  REQUIRE(page.wait_until("window.planning && planning.plan && planning.plan.nodes.length > 100"));
+  for (const auto& [planner, y_m] : {std::pair{"dynamic-prm", 0}, std::pair{"errt", 1}}) {
+    page.run(fmt::format(
+        "const p = document.getElementById('planner'); p.value = '{}'; p.dispatchEvent(new Event('change'))",
+        planner));
+    REQUIRE(page.wait_until(fmt::format("planning.plan.planner === '{}'", planner)));
+    // Drags obstacle 0 along the floor, in 30 steps.
+    page.run(fmt::format("const y_m = {};", y_m) + R"(
+      const canvas = document.getElementById('floor'), box = canvas.getBoundingClientRect(), plan = planning.plan;
+      canvas.setPointerCapture = () => {};
+      const scale = Math.min(canvas.clientWidth / (plan.field[0] + 0.4), canvas.clientHeight / (plan.field[1] + 0.4));
+      const event = (type, x, y) => canvas.dispatchEvent(new PointerEvent(type, {clientX: box.x + box.width / 2 + x * scale,
+          clientY: box.y + box.height / 2 - y * scale, pointerId: 1, bubbles: true}));
+      planning.before = planning.plans;
+      const [x, y] = plan.obstacles[0];
+      event('pointerdown', x, y);
+      let step = 0;
+      const timer = setInterval(() => {
+        if (++step <= 30) return event('pointermove', -3 + 0.2 * step, y_m);
+        event('pointerup', 3, y_m);
+        clearInterval(timer);
+      }, 10);)");
+    CHECK(page.wait_until(fmt::format(
+        "Math.hypot(planning.plan.obstacles[0][0] - 3, planning.plan.obstacles[0][1] - {}) < 0.05", y_m)));
+    CHECK(page.run("return planning.plans - planning.before") >= 5);
+  }
+  page.click("next");
+  CHECK(page.wait_until("Math.abs(planning.plan.obstacles[0][0] - 3) > 0.05"));
+  CHECK(page.complaints() == "");
+  recording.end();
+}
+
 TEST_CASE("the page draws 22 robots with all layers and 1,000 robots", "[both-cores]") {
   for (const char* scenario : {"two-teams-22.yaml", "streams-1000.yaml"}) {
     ShownRecording recording(scenario, {"--seconds", "3"});

@@ -3,11 +3,13 @@
 
 export class Connection {
   /**
+   * @param {string} protocol
    * @param {(message: any) => void} onMessage
    * @param {(frame: ArrayBuffer) => void} onFrame
    * @param {(state: "connected" | "lost") => void} onState
    */
-  constructor(onMessage, onFrame, onState) {
+  constructor(protocol, onMessage, onFrame, onState) {
+    this.protocol = protocol;
     this.onMessage = onMessage;
     this.onFrame = onFrame;
     this.onState = onState;
@@ -16,7 +18,7 @@ export class Connection {
   }
 
   open() {
-    const socket = new WebSocket(`ws://${location.host}/socket`, "sidestep.monitor.v1");
+    const socket = new WebSocket(`ws://${location.host}/socket`, this.protocol);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.delay_ms = 250;

@@ -113,7 +113,7 @@ function onMessage(message) {
 }
 
 const connection = new Connection(
-    onMessage,
+    "sidestep.monitor.v1", onMessage,
     (buffer) => {
       if (!layout) return;
       monitor.frame = floor.frame = new Frame(buffer, layout);

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "deploy/monitor/topic/describe.hpp"
 #include "deploy/monitor/time_range.hpp"
+#include "deploy/monitor/topic/describe.hpp"
 #include "deploy/monitor/topic/topic_channel.hpp"
 #include "deploy/monitor/view/unix_time.hpp"
 
