@@ -199,6 +199,7 @@ int monitor_system(const MonitorOptions& options) {
   call_periodically(bus, Monitor::kFramePeriod, [&] {
     monitor.take_snapshot();
     server.update(bus.now());
+    if (recorder) recorder->add_scene(monitor.floor(), bus.now());
   });
   call_periodically(bus, kPollPeriod, [&] { server.server().poll(); });
   call_periodically(bus, kFlushPeriod, [&] {

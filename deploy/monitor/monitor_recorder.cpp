@@ -24,6 +24,12 @@ void MonitorRecorder::add(const AnyMessage& message, Time now) {
   writer_->add(now, message.topic, channel->second, message.header, message.message);
 }
 
+void MonitorRecorder::add_scene(const FloorState& floor, Time now) {
+  if (!writer_ || now < next_scene_) return;
+  next_scene_ = now + RecordingWriter::scene_period(scenario_.robots.size());
+  writer_->add_scene(now, floor, scenario_.radius_m);
+}
+
 void MonitorRecorder::add_event(Time at, const std::string& kind, const std::string& text) {
   if (writer_) writer_->add_event(at, kind, text);
 }

@@ -24,6 +24,7 @@ class MonitorRecorder {
   /// Throws std::runtime_error when a write has failed.
   void stop();
   void add(const AnyMessage& message, Time now);
+  void add_scene(const FloorState& floor, Time now);
   void add_event(Time at, const std::string& kind, const std::string& text);
   /// Writes what has been added so far to the file.
   void flush();
@@ -32,6 +33,7 @@ class MonitorRecorder {
   const Scenario& scenario_;
   std::string scenario_file_;
   std::optional<RecordingWriter> writer_;
+  Time next_scene_{};
   std::map<std::uint32_t, std::uint16_t> channels_;  ///< of the file, by AnyMessage::channel
 };
 

@@ -15,7 +15,6 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMaxSubscriptions = 1000;
 constexpr std::uint8_t kMessageData = 1;
-constexpr const char *kScene = "scene_update", *kTransforms = "transforms";
 
 template <typename Number>
 void append(std::string& bytes, Number number) {
@@ -24,12 +23,8 @@ void append(std::string& bytes, Number number) {
 }
 
 Json json_channel(std::uint32_t id, const std::string& topic, const std::string& type) {
-  return {{"id", id},
-          {"topic", topic},
-          {"encoding", "json"},
-          {"schemaName", type},
-          {"schema", R"({"type":"object"})"},
-          {"schemaEncoding", "jsonschema"}};
+  return {{"id", id},           {"topic", topic},        {"encoding", "json"},
+          {"schemaName", type}, {"schema", kJsonSchema}, {"schemaEncoding", "jsonschema"}};
 }
 
 std::optional<std::uint32_t> id_in(const Json& json, const char* key) {
@@ -53,7 +48,7 @@ const std::vector<std::string>& FoxgloveServer::protocols() {
 FoxgloveServer::FoxgloveServer() {
   for (const TopicInfo& topic : all_topics())
     if (topic.qos != Qos::kImage) channels_[topic.name] = static_cast<ChannelId>(channels_.size() + 1);
-  for (const char* topic : {kScene, kTransforms})
+  for (const char* topic : {kSceneTopic, kTransformsTopic})
     channels_[topic] = static_cast<ChannelId>(channels_.size() + 1);
 }
 
@@ -75,8 +70,8 @@ void FoxgloveServer::add(WebSocket& socket) {
                         {"schema", message_schema(topic.type.name)},
                         {"schemaEncoding", "omgidl"}});
   }
-  channels.push_back(json_channel(channels_.at(kScene), kScene, "foxglove.SceneUpdate"));
-  channels.push_back(json_channel(channels_.at(kTransforms), kTransforms, "foxglove.FrameTransforms"));
+  channels.push_back(json_channel(channels_.at(kSceneTopic), kSceneTopic, kSceneType));
+  channels.push_back(json_channel(channels_.at(kTransformsTopic), kTransformsTopic, kTransformsType));
   socket.send_event(text_message({{"op", "advertise"}, {"channels", channels}}));
 }
 
@@ -150,7 +145,7 @@ void FoxgloveServer::publish(const AnyMessage& message, Time now) {
 
 void FoxgloveServer::publish_scene(const FloorState& floor, double radius_m, Time now) {
   if (clients_.empty()) return;
-  const ChannelId scene = channels_.at(kScene), transforms = channels_.at(kTransforms);
+  const ChannelId scene = channels_.at(kSceneTopic), transforms = channels_.at(kTransformsTopic);
   if (is_subscribed(scene)) send(scene, 0, now, scene_update(floor, radius_m, now).dump());
   if (is_subscribed(transforms)) send(transforms, 0, now, frame_transforms(floor, now).dump());
 }

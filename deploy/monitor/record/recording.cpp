@@ -7,11 +7,14 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "common/map/map_file.hpp"
 #include "common/messaging/cdr.hpp"
 #include "common/messaging/message_schema.hpp"
+#include "deploy/monitor/foxglove/foxglove_scene.hpp"
 
 namespace sidestep {
 namespace {
@@ -68,6 +71,25 @@ void RecordingWriter::add(Time received, const TopicInfo& topic, std::uint16_t c
   });
 }
 
+std::uint16_t RecordingWriter::json_channel(const std::string& topic, const std::string& type) {
+  const auto known = json_channels_.find(topic);
+  if (known != json_channels_.end()) return known->second;
+  const std::uint16_t schema = mcap_.add_schema({type, "jsonschema", kJsonSchema});
+  return json_channels_[topic] = mcap_.add_channel({schema, topic, "json", {}});
+}
+
+void RecordingWriter::add_scene(Time now, const FloorState& floor, double radius_m) {
+  const auto add = [&](const char* topic, const char* type, const nlohmann::json& json) {
+    const std::string text = json.dump();
+    const std::uint64_t at_ns = unsigned_ns(to_ns(now));
+    mcap_.add_message({json_channel(topic, type), scenes_, at_ns, at_ns},
+                      [&](McapBytes& bytes) { bytes.insert(bytes.end(), text.begin(), text.end()); });
+  };
+  ++scenes_;
+  add(kSceneTopic, kSceneType, scene_update(floor, radius_m, now));
+  add(kTransformsTopic, kTransformsType, frame_transforms(floor, now));
+}
+
 void RecordingWriter::add_event(Time at, const std::string& kind, const std::string& text) {
   mcap_.add_metadata(
       {kEventMetadata, {{"at_ns", std::to_string(to_ns(at))}, {"kind", kind}, {"text", text}}});
@@ -80,6 +102,7 @@ void RecordingWriter::add_report(Time now, const std::string& json) {
 }
 
 void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
+  const auto floor = std::make_shared<FloorState>();
   for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
     if (topic.qos == Qos::kImage) return;
     std::vector<RobotId> robots{0};
@@ -89,11 +112,17 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
     }
     for (const RobotId robot : robots) {
       const std::uint16_t channel = writer.add_channel(topic, channel_name(topic, robot));
-      bus.observe<Message>(topic, robot, [&bus, &writer, topic, channel](const Message& message) {
-        writer.add(bus.now(), topic, channel, message.header(), &message);
+      bus.observe<Message>(topic, robot, [&bus, &writer, topic, channel, floor](const Message& message) {
+        const Time now = bus.now();
+        writer.add(now, topic, channel, message.header(), &message);
+        if constexpr (requires { floor->on(message, now); }) floor->on(message, now);
       });
     }
   });
+  call_periodically(bus, RecordingWriter::scene_period(scenario.robots.size()),
+                    [&bus, &writer, floor, radius_m = scenario.radius_m] {
+                      writer.add_scene(bus.now(), *floor, radius_m);
+                    });
   call_periodically(bus, kFlushPeriod, [&writer] { writer.flush(); });
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <map>
 #include <string>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
 #include "deploy/monitor/record/mcap/mcap_writer.hpp"
+#include "deploy/monitor/view/floor_state.hpp"
 
 namespace sidestep {
 
@@ -40,6 +43,12 @@ class RecordingWriter {
   std::uint16_t add_channel(const TopicInfo& topic, const std::string& channel);
   void add(Time received, const TopicInfo& topic, std::uint16_t channel, const msg::Header& header,
            const void* message);
+  /// The floor for 3-D panels of Lichtblick and Foxglove, on channels of its own.
+  void add_scene(Time now, const FloorState& floor, double radius_m);
+  /// The period in which that is worth its size.
+  static Duration scene_period(std::size_t robots) {
+    return std::max<Duration>(std::chrono::milliseconds(100), robots * std::chrono::milliseconds(2));
+  }
   /// Something that happened and that no message tells, e.g. a bookmark: metadata of the name
   /// kEventMetadata with the keys at_ns, kind and text.
   void add_event(Time at, const std::string& kind, const std::string& text);
@@ -53,7 +62,11 @@ class RecordingWriter {
 
  private:
   McapWriter mcap_;
-  std::map<std::string, std::uint16_t> schemas_;  // by type
+  std::uint16_t json_channel(const std::string& topic, const std::string& type);
+
+  std::map<std::string, std::uint16_t> schemas_;        // by type
+  std::map<std::string, std::uint16_t> json_channels_;  // by topic
+  std::uint32_t scenes_ = 0;
 };
 
 /// Subscribes to all channels of all topics except camera images (about 100 MB/s), and records their messages

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
@@ -197,6 +198,23 @@ TEST_CASE("a file that is not a recording is refused with its name") {
   CHECK_THROWS_WITH(PlaybackBus(file), ContainsSubstring(file) && ContainsSubstring("is not an MCAP file"));
   CHECK_THROWS_WITH(PlaybackBus("/nowhere/at/all"), ContainsSubstring("cannot be read"));
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), ContainsSubstring("cannot be written"));
+}
+
+TEST_CASE("a recording shows the robots to 3-D panels of other programs") {
+  const TemporaryFolder folder;
+  record_run(folder.file("a.mcap"), 2s);
+  McapReader reader(folder.file("a.mcap"));
+  int scenes = 0;
+  for (McapRecord next = reader.next(); !std::holds_alternative<std::monostate>(next); next = reader.next()) {
+    const auto* message = std::get_if<McapMessage>(&next);
+    if (message == nullptr || reader.channel(*message).topic != "scene_update") continue;
+    CHECK(reader.channel(*message).message_encoding == "json");
+    CHECK(reader.schema(reader.channel(*message))->name == "foxglove.SceneUpdate");
+    const auto json = nlohmann::json::parse(message->payload.begin(), message->payload.end());
+    if (++scenes == 15)
+      CHECK(json.at("entities").at(0).at("cylinders").size() == load_scenario(kScenario).robots.size());
+  }
+  CHECK(scenes >= 19);
 }
 
 TEST_CASE("events that no message tells are recorded, and played back in order") {
