@@ -174,7 +174,8 @@ TEST_CASE("the page shows how a coordinator dies and another takes over, and con
                         polling(run)));
 }
 
-TEST_CASE("a viewer seeks 60 seconds back while the run goes on, within 200 ms", "[both-cores]") {
+/// Seeks back by this time while the run goes on.
+void seek_back(double back_s) {
   LaunchedRun run(kWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   const MonitorProcess monitor(run);
@@ -198,11 +199,11 @@ TEST_CASE("a viewer seeks 60 seconds back while the run goes on, within 200 ms",
   int frames = 0;
   const double first_s = receive_frame();
   double last_s = first_s;
-  while (last_s < first_s + 61) {
+  while (last_s < first_s + back_s + 1) {
     last_s = receive_frame();
     ++frames;
   }
-  CHECK(frames >= 61 * 30);
+  CHECK(frames >= (back_s + 1) * 30);
   std::vector<double> delays_ms;
   for (int i = 0; i < 20; ++i) {
     const double wanted_s = first_s + 0.05 * i;
@@ -214,12 +215,16 @@ TEST_CASE("a viewer seeks 60 seconds back while the run goes on, within 200 ms",
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - asked).count());
   }
   std::ranges::sort(delays_ms);
-  WARN(fmt::format("{} frames in 61 s; seek 60 s back: median {:.1f} ms, longest {:.1f} ms", frames,
-                   delays_ms[10], delays_ms.back()));
+  WARN(fmt::format("{} frames in {} s; seek {} s back: median {:.1f} ms, longest {:.1f} ms", frames,
+                   back_s + 1, back_s, delays_ms[10], delays_ms.back()));
   CHECK(begin_s <= first_s + 0.1);
   CHECK(end_s >= last_s - 0.2);
   CHECK(delays_ms.back() < 200);
 }
+
+TEST_CASE("a viewer seeks back while the run goes on", "[both-cores]") { seek_back(5); }
+
+TEST_CASE("a viewer seeks 60 seconds back while the run goes on", "[.][figures]") { seek_back(60); }
 
 /// A simulated run that was recorded, and a monitor that shows it.
 class ShownRecording {
@@ -439,7 +444,8 @@ TEST_CASE("a run shows itself in the browser, and goes on without the monitor") 
   CHECK(other.printed("Address already in use"));
 }
 
-TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-cores]") {
+/// Three viewers watch 22 robots.
+void watch_three_times(Duration duration) {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   const std::vector<std::string> dds = run.dds_arguments();
@@ -448,25 +454,23 @@ TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-core
   std::vector<std::unique_ptr<CountingViewer>> viewers;
   for (int i = 0; i < 3; ++i) viewers.push_back(std::make_unique<CountingViewer>(monitor.port));
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
-  const auto wait = [&](Duration duration) {
-    const Time end = run.bus().now() + duration;
+  const auto wait = [&](Duration span) {
+    const Time end = run.bus().now() + span;
     REQUIRE(run.wait_until([&] { return run.bus().now() > end; }));
   };
   wait(2s);
   const ProcessUsage monitor_before = usage_of(monitor.pid), subscriber_before = usage_of(subscriber);
   std::vector<int> frames_before;
   for (const auto& viewer : viewers) frames_before.push_back(viewer->frames());
-  constexpr auto kDuration = 20s;
-  wait(kDuration);
+  wait(duration);
   const ProcessUsage monitor_after = usage_of(monitor.pid), subscriber_after = usage_of(subscriber);
   double least_rate_hz = 1e9;
   for (std::size_t i = 0; i < viewers.size(); ++i)
-    least_rate_hz =
-        std::min(least_rate_hz, (viewers[i]->frames() - frames_before[i]) / to_seconds(kDuration));
+    least_rate_hz = std::min(least_rate_hz, (viewers[i]->frames() - frames_before[i]) / to_seconds(duration));
   const Json promise = monitor.state().at("promise");
   viewers.clear();
-  const double monitor_cpu = (monitor_after.cpu_s - monitor_before.cpu_s) / to_seconds(kDuration);
-  const double subscriber_cpu = (subscriber_after.cpu_s - subscriber_before.cpu_s) / to_seconds(kDuration);
+  const double monitor_cpu = (monitor_after.cpu_s - monitor_before.cpu_s) / to_seconds(duration);
+  const double subscriber_cpu = (subscriber_after.cpu_s - subscriber_before.cpu_s) / to_seconds(duration);
   const double missed = promise.at("missed_cycles").get<double>() / promise.at("cycles").get<double>();
   WARN(
       fmt::format("monitor {:.1f} % of a core, a subscriber that discards {:.1f} %, ratio {:.2f}; {:.1f} "
@@ -478,6 +482,14 @@ TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-core
   CHECK(promise.at("contacts") == 0);
   CHECK(promise.at("violations") == 0);
   CHECK(least_rate_hz >= 30);
+}
+
+TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-cores]") {
+  watch_three_times(5s);
+}
+
+TEST_CASE("a monitor with three viewers costs little more than a subscriber", "[.][figures]") {
+  watch_three_times(30s);
 }
 
 /// A viewer that takes 10 kB a second from its connection.
@@ -567,7 +579,8 @@ TEST_CASE("slow, many and hostile viewers harm neither run nor monitor", "[both-
   CHECK(promise.at("violations") == 0);
 }
 
-TEST_CASE("an event reaches the page soon", "[both-cores]") {
+/// Measures how long events take from the writer of a message to the page.
+void send_events(std::size_t events) {
   LaunchedRun run(kWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   const MonitorProcess monitor(run);
@@ -582,9 +595,8 @@ TEST_CASE("an event reaches the page soon", "[both-cores]") {
   // An attestation of a robot that has registered has no effect, but is an event.
   auto writer = run.bus().advertise(topics::kAttestation);
   REQUIRE(run.wait_until([&, end = run.bus().now() + 2s] { return run.bus().now() > end; }));
-  constexpr std::size_t kEvents = 1000;
   std::vector<double> sent_ms;
-  for (std::size_t i = 0; i < kEvents; ++i) {
+  for (std::size_t i = 0; i < events; ++i) {
     msg::AbsenceAttestation attestation;
     attestation.robot(1);
     attestation.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
@@ -595,15 +607,19 @@ TEST_CASE("an event reaches the page soon", "[both-cores]") {
     writer.publish(attestation, run.bus().now());
     REQUIRE(run.wait_until([&, end = run.bus().now() + 15ms] { return run.bus().now() > end; }));
   }
-  REQUIRE(page.wait_until(fmt::format("monitor.received.length >= {}", kEvents), polling(run)));
+  REQUIRE(page.wait_until(fmt::format("monitor.received.length >= {}", events), polling(run)));
   const std::vector<double> received_ms = page.run("return monitor.received");
-  REQUIRE(received_ms.size() == kEvents);
+  REQUIRE(received_ms.size() == events);
   std::vector<double> delays_ms;
-  for (std::size_t i = 0; i < kEvents; ++i) delays_ms.push_back(received_ms[i] - sent_ms[i]);
+  for (std::size_t i = 0; i < events; ++i) delays_ms.push_back(received_ms[i] - sent_ms[i]);
   std::ranges::sort(delays_ms);
   WARN(
       fmt::format("from sending to the page: median {:.1f} ms, p99 {:.1f} ms, longest {:.1f} ms of {} events",
-                  delays_ms[kEvents / 2], delays_ms[kEvents * 99 / 100], delays_ms.back(), kEvents));
+                  delays_ms[events / 2], delays_ms[events * 99 / 100], delays_ms.back(), events));
 }
+
+TEST_CASE("events reach the page soon", "[both-cores]") { send_events(100); }
+
+TEST_CASE("a thousand events reach the page soon", "[.][figures]") { send_events(1000); }
 
 }  // namespace sidestep::monitor_faults_test

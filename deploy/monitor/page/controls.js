@@ -43,7 +43,10 @@ export class Controls {
     this.post(`/api/robots/${this.robot}/${what}`, body);
   }
 
-  /** Whether it was accepted. @param {string} path @param {any} [body] @returns {Promise<boolean>} */
+  /**
+   * Whether it was accepted.
+   * @param {string} path @param {any} [body] @returns {Promise<boolean>}
+   */
   async post(path, body) {
     try {
       const response = await fetch(path, {method: "POST", headers: {Authorization: `Bearer ${this.token}`},

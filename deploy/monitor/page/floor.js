@@ -10,6 +10,7 @@ export class Floor {
     this.context = this.canvas.getContext("2d");
     this.centre = {x: 0, y: 0};
     this.scale = 0;  // CSS pixels per metre; 0: not known yet
+    this.ratio = 1;  // pixels of the screen per CSS pixel
     this.isFitted = true;
     this.isStale = true;  // what is shown is not what there is
     /** @type {any} */
@@ -69,7 +70,10 @@ export class Floor {
     this.isStale = true;
   }
 
-  /** The robot at a place, or -1. @param {{x: number, y: number}} p */
+  /**
+   * The robot at a place, or -1.
+   * @param {{x: number, y: number}} p
+   */
   robotAt(p) {
     if (!this.frame || !this.scene) return -1;
     const {values, rows, stride} = this.frame.sections.robots;

@@ -6,14 +6,20 @@ export function number(value, digits = 0) {
   return value === undefined || value === null || Number.isNaN(value) ? "–" : value.toFixed(digits);
 }
 
-/** A share in percent, which never shows 100 % for less. @param {number | undefined} share */
+/**
+ * A share in percent, which never shows 100 % for less.
+ * @param {number | undefined} share
+ */
 export function percent(share) {
   if (share === undefined || share === null) return "–";
   const shown = Math.floor(share * 1000) / 10;
   return `${shown.toFixed(1)} %`;
 }
 
-/** The time of day in UTC, to a millisecond. @param {number} seconds since 1970 */
+/**
+ * The time of day in UTC, to a millisecond.
+ * @param {number} seconds since 1970
+ */
 export function timeOfDay(seconds) {
   if (!Number.isFinite(seconds)) return "–";
   return new Date(seconds * 1000).toISOString().slice(11, 23);

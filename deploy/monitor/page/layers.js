@@ -14,7 +14,10 @@ const kTrail_s = 5;
 /** What panels know and frames do not. */
 export const shared = {zones: /** @type {any[]} */ ([]), goals: /** @type {Map<number, number[][]>} */ (new Map())};
 
-/** Calls `use` with the index of each robot's row. @param {View} view @param {(v: Float32Array, at: number, c: any) => void} use */
+/**
+ * Calls `use` with the index of each robot's row.
+ * @param {View} view @param {(v: Float32Array, at: number, c: any) => void} use
+ */
 function eachRobot(view, use) {
   const {values, rows, stride} = view.frame.sections.robots;
   const c = view.scene.layout.columns.robots;
@@ -35,7 +38,10 @@ function addPolygon(path, corners) {
 }
 
 let mapLoaded = () => {};
-/** Calls back when the map can be drawn. @param {() => void} callback */
+/**
+ * Calls back when the map can be drawn.
+ * @param {() => void} callback
+ */
 export function onMapLoaded(callback) {
   mapLoaded = callback;
 }
@@ -43,7 +49,10 @@ export function onMapLoaded(callback) {
 /** @type {Map<any, HTMLCanvasElement>} */
 const maps = new Map();
 
-/** The cells of the map as a picture. @param {any} map */
+/**
+ * The cells of the map as a picture.
+ * @param {any} map
+ */
 function pictureOf(map) {
   const known = maps.get(map);
   if (known) return known;
@@ -112,7 +121,10 @@ function drawZones(c, view) {
 
 const kSpanEnd = {x: 0, y: 0};
 
-/** The floor that a version covers. @param {CanvasRenderingContext2D} c @param {View} view @param {string} kind */
+/**
+ * The floor that a version covers.
+ * @param {CanvasRenderingContext2D} c @param {View} view @param {string} kind @param {string} colour
+ */
 function drawCovered(c, view, kind, colour) {
   const path = new Path2D();
   /** @type {[Path2D, number][]} */
@@ -136,7 +148,10 @@ function drawCovered(c, view, kind, colour) {
   }
 }
 
-/** The path of a version. @param {CanvasRenderingContext2D} c @param {View} view @param {string} kind */
+/**
+ * The path of a version.
+ * @param {CanvasRenderingContext2D} c @param {View} view @param {string} kind @param {string} colour @param {number[]} dash
+ */
 function drawPath(c, view, kind, colour, dash) {
   const path = new Path2D();
   const column = view.scene.layout.columns.robots[`${kind}_start`];
@@ -205,7 +220,7 @@ function drawRobots(c, view) {
   c.stroke(paths.selected);
 }
 
-/** @param {CanvasRenderingContext2D} c @param {View} view @param {string[]} names */
+/** @param {CanvasRenderingContext2D} c @param {View} view @param {string[]} names @param {string} colour */
 function drawOutlines(c, view, names, colour) {
   const path = new Path2D();
   eachRobot(view, (v, at, columns) => addCircle(path, v[at + columns[names[0]]], v[at + columns[names[1]]], view.scene.radius_m));
@@ -258,7 +273,10 @@ function drawGoals(c, view) {
   c.setLineDash([]);
 }
 
-/** Where robots intend to go: the next point, then the goal. @param {CanvasRenderingContext2D} c @param {View} view */
+/**
+ * Where robots intend to go: the next point, then the goal.
+ * @param {CanvasRenderingContext2D} c @param {View} view
+ */
 function drawIntents(c, view) {
   const path = new Path2D();
   eachRobot(view, (v, at, columns) => {
@@ -309,7 +327,10 @@ function drawConflicts(c, view) {
   c.stroke(circles);
 }
 
-/** All versions in the coordinator's ledger. @param {CanvasRenderingContext2D} c @param {View} view */
+/**
+ * All versions in the coordinator's ledger.
+ * @param {CanvasRenderingContext2D} c @param {View} view
+ */
 function drawLedger(c, view) {
   const {values, rows, stride} = view.frame.sections.ledger;
   const path = new Path2D();
@@ -320,7 +341,10 @@ function drawLedger(c, view) {
   c.stroke(path);
 }
 
-/** Opponents and people, and how far each can have got since it was seen. @param {CanvasRenderingContext2D} c @param {View} view */
+/**
+ * Opponents and people, and how far each can have got since it was seen.
+ * @param {CanvasRenderingContext2D} c @param {View} view
+ */
 function drawMovingObstacles(c, view) {
   const {values: v, rows, stride} = view.frame.sections.obstacles;
   const columns = view.scene.layout.columns.obstacles;
@@ -352,7 +376,10 @@ function drawBall(c, view) {
   c.fill(path);
 }
 
-/** What cameras detect, before vision combines it. @param {CanvasRenderingContext2D} c @param {View} view */
+/**
+ * What cameras detect, before vision combines it.
+ * @param {CanvasRenderingContext2D} c @param {View} view
+ */
 function drawDetections(c, view) {
   const {values: v, rows, stride} = view.frame.sections.detections;
   const columns = view.scene.layout.columns.detections;
@@ -380,7 +407,10 @@ function drawScans(c, view) {
   c.fill(path);
 }
 
-/** Places of the last seconds, by robot. @type {Map<number, {time: number, x: number, y: number}[]>} */
+/**
+ * Places of the last seconds, by robot.
+ * @type {Map<number, {time: number, x: number, y: number}[]>}
+ */
 const trails = new Map();
 let trailTime = 0;
 
@@ -406,7 +436,10 @@ function drawTrails(c, view) {
   c.stroke(path);
 }
 
-/** From below to above. @type {Layer[]} */
+/**
+ * From below to above.
+ * @type {Layer[]}
+ */
 export const layers = [
   {id: "field", name: "Field", key: "1", on: true, draw: drawField},
   {id: "obstacles", name: "Obstacles and map", key: "2", on: true, draw: drawObstacles},

@@ -50,7 +50,7 @@ function select(robot) {
   if (monitor.panels) updateRobots(monitor.panels, monitor.scene, robot);
 }
 floor.onSelect = select;
-floor.onDrag = (robot, x, y) => {
+floor.onDrag = (/** @type {number} */ robot, /** @type {number} */ x, /** @type {number} */ y) => {
   if (!monitor.scene.can_command) return;
   select(robot);
   controls.post(`/api/robots/${robot}/order`, {goals: [[x, y]]});

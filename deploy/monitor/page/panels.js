@@ -85,7 +85,10 @@ export const robotTable = new Table(
      {title: "Error mm"}],
     "Robots");
 
-/** The reasons of denials, most frequent first. @param {Record<string, number>} reasons */
+/**
+ * The reasons of denials, most frequent first.
+ * @param {Record<string, number>} reasons
+ */
 function reasonsText(reasons) {
   return Object.entries(reasons || {}).sort((a, b) => b[1] - a[1]).map(([reason, times]) => `${reason} ${times}`).join(", ");
 }
@@ -138,9 +141,12 @@ export function updateCoordinators(panels) {
   epochTable.update(panels.epochs.slice().reverse().map((/** @type {any} */ e) => ({
     key: e.begun_s, cells: [String(e.epoch), timeOfDay(e.begun_s), e.coordinator, e.reason]})));
 }
-epochTable.onClick = (at) => seekTo(at);
+epochTable.onClick = (/** @type {number} */ at) => seekTo(at);
 
-/** Replaced by main.js. @type {(at_s: number) => void} */
+/**
+ * Replaced by main.js.
+ * @type {(at_s: number) => void}
+ */
 let seekTo = () => {};
 /** @param {(at_s: number) => void} seek */
 export function onSeek(seek) {
@@ -178,7 +184,10 @@ export function updateTopics(panels) {
   }));
 }
 
-/** What DDS tells of processes and hosts. @param {{hosts: any[], mismatches: string[]}} network */
+/**
+ * What DDS tells of processes and hosts.
+ * @param {{hosts: any[], mismatches: string[]}} network
+ */
 export function updateNetwork(network) {
   mismatchList.replaceChildren(...network.mismatches.map((/** @type {string} */ m) => create("li", {class: "error"}, m)));
   hostList.textContent = network.hosts.map((/** @type {any} */ h) => `${h.host}: ${h.participants.join(", ")}`).join(" · ");
@@ -187,7 +196,7 @@ export function updateNetwork(network) {
 const eventTable = new Table([{title: "Time", text: true}, {title: "What", text: true}, {title: "", wraps: true}], "Events");
 export const eventPanel = eventTable.node;
 const kShownEvents = 300;
-eventTable.onClick = (at) => seekTo(at);
+eventTable.onClick = (/** @type {number} */ at) => seekTo(at);
 
 /** @param {any[]} events */
 export function updateEvents(events) {
@@ -198,6 +207,7 @@ export function updateEvents(events) {
   })));
 }
 
+/** @type {Record<string, string>} */
 const kShapes = {"kept": "✓", "broken": "✕", "not judged": "?"};
 
 /** @param {any} promise */

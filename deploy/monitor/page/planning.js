@@ -4,7 +4,10 @@ import {Connection} from "./connection.js";
 import {element, number} from "./format.js";
 
 const kColours = {blocked: "#d55e00", free: "#009e7388", unchecked: "#8b96a155"};
-/** What tests look at. @type {any} */
+/**
+ * What tests look at.
+ * @type {any}
+ */
 const planning = {plan: null, plans: 0};
 /** @type {any} */ (window).planning = planning;
 

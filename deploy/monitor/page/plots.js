@@ -6,7 +6,10 @@ const kColours = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e0
 const kSpan_s = 30;
 const kMaxPoints = 6000;
 
-/** The numbers of a message by their paths, e.g. "executing.x_m". @param {any} value @param {string} path @param {Map<string, number>} found */
+/**
+ * The numbers of a message by their paths, e.g. "executing.x_m".
+ * @param {any} value @param {string} path @param {Map<string, number>} found
+ */
 export function numbersOf(value, path, found) {
   if (typeof value === "number") found.set(path, value);
   else if (typeof value === "boolean") found.set(path, value ? 1 : 0);

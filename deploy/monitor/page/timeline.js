@@ -2,6 +2,7 @@
 // The moment that is shown: slider, event marks and buttons.
 import {element, timeOfDay} from "./format.js";
 
+/** @type {Record<string, string>} */
 const kColours = {info: "#8b96a1", warning: "#e69f00", error: "#d55e00"};
 
 export class Timeline {
@@ -70,7 +71,10 @@ export class Timeline {
     this.send({op: "step", frames});
   }
 
-  /** To the next event after the moment shown, or the previous one. @param {number} direction */
+  /**
+   * To the next event after the moment shown, or the previous one.
+   * @param {number} direction
+   */
   toEvent(direction) {
     const times = this.events.map((event) => event.at_s).sort((a, b) => a - b);
     const found = direction > 0 ? times.find((t) => t > this.shown_s + 0.03) : times.reverse().find((t) => t < this.shown_s - 0.03);

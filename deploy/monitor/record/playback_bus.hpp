@@ -41,8 +41,8 @@ class PlaybackBus : public Bus {
   [[nodiscard]] bool play_next(PlaybackResult& result);
   /// A part of the file that was read, and the time of its first message.
   struct ChunkPosition {
-    Time first_at;
-    std::uint64_t offset;
+    Time first_at{};
+    std::uint64_t offset = 0;
   };
   /// In the order of the file.
   const std::vector<ChunkPosition>& chunks() const { return chunks_; }

@@ -77,6 +77,7 @@ std::vector<std::string> mismatches(const Group& group) {
     }
   }
   std::vector<std::string> result;
+  result.reserve(pairs.size());
   for (const auto& [reason, endpoints] : pairs)
     result.push_back(fmt::format("{} ({})", reason, join(endpoints, ", ")));
   return result;
@@ -135,7 +136,8 @@ std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints, cons
 std::vector<std::string> mismatch_lines(const std::vector<DiscoveredEndpoint>& endpoints) {
   std::vector<std::string> lines;
   for (const auto& [topic, group] : by_topic(endpoints))
-    for (const std::string& mismatch : mismatches(group)) lines.push_back(topic + ": " + mismatch);
+    for (const std::string& mismatch : mismatches(group))
+      lines.push_back(fmt::format("{}: {}", topic, mismatch));
   return lines;
 }
 

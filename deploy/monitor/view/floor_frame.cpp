@@ -100,7 +100,8 @@ void add_robot(Rows& rows, RobotId id, const RobotView& robot, Time now) {
     rows.unknown(6);
   }
   rows.add(denial ? static_cast<double>(denial->reason) : kUnknown);
-  rows.add(denial && denial->reason == msg::Reason::REASON_CONFLICT ? denial->blocker : kUnknown);
+  rows.add(denial && denial->reason == msg::Reason::REASON_CONFLICT ? static_cast<double>(denial->blocker)
+                                                                    : kUnknown);
   const msg::Version* intending = granted ? granted : proposed;
   if (intending && intending->has_intent()) {
     const msg::Intent& intent = intending->intent();

@@ -126,7 +126,7 @@ bool McapReader::open_chunk(Bytes content) {
   const std::string compression = decoder.text();
   const auto stored_size = decoder.number<std::uint64_t>();
   if (!decoder.is_ok() || size > kMaxRecordSize || (!is_cut_ && stored_size != decoder.left().size()) ||
-      (compression != "" && compression != "zstd")) {
+      (!compression.empty() && compression != "zstd")) {
     fail("a chunk is damaged, or compressed by other means than zstd");
     return false;
   }

@@ -158,9 +158,10 @@ class Encoder {
     const std::string prefix = name.empty() ? "" : name + ".";
     if (json) {
       if (!json->is_object()) fail(name, "an object", *json);
-      for (const auto& [key, value] : json->items())
-        if (std::ranges::none_of(type.members, [&](const IdlMember& member) { return member.name == key; }))
-          throw IdlEncodingError(fmt::format("{}{}: {} has no such member", prefix, key, type.name));
+      for (const auto& item : json->items())
+        if (std::ranges::none_of(type.members,
+                                 [&](const IdlMember& member) { return member.name == item.key(); }))
+          throw IdlEncodingError(fmt::format("{}{}: {} has no such member", prefix, item.key(), type.name));
     }
     for (const IdlMember& member : type.members) {
       if (member.is_optional)

@@ -135,7 +135,7 @@ TEST_CASE("a truncated recording is played up to the cut, and the truncation is 
     const AuditedPlayback played = play(file);
     CHECK(played.result.messages > before);
     // The file's size grows nearly evenly with the messages; less so in the middle of compressed blocks.
-    CHECK(played.result.messages > all * tenth / 10 * (is_compressed ? 0.6 : 0.9));
+    CHECK(played.result.messages > static_cast<double>(all * tenth) / 10 * (is_compressed ? 0.6 : 0.9));
     CHECK(played.result.messages < all);
     CHECK(played.result.damage != "");
     CHECK(played.audit.violations == 0);

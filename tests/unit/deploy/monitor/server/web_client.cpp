@@ -81,9 +81,13 @@ SocketClient::SocketClient(std::uint16_t port, const std::string& protocol,
 }
 
 SocketClient::~SocketClient() {
-  beast::get_lowest_layer(impl_->stream).close();
-  impl_->context.restart();
-  impl_->context.run_for(std::chrono::seconds(1));  // ends a read in progress
+  try {
+    beast::get_lowest_layer(impl_->stream).close();
+    impl_->context.restart();
+    impl_->context.run_for(std::chrono::seconds(1));  // ends a read in progress
+  } catch (const std::exception&) {
+    // The connection is gone in any case.
+  }
 }
 
 void SocketClient::send(const std::string& message, bool is_binary) {
