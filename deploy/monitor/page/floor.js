@@ -3,7 +3,7 @@
 import {element} from "./format.js";
 
 export class Floor {
-  /** @param {import("./layers.js").Layer[]} layers */
+  /** @param {import("./shapes.js").Layer[]} layers */
   constructor(layers) {
     this.layers = layers;
     this.canvas = element("floor");

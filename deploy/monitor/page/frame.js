@@ -3,7 +3,7 @@
 
 /** Where the columns of each section are. */
 export class Layout {
-  /** @param {{sections: {name: string, columns: string[]}[], flags: string[], max_phases: number}} json */
+  /** @param {{sections: {name: string, columns: string[]}[], flags: string[]}} json */
   constructor(json) {
     this.names = json.sections.map((section) => section.name);
     this.strides = json.sections.map((section) => section.columns.length);
@@ -13,7 +13,6 @@ export class Layout {
       this.columns[section.name] = Object.fromEntries(section.columns.map((name, index) => [name, index]));
     /** @type {Record<string, number>} */
     this.flags = Object.fromEntries(json.flags.map((name, index) => [name, 1 << index]));
-    this.maxPhases = json.max_phases;
   }
 }
 

@@ -5,10 +5,12 @@ import {Controls} from "./controls.js";
 import {Floor} from "./floor.js";
 import {create, element} from "./format.js";
 import {Frame, Layout} from "./frame.js";
-import {layers, onMapLoaded, shared} from "./layers.js";
+import {onMapLoaded} from "./floor_layers.js";
+import {layers} from "./layers.js";
 import {coordinatorPanel, eventPanel, onSeek, robotTable, Tabs, topicPanel, updateCoordinators, updateEvents, updateLamp,
         updateNetwork, updateRobots, updateTopics} from "./panels.js";
 import {Inspector} from "./plots.js";
+import {shared} from "./shapes.js";
 import {Timeline} from "./timeline.js";
 
 const link = new URLSearchParams(location.hash.slice(1));

@@ -84,7 +84,8 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
     end();
     beast::get_lowest_layer(stream_).close();
   }
-  void close(const std::string& reason) override {
+  /// Disconnects, for a reason that the viewer gets.
+  void close(const std::string& reason) {
     if (is_closing_) return;
     is_closing_ = true;
     stream_.async_close({websocket::close_code::policy_error, reason.substr(0, 120)},

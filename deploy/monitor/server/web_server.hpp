@@ -34,8 +34,6 @@ class WebSocket {
   virtual void send_state(unsigned slot, WebMessage message) = 0;
   /// Sent in any case, or the viewer is disconnected.
   virtual void send_event(WebMessage message) = 0;
-  /// Disconnects, for a reason that the viewer gets.
-  virtual void close(const std::string& reason) = 0;
 };
 
 /// What a server calls. All calls come from the thread that polls it.

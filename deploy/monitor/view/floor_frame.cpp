@@ -20,8 +20,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array kRobotColumns{
     "id",           "flags",    "state",  "true_x",  "true_y", "true_heading", "seen_x",         "seen_y",
     "seen_heading", "x",        "y",      "heading", "vx",     "vy",           "tracking_error", "denied",
-    "blocker",      "goal_x",   "goal_y", "via_x",   "via_y",  "intent_vx",    "intent_vy",      "intent_s",
-    "nearest_x",    "nearest_y"};
+    "blocker",      "goal_x",   "goal_y", "via_x",   "via_y",  "nearest_x",    "nearest_y"};
 constexpr std::array kVersionColumns{
     "start",     "x",   "y",   "vx",        "vy",  "inflation", "phases",    "duration0", "ax0", "ay0",
     "duration1", "ax1", "ay1", "duration2", "ax2", "ay2",       "duration3", "ax3",       "ay3"};
@@ -106,9 +105,8 @@ void add_robot(Rows& rows, RobotId id, const RobotView& robot, Time now) {
   if (intending && intending->has_intent()) {
     const msg::Intent& intent = intending->intent();
     rows.add(intent.target_x_m()).add(intent.target_y_m()).add(intent.via_x_m()).add(intent.via_y_m());
-    rows.add(intent.vx_mps()).add(intent.vy_mps()).add(intent.velocity_duration_s());
   } else {
-    rows.unknown(7);
+    rows.unknown(4);
   }
   is_blocked ? rows.add(order->nearest_x_m()).add(order->nearest_y_m()) : rows.unknown(2);
   add_version(rows, feedback ? &feedback->executing() : nullptr, now);
@@ -211,7 +209,7 @@ nlohmann::ordered_json frame_layout() {
   nlohmann::ordered_json sections = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < kSections.size(); ++i)
     sections.push_back({{"name", kSections[i]}, {"columns", columns[i]}});
-  return {{"sections", sections}, {"flags", names(kFlags)}, {"max_phases", msg::MAX_PHASES}};
+  return {{"sections", sections}, {"flags", names(kFlags)}};
 }
 
 }  // namespace sidestep

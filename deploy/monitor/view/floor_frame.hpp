@@ -23,8 +23,8 @@ namespace sidestep {
 /// frame_layout() names the sections and the columns of their rows. What is not known is NaN.
 [[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
 
-/// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …],
-/// "max_phases": 4}: the columns `executing`, `granted` and `proposed` are the first ones of a version each.
+/// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …]}. The flags are
+/// the bits of the column of this name, from the lowest.
 [[nodiscard]] nlohmann::ordered_json frame_layout();
 
 }  // namespace sidestep

@@ -24,7 +24,6 @@ class FakeClient : public WebSocket {
  public:
   void send_state(unsigned, WebMessage message) override { received.push_back(*message.payload); }
   void send_event(WebMessage message) override { texts.push_back(Json::parse(*message.payload)); }
-  void close(const std::string&) override {}
 
   std::vector<std::string> received;
   std::vector<Json> texts;

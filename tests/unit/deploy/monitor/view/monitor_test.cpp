@@ -35,7 +35,6 @@ class FakeViewer : public WebSocket {
     else
       states[json.at("type")] = json;
   }
-  void close(const std::string&) override {}
 
   double time_s() const {
     double value = 0;
