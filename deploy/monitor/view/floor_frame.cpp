@@ -18,9 +18,9 @@ static_assert(std::endian::native == std::endian::little);
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 constexpr std::array kRobotColumns{
-    "id",           "flags",    "state",  "true_x",  "true_y", "true_heading", "seen_x",         "seen_y",
-    "seen_heading", "x",        "y",      "heading", "vx",     "vy",           "tracking_error", "denied",
-    "blocker",      "goal_x",   "goal_y", "via_x",   "via_y",  "nearest_x",    "nearest_y"};
+    "id",           "flags",  "state",  "true_x",  "true_y", "true_heading", "seen_x",         "seen_y",
+    "seen_heading", "x",      "y",      "heading", "vx",     "vy",           "tracking_error", "denied",
+    "blocker",      "goal_x", "goal_y", "via_x",   "via_y",  "nearest_x",    "nearest_y"};
 constexpr std::array kVersionColumns{
     "start",     "x",   "y",   "vx",        "vy",  "inflation", "phases",    "duration0", "ax0", "ay0",
     "duration1", "ax1", "ay1", "duration2", "ax2", "ay2",       "duration3", "ax3",       "ay3"};
