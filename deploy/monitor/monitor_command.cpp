@@ -2,6 +2,7 @@
 #include "deploy/monitor/monitor_command.hpp"
 
 #include <atomic>
+#include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
@@ -10,13 +11,16 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/monitor/camera_view.hpp"
 #include "deploy/monitor/control/control_api.hpp"
+#include "deploy/monitor/fields/robot_fields.hpp"
 #include "deploy/monitor/foxglove/foxglove_server.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/monitor/monitor_recorder.hpp"
@@ -58,15 +62,21 @@ WebResponse page_file(const WebRequest& request) {
   return {200, file->content_type, request.method == "GET" ? std::string(file->content) : std::string()};
 }
 
+/// What a monitor can do besides showing; nullptr: it cannot.
+struct MonitorParts {
+  ControlApi* control = nullptr;
+  NetworkView* network = nullptr;
+  MonitorRecorder* recorder = nullptr;
+  CameraView* cameras = nullptr;
+  RobotFields* fields = nullptr;
+};
+
 /// A monitor and its server.
 class MonitorServer {
  public:
-  /// nullptr: `control`: nobody may command; `network`: there is none; `recorder`: nothing is recorded.
-  MonitorServer(const MonitorOptions& options, Monitor& monitor, ControlApi* control, NetworkView* network,
-                MonitorRecorder* recorder)
+  MonitorServer(const MonitorOptions& options, Monitor& monitor, const MonitorParts& parts)
       : monitor_(monitor),
-        control_(control),
-        network_(network),
+        parts_(parts),
         server_(options.access, protocols(),
                 {[this](const WebRequest& request) { return respond(request); },
                  [this](WebSocket& socket, const std::string& protocol) { add(socket, protocol); },
@@ -78,9 +88,12 @@ class MonitorServer {
                               : monitor_.on_message(socket, message, DdsBus::clock());
                  },
                  [this](WebSocket& socket) { remove(socket); }}) {
-    monitor_.on_any_message([this, recorder](const AnyMessage& message) {
+    monitor_.on_any_message([this](const AnyMessage& message) {
       foxglove_.publish(message, monitor_.now());
-      if (recorder) recorder->add(message, monitor_.now());
+      if (parts_.recorder) parts_.recorder->add(message, monitor_.now());
+      if (parts_.fields && std::string_view(message.topic.name) == topics::kScan.name)
+        parts_.fields->on(*static_cast<const msg::LaserScan*>(message.message), monitor_.floor(),
+                          monitor_.now());
     });
     const AccessSettings& access = server_.access();
     fmt::print("monitor: http://{}:{}/{}\n", access.address, access.port,
@@ -134,18 +147,49 @@ class MonitorServer {
   WebResponse respond(const WebRequest& request) {
     if (!request.path.starts_with("/api/")) return page_file(request);
     if (auto response = monitor_.respond(request)) return *response;
-    if (network_ && request.method == "GET" && request.path == "/api/network")
-      return {200, "application/json", network_->json()};
-    if (control_)
-      if (auto response = control_->respond(request)) return *response;
+    if (parts_.network && request.method == "GET" && request.path == "/api/network")
+      return {200, "application/json", parts_.network->json()};
+    if (auto response = camera_image(request)) return *response;
+    if (auto response = fields(request)) return *response;
+    if (parts_.control)
+      if (auto response = parts_.control->respond(request)) return *response;
     if (request.method != "GET" && !request.command_refusal.empty())
       return {401, "text/plain", request.command_refusal + "\n"};
     return not_found(request.path);
   }
 
+  static std::optional<std::uint32_t> number_in(std::string_view text) {
+    std::uint32_t number = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+    return end.ec == std::errc() && end.ptr == text.data() + text.size() ? std::optional(number)
+                                                                         : std::nullopt;
+  }
+
+  /// "/api/fields/3"
+  std::optional<WebResponse> fields(const WebRequest& request) {
+    constexpr std::string_view kBegin = "/api/fields/";
+    if (!parts_.fields || request.method != "GET" || !request.path.starts_with(kBegin)) return std::nullopt;
+    const auto robot = number_in(std::string_view(request.path).substr(kBegin.size()));
+    if (!robot) return std::nullopt;
+    return WebResponse{200, "application/json",
+                       parts_.fields->json(*robot, monitor_.floor(), monitor_.now()).dump()};
+  }
+
+  /// "/api/cameras/0.jpg"
+  std::optional<WebResponse> camera_image(const WebRequest& request) {
+    constexpr std::string_view kBegin = "/api/cameras/", kEnd = ".jpg";
+    const std::string_view path = request.path;
+    if (!parts_.cameras || request.method != "GET" || !path.starts_with(kBegin) || !path.ends_with(kEnd))
+      return std::nullopt;
+    const auto camera = number_in(path.substr(0, path.size() - kEnd.size()).substr(kBegin.size()));
+    if (!camera) return std::nullopt;
+    const auto jpeg = parts_.cameras->jpeg(*camera, monitor_.floor(), monitor_.now());
+    if (!jpeg) return WebResponse{404, "text/plain", "there is no image of this camera yet\n"};
+    return WebResponse{200, "image/jpeg", *jpeg};
+  }
+
   Monitor& monitor_;
-  ControlApi* control_;
-  NetworkView* network_;
+  MonitorParts parts_;
   FoxgloveServer foxglove_;
   std::set<WebSocket*> foxglove_viewers_;
   std::map<WebSocket*, PlanningScene> planning_;
@@ -193,15 +237,25 @@ int monitor_system(const MonitorOptions& options) {
     control.emplace(bus, hooks);
   }
   NetworkView network(options.dds);
-  MonitorServer server(options, monitor, control ? &*control : nullptr, &network,
-                       recorder ? &*recorder : nullptr);
+  std::optional<CameraView> cameras;
+  std::optional<RobotFields> fields;
+  if (scenario) {
+    cameras.emplace(*scenario, options.dds);
+    fields.emplace(*scenario);
+  }
+  MonitorServer server(options, monitor,
+                       {control ? &*control : nullptr, &network, recorder ? &*recorder : nullptr,
+                        cameras ? &*cameras : nullptr, fields ? &*fields : nullptr});
   const StopSignals stop_signals([&bus] { bus.stop(); });
   call_periodically(bus, Monitor::kFramePeriod, [&] {
     monitor.take_snapshot();
     server.update(bus.now());
     if (recorder) recorder->add_scene(monitor.floor(), bus.now());
   });
-  call_periodically(bus, kPollPeriod, [&] { server.server().poll(); });
+  call_periodically(bus, kPollPeriod, [&] {
+    server.server().poll();
+    if (cameras) cameras->poll(bus.now());
+  });
   call_periodically(bus, kFlushPeriod, [&] {
     if (recorder) recorder->flush();
   });
@@ -222,7 +276,7 @@ int monitor_recording(const MonitorOptions& options) {
     return recorded.between(channel, from, to);
   };
   Monitor monitor(bus, settings);
-  MonitorServer server(options, monitor, nullptr, nullptr, nullptr);
+  MonitorServer server(options, monitor, {});
   bus.on_event([&monitor](Time at, const std::string& kind, const std::string& text) {
     monitor.events().add({0, at, Severity::kInfo, kind, text});
   });

@@ -80,6 +80,12 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
       if (r.robot() == robot) return std::hypot(r.x_m() - x_m, r.y_m() - y_m) < 0.05;
     return false;
   };
+  // What the selected robot could plan by.
+  for (const char* layer : {"navigation", "band", "local"}) page.click(std::string("layer-") + layer);
+  page.run("document.querySelector('#panel-robots [data-key=\"1\"]').click()");
+  const Json fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
+  CHECK(fields.at("navigation").at("values").size() > 1000);
+  CHECK(http_request(monitor.port(), "GET", "/api/fields/x").status == 404);
   CHECK(run.wait_until([&] { return is_at(0, -1, -1) && is_at(1, 3, 1); }));
   page.click("tab-topics");
   for (const char* topic : {"proposal", "verdict"})
@@ -215,6 +221,24 @@ TEST_CASE("the page shows a recording, and a moment by its link") {
   CHECK(page.wait_until(drawn));
   page.run("document.getElementById('side').hidden = false");
   recording.end();
+}
+
+TEST_CASE("the page shows the images of cameras with the robots that vision sees", "[both-cores]") {
+  LaunchedRun run(crossing_images(30));
+  const MonitorProcess monitor(run);
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  Browser page;
+  page.open(monitor.url());
+  REQUIRE(page.wait_until("window.monitor && monitor.scene && document.getElementById('tab-cameras')"));
+  page.click("tab-cameras");
+  CHECK(page.wait_until(
+      "Array.from(document.querySelectorAll('.camera')).every((image) => image.naturalWidth > 100)",
+      polling(run)));
+  CHECK(page.run("return document.querySelectorAll('.camera').length") ==
+        page.run("return monitor.scene.cameras"));
+  for (const char* path :
+       {"/api/cameras/99.jpg", "/api/cameras/x.jpg", "/api/cameras/.jpg", "/api/cameras/-1.jpg"})
+    CHECK(http_request(monitor.port(), "GET", path).status == 404);
 }
 
 TEST_CASE("a roadmap adapts while obstacles are dragged on the page") {

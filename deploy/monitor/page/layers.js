@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that can be drawn on the floor.
+import {drawBand, drawLocalGrid, drawNavigation} from "./fields.js";
 import {drawBall, drawDetections, drawField, drawMovingObstacles, drawObstacles, drawScans, drawZones} from "./floor_layers.js";
 import {drawBraked, drawConflicts, drawCovered, drawGoals, drawIntents, drawLabels, drawLedger, drawOutlines, drawPath, drawRobots,
         drawTrails} from "./robot_layers.js";
@@ -14,6 +15,9 @@ import {kBlue, kGreen, kOrange, kPurple} from "./shapes.js";
 export const layers = [
   {id: "field", name: "Field", key: "1", on: true, draw: drawField},
   {id: "obstacles", name: "Obstacles and map", key: "2", on: true, draw: drawObstacles},
+  {id: "navigation", name: "Navigation function of the selected robot", key: "a", on: false, draw: drawNavigation},
+  {id: "local", name: "Local grid of the selected robot", key: "x", on: false, draw: drawLocalGrid},
+  {id: "band", name: "Band of the selected robot", key: "y", on: false, draw: drawBand},
   {id: "zones", name: "Zones", key: "3", on: true, draw: drawZones},
   {id: "trails", name: "Trails", key: "4", on: true, draw: drawTrails},
   {id: "ledger", name: "Ledger", key: "5", on: false, draw: drawLedger},

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The monitor's page: connects its parts.
+import {Cameras} from "./cameras.js";
 import {Connection} from "./connection.js";
 import {Controls} from "./controls.js";
+import {watchFields} from "./fields.js";
 import {Floor} from "./floor.js";
 import {create, element} from "./format.js";
 import {Frame, Layout} from "./frame.js";
@@ -28,6 +30,7 @@ const timeline = new Timeline(send);
 const inspector = new Inspector(send);
 const controls = new Controls(token);
 const tabs = new Tabs();
+const cameras = new Cameras(() => tabs.shown === "cameras" && monitor.connection === "connected");
 /** @type {Layout | null} */
 let layout = null;
 
@@ -43,6 +46,10 @@ setInterval(async () => {
   const response = await fetch("/api/network").catch(() => null);
   if (response && response.ok) updateNetwork(await response.json());
 }, 2000);
+
+const fieldLayers = layers.filter((layer) => ["navigation", "local", "band"].includes(layer.id));
+watchFields(() => (timeline.mode === "live" && fieldLayers.some((layer) => layer.on) ? floor.selected : -1),
+            () => (floor.isStale = true));
 
 /** @param {number} robot */
 function select(robot) {
@@ -72,6 +79,10 @@ function useScene(scene) {
   element("live").textContent = scene.is_recording ? "End" : "Live";
   inspector.setChannels(scene.channels);
   if (scene.can_command && isFirst) tabs.add("control", "Control", controls.node);
+  if (isFirst && scene.cameras > 0 && !scene.is_recording) {
+    tabs.add("cameras", "Cameras", cameras.node);
+    cameras.start(scene.cameras);
+  }
   element("bookmark").hidden = element("record").hidden = !scene.can_command;
   if (isFirst) floor.fit();
   if (inspector.channel.value) inspector.choose();

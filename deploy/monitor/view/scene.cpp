@@ -60,6 +60,7 @@ Json scene_json(const Scenario* scenario) {
              {"speed_mps", s.limits.speed_mps},
              {"opponent_speed_mps", s.max_opponent_speed_mps},
              {"cycle_s", to_seconds(s.cycle)},
+             {"cameras", s.vision.images ? s.vision.columns * s.vision.rows : 0},
              {"obstacles", obstacles},
              {"robots", robots},
              {"layout", frame_layout()}};

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images of the cameras, with crosses where vision sees the robots.
+import {create} from "./format.js";
+
+const kPeriod_ms = 300;
+
+export class Cameras {
+  /** @param {() => boolean} isShown */
+  constructor(isShown) {
+    this.node = create("div", {});
+    this.isShown = isShown;
+    /** @type {HTMLImageElement[]} */
+    this.images = [];
+  }
+
+  /** @param {number} count */
+  start(count) {
+    this.images = Array.from({length: count}, (_, i) => create("img", {class: "camera", alt: `Image of camera ${i}`}));
+    this.node.replaceChildren(...this.images);
+    setInterval(() => this.update(), kPeriod_ms);
+  }
+
+  async update() {
+    if (!this.isShown()) return;
+    for (const [i, image] of this.images.entries()) {
+      const response = await fetch(`/api/cameras/${i}.jpg`).catch(() => null);
+      if (!response || !response.ok) continue;
+      URL.revokeObjectURL(image.src);
+      image.src = URL.createObjectURL(await response.blob());
+    }
+  }
+}
