@@ -62,7 +62,7 @@ Json cylinder(double x_m, double y_m, double radius_m, double height_m, double h
 
 /// The way on which the robot comes to rest, as a line. Null: there is none.
 Json stop_line(const msg::Version& message, Time now) {
-  constexpr int kPoints = 12;
+  constexpr int kPoints = 6;
   const std::optional<Version> version = decode(message);
   if (!version) return nullptr;
   const Trajectory& trajectory = version->trajectory;

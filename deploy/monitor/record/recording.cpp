@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 #include "common/map/map_file.hpp"
 #include "common/messaging/cdr.hpp"
@@ -23,6 +24,12 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
 /// "CDR, little-endian", before the bytes of every message, as on the wire.
 constexpr std::array<std::uint8_t, 4> kEncapsulation{0, 1, 0, 0};
+
+/// Whether scenes show something of the message.
+template <typename Message>
+constexpr bool kIsInScene =
+    std::is_same_v<Message, msg::GroundTruth> || std::is_same_v<Message, msg::WorldState> ||
+    std::is_same_v<Message, msg::Feedback> || std::is_same_v<Message, msg::ObstacleList>;
 
 std::uint64_t unsigned_ns(std::int64_t ns) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
@@ -115,7 +122,7 @@ void record(Bus& bus, const Scenario& scenario, RecordingWriter& writer) {
       bus.observe<Message>(topic, robot, [&bus, &writer, topic, channel, floor](const Message& message) {
         const Time now = bus.now();
         writer.add(now, topic, channel, message.header(), &message);
-        if constexpr (requires { floor->on(message, now); }) floor->on(message, now);
+        if constexpr (kIsInScene<Message>) floor->on(message, now);
       });
     }
   });

@@ -47,7 +47,7 @@ class RecordingWriter {
   void add_scene(Time now, const FloorState& floor, double radius_m);
   /// The period in which that is worth its size.
   static Duration scene_period(std::size_t robots) {
-    return std::max<Duration>(std::chrono::milliseconds(100), robots * std::chrono::milliseconds(2));
+    return std::max<Duration>(std::chrono::milliseconds(250), robots * std::chrono::milliseconds(5));
   }
   /// Something that happened and that no message tells, e.g. a bookmark: metadata of the name
   /// kEventMetadata with the keys at_ns, kind and text.
