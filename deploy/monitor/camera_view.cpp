@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// Without requests for so long, images are received no longer.
+/// Images are received until this long after the last request.
 constexpr Duration kPatience = std::chrono::seconds(5);
 
 }  // namespace

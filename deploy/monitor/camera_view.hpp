@@ -34,7 +34,7 @@ class CameraView {
 
   DdsSettings dds_;
   std::vector<Camera> cameras_;
-  std::unique_ptr<DdsBus> bus_;  ///< null while nobody asks
+  std::unique_ptr<DdsBus> bus_;  ///< null: no viewer has asked lately
   Time asked_at_{};
 };
 

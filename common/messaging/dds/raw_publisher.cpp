@@ -13,7 +13,7 @@ namespace {
 
 using namespace fast_dds::dds;
 
-/// The key of the message that is written next comes from outside, because nobody here knows the type.
+/// Takes the key of each message from the caller, because the layout of the bytes is unknown here.
 class KeyedRawType : public RawType {
  public:
   using RawType::RawType;

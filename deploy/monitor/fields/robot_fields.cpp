@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFinestCell_m = 0.05, kCellsAcross = 200;
-/// Without requests for so long, scans are no longer added.
+/// Scans are added until this long after the last request.
 constexpr Duration kPatience = std::chrono::seconds(5);
 
 Json point(const Vec2& p) { return {std::round(p.x() * 1e3) / 1e3, std::round(p.y() * 1e3) / 1e3}; }

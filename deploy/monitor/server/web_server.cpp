@@ -81,7 +81,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
   }
   void send_event(WebMessage message) override {
     if (outbox_.add_event(std::move(message))) return write();
-    end();
+    // The read in progress fails, and ends the session: later, because callers may be iterating over viewers.
     beast::get_lowest_layer(stream_).close();
   }
   /// Disconnects, for a reason that the viewer gets.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <utility>
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/process_names.hpp"
@@ -13,6 +14,9 @@
 
 namespace sidestep {
 namespace {
+
+/// Of senders that are remembered: anybody can invent some.
+constexpr std::size_t kMaxSenders = 1000;
 
 std::string who(std::uint32_t robot) {
   return robot == msg::ALL_ROBOTS ? std::string("all robots") : fmt::format("robot {}", robot);
@@ -52,6 +56,11 @@ bool EventWatch::has_changed(Watched what, std::uint32_t id, std::uint64_t value
   if (last->second == value) return false;
   last->second = value;
   return true;
+}
+
+bool EventWatch::is_new_order(std::uint32_t sender, std::uint64_t number) {
+  if (sent_orders_.size() >= kMaxSenders && !sent_orders_.contains(sender)) sent_orders_.clear();
+  return std::exchange(sent_orders_[sender], number) != number;
 }
 
 void EventWatch::on(const msg::GroundTruth& truth, Time now) {
@@ -162,7 +171,7 @@ void EventWatch::on(const msg::Order& order, Time now) {
   const msg::OrderKind kind = order.terms().order_kind();
   if (!is_enumerator(kind, msg::OrderKind::ORDER_REMOVE_ZONE)) return;
   // A client repeats its order until a coordinator answers.
-  if (!has_changed(Watched::kSentOrder, order.header().sender(), order.terms().order_number())) return;
+  if (!is_new_order(order.header().sender(), order.terms().order_number()) || !outside_.admit(now)) return;
   add(Severity::kInfo, "order",
       name_of_client(order.header().sender()) + " " +
           fmt::format(fmt::runtime(kTexts[static_cast<std::size_t>(kind)]), who(order.robot())),
@@ -177,19 +186,22 @@ void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
                               "a goal is outside the field",
                               "there are too many"};
   const auto result = static_cast<std::size_t>(answer.result());
-  if (result < 2 || result >= kTexts.size()) return;
+  if (result < 2 || result >= kTexts.size() || !outside_.admit(now)) return;
   add(Severity::kWarning, "order",
       fmt::format("an order of {} is refused: {}", name_of_client(answer.client()), kTexts.at(result)), now);
 }
 
 void EventWatch::on(const msg::Disturbance& disturbance, Time now) {
-  if (!is_enumerator(disturbance.disturbance_kind(), msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN)) return;
+  if (!is_enumerator(disturbance.disturbance_kind(), msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN) ||
+      !outside_.admit(now))
+    return;
   add(Severity::kWarning, "disturbance",
       fmt::format("{} is disturbed: {}", who(disturbance.robot()), to_text(disturbance.disturbance_kind())),
       now, robots_of(disturbance.robot()));
 }
 
 void EventWatch::on(const msg::NetworkFault& fault, Time now) {
+  if (!outside_.admit(now)) return;
   const std::string target =
       fault.target() == kEveryProcess ? std::string("every process") : process_name(fault.target());
   add(Severity::kWarning, "network",
@@ -199,6 +211,7 @@ void EventWatch::on(const msg::NetworkFault& fault, Time now) {
 }
 
 void EventWatch::on(const msg::AbsenceAttestation& attestation, Time now) {
+  if (!outside_.admit(now)) return;
   add(Severity::kWarning, "attestation",
       fmt::format("an operator attests that robot {} is not on the floor", attestation.robot()), now,
       robots_of(attestation.robot()));
@@ -211,7 +224,7 @@ void EventWatch::on_violation(const Violation& violation) {
 }
 
 void EventWatch::on_refused(std::uint32_t sender, Time now) {
-  if (last_.try_emplace({Watched::kRefused, sender}, 1).second)
+  if (refused_.size() < kMaxSenders && refused_.insert(sender).second)
     add(Severity::kError, "rules",
         fmt::format("{} works by other rules: its messages are refused", process_name(sender)), now,
         robots_of(sender));

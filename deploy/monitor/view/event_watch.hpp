@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "common/time/rate_limit.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
 #include "deploy/monitor/view/event_log.hpp"
 #include "deploy/monitor/view/floor_state.hpp"
@@ -50,9 +52,7 @@ class EventWatch {
     kOrder,
     kCoordinator,
     kNotice,
-    kSilent,
-    kSentOrder,
-    kRefused
+    kSilent
   };
 
   void add(Severity severity, std::string kind, std::string text, Time at, std::vector<RobotId> robots = {});
@@ -60,7 +60,14 @@ class EventWatch {
   bool has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
   void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
 
+  /// Whether this is not a repetition of the sender's last order.
+  bool is_new_order(std::uint32_t sender, std::uint64_t number);
+
   EventLog& log_;
+  /// Anybody in the network can send what causes these events.
+  RateLimit outside_{1000, std::chrono::milliseconds(10)};
+  std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last number, by sender
+  std::set<std::uint32_t> refused_;                     ///< senders
   std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;
   struct TruthTotals {
     std::uint64_t incarnation = 0, contacts = 0, crashes = 0, violations = 0;

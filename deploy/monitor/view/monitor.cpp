@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 enum Slot : unsigned { kFrameSlot, kPanelSlot, kTimeSlot, kInspectionSlot };
 constexpr std::size_t kMaxInspected = 500;  // messages that are kept for slow viewers
 constexpr double kMaxPlaySpeed = 100;
+constexpr std::size_t kHistoryBytes = 512 << 20;
 /// The panels of large fleets are too long for every half second.
 constexpr std::size_t kLargeFleet = 200;
 
@@ -61,7 +62,7 @@ std::optional<Time> time_in(const Json& json) {
 Monitor::Monitor(Bus& bus, const MonitorSettings& settings)
     : bus_(bus),
       settings_(settings),
-      history_(settings.history_bytes,
+      history_(kHistoryBytes,
                settings.is_recording ? History::WhenFull::kThinOut : History::WhenFull::kForgetOldest) {
   events_.on_event([this](const MonitorEvent& event) {
     Json json = to_json(event);
@@ -122,7 +123,7 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   if (inspections_.empty() || settings_.recorded_messages) return;
   const auto inspection = inspections_.find(channel.name);
   if (inspection == inspections_.end()) return;
-  std::deque<std::string>& messages = inspection->second.messages;
+  std::deque<std::string>& messages = inspection->second;
   messages.push_back(text_of({{"at_s", unix_seconds(now)}, {"message", describe(message)}}));
   if (messages.size() > kMaxInspected) messages.pop_front();
 }
@@ -178,6 +179,10 @@ void Monitor::add_viewer(WebSocket& socket) {
 
 void Monitor::remove_viewer(WebSocket& socket) {
   viewers_.erase(&socket);
+  forget_inspections();
+}
+
+void Monitor::forget_inspections() {
   std::erase_if(inspections_, [&](const auto& inspection) {
     return std::ranges::none_of(
         viewers_, [&](const auto& viewer) { return viewer.second.inspected == inspection.first; });
@@ -234,10 +239,10 @@ void Monitor::send_recorded_messages(WebSocket& socket, Viewer& viewer, Time clo
 }
 
 void Monitor::send_inspections() {
-  for (auto& [channel, inspection] : inspections_) {
-    if (inspection.messages.empty()) continue;
-    const auto shared = messages_text(channel, false, inspection.messages);
-    inspection.messages.clear();
+  for (auto& [channel, messages] : inspections_) {
+    if (messages.empty()) continue;
+    const auto shared = messages_text(channel, false, messages);
+    messages.clear();
     for (auto& [socket, viewer] : viewers_)
       if (viewer.inspected == channel) socket->send_state(kInspectionSlot, {shared, false});
   }
@@ -259,10 +264,7 @@ bool Monitor::on_message(WebSocket& socket, const std::string& message, Time clo
       viewer.inspected = channel.get<std::string>();
       inspections_[*viewer.inspected];
     }
-    std::erase_if(inspections_, [&](const auto& inspection) {
-      return std::ranges::none_of(
-          viewers_, [&](const auto& other) { return other.second.inspected == inspection.first; });
-    });
+    forget_inspections();
     return true;
   }
   if (op == "live") {

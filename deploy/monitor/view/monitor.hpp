@@ -28,7 +28,6 @@ struct MonitorSettings {
   AuditInput audit;
   bool is_recording = false;  ///< the messages come from a recording
   bool can_command = false;   ///< the page shows what commands
-  std::size_t history_bytes = 512 << 20;
   /// Of a recording: the messages of a channel in an interval (see RecordedMessages). Empty: viewers get
   /// messages as they are received.
   std::function<std::vector<std::string>(const std::string& channel, Time from, Time to)> recorded_messages;
@@ -71,7 +70,6 @@ class Monitor {
   Time now() const { return bus_.now(); }
 
   EventLog& events() { return events_; }
-  const History& history() const { return history_; }
   const FloorState& floor() const { return floor_; }
 
  private:
@@ -82,9 +80,6 @@ class Monitor {
     std::optional<std::string> inspected;  ///< channel
     std::optional<Time> inspected_until;   ///< of a recording: what has been sent of it
     Time next_inspection{};                ///< by the clock
-  };
-  struct Inspection {
-    std::deque<std::string> messages;  ///< JSON, since they were last sent
   };
 
   struct Channel {
@@ -106,6 +101,8 @@ class Monitor {
   nlohmann::ordered_json scene() const;
   void send_time(WebSocket& socket, Viewer& viewer);
   void send_inspections();
+  /// Those that no viewer looks at.
+  void forget_inspections();
   void send_recorded_messages(WebSocket& socket, Viewer& viewer, Time clock);
 
   Bus& bus_;
@@ -119,7 +116,7 @@ class Monitor {
   std::set<RobotId> followed_;
   std::set<std::string> channels_;
   std::map<WebSocket*, Viewer> viewers_;
-  std::map<std::string, Inspection> inspections_;  ///< by channel
+  std::map<std::string, std::deque<std::string>> inspections_;  ///< JSON since it was last sent, by channel
   std::shared_ptr<const std::string> latest_panels_;
   Time panels_at_{}, heard_at_{};
   std::optional<ClosestPair> closest_, smallest_;

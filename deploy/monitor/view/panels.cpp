@@ -187,7 +187,7 @@ Json zones_json(const FloorState& floor) {
 Json epochs_json(const RunJudges* judges) {
   Json rows = Json::array();
   if (judges == nullptr) return rows;
-  for (const EpochRecord& epoch : judges->metrics.report().epochs)
+  for (const EpochRecord& epoch : judges->metrics.epochs())
     rows.push_back({{"epoch", epoch.epoch},
                     {"coordinator", epoch.coordinator},
                     {"begun_s", unix_seconds(epoch.begun_at)},

@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-/// Whether nobody has touched anybody: {"state": "kept", "broken" or "not judged", "reason":…, "contacts":…,
-/// "violations":…, "coverage":…, "closest":…, "smallest":…}. It is "kept" only while the audit covers enough
-/// of the run. `judges`: nullptr: the scenario is not known.
+/// Whether the promise has been kept so far: {"state": "kept", "broken" or "not judged", "reason":…,
+/// "contacts":…, "violations":…, "coverage":…, "closest":…, "smallest":…}. It is "kept" only while the audit
+/// covers enough of the run. `judges`: nullptr: the scenario is not known.
 [[nodiscard]] nlohmann::ordered_json promise_json(const RunJudges* judges, bool is_heard,
                                                   const std::optional<ClosestPair>& closest,
                                                   const std::optional<ClosestPair>& smallest);
@@ -23,7 +23,7 @@ namespace sidestep {
 [[nodiscard]] nlohmann::ordered_json coordinators_json(const FloorState& floor, Time now);
 /// The zones that clients have set.
 [[nodiscard]] nlohmann::ordered_json zones_json(const FloorState& floor);
-/// The epochs that coordinators have begun, with the time in which nothing was granted before each.
+/// The epochs that coordinators have begun, and why.
 [[nodiscard]] nlohmann::ordered_json epochs_json(const RunJudges* judges);
 
 }  // namespace sidestep

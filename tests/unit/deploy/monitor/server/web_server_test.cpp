@@ -39,6 +39,7 @@ class TestServer {
     handlers.on_close = [this](WebSocket& socket) {
       sockets.erase(&socket);
       ++closed;
+      closed_while_sending += is_sending;
     };
     server.emplace(AccessSettings{address, 0, {}, "secret"}, std::vector<std::string>{"one", "two"},
                    handlers);
@@ -46,7 +47,11 @@ class TestServer {
       while (!is_over) {
         server->run_for(2ms);
         if (on_tick)
-          for (WebSocket* socket : std::set<WebSocket*>(sockets)) on_tick(*socket);
+          for (WebSocket* socket : std::set<WebSocket*>(sockets)) {
+            is_sending = true;
+            on_tick(*socket);
+            is_sending = false;
+          }
       }
       server.reset();
     });
@@ -60,7 +65,8 @@ class TestServer {
   std::function<void(WebSocket&)> on_tick;  ///< set it before viewers connect
   std::set<WebSocket*> sockets;             ///< of the server's thread
   std::set<std::string> protocols;
-  std::atomic<int> opened = 0, closed = 0;
+  std::atomic<int> opened = 0, closed = 0, closed_while_sending = 0;
+  bool is_sending = false;
   std::atomic<bool> is_over = false;
 
  private:
@@ -156,7 +162,7 @@ TEST_CASE("a viewer that reads slowly gets the newest state, and the server's me
     socket.send_state(0, {std::make_shared<const std::string>(state), true});
   };
   SocketClient viewer(server.port(), "one");
-  // Nobody reads for so long that 20 MB of states were made.
+  // Reads only after the server has made 20 MB of states.
   CHECK(wait_until([&] { return sent > 200; }));
   int received = 0, number = 0;
   const int begin = sent;
@@ -188,6 +194,17 @@ TEST_CASE("fifty viewers are served, and connections beyond the limit are refuse
     }
   }
   CHECK(refused >= 50);
+}
+
+TEST_CASE("a viewer that does not read its events is disconnected, but not while they are sent to it") {
+  TestServer server;
+  server.on_tick = [](WebSocket& socket) {
+    socket.send_event({std::make_shared<const std::string>(100'000, 'x'), false});
+  };
+  SocketClient viewer(server.port(), "one");
+  CHECK(wait_until([&] { return server.closed == 1; }));
+  CHECK(server.closed_while_sending == 0);
+  CHECK(http_request(server.port(), "GET", "/").status == 200);
 }
 
 TEST_CASE("a server whose address is taken says so") {

@@ -123,6 +123,26 @@ TEST_CASE("values that no message should have do no harm") {
   CHECK(w.kinds() == "epoch ");
 }
 
+TEST_CASE("a flood of orders of invented senders causes few events") {
+  Watched w;
+  msg::Order order;
+  for (std::uint32_t i = 0; i < 100'000; ++i) {
+    order.header().sender(1'000'000 + i);
+    order.terms().order_number(i + 1);
+    w.hear(order);
+    w.now += 100us;
+  }
+  CHECK(w.log.count() <= 2'100);
+  // Later ones are shown again, and repetitions are not.
+  w.now += 60s;
+  const std::uint64_t before = w.log.count();
+  w.hear(order);
+  order.terms().order_number(7);
+  w.hear(order);
+  w.hear(order);
+  CHECK(w.log.count() == before + 1);
+}
+
 TEST_CASE("a log forgets the oldest events, and numbers go on") {
   EventLog log;
   for (std::size_t i = 0; i < EventLog::kMaxEvents + 10; ++i) log.add({0, {}, Severity::kInfo, "x", "", {}});
