@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxCameras = 64;
 constexpr std::uint32_t kMaxLedgerPages = 256;
 
-/// Ends with the first candidate that has another version number than 0.
+/// The candidate with this version number; nullptr: there is none.
 const msg::Version* find_candidate(const msg::Proposal& proposal, VersionNumber number) {
   const std::size_t count = std::min<std::size_t>(proposal.candidate_count(), msg::MAX_CANDIDATES);
   for (std::size_t i = 0; i < count; ++i)
@@ -28,7 +28,6 @@ RobotView* FloorState::robot(std::uint32_t id) { return id < kMaxRobots ? &robot
 void FloorState::on(const msg::GroundTruth& truth, Time now) {
   for (const msg::TrueRobotState& state : truth.robots())
     if (RobotView* view = robot(state.robot())) view->truth = {state, now};
-  truth_ = {truth, now};
 }
 
 void FloorState::on(const msg::WorldState& world, Time now) {
@@ -89,8 +88,7 @@ void FloorState::on(const msg::CoordinatorState& state, Time now) {
 void FloorState::on(const msg::OrderMemory& memory, Time now) {
   const std::optional<OrderPage> page = decode(memory, now);
   if (!page) return;
-  for (const RememberedOrder& order : page->orders)
-    if (orders_.merge(order) == OrderBook::Outcome::kStored) ++orders_changed_;
+  for (const RememberedOrder& order : page->orders) (void)orders_.merge(order);
 }
 
 void FloorState::on(const msg::LaserScan& scan, Time now) {

@@ -84,7 +84,6 @@ class FloorState {
   void on(const msg::LaserScan& scan, Time now);
 
   const std::map<RobotId, RobotView>& robots() const { return robots_; }
-  const std::optional<Received<msg::GroundTruth>>& truth() const { return truth_; }
   const std::optional<Received<msg::WorldState>>& world() const { return world_; }
   const std::optional<Received<msg::ObstacleList>>& obstacles() const { return obstacles_; }
   /// The latest frame of each camera.
@@ -94,22 +93,18 @@ class FloorState {
   }
   /// The pages of the ledger, by index.
   const std::map<std::uint32_t, Received<msg::LedgerPage>>& ledger() const { return ledger_; }
-  /// Grows with each order that was not known.
   const OrderBook& orders() const { return orders_; }
-  std::uint64_t orders_changed() const { return orders_changed_; }
 
  private:
   RobotView* robot(std::uint32_t id);
 
   std::map<RobotId, RobotView> robots_;
-  std::optional<Received<msg::GroundTruth>> truth_;
   std::optional<Received<msg::WorldState>> world_;
   std::optional<Received<msg::ObstacleList>> obstacles_;
   std::map<std::uint32_t, Received<msg::DetectionFrame>> detections_;
   std::map<std::uint32_t, Received<msg::CoordinatorState>> coordinators_;
   std::map<std::uint32_t, Received<msg::LedgerPage>> ledger_;
   OrderBook orders_;
-  std::uint64_t orders_changed_ = 0;
 };
 
 }  // namespace sidestep
