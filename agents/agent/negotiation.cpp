@@ -34,6 +34,7 @@ void Negotiation::on_feedback(const Feedback& feedback) {
   // one about another agent was false.
   if (superseded_at_ && feedback.valid_at > *superseded_at_) superseded_at_.reset();
   silent_cycles_ = 0;
+  pacing_.set_robot_lead(feedback.lead);
   robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
   if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {

@@ -49,13 +49,23 @@ void ProposalPacing::on_version_late() {
   update();
 }
 
-void ProposalPacing::reset() { *this = ProposalPacing(cycle_); }
+void ProposalPacing::set_robot_lead(Duration lead) {
+  if (lead == robot_lead_) return;
+  robot_lead_ = lead;
+  update();
+}
+
+void ProposalPacing::reset() {
+  const Duration robot_lead = robot_lead_;
+  *this = ProposalPacing(cycle_);
+  set_robot_lead(robot_lead);
+}
 
 Duration ProposalPacing::answer_timeout() const { return std::max(cycle_, slow_round_trip_); }
 
 void ProposalPacing::update() {
   // The command to the robot takes another half of a round trip.
-  const Duration needed = slow_round_trip_ + slow_round_trip_ / 2;
+  const Duration needed = slow_round_trip_ + slow_round_trip_ / 2 + robot_lead_;
   const auto cycles =
       static_cast<int>(std::min<std::int64_t>(kMaxLead, (needed + cycle_ - Duration{1}) / cycle_));
   lead_ = std::min(std::max(1, cycles) + spare_cycles_, kMaxLead);

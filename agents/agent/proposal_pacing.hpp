@@ -8,8 +8,8 @@
 namespace sidestep {
 
 /// Decides how many cycles ahead an agent proposes, which is also the upper bound of the cycles for which it
-/// holds an acceleration. The lead covers the network's round trips, plus spare cycles for retries if
-/// messages are lost often.
+/// holds an acceleration. The lead covers the network's round trips and the robot's own lead, plus spare
+/// cycles for retries if messages are lost often.
 class ProposalPacing {
  public:
   explicit ProposalPacing(Duration cycle) : cycle_(cycle) {}
@@ -18,7 +18,9 @@ class ProposalPacing {
   void on_round_trip(Duration duration);
   void on_version_taken();
   void on_version_late();
-  /// Forgets all measurements, because another coordinator answers from now on.
+  /// How long before its start the robot has to have a version.
+  void set_robot_lead(Duration lead);
+  /// Forgets all measured round trips, because another coordinator answers from now on.
   void reset();
 
   /// Cycles.
@@ -31,6 +33,7 @@ class ProposalPacing {
   void update();
 
   Duration cycle_;
+  Duration robot_lead_{0};
   std::array<Duration, kHistorySize> round_trips_{};
   std::size_t count_ = 0;
   Duration slow_round_trip_{0};  // at most one in eight round trips is longer; 0 before the first

@@ -8,6 +8,9 @@
 namespace sidestep {
 namespace {
 
+// A robot that needs longer cannot be driven.
+constexpr Duration kMaxLead = std::chrono::milliseconds(300);
+
 bool is_magnitude(double value) { return std::isfinite(value) && value >= 0; }
 
 std::optional<PoseFix> decode(const msg::PoseFix& message) {
@@ -64,7 +67,8 @@ std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time
       is_plausible(time_from_ns(message.command_received_at_ns()), now) && estimate.position_m.allFinite() &&
       estimate.velocity_mps.allFinite() && std::isfinite(message.heading_rad()) &&
       is_magnitude(message.tracking_error_m()) && is_magnitude(uncertainty.position_error_rms_m) &&
-      is_magnitude(uncertainty.odometry_scale_stddev);
+      is_magnitude(uncertainty.odometry_scale_stddev) && message.lead_ns() >= 0 &&
+      message.lead_ns() <= kMaxLead.count();
   if (!is_valid) return std::nullopt;
   auto executing = decode(message.executing(), now);
   if (!executing || executing->robot != robot) return std::nullopt;
@@ -87,6 +91,7 @@ std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time
   feedback.uncertainty = uncertainty;
   feedback.has_moved = message.has_moved();
   feedback.activated = message.activated();
+  feedback.lead = Duration{message.lead_ns()};
   return feedback;
 }
 
@@ -129,6 +134,7 @@ msg::Feedback encode(const Feedback& feedback) {
   message.odometry_scale_stddev(feedback.uncertainty.odometry_scale_stddev);
   message.has_moved(feedback.has_moved);
   message.activated(feedback.activated);
+  message.lead_ns(feedback.lead.count());
   return message;
 }
 

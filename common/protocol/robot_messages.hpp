@@ -55,6 +55,7 @@ struct Feedback {
   LocalisationUncertainty uncertainty{};
   bool has_moved = false;       ///< has ever executed a granted version
   std::uint64_t activated = 0;  ///< versions switched to since the firmware's last restart
+  Duration lead{0};             ///< how long before its start the robot has to have a version
 
   /// The robot is off the floor and executes nothing.
   bool is_absent() const { return is_lifted && executing.number == 0; }

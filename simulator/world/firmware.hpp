@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 
 #include "common/motion/limits.hpp"
 #include "common/motion/safety_budget.hpp"
 #include "common/protocol/robot_messages.hpp"
+#include "common/robot/robot_side.hpp"
+#include "common/tracking/pose_estimator.hpp"
 #include "simulator/world/body.hpp"
-#include "simulator/world/pose_estimator.hpp"
 
 namespace sidestep {
 
@@ -25,47 +24,28 @@ struct FirmwareSettings {
   double deceleration_mps2 = MotionLimits{}.deceleration_mps2;  ///< D, for stops that the firmware generates
 };
 
-/// Versions and commands that a robot's firmware has received, by outcome.
-struct FirmwareCounts {
-  std::uint64_t activated = 0;  ///< since the last restart
-  std::uint64_t refused_late = 0;
-  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
-  std::uint64_t refused_fenced = 0;
-  std::uint64_t refused_malformed = 0;
+/// Firmware memory that outlives the simulated robot's restarts, which the Firmware object survives.
+class SimulatedFlash final : public robot::StableMemory {
+ public:
+  [[nodiscard]] bool store(const robot::DurableState&) override { return true; }
 };
 
-/// Why firmware has made a stop of its own.
-enum class OwnStopReason : std::uint8_t {
-  kOffReference,  ///< beyond the tracking bound
-  kDrifted,       ///< beyond the drift bound for kMaxRecovery
-  kDisplaced,     ///< displaced without its wheels measuring it
-  kRestart,       ///< the firmware has restarted
-};
-
-constexpr const char* to_text(OwnStopReason reason) {
+constexpr const char* to_text(robot::OwnStopReason reason) {
   switch (reason) {
-    case OwnStopReason::kOffReference:
+    case robot::OwnStopReason::kOffReference:
       return "it is farther from its reference than the tracking bound";
-    case OwnStopReason::kDrifted:
+    case robot::OwnStopReason::kDrifted:
       return "it has drifted and not returned to its reference in time";
-    case OwnStopReason::kDisplaced:
+    case robot::OwnStopReason::kDisplaced:
       return "it was displaced without its wheels measuring it";
-    case OwnStopReason::kRestart:
+    case robot::OwnStopReason::kRestart:
       return "its firmware has restarted";
   }
   return "?";
 }
 
-/// The firmware of a robot (coordinator/PROTOCOL.md, "Roles"). It executes one whole version and
-/// holds a few pending ones. It switches to a version only at that version's start time, and only from its
-/// base. Without commands it follows the executed version to its end and remains at rest there. Initially it
-/// executes version 0, at rest at its start position.
-///
-/// The firmware makes a stop of its own when it may be farther from its reference than the tracking bound, or
-/// than drift_bound_m() and either does not return within kMaxRecovery or was displaced without its wheels
-/// measuring it. The stop is a version that brakes at D from the estimated position and velocity; the
-/// firmware executes it at once. A lifted robot executes nothing (version 0 again) and accepts only a granted
-/// rest version on base 0.
+/// The firmware of a simulated robot: the robot's side of the protocol (common/robot/robot_side.hpp), with
+/// control and estimation. Initially it executes version 0, at rest at its start position.
 ///
 /// Firmware that has forgotten its pose brakes by its wheels, accepts no version and reports nothing, because
 /// every fact contains a position. The first fix of the resting robot gives it a pose. It makes a stop of its
@@ -74,13 +54,6 @@ constexpr const char* to_text(OwnStopReason reason) {
 /// All times are by the robot's clock, which never goes back.
 class Firmware {
  public:
-  static constexpr int kMaxPending = 8;
-  /// How long the control may take to return to the reference before the firmware makes a stop of its own.
-  static constexpr Duration kMaxRecovery = std::chrono::milliseconds(25);
-  /// Gap between the numbers that have reached the robot and the number of a stop of its own: versions that
-  /// it has not received yet may already be granted and in transit.
-  static constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 20;
-
   Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
            const FirmwareSettings& settings);
 
@@ -108,7 +81,7 @@ class Firmware {
   /// Restarts a robot on the floor, at the first tick later than all reported facts. It then makes a stop of
   /// its own and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest
   /// number seen.
-  void reboot() { is_rebooting_ = true; }
+  void reboot() { side_.reboot(); }
   /// As reboot(), but the pose estimate is lost too. Precondition: the robot is not lifted.
   void forget_pose(Time now);
   /// As reboot(), after a time without power: the robot takes itself to be at rest, and has forgotten its
@@ -120,59 +93,38 @@ class Firmware {
 
   const Version& executing() const { return executing_; }
   /// Whether it executes a stop of its own.
-  bool is_off_reference() const { return is_off_reference_; }
+  bool is_off_reference() const { return side_.is_off_reference(); }
   /// Why it has made the last one.
-  OwnStopReason own_stop_reason() const { return own_stop_reason_; }
-  bool is_lifted() const { return is_lifted_; }
-  /// Whether it knows its pose. Precondition of feedback().
-  bool has_pose() const { return has_pose_; }
+  robot::OwnStopReason own_stop_reason() const { return side_.own_stop_reason(); }
+  bool is_lifted() const { return side_.is_lifted(); }
+  /// Whether it knows its pose.
+  bool has_pose() const { return side_.has_pose(); }
+  /// Precondition of feedback().
+  bool may_report() const { return side_.may_report(); }
   /// Its own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }
   double heading_rad() const { return estimator_.heading_rad(); }
-  Incarnation obeyed_incarnation() const { return obeyed_; }
-  Epoch obeyed_epoch() const { return obeyed_epoch_; }
-  const FirmwareCounts& counts() const { return counts_; }
+  Incarnation obeyed_incarnation() const { return side_.obeyed_incarnation(); }
+  Epoch obeyed_epoch() const { return side_.obeyed_epoch(); }
+  const robot::Counts& counts() const { return side_.counts(); }
   /// Number of stops of its own since the last restart.
-  std::uint64_t own_stops() const { return own_stops_; }
+  std::uint64_t own_stops() const { return side_.own_stops(); }
   /// The start of the next pending version; Time::max() if none is pending.
-  Time next_start() const { return pending_count_ > 0 ? pending_[0].trajectory.start() : Time::max(); }
+  Time next_start() const { return side_.has_pending() ? time_from_ns(side_.next_start_ns()) : Time::max(); }
 
  private:
-  void obey(Incarnation incarnation);
-  void take(const Version& version, Time now);
-  void insert(const Version& version);
-  void remove_pending(int index);
-  bool holds(VersionNumber number) const;
-  const Trajectory& planned(Time t) const;
-  bool may_take(const Version& version) const;
-  bool is_beyond(double bound_m, const Vec2& error_m) const;
-  std::optional<OwnStopReason> must_stop(const Vec2& error_m, Time now);
-  void start_own_stop(OwnStopReason reason, Time now);
-  void restart(Time now);
+  void update_executing();
+  robot::Estimate<double> estimate(Time now) const;
+  Actuation track(Time now) const;
+  double turn() const;
   Actuation brake_by_wheels(Time now);
   void find_pose(const PoseFix& fix, Time now);
 
   RobotId robot_;
-  Incarnation obeyed_ = 0;
-  Epoch obeyed_epoch_ = 0;
-  VersionNumber highest_seen_ = 0;  ///< of all version numbers and incarnations received
-  Version executing_;
-  bool has_moved_ = false;
-  VersionNumber highest_executed_ = 0;
-  bool is_off_reference_ = false;
-  OwnStopReason own_stop_reason_ = OwnStopReason::kOffReference;
-  bool is_lifted_ = false;
-  bool is_rebooting_ = false;
-  bool has_pose_ = true;
-  Time moved_at_{};  ///< without a pose: when its wheels turned last
-  Time last_fact_ = Time::min();
-  Time drifted_since_ = Time::max();  ///< Time::max(): within the drift bound
-  std::optional<Feedback::CommandEcho> last_command_;
-  std::array<Version, kMaxPending> pending_;  ///< ascending by start, then number
-  int pending_count_ = 0;
-  FirmwareCounts counts_;
-  std::uint64_t own_stops_ = 0;
-
+  SimulatedFlash flash_;
+  robot::RobotSide<double> side_;
+  Version executing_;  ///< as side_.executing()
+  Time moved_at_{};    ///< without a pose: when its wheels turned last
   FirmwareSettings settings_;
   double decay_;
   Duration look_ahead_;

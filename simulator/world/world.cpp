@@ -188,7 +188,7 @@ std::uint64_t World::firmware_violations() const {
 
 void World::count_drops(DropCounters& drops) const {
   for (const Robot& robot : robots_) {
-    const FirmwareCounts& counts = robot.firmware.counts();
+    const robot::Counts& counts = robot.firmware.counts();
     drops.count(DropReason::kMalformedCommand, robot.id, counts.refused_malformed);
     drops.count(DropReason::kFencedCommand, robot.id, counts.refused_fenced);
     drops.count(DropReason::kLateVersion, robot.id, counts.refused_late);

@@ -56,10 +56,9 @@ class World {
 
   std::size_t robot_count() const { return robots_.size(); }
   RobotId id(std::size_t robot) const { return robots_[robot].id; }
-  /// A robot without power neither hears nor says anything.
-  /// Whether it has power and knows its pose; otherwise it reports nothing.
+  /// Whether it has power and has a version where it is; otherwise it reports nothing.
   bool may_report(std::size_t robot) const {
-    return robots_[robot].is_powered && robots_[robot].firmware.has_pose();
+    return robots_[robot].is_powered && robots_[robot].firmware.may_report();
   }
   const Firmware& firmware(std::size_t robot) const { return robots_[robot].firmware; }
   /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.

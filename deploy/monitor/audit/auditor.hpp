@@ -153,7 +153,7 @@ class Auditor {
   void check_sent(AuditedRobot& robot, KnownVersion& executing);
   void check_tracking(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                       const Reception& reception);
-  void check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop);
+  void check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop, std::int64_t lead_ns);
   void check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                            const Reception& reception);
   bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
@@ -177,6 +177,9 @@ class Auditor {
   /// Whether vision is the reference, because it has shown robots for a while without any ground truth.
   bool is_vision_needed();
   void check_sights(const msg::WorldState& world);
+  /// How far a position is from the version that the robot executes, as far as is known; infinite if nothing
+  /// is.
+  double seen_error_m(std::size_t index, const Vec2& position_m, std::int64_t at_ns) const;
   /// `error_m`: distance from the place that its version prescribes, of which `allowance_m` may be an error
   /// of the observation.
   ObservedRobot observed_robot(std::size_t robot, const Vec2& position_m, double speed_mps, double error_m,

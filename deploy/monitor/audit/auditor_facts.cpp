@@ -19,6 +19,8 @@ constexpr double kReportingTolerance_m = 0.0005;
 // Versions that begin this long after a robot's first fact were granted after that fact, and after an auditor
 // that joined a run had found all senders.
 constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
+// Robots whose motors obey later than this are not driven.
+constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 // Robots check themselves every millisecond. Beyond the drift bound they may take 25 ms to return.
 constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
 constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
@@ -100,7 +102,8 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
     check_sent(*robot, executing);
     check_tracking(*robot, executing, feedback, reception);
     check_obeyed_epochs(*robot, executing, feedback, reception);
-    if (executing.is_own_stop && !executing.was_executed) check_own_stop(*robot, executing);
+    if (executing.is_own_stop && !executing.was_executed)
+      check_own_stop(*robot, executing, feedback.lead_ns());
     // The times of a clock that is out of bound prove nothing, also after it has been set.
     if (is_clock_sound(feedback, reception)) {
       KnownVersion* base = robot->find(executing.version.base());
@@ -199,7 +202,7 @@ void Auditor::check_tracking(AuditedRobot& robot, const KnownVersion& executing,
   robot.beyond_bound_since_ns = check(tracking_bound_m_, beyond_since_ns, kCheckPeriod_ns);
 }
 
-void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop) {
+void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop, std::int64_t lead_ns) {
   const auto fail = [&](const std::string& detail) {
     report(AuditRule::kOffReference, robot.id, &own_stop, 0, detail);
   };
@@ -208,9 +211,11 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
   const AuditPath::Node& end = own_stop.path.last();
   if (std::hypot(end.vx, end.vy) > 1e-5)
     fail(fmt::format("ends at {:.6f} m/s instead of at rest", std::hypot(end.vx, end.vy)));
-  // The stop brakes at D from the measured speed to rest.
-  const double speed = std::hypot(own_stop.version.vx_mps(), own_stop.version.vy_mps());
-  const double expected_s = speed / scenario_.limits.deceleration_mps2 + 1e-6;
+  // The stop brakes at D to rest, after the motion that is under way in motors that obey late.
+  const double lead_s = static_cast<double>(std::clamp<std::int64_t>(lead_ns, 0, kMaxMotorLead_ns)) * 1e-9;
+  const AuditPath::Node& braked = lead_ns > 0 ? own_stop.path.phase(1) : own_stop.path.first();
+  const double speed = std::hypot(braked.vx, braked.vy);
+  const double expected_s = lead_s + speed / scenario_.limits.deceleration_mps2 + 1e-6;
   if (own_stop.path.duration_s() > 1.01 * expected_s + 0.001)
     fail(fmt::format("takes {:.4f} s to stop from {:.4f} m/s", own_stop.path.duration_s(), speed));
 }

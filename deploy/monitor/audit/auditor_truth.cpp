@@ -41,8 +41,10 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     seen_displacements_[index] = {};
     return;
   }
+  // A simulator of robots without firmware does not know their references.
+  const bool is_seen = is_vision || observation.reference_error_m < 0;
   double error_m = observation.reference_error_m, inflation_m = executed->version.inflation_m();
-  if (is_vision || input_.is_complete) {
+  if (is_seen || input_.is_complete) {
     const AuditPath::Node reference = executed->path.at_ns(at_ns);
     error_m = std::hypot(observation.x - reference.x, observation.y - reference.y);
   } else {
@@ -52,7 +54,7 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     if (before) inflation_m = std::max(inflation_m, before->version.inflation_m());
   }
   totals_.max_position_error_m = std::max(totals_.max_position_error_m, error_m);
-  if (is_vision)
+  if (is_seen)
     check_seen_position(robot, *executed, error_m, at_ns);
   else
     check_true_position(robot, *executed, error_m - inflation_m, at_ns);
@@ -170,9 +172,12 @@ void Auditor::record_positions(const msg::GroundTruth& truth) {
         std::isfinite(state.x_m()) && std::isfinite(state.y_m()) && std::isfinite(state.reference_error_m());
     if (!index || !is_finite) continue;
     observations_[*index] = {truth.valid_at_ns(), state.x_m(), state.y_m(), state.reference_error_m()};
-    observed_[*index] =
-        observed_robot(*index, {state.x_m(), state.y_m()}, std::hypot(state.vx_mps(), state.vy_mps()),
-                       state.reference_error_m(), 0);
+    const bool is_known = state.reference_error_m() >= 0;
+    const Vec2 position_m(state.x_m(), state.y_m());
+    const double error_m =
+        is_known ? state.reference_error_m() : seen_error_m(*index, position_m, truth.valid_at_ns());
+    observed_[*index] = observed_robot(*index, position_m, std::hypot(state.vx_mps(), state.vy_mps()),
+                                       error_m, is_known ? 0 : sight_allowance_m_);
     if (state.disturbance_end_ns() >= 0)
       disturbances_.disturb(*index, time_from_ns(state.disturbance_end_ns()), at);
   }

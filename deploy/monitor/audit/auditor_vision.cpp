@@ -103,17 +103,10 @@ void Auditor::check_sights(const msg::WorldState& world) {
   for (const msg::TrackedRobot& tracked : world.robots()) {
     const auto index = roster_index(tracked.robot());
     if (!index || !is_sane(tracked)) continue;
-    const AuditedRobot& robot = robots_[*index];
     const Sight& sight = sights_[*index];
     if (sight.is_new)
       observations_[*index] = {sight.observed_at_ns, sight.position_m.x(), sight.position_m.y(), 0};
-    const KnownVersion* const executed =
-        robot.fact ? executed_at(robot, robot.fact->executing, sight.observed_at_ns) : nullptr;
-    double error_m = INFINITY;
-    if (executed) {
-      const AuditPath::Node place = executed->path.at_ns(sight.observed_at_ns);
-      error_m = std::hypot(sight.position_m.x() - place.x, sight.position_m.y() - place.y);
-    }
+    const double error_m = seen_error_m(*index, sight.position_m, sight.observed_at_ns);
     observed_[*index] = observed_robot(*index, {tracked.x_m(), tracked.y_m()}, sight.velocity_mps.norm(),
                                        error_m, sight_allowance_m_);
   }
@@ -123,6 +116,15 @@ void Auditor::check_sights(const msg::WorldState& world) {
     if (is_lifted || sights_[i].is_new)
       reference_time_->hear(i, now_, is_lifted ? Duration{0} : Duration::max());
   }
+}
+
+double Auditor::seen_error_m(std::size_t index, const Vec2& position_m, std::int64_t at_ns) const {
+  const AuditedRobot& robot = robots_[index];
+  const KnownVersion* const executed =
+      robot.fact ? executed_at(robot, robot.fact->executing, at_ns) : nullptr;
+  if (!executed) return INFINITY;
+  const AuditPath::Node place = executed->path.at_ns(at_ns);
+  return std::hypot(position_m.x() - place.x, position_m.y() - place.y);
 }
 
 void Auditor::check_seen_position(const AuditedRobot& robot, const KnownVersion& executed, double error_m,

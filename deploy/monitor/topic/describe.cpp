@@ -202,7 +202,8 @@ Json describe(const msg::Feedback& m) {
           {"position_error_rms_m", m.position_error_rms_m()},
           {"odometry_scale_stddev", m.odometry_scale_stddev()},
           {"has_moved", m.has_moved()},
-          {"activated", m.activated()}};
+          {"activated", m.activated()},
+          {"lead_ns", m.lead_ns()}};
 }
 
 Json describe(const msg::LaserScan& m) {

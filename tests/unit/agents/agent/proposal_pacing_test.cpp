@@ -27,6 +27,19 @@ TEST_CASE("on a slow network the lead covers the answer and the command") {
   CHECK(pacing.lead() == 1);
 }
 
+TEST_CASE("the lead includes that of the robot, whatever the coordinator's round trips") {
+  ProposalPacing pacing(kCycle);
+  pacing.set_robot_lead(Duration{100'000'000});
+  CHECK(pacing.lead() == 6);
+  pacing.on_round_trip(Duration{20'000'000});
+  CHECK(pacing.lead() == 8);  // 130 ms
+  CHECK(pacing.answer_timeout() == Duration{20'000'000});
+  pacing.reset();
+  CHECK(pacing.lead() == 6);
+  pacing.set_robot_lead(Duration{0});
+  CHECK(pacing.lead() == 1);
+}
+
 TEST_CASE("repeated late versions increase the lead, a single one does not") {
   ProposalPacing pacing(kCycle);
   pacing.on_version_late();

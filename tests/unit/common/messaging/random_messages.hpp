@@ -70,6 +70,7 @@ inline Feedback random_feedback(Rng& rng) {
   feedback.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
   feedback.has_moved = rng.chance(0.5);
   feedback.activated = rng.bits();
+  feedback.lead = Duration{static_cast<std::int64_t>(rng.uniform(0.0, 3e8))};
   return feedback;
 }
 

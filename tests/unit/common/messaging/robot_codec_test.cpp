@@ -92,6 +92,7 @@ TEST_CASE("encoding and decoding feedback preserves it bit for bit") {
     REQUIRE(out->uncertainty.odometry_scale_stddev == in.uncertainty.odometry_scale_stddev);
     REQUIRE(out->has_moved == in.has_moved);
     REQUIRE(out->activated == in.activated);
+    REQUIRE(out->lead == in.lead);
   }
 }
 
@@ -178,6 +179,8 @@ TEST_CASE("feedback with one hostile field is refused") {
     CHECK(is_refused([=](Message& m) { m.position_error_rms_m(bad); }));
     CHECK(is_refused([=](Message& m) { m.odometry_scale_stddev(bad); }));
   }
+  CHECK(is_refused([](Message& m) { m.lead_ns(-1); }));
+  CHECK(is_refused([](Message& m) { m.lead_ns(300'000'001); }));
   CHECK_FALSE(decode(full_feedback(), kRobot + 1, kNow));
 }
 

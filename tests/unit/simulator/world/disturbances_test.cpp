@@ -247,8 +247,9 @@ TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itse
   world.on_command(0, rest_version(0, 11, now + milliseconds(5), dash.rest_position_m()), now);
   world.advance(now += milliseconds(50));
   send_fix(milliseconds(20));
-  REQUIRE(world.may_report(0));
+  CHECK_FALSE(world.may_report(0));  // its version is still the one from before
   world.advance(now += milliseconds(2));
+  REQUIRE(world.may_report(0));
   const Feedback facts = world.feedback(0, now);
   CHECK(facts.is_off_reference);
   CHECK(facts.executing.number > 11);

@@ -298,7 +298,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   send(1, msg::DisturbanceKind::DISTURBANCE_REBOOT);
   scene.run(milliseconds(6));
   CHECK(scene.facts[1].back().is_off_reference());
-  CHECK(scene.facts[1].back().executing().version_number() >= Firmware::kOwnNumberGap);
+  CHECK(scene.facts[1].back().executing().version_number() >= robot::RobotSide<double>::kOwnNumberGap);
   send(1, msg::DisturbanceKind::DISTURBANCE_CLOCK);
   scene.run(milliseconds(100));
   CHECK(scene.facts[1].back().valid_at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);

@@ -10,21 +10,23 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/time/time.hpp"
-#include "simulator/world/body.hpp"
 
 namespace sidestep {
 
-/// The wheel encoders' measurement over the last control period, in the world frame.
+/// The wheel encoders' measurement over the last period, in the world frame.
 struct Odometry {
   Vec2 velocity_mps{0, 0};
   double angular_radps = 0;
 };
 
-/// The robot's sensor model; all values are standard deviations.
+/// The robot's sensor model. Noises and errors are standard deviations.
 struct EstimatorSettings {
-  double velocity_noise_mps = 0.01;  ///< of one odometry measurement, per axis
-  double scale_error = 0.005;        ///< of the odometry's constant relative error
-  double fix_noise_m = 0.0005;       ///< of a fix, per axis
+  double velocity_noise_mps = 0.01;   ///< of one odometry measurement, per axis
+  double scale_error = 0.005;         ///< of the odometry's constant relative error
+  double fix_noise_m = 0.0005;        ///< of a fix, per axis
+  double extra_fix_noise_m = 0.0005;  ///< for the correlation that vision's filter introduces between fixes
+  double velocity_gain = 0.08;        ///< of a velocity measurement relative to the motor model; 1: no model
+  Duration period{1'000'000};         ///< of the odometry
 };
 
 /// A robot's estimate of its own pose: dead reckoning from the last fix, with a Kalman filter over position
@@ -38,7 +40,7 @@ class PoseEstimator {
   PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings,
                 double deviation_m = kKnownPlaceDeviation_m);
 
-  /// Integrates the measurement over the control period that ends now; the accelerations are those of the
+  /// Integrates the measurement over the period that ends now; the accelerations are those of the
   /// motor model. A gap in time clears the history, so that fixes from before it are refused.
   void advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
                double angular_acceleration_radps2);
@@ -82,7 +84,7 @@ class PoseEstimator {
   void decorrelate_scale();
   Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
 
-  std::vector<Sample> history_;  ///< ring buffer with one sample per control period
+  std::vector<Sample> history_;  ///< ring buffer with one sample per period
   std::int64_t count_ = 0;       ///< samples since the creation or the last gap
 
   Time time_;

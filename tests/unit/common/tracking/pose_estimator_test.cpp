@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/world/pose_estimator.hpp"
+#include "common/tracking/pose_estimator.hpp"
 
 #include <cmath>
 #include <deque>
@@ -10,6 +10,8 @@
 #include "tests/unit/common/random/normal_vector.hpp"
 
 namespace sidestep::pose_estimator_test {
+
+constexpr Duration kPeriod = EstimatorSettings{}.period;
 
 using std::chrono::milliseconds;
 
@@ -24,8 +26,8 @@ struct Circling {
 
   void step() {
     const Vec2 before = position(now);
-    now += kPhysicsStep;
-    const Vec2 velocity = (position(now) - before) / kPhysicsStepSeconds;
+    now += kPeriod;
+    const Vec2 velocity = (position(now) - before) / to_seconds(kPeriod);
     const Vec2 acceleration = -1.5 * 1.5 * position(now);
     estimator.advance(now, {velocity * scale + 0.01 * normal_vector(rng), 0.1 * rng.normal()}, acceleration,
                       0);
@@ -64,7 +66,7 @@ TEST_CASE("late and noisy fixes keep the estimate within a fraction of their noi
 TEST_CASE("a fix is compared with the estimate at its capture, not with the current one") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
-  for (int i = 0; i < 100; ++i) estimator.advance(now += kPhysicsStep, {{2, 0}, 0}, {0, 0}, 0);
+  for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {{2, 0}, 0}, {0, 0}, 0);
   REQUIRE(estimator.correct(kBegin + milliseconds(40), {0.08, 0}, 0));
   CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
   // The same between two control periods.
@@ -75,7 +77,7 @@ TEST_CASE("a fix is compared with the estimate at its capture, not with the curr
 TEST_CASE("an invalid fix changes nothing") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
-  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPhysicsStep, {{1, 0}, 0}, {0, 0}, 0);
+  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPeriod, {{1, 0}, 0}, {0, 0}, 0);
   REQUIRE(estimator.correct(now - milliseconds(30), {0.97, 0}, 0));
   const Vec2 before = estimator.position_m();
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -93,7 +95,7 @@ TEST_CASE("an invalid fix changes nothing") {
 TEST_CASE("a fix older than the history is refused, and one within it is used") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
-  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  for (int i = 0; i < 1000; ++i) estimator.advance(now += kPeriod, {}, {0, 0}, 0);
   CHECK_FALSE(estimator.correct(now - milliseconds(512), {0, 0}, 0));
   CHECK(estimator.correct(now - milliseconds(500), {0, 0}, 0));
 }
@@ -101,9 +103,9 @@ TEST_CASE("a fix older than the history is refused, and one within it is used") 
 TEST_CASE("after a gap in time, fixes from before it are refused") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
-  for (int i = 0; i < 100; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {}, {0, 0}, 0);
   now += milliseconds(10);
-  for (int i = 0; i < 20; ++i) estimator.advance(now += kPhysicsStep, {}, {0, 0}, 0);
+  for (int i = 0; i < 20; ++i) estimator.advance(now += kPeriod, {}, {0, 0}, 0);
   CHECK_FALSE(estimator.correct(now - milliseconds(25), {0, 0}, 0));
   CHECK(estimator.correct(now - milliseconds(15), {0, 0}, 0));
 }
@@ -118,8 +120,8 @@ TEST_CASE("a robot that is carried while its wheels roll does not take that for 
   const Vec2 carried_mps(0.3, 0);
   PoseEstimator estimator(position_m, 0, now, settings);
   for (int i = 0; i < 7000; ++i) {
-    now += kPhysicsStep;
-    position_m += carried_mps * kPhysicsStepSeconds;
+    now += kPeriod;
+    position_m += carried_mps * to_seconds(kPeriod);
     estimator.advance(now, {Vec2(rolls_mps, 0) + 0.01 * normal_vector(rng), 0}, Vec2(0, 0), 0);
     if (i % 17 == 0) (void)estimator.correct(now, position_m + 0.0005 * normal_vector(rng), 0);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/world/pose_estimator.hpp"
+#include "common/tracking/pose_estimator.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,14 +8,11 @@
 namespace sidestep {
 namespace {
 
-// By the robot's clock, which may drift, periods differ a little.
-constexpr Duration kMaxPeriodError = kPhysicsStep / 1000;
-constexpr double kVelocityGain = 0.08;       // of a velocity measurement relative to the motor model
+// By the robot's clock, which may drift, periods differ a little: by up to this part.
+constexpr int kMaxPeriodErrorPart = 1000;
 constexpr double kHeadingGain = 0.05;        // of a heading fix
 constexpr double kSlipVariance_m2ps = 1e-8;  // of wheels that roll imperfectly
 constexpr double kScaleDriftPerSqrtSecond = 2e-5;
-constexpr double kExtraFixNoise_m =
-    0.0005;  // for the correlation that vision's filter introduces between fixes
 constexpr double kOutlierDeviations = 4;
 // No odometry has a larger relative error than this many standard deviations.
 constexpr double kMaxScaleDeviations = 5;
@@ -43,8 +40,8 @@ PoseEstimator::PoseEstimator(const Vec2& position_m, double heading_rad, Time no
 
 void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
                             double angular_acceleration_radps2) {
-  constexpr double dt = kPhysicsStepSeconds;
-  if (std::chrono::abs(now - time_ - kPhysicsStep) > kMaxPeriodError) count_ = 0;
+  const double dt = to_seconds(settings_.period);
+  if (std::chrono::abs(now - time_ - settings_.period) > settings_.period / kMaxPeriodErrorPart) count_ = 0;
   time_ = now;
   odometry_m_ += odometry.velocity_mps * dt;
   turned_rad_ += odometry.angular_radps * dt;
@@ -54,10 +51,10 @@ void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acce
   // The measurement is the mean over the period, valid half a period ago.
   velocity_mps_ += acceleration_mps2 * dt;
   const Vec2 measured = odometry.velocity_mps * (1 - scale_) + acceleration_mps2 * (0.5 * dt);
-  velocity_mps_ += kVelocityGain * (measured - velocity_mps_);
+  velocity_mps_ += settings_.velocity_gain * (measured - velocity_mps_);
   angular_radps_ += angular_acceleration_radps2 * dt;
-  angular_radps_ +=
-      kVelocityGain * (odometry.angular_radps + angular_acceleration_radps2 * (0.5 * dt) - angular_radps_);
+  angular_radps_ += settings_.velocity_gain *
+                    (odometry.angular_radps + angular_acceleration_radps2 * (0.5 * dt) - angular_radps_);
 }
 
 bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double heading_rad) {
@@ -65,10 +62,10 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   if (captured_at <= anchor_time_ || captured_at > time_) return false;
   const std::int64_t available = std::min(count_, kHistoryPeriods);
   const Duration age = time_ - captured_at;
-  const std::int64_t periods_back = age / kPhysicsStep;
+  const std::int64_t periods_back = age / settings_.period;
   if (periods_back + 1 >= available) return false;
 
-  const double fraction = to_seconds(age - periods_back * kPhysicsStep) / kPhysicsStepSeconds;
+  const double fraction = to_seconds(age - periods_back * settings_.period) / to_seconds(settings_.period);
   const Sample& later = history_[static_cast<std::size_t>((count_ - 1 - periods_back) % kHistoryPeriods)];
   const Sample& earlier = history_[static_cast<std::size_t>((count_ - 2 - periods_back) % kHistoryPeriods)];
   const Vec2 odometry = later.odometry_m + (earlier.odometry_m - later.odometry_m) * fraction;
@@ -78,8 +75,8 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   const double elapsed_s = to_seconds(captured_at - anchor_time_);
   covariance_ = covariance_after(elapsed_s, moved);
 
-  const double fix_variance =
-      settings_.fix_noise_m * settings_.fix_noise_m + kExtraFixNoise_m * kExtraFixNoise_m;
+  const double fix_variance = settings_.fix_noise_m * settings_.fix_noise_m +
+                              settings_.extra_fix_noise_m * settings_.extra_fix_noise_m;
   const Vec2 predicted = anchor_m_ + moved * (1 - scale_);
   Vec2 innovation = position_m - predicted;
   jump_m_ = 0;
@@ -123,7 +120,8 @@ Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& mo
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.topRightCorner<2, 1>() = -moved_m;
   const double noise_variance = settings_.velocity_noise_mps * settings_.velocity_noise_mps;
-  const double position_variance = (noise_variance * kPhysicsStepSeconds + kSlipVariance_m2ps) * elapsed_s;
+  const double position_variance =
+      (noise_variance * to_seconds(settings_.period) + kSlipVariance_m2ps) * elapsed_s;
   const double scale_variance = kScaleDriftPerSqrtSecond * kScaleDriftPerSqrtSecond * elapsed_s;
   Eigen::Matrix3d covariance = transition * covariance_ * transition.transpose();
   covariance.diagonal() += Eigen::Vector3d(position_variance, position_variance, scale_variance);

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/robot/robot_side.hpp"
+
+namespace sidestep::robot {
+namespace {
+
+constexpr double kMaxInflation_m = 1;
+constexpr double kAtRest_mps = 1e-12;
+
+template <typename Number>
+constexpr Number larger(Number a, Number b) {
+  return a < b ? b : a;
+}
+
+template <typename Number>
+constexpr Number smaller(Number a, Number b) {
+  return b < a ? b : a;
+}
+
+bool is_later(const Version& a, const Version& b) {
+  return a.start_ns != b.start_ns ? a.start_ns > b.start_ns : a.number > b.number;
+}
+
+void append_phase(Version& version, std::int64_t duration_ns, double ax_mps2, double ay_mps2) {
+  version.phases[version.phase_count++] = {duration_ns, ax_mps2, ay_mps2};
+}
+
+// As append_stop() in common/motion/trajectory.hpp: the duration is rounded up to whole nanoseconds and the
+// deceleration reduced to match, so that the version ends at rest.
+template <typename Real>
+void append_braking(Version& version, const Vec<Real>& velocity_mps, Real deceleration_mps2) {
+  const auto speed = static_cast<double>(norm(velocity_mps));
+  if (speed < kAtRest_mps) return;
+  const double exact_ns = speed / static_cast<double>(deceleration_mps2) * 1e9;
+  auto duration_ns = static_cast<std::int64_t>(exact_ns);
+  if (static_cast<double>(duration_ns) < exact_ns) ++duration_ns;
+  const double seconds = seconds_of(duration_ns);
+  append_phase(version, duration_ns, -static_cast<double>(velocity_mps.x) / seconds,
+               -static_cast<double>(velocity_mps.y) / seconds);
+}
+
+}  // namespace
+
+template <typename Real>
+RobotSide<Real>::RobotSide(const Settings<Real>& settings, const DurableState& remembered)
+    : settings_(settings), durable_(remembered) {
+  restart();
+}
+
+template <typename Real>
+void RobotSide<Real>::begin_at_rest(double x_m, double y_m) {
+  executing_ = {};
+  executing_.x_m = x_m;
+  executing_.y_m = y_m;
+  has_pose_ = true;
+}
+
+template <typename Real>
+void RobotSide<Real>::find_pose() {
+  has_pose_ = true;
+  has_found_pose_ = true;
+  is_rebooting_ = true;
+}
+
+template <typename Real>
+void RobotSide<Real>::lose_pose() {
+  pending_count_ = 0;
+  is_rebooting_ = false;
+  has_pose_ = false;
+  has_found_pose_ = false;
+}
+
+template <typename Real>
+void RobotSide<Real>::switch_on() {
+  pending_count_ = 0;
+  is_rebooting_ = !is_lifted_ && has_pose_;
+}
+
+template <typename Real>
+bool RobotSide<Real>::store(const DurableState& next, StableMemory& memory) {
+  if (next == durable_) return true;
+  if (!memory.store(next)) return false;
+  durable_ = next;
+  is_memory_broken_ = false;
+  return true;
+}
+
+template <typename Real>
+bool RobotSide<Real>::on_command(const Command& command, std::int64_t now_ns, StableMemory& memory) {
+  while (switch_next(now_ns)) {
+  }
+  highest_seen_ = larger(highest_seen_, command.incarnation);
+  if (command.version) highest_seen_ = larger(highest_seen_, command.version->number);
+  if (command.incarnation < durable_.incarnation) {
+    ++counts_.refused_fenced;
+    return false;
+  }
+  // A new agent may not know the latest epoch that the robot learned from an earlier agent. Its versions are
+  // refused until it learns that epoch from a fact.
+  const bool is_old_epoch = command.epoch < durable_.epoch;
+  DurableState next = durable_;
+  next.incarnation = command.incarnation;
+  next.epoch = larger(next.epoch, command.epoch);
+  if (highest_seen_ + kStoredAhead / 2 > next.number_bound) next.number_bound = highest_seen_ + kStoredAhead;
+  if (!store(next, memory)) {
+    ++counts_.refused_unstored;
+    return false;
+  }
+  discard_fenced();
+  has_command_ = true;
+  command_sent_at_ns_ = command.sent_at_ns;
+  command_received_at_ns_ = now_ns;
+  if (command.version && is_old_epoch)
+    ++counts_.refused_fenced;
+  else if (command.version)
+    take(*command.version, now_ns, memory);
+  return true;
+}
+
+template <typename Real>
+void RobotSide<Real>::on_malformed_command(std::int64_t now_ns) {
+  while (switch_next(now_ns)) {
+  }
+  ++counts_.refused_malformed;
+}
+
+template <typename Real>
+void RobotSide<Real>::discard_fenced() {
+  for (int i = pending_count_ - 1; i >= 0; --i) {
+    if (pending_[i].incarnation < durable_.incarnation) {
+      remove_pending(i);
+      ++counts_.refused_fenced;
+    }
+  }
+}
+
+template <typename Real>
+void RobotSide<Real>::take(const Version& version, std::int64_t now_ns, StableMemory& memory) {
+  if (holds(version.number)) return;
+  DurableState moved = durable_;
+  moved.has_moved = true;
+  if (version.incarnation < durable_.incarnation) {
+    ++counts_.refused_fenced;
+  } else if (version.start_ns - settings_.actuation_lead_ns <= now_ns) {
+    ++counts_.refused_late;
+  } else if (!may_take(version)) {
+    ++counts_.refused_base;  // its base is older than the version being executed
+  } else if (!store(moved, memory)) {
+    ++counts_.refused_unstored;
+  } else {
+    insert(version);
+  }
+}
+
+template <typename Real>
+bool RobotSide<Real>::holds(std::uint64_t number) const {
+  if (number == executing_.number) return true;
+  for (int i = 0; i < pending_count_; ++i) {
+    if (pending_[i].number == number) return true;
+  }
+  return false;
+}
+
+template <typename Real>
+bool RobotSide<Real>::may_take(const Version& version) const {
+  if (!has_pose_ || version.number <= highest_executed_) return false;
+  return !is_lifted_ || (version.base == 0 && version.is_rest());
+}
+
+template <typename Real>
+void RobotSide<Real>::insert(const Version& version) {
+  if (pending_count_ == kMaxPending) {
+    ++counts_.refused_base;
+    if (!is_later(pending_[kMaxPending - 1], version)) return;
+    --pending_count_;
+  }
+  int place = pending_count_;
+  for (; place > 0 && is_later(pending_[place - 1], version); --place) pending_[place] = pending_[place - 1];
+  pending_[place] = version;
+  ++pending_count_;
+}
+
+template <typename Real>
+void RobotSide<Real>::remove_pending(int index) {
+  --pending_count_;
+  for (int i = index; i < pending_count_; ++i) pending_[i] = pending_[i + 1];
+}
+
+template <typename Real>
+bool RobotSide<Real>::switch_next(std::int64_t now_ns) {
+  while (pending_count_ > 0 && pending_[0].start_ns <= now_ns) {
+    const Version due = pending_[0];
+    remove_pending(0);
+    if (due.base == executing_.number && due.number > highest_executed_) {
+      executing_ = due;
+      highest_executed_ = due.number;
+      has_moved_ = true;
+      is_off_reference_ = false;
+      ++counts_.activated;
+      return true;
+    }
+    ++counts_.refused_base;
+  }
+  return false;
+}
+
+template <typename Real>
+const Version& RobotSide<Real>::planned(std::int64_t t_ns) const {
+  const Version* planned = &executing_;
+  for (int i = 0; i < pending_count_; ++i) {
+    if (pending_[i].start_ns > t_ns) break;
+    if (pending_[i].base == planned->number) planned = &pending_[i];
+  }
+  return *planned;
+}
+
+template <typename Real>
+bool RobotSide<Real>::needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const {
+  if (is_rebooting_) return true;
+  const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
+  const Vec<Real> error_m{position_m.x - reference_m.x, position_m.y - reference_m.y};
+  const Real half_m = Real(0.5) * settings_.drift_bound_m;
+  return !(squared_norm(error_m) < half_m * half_m);
+}
+
+template <typename Real>
+void RobotSide<Real>::check_reference(std::int64_t now_ns, const Estimate<Real>& estimate,
+                                      StableMemory& memory) {
+  while (switch_next(now_ns)) {
+  }
+  if (is_lifted_ || !has_pose_) return;
+  const bool may_stop = now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
+  if (is_rebooting_ && may_stop) {
+    restart();
+    start_own_stop(OwnStopReason::kRestart, estimate, now_ns, memory);
+  }
+  const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
+  const Vec<Real> error_m{estimate.position_m.x - reference_m.x, estimate.position_m.y - reference_m.y};
+  OwnStopReason reason{};
+  if (must_stop(error_m, estimate, now_ns, reason) && may_stop)
+    start_own_stop(reason, estimate, now_ns, memory);
+}
+
+// The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
+// because no camera sees it.
+template <typename Real>
+bool RobotSide<Real>::is_beyond(Real bound_m, Real error_m, const Estimate<Real>& estimate) const {
+  const Real half_m = Real(0.5) * bound_m;
+  if (error_m < half_m) return false;
+  return error_m + smaller(2 * estimate.position_error_rms_m, half_m) >
+         bound_m + static_cast<Real>(executing_.inflation_m);
+}
+
+// A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
+// the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
+// control cannot correct in time, or that the margin does not cover.
+template <typename Real>
+bool RobotSide<Real>::must_stop(const Vec<Real>& error_vector_m, const Estimate<Real>& estimate,
+                                std::int64_t now_ns, OwnStopReason& reason) {
+  const Real drift_m = settings_.drift_bound_m, error_m = norm(error_vector_m);
+  // Inflation covers where the robot may be, not the way back to its reference.
+  if (estimate.jump_m > 0 && error_m > drift_m) {
+    reason = OwnStopReason::kDisplaced;
+    return true;
+  }
+  if (!is_beyond(drift_m, error_m, estimate)) {
+    drifted_since_ns_ = kNever_ns;
+    return false;
+  }
+  drifted_since_ns_ = smaller(drifted_since_ns_, now_ns);
+  if (is_beyond(settings_.tracking_bound_m, error_m, estimate)) {
+    reason = OwnStopReason::kOffReference;
+    return true;
+  }
+  if (estimate.jump_m > 0) {
+    reason = OwnStopReason::kDisplaced;
+    return true;
+  }
+  reason = OwnStopReason::kDrifted;
+  return now_ns - drifted_since_ns_ >= kMaxRecovery_ns;
+}
+
+template <typename Real>
+void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate,
+                                     std::int64_t now_ns, StableMemory& memory) {
+  own_stop_reason_ = reason;
+  has_found_pose_ = false;
+  drifted_since_ns_ = kNever_ns;
+  Version stop;
+  stop.incarnation = durable_.incarnation;
+  highest_seen_ = larger(highest_seen_, highest_executed_) + kOwnNumberGap;
+  stop.number = highest_seen_;
+  stop.base = executing_.number;
+  stop.start_ns = now_ns;
+  const Vec<Real>&p = estimate.position_m, &v = estimate.velocity_mps;
+  stop.x_m = static_cast<double>(p.x);
+  stop.y_m = static_cast<double>(p.y);
+  stop.vx_mps = static_cast<double>(v.x);
+  stop.vy_mps = static_cast<double>(v.y);
+  Vec<Real> braked_mps = v;
+  if (settings_.actuation_lead_ns > 0) {
+    braked_mps = estimate.coming_velocity_mps;
+    const double lead_s = seconds_of(settings_.actuation_lead_ns);
+    append_phase(stop, settings_.actuation_lead_ns, static_cast<double>(braked_mps.x - v.x) / lead_s,
+                 static_cast<double>(braked_mps.y - v.y) / lead_s);
+  }
+  append_braking(stop, braked_mps, settings_.deceleration_mps2);
+  // Includes the last displacement, because its cause may act again before the next fix.
+  stop.inflation_m =
+      smaller(static_cast<double>(2 * estimate.position_error_rms_m + estimate.jump_m), kMaxInflation_m);
+  executing_ = stop;
+  highest_executed_ = stop.number;
+  is_off_reference_ = true;
+  pending_count_ = 0;
+  ++own_stops_;
+  if (highest_seen_ <= durable_.number_bound) return;
+  DurableState next = durable_;
+  next.number_bound = highest_seen_ + kStoredAhead;
+  // The stop must not wait for the memory. Without it the robot stops too, but reports nothing.
+  is_memory_broken_ = !store(next, memory);
+}
+
+template <typename Real>
+void RobotSide<Real>::lift(std::int64_t now_ns, double x_m, double y_m) {
+  is_lifted_ = true;
+  is_rebooting_ = false;
+  has_pose_ = true;  // a lifted robot needs none until it is put down
+  has_found_pose_ = false;
+  is_off_reference_ = false;
+  pending_count_ = 0;
+  executing_ = {};
+  executing_.base = highest_executed_;
+  executing_.start_ns = now_ns;
+  executing_.x_m = x_m;
+  executing_.y_m = y_m;
+}
+
+template <typename Real>
+void RobotSide<Real>::restart() {
+  highest_seen_ = highest_executed_ = durable_.number_bound;
+  has_moved_ = durable_.has_moved;
+  is_off_reference_ = false;
+  is_rebooting_ = false;
+  has_command_ = false;
+  drifted_since_ns_ = kNever_ns;
+  pending_count_ = 0;
+  counts_.activated = 0;
+  own_stops_ = 0;
+}
+
+template <typename Real>
+Facts RobotSide<Real>::facts(std::int64_t now_ns) {
+  while (switch_next(now_ns)) {
+  }
+  last_fact_ns_ = larger(last_fact_ns_, now_ns);
+  Facts facts;
+  facts.obeyed_incarnation = durable_.incarnation;
+  facts.obeyed_epoch = durable_.epoch;
+  facts.valid_at_ns = now_ns;
+  facts.executing = &executing_;
+  facts.is_off_reference = is_off_reference_;
+  facts.is_lifted = is_lifted_;
+  facts.has_moved = has_moved_;
+  facts.has_command = has_command_;
+  facts.command_sent_at_ns = command_sent_at_ns_;
+  facts.command_received_at_ns = command_received_at_ns_;
+  facts.activated = counts_.activated;
+  facts.lead_ns = settings_.actuation_lead_ns;
+  return facts;
+}
+
+template class RobotSide<float>;
+template class RobotSide<double>;
+
+}  // namespace sidestep::robot

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "common/robot/robot_version.hpp"
+#include "common/robot/stable_memory.hpp"
+
+namespace sidestep::robot {
+
+template <typename Real>
+struct Settings {
+  Real tracking_bound_m = Real(0.005);
+  Real drift_bound_m = Real(0.003);    ///< the part of the tracking bound that drift may use, 0.6 of it
+  Real deceleration_mps2 = 5;          ///< D, of the robot's own stops
+  std::int64_t actuation_lead_ns = 0;  ///< from a command to the motors until the body moves accordingly
+};
+
+/// Versions and commands that a robot has received, by outcome.
+struct Counts {
+  std::uint64_t activated = 0;  ///< since the last restart
+  std::uint64_t refused_late = 0;
+  std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
+  std::uint64_t refused_fenced = 0;
+  std::uint64_t refused_malformed = 0;
+  std::uint64_t refused_unstored = 0;  ///< because the memory failed
+};
+
+/// Why a robot has made a stop of its own.
+enum class OwnStopReason : std::uint8_t {
+  kOffReference,  ///< beyond the tracking bound
+  kDrifted,       ///< beyond the drift bound for kMaxRecovery_ns
+  kDisplaced,     ///< displaced without its wheels measuring it
+  kRestart,       ///< the robot has restarted
+};
+
+/// What the protocol needs of a command. Its numbers and times are checked: finite, and less than an hour
+/// ahead of the robot's clock.
+struct Command {
+  std::uint64_t incarnation = 0;  ///< of the agent
+  std::uint64_t epoch = 0;        ///< highest that the agent knows, 0: none
+  std::int64_t sent_at_ns = 0;    ///< by the agent's clock
+  const Version* version = nullptr;
+};
+
+/// The robot's own estimate of its state.
+template <typename Real>
+struct Estimate {
+  Vec<Real> position_m, velocity_mps;
+  Real position_error_rms_m = 0;  ///< only read if needs_uncertainty()
+  Real jump_m = 0;                ///< displacement that the last fix showed and the wheels did not measure
+  /// The velocity after Settings::actuation_lead_ns, if the motors get no further command but those under
+  /// way. Only read if there is a lead.
+  Vec<Real> coming_velocity_mps{};
+};
+
+/// The protocol's part of a fact (Feedback in idl/robot.idl).
+struct Facts {
+  std::uint64_t obeyed_incarnation = 0, obeyed_epoch = 0;
+  std::int64_t valid_at_ns = 0;
+  const Version* executing = nullptr;  ///< valid until the next call
+  bool is_off_reference = false, is_lifted = false, has_moved = false;
+  bool has_command = false;
+  std::int64_t command_sent_at_ns = 0;  ///< of the last obeyed command, by the agent's clock
+  std::int64_t command_received_at_ns = 0;
+  std::uint64_t activated = 0;
+  std::int64_t lead_ns = 0;  ///< how long before its start a version has to arrive
+};
+
+/// The robot's side of the safety protocol (coordinator/PROTOCOL.md, "What a robot must do"), without control
+/// and estimation. It executes one whole version and holds a few pending ones. It switches to a version only
+/// at that version's start time, and only from its base. Without commands it executes its version to the end
+/// and rests. What it acknowledges it has stored.
+///
+/// It makes a stop of its own if the robot may be farther from its reference than the tracking bound, or than
+/// the drift bound and either does not return within kMaxRecovery_ns or was displaced without its wheels
+/// measuring it. The stop is a version that brakes from the estimated state; the robot executes it at once.
+/// If the motors obey late, the stop begins with the motion that is under way.
+///
+/// A robot without a pose accepts no version, and must not report facts. A lifted robot executes nothing
+/// (version 0) and accepts only a granted rest version on base 0.
+///
+/// All times are by the robot's clock in nanoseconds since 1970, and never go back. `Real` is float or
+/// double. Needs no heap, no exceptions and no operating system.
+template <typename Real>
+class RobotSide {
+ public:
+  static constexpr int kMaxPending = 8;
+  /// How long the control may take to return to the reference before the robot makes a stop of its own.
+  static constexpr std::int64_t kMaxRecovery_ns = 25'000'000;
+  /// Gap between the numbers that have reached the robot and the number of a stop of its own: versions that
+  /// it has not received yet may already be granted and in transit.
+  static constexpr std::uint64_t kOwnNumberGap = std::uint64_t{1} << 20;
+  /// The stored bound of numbers is ahead of them by up to this, so that it is rarely stored.
+  static constexpr std::uint64_t kStoredAhead = std::uint64_t{1} << 26;
+
+  /// A robot that has just been switched on and does not know its pose.
+  RobotSide(const Settings<Real>& settings, const DurableState& remembered);
+
+  /// It is at rest at this place: executes version 0 there. For a robot that has never obeyed an agent.
+  void begin_at_rest(double x_m, double y_m);
+  /// It knows its pose from now on: the next check_reference() makes a stop of its own there.
+  void find_pose();
+  /// It does not know its pose any more.
+  void lose_pose();
+  /// It has lost everything but its memory, its pose and what it reported: the next check_reference() that
+  /// may do so makes a stop of its own.
+  void reboot() { is_rebooting_ = true; }
+  /// It has been without power, and has lost its pending versions.
+  void switch_on();
+
+  /// Obeys a command, or refuses and counts it. Whether it is from an agent that the robot obeys; then the
+  /// robot may use the rest of the command, such as a fix.
+  [[nodiscard]] bool on_command(const Command& command, std::int64_t now_ns, StableMemory& memory);
+  /// Counts a command that could not be decoded.
+  void on_malformed_command(std::int64_t now_ns);
+
+  /// Makes the next switch of version that is due; false if none is. Every other call with a time first makes
+  /// all switches due by then, so that a reported "executing f at t" remains true.
+  bool switch_next(std::int64_t now_ns);
+
+  /// Whether check_reference() would read the estimate's position error, which is costly to compute.
+  bool needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const;
+  /// Once per control period: makes a stop of its own if the estimate demands it. No effect on a robot
+  /// that is lifted or has no pose.
+  void check_reference(std::int64_t now_ns, const Estimate<Real>& estimate, StableMemory& memory);
+
+  /// Off the floor: discards the executed version and all pending ones. Facts name the last version as the
+  /// base of nothing, number 0, so that the agent can number the next one above it. Called again, it also
+  /// discards a rest version accepted since.
+  void lift(std::int64_t now_ns, double x_m, double y_m);
+  /// The lifted robot has been put down at the rest version that it executes.
+  void put_down() { is_lifted_ = false; }
+
+  /// The facts at this time. Precondition: may_report().
+  Facts facts(std::int64_t now_ns);
+  /// Whether it executes a version that begins where it is, and has stored what its facts would acknowledge.
+  bool may_report() const { return has_pose_ && !has_found_pose_ && !is_memory_broken_; }
+
+  const Version& executing() const { return executing_; }
+  /// What is to be executed at a later time, as far as it is known.
+  const Version& planned(std::int64_t t_ns) const;
+  /// Whether it executes a stop of its own.
+  bool is_off_reference() const { return is_off_reference_; }
+  /// Why it has made the last one.
+  OwnStopReason own_stop_reason() const { return own_stop_reason_; }
+  bool is_lifted() const { return is_lifted_; }
+  bool has_pose() const { return has_pose_; }
+  std::uint64_t obeyed_incarnation() const { return durable_.incarnation; }
+  std::uint64_t obeyed_epoch() const { return durable_.epoch; }
+  const Counts& counts() const { return counts_; }
+  /// Number of stops of its own since the last restart.
+  std::uint64_t own_stops() const { return own_stops_; }
+  bool has_pending() const { return pending_count_ > 0; }
+  /// The start of the next pending version. Precondition: has_pending().
+  std::int64_t next_start_ns() const { return pending_[0].start_ns; }
+
+ private:
+  void discard_fenced();
+  void take(const Version& version, std::int64_t now_ns, StableMemory& memory);
+  bool holds(std::uint64_t number) const;
+  bool may_take(const Version& version) const;
+  void insert(const Version& version);
+  void remove_pending(int index);
+  bool store(const DurableState& next, StableMemory& memory);
+  bool is_beyond(Real bound_m, Real error_m, const Estimate<Real>& estimate) const;
+  bool must_stop(const Vec<Real>& error_m, const Estimate<Real>& estimate, std::int64_t now_ns,
+                 OwnStopReason& reason);
+  void start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate, std::int64_t now_ns,
+                      StableMemory& memory);
+  void restart();
+
+  static constexpr std::int64_t kNever_ns = INT64_MAX;
+
+  Settings<Real> settings_;
+  DurableState durable_;            ///< as stored
+  std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
+  std::uint64_t highest_executed_ = 0;
+  Version executing_;
+  bool has_moved_ = false;
+  bool is_off_reference_ = false;
+  OwnStopReason own_stop_reason_ = OwnStopReason::kOffReference;
+  bool is_lifted_ = false;
+  bool is_rebooting_ = false;
+  bool has_pose_ = false;
+  bool has_found_pose_ = false;  ///< and has not made its own stop there yet
+  bool is_memory_broken_ = false;
+  bool has_command_ = false;
+  std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;
+  std::int64_t last_fact_ns_ = INT64_MIN;
+  std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns: within the drift bound
+  Version pending_[kMaxPending];               ///< ascending by start, then number
+  int pending_count_ = 0;
+  Counts counts_;
+  std::uint64_t own_stops_ = 0;
+};
+
+extern template class RobotSide<float>;
+extern template class RobotSide<double>;
+
+}  // namespace sidestep::robot

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/robot/robot_side.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "common/messaging/version_codec.hpp"
+#include "common/random/rng.hpp"
+#include "common/robot/conversion.hpp"
+#include "tests/catch.hpp"
+#include "tests/counted_allocations.hpp"
+#include "tests/unit/common/robot/test_memory.hpp"
+
+namespace sidestep::robot {
+
+using test::at_ms;
+using test::command;
+using test::rest_version;
+using test::TestMemory;
+
+namespace {
+
+/// Accelerates from the base's state at start_ms for 100 ms, then brakes.
+Version driving_version(const Version& base, std::uint64_t number, std::int64_t start_ns,
+                        const Vec2& acceleration) {
+  const auto from = motion_at<double>(base, start_ns);
+  sidestep::Version version;
+  version.incarnation = 100;
+  version.number = number;
+  version.base = base.number;
+  version.trajectory = Trajectory(time_from_ns(start_ns), {{from.position_m.x, from.position_m.y},
+                                                           {from.velocity_mps.x, from.velocity_mps.y}});
+  version.trajectory.append(std::chrono::milliseconds(100), acceleration);
+  append_stop(version.trajectory, 5);
+  return to_plain(version);
+}
+
+template <typename Real>
+Estimate<Real> exactly_at(const Version& version, std::int64_t t_ns) {
+  const auto motion = motion_at<Real>(version, t_ns);
+  Estimate<Real> estimate;
+  estimate.position_m = motion.position_m;
+  estimate.velocity_mps = motion.velocity_mps;
+  return estimate;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a robot side repeats every version bit for bit and allocates nothing", "", float,
+                   double) {
+  Rng rng(24);
+  TestMemory memory;
+  RobotSide<TestType> side({}, {});
+  side.begin_at_rest(1.25, -0.7);
+  std::vector<Version> sent;
+  sent.reserve(1000);
+  int compared = 0;
+  std::uint64_t number = 100;
+  const std::size_t allocations = allocation_count();
+  for (std::int64_t ms = 1; ms <= 5000; ++ms) {
+    if (ms % 16 == 0) {
+      const Vec2 acceleration(rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0));
+      sent.push_back(driving_version(side.executing(), ++number, at_ms(ms + 5), acceleration));
+      (void)side.on_command(command(100, 1, &sent.back()), at_ms(ms), memory);
+    }
+    side.check_reference(at_ms(ms), exactly_at<TestType>(side.executing(), at_ms(ms)), memory);
+    const Facts facts = side.facts(at_ms(ms));
+    if (facts.executing->number == 0) continue;
+    const Version& original = sent[facts.executing->number - 101];
+    REQUIRE(facts.executing->number == original.number);
+    const bool is_same = facts.executing->x_m == original.x_m && facts.executing->vy_mps == original.vy_mps &&
+                         facts.executing->phases[0].ax_mps2 == original.phases[0].ax_mps2 &&
+                         facts.executing->phases[1].ay_mps2 == original.phases[1].ay_mps2;
+    compared += is_same ? 1 : 0;
+    REQUIRE(is_same);
+  }
+  CHECK(allocation_count() == allocations);
+  CHECK(compared > 4900);
+  CHECK(side.own_stops() == 0);
+  CHECK(side.counts().activated == sent.size() - (sent.back().start_ns > at_ms(5000) ? 1 : 0));
+}
+
+TEMPLATE_TEST_CASE("a robot side's own stop brakes to rest from the estimate", "", float, double) {
+  Rng rng(25);
+  for (int i = 0; i < 500; ++i) {
+    TestMemory memory;
+    RobotSide<TestType> side({}, {});
+    side.begin_at_rest(0, 0);
+    Estimate<TestType> pushed;
+    pushed.position_m = {static_cast<TestType>(rng.uniform(0.1, 5.0)),
+                         static_cast<TestType>(rng.uniform(-5.0, 5.0))};
+    pushed.velocity_mps = {static_cast<TestType>(rng.uniform(-2.0, 2.0)),
+                           static_cast<TestType>(rng.uniform(-2.0, 2.0))};
+    REQUIRE(side.needs_uncertainty(at_ms(1), pushed.position_m));
+    pushed.position_error_rms_m = TestType(0.01);
+    side.check_reference(at_ms(1), pushed, memory);
+    REQUIRE(side.is_off_reference());
+    CHECK(side.own_stop_reason() == OwnStopReason::kOffReference);
+    const sidestep::Version stop = from_plain(side.executing(), 0);
+    const State& from = stop.trajectory.at_start();
+    CHECK(from.position_m == Vec2(pushed.position_m.x, pushed.position_m.y));
+    CHECK(from.velocity_mps == Vec2(pushed.velocity_mps.x, pushed.velocity_mps.y));
+    CHECK(stop.trajectory.residual_speed_mps() < 1e-9);
+    REQUIRE(stop.trajectory.phases().size() == 1);
+    const Vec2 braking = stop.trajectory.phases()[0].acceleration_mps2;
+    CHECK(braking.norm() == Approx(5).epsilon(1e-6));
+    CHECK(std::abs(cross(braking, from.velocity_mps)) < 1e-9);
+    CHECK(braking.dot(from.velocity_mps) < 0);
+    CHECK(stop.inflation_m == Approx(0.02).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a robot whose motors obey late refuses versions that start too soon for them, and says so") {
+  TestMemory memory;
+  Settings<double> settings;
+  settings.actuation_lead_ns = 100'000'000;
+  RobotSide<double> side(settings, {});
+  side.begin_at_rest(0, 0);
+  const Version soon = rest_version(101, 0, 100), in_time = rest_version(102, 0, 101);
+  CHECK(side.on_command(command(100, 1, &soon), at_ms(0), memory));
+  CHECK(side.counts().refused_late == 1);
+  CHECK(side.on_command(command(100, 1, &in_time), at_ms(0), memory));
+  CHECK(side.facts(at_ms(101)).executing->number == 102);
+  CHECK(side.facts(at_ms(101)).lead_ns == 100'000'000);
+}
+
+TEST_CASE("a robot whose motors obey late includes the motion under way in its own stop") {
+  TestMemory memory;
+  Settings<double> settings;
+  settings.actuation_lead_ns = 100'000'000;
+  RobotSide<double> side(settings, {});
+  side.begin_at_rest(0, 0);
+  Estimate<double> estimate;
+  estimate.position_m = {1, 0};
+  estimate.velocity_mps = {1, 0};
+  estimate.coming_velocity_mps = {1.5, 0};
+  side.check_reference(at_ms(1), estimate, memory);
+  REQUIRE(side.is_off_reference());
+  const Version& stop = side.executing();
+  REQUIRE(stop.phase_count == 2);
+  const auto before_braking = motion_at<double>(stop, at_ms(101));
+  CHECK(before_braking.velocity_mps.x == Approx(1.5));
+  CHECK(before_braking.position_m.x == Approx(1.125));
+  CHECK(stop.end_ns() == at_ms(401));
+  CHECK(motion_at<double>(stop, at_ms(401)).position_m.x == Approx(1.35));
+}
+
+TEST_CASE("a robot without a pose accepts no version") {
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  const Version version = rest_version(101, 0, 50);
+  CHECK(side.on_command(command(100, 1, &version), at_ms(1), memory));
+  CHECK_FALSE(side.has_pending());
+  CHECK_FALSE(side.may_report());
+  side.check_reference(at_ms(2), {}, memory);
+  CHECK_FALSE(side.is_off_reference());
+  side.find_pose();
+  CHECK_FALSE(side.may_report());  // it has no version yet that begins where it is
+  side.check_reference(at_ms(3), {}, memory);
+  CHECK(side.may_report());
+  CHECK(side.is_off_reference());
+  CHECK(side.own_stop_reason() == OwnStopReason::kRestart);
+}
+
+}  // namespace sidestep::robot
