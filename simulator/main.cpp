@@ -1,45 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
+#include <stdexcept>
 
 #include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "simulator/bases/base_options.hpp"
+#include "simulator/bases/league_server.hpp"
 #include "simulator/images/image_output.hpp"
 #include "simulator/league/league_output.hpp"
+#include "simulator/world/simulator_node.hpp"
 
 namespace sidestep {
 namespace {
-
-/// The multicast address of simulators, distinct from that of real cameras.
-constexpr const char* kSimulatedVision = "224.5.23.2:10020";
 
 struct Options {
   std::uint64_t seed = 1;
   std::optional<std::string> ssl_vision;
   std::string league_interface = league::kLeagueInterface;
+  BaseOptions bases;
 };
 
 void add_options(const CliCommand& app, Options& options) {
   app.add_option("--seed", options.seed, "seed of all noise and loss").show_default();
-  app.add_optional_value("--ssl-vision", options.ssl_vision, kSimulatedVision,
+  app.add_optional_value("--ssl-vision", options.ssl_vision, league::kSimulatedVisionEndpoint,
                          "also send SSL-Vision packets, to this ADDRESS:PORT");
   app.add_option("--league-interface", options.league_interface,
                  "address of the network interface for league packets")
       .show_default();
+  add_base_options(app, options.bases);
 }
 
-struct Nodes {
-  Nodes(Bus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
+/// Robots with Sidestep's firmware.
+struct Robots {
+  Robots(Bus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
       : simulator(bus, scenario, incarnation, options.seed) {
     if (scenario.vision.images) images.emplace(bus, scenario, simulator, incarnation, options.seed);
-    if (options.ssl_vision)
-      league.emplace(bus, scenario, simulator, *options.ssl_vision, options.league_interface);
+    if (!options.ssl_vision) return;
+    league.emplace(bus, simulator.events(), scenario, simulator.cameras().views(), *options.ssl_vision,
+                   options.league_interface);
+    simulator.set_detection_listener([this](const msg::DetectionFrame& frame) { league->send(frame); });
+    simulator.add_drop_source([this](DropCounters& drops) { league->count_drops(drops); });
   }
   SimulatorNode simulator;
   std::optional<ImageOutput> images;
   std::optional<LeagueOutput> league;
 };
+
+/// Robots that clients of the league's protocol drive.
+struct LeagueRobots {
+  LeagueRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
+      : bases(bus, scenario, options.bases.team_size, settings_of(options.bases), options.bases.speed,
+              incarnation, options.seed),
+        server(bases, ports_of(options.bases), options.bases.accepts_global),
+        vision(bus, bases.events(), bases.world_now().floor(), bases.cameras().views(),
+               options.ssl_vision.value_or(league::kSimulatedVisionEndpoint), options.league_interface,
+               traits_of(options.bases)) {
+    bases.set_detection_listener([this](const msg::DetectionFrame& frame) { vision.send(frame); });
+    bases.add_drop_source([this](DropCounters& drops) { vision.count_drops(drops); });
+    server.start([&bus](int descriptor, std::function<void()> readable) {
+      bus.watch(descriptor, std::move(readable));
+    });
+  }
+  BasesNode bases;
+  LeagueServer server;
+  LeagueOutput vision;
+};
+
+RunningNodes start_robots(Bus& bus, const Scenario& scenario, const Options& options,
+                          Incarnation incarnation) {
+  auto nodes = std::make_shared<Robots>(bus, scenario, options, incarnation);
+  log_events_of(nodes->simulator);
+  return {nodes, [&nodes = *nodes] { return nodes.simulator.is_commanded(); }};
+}
+
+RunningNodes start_league(DdsBus& bus, const Scenario& scenario, const Options& options,
+                          Incarnation incarnation) {
+  if (scenario.vision.images || scenario.laser)
+    throw std::invalid_argument(
+        "--league: the league's protocol has neither images nor lasers, but scenario " + scenario.name +
+        " asks for them");
+  auto nodes = std::make_shared<LeagueRobots>(bus, scenario, options, incarnation);
+  log_events_of(nodes->bases);
+  return {nodes, {}};
+}
 
 }  // namespace
 }  // namespace sidestep
@@ -52,11 +97,10 @@ int main(int argc, char** argv) {
       "Simulates the floor: robot bodies and their firmware, the ball, opponents, and the cameras above.";
   program.add_options = [&options](const sidestep::CliCommand& app) { sidestep::add_options(app, options); };
   program.process = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
-  program.start = [&options](sidestep::Bus& bus, const sidestep::Scenario& scenario,
+  program.start = [&options](sidestep::DdsBus& bus, const sidestep::Scenario& scenario,
                              sidestep::Incarnation incarnation) -> sidestep::RunningNodes {
-    auto nodes = std::make_shared<sidestep::Nodes>(bus, scenario, options, incarnation);
-    sidestep::log_events_of(nodes->simulator);
-    return {nodes, [&nodes = *nodes] { return nodes.simulator.is_commanded(); }};
+    return options.bases.is_league ? sidestep::start_league(bus, scenario, options, incarnation)
+                                   : sidestep::start_robots(bus, scenario, options, incarnation);
   };
   return sidestep::run_process(argc, argv, program);
 }

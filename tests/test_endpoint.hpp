@@ -13,6 +13,8 @@ class TestEndpoint {
   league::Endpoint endpoint(int index = 0) const {
     return {0xefff'3e00, static_cast<std::uint16_t>(20'000 + 10 * domain_.number() + index)};
   }
+  /// The same port on the loopback interface.
+  league::Endpoint unicast(int index = 0) const { return {0x7f00'0001, endpoint(index).port}; }
   std::string text(int index = 0) const { return to_text(endpoint(index)); }
   /// A DDS domain that is exclusive, too.
   const TestDomain& domain() const { return domain_; }

@@ -99,6 +99,7 @@ struct RestartSpec {
   bool agents = false;
   bool coordinator = false;
   bool vision = false;
+  bool robots = false;  ///< sidestep-robot, with `run --driver`
 };
 
 /// One run of the system, as described by a scenario file (deploy/scenarios/README.md). The loader rejects

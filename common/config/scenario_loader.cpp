@@ -176,8 +176,11 @@ void read_restart(YamlMap& map, RestartSpec& restart) {
       restart.coordinator = true;
     else if (process == "vision")
       restart.vision = true;
+    else if (process == "robots")
+      restart.robots = true;
     else
-      element_location.fail("expected agents, coordinator or vision, got \"" + process.substr(0, 40) + "\"");
+      element_location.fail("expected agents, coordinator, vision or robots, got \"" + process.substr(0, 40) +
+                            "\"");
   }
 }
 

@@ -1,51 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/league/decode_error.hpp"
+#include "common/league/endpoint.hpp"
 
 namespace sidestep::league {
-
-/// An IPv4 address and a port in host byte order: 127.0.0.1 is 0x7f000001.
-struct Endpoint {
-  std::uint32_t address = 0;
-  std::uint16_t port = 0;
-  auto operator<=>(const Endpoint&) const = default;
-};
-
-/// "224.5.23.2:10006".
-std::string to_text(const Endpoint& endpoint);
-
-/// Parses ADDRESS:PORT with a multicast address (224.0.0.0 to 239.255.255.255) and a port (1 to 65535).
-/// Throws std::invalid_argument that says what was expected.
-[[nodiscard]] Endpoint parse_multicast_endpoint(const std::string& text);
 
 /// The league's default endpoints.
 inline constexpr const char* kVisionEndpoint = "224.5.23.2:10006";
 inline constexpr const char* kTrackedEndpoint = "224.5.23.2:10010";
 inline constexpr const char* kRefereeEndpoint = "224.5.23.1:10003";
+/// Of simulators, distinct from that of real cameras.
+inline constexpr const char* kSimulatedVisionEndpoint = "224.5.23.2:10020";
 /// The loopback interface, so that by default no packet leaves the machine.
 inline constexpr const char* kLeagueInterface = "127.0.0.1";
-
-/// An owned file descriptor.
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int number) : number_(number) {}
-  ~FileDescriptor();
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// Sends datagrams to a multicast group over one interface, given by its address, without blocking. The TTL
 /// is 1, so they stay in the local network. The constructor throws std::invalid_argument if the machine has
@@ -70,9 +44,6 @@ class MulticastSender {
 /// machine may share a group. The constructor throws as MulticastSender's does.
 class MulticastReceiver {
  public:
-  /// Called with a datagram and its source.
-  using DatagramHandler = std::function<void(std::span<const std::byte>, const Endpoint&)>;
-
   MulticastReceiver(const Endpoint& group, const std::string& interface);
 
   /// Becomes readable when a datagram has arrived.

@@ -14,6 +14,7 @@ bool has_clock(std::uint32_t process) {
   return process < kMaxRobots || is_coordinator(process) ||
          process == static_cast<std::uint32_t>(Sender::kVision) ||
          process == static_cast<std::uint32_t>(Sender::kSimulator) ||
+         process == static_cast<std::uint32_t>(Sender::kRobots) ||
          process == static_cast<std::uint32_t>(Sender::kReferee);
 }
 

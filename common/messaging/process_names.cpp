@@ -20,6 +20,7 @@ std::optional<std::uint32_t> process_id(const std::string& name) {
   constexpr auto kFirstCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
   if (name == "vision") return static_cast<std::uint32_t>(Sender::kVision);
   if (name == "simulator") return static_cast<std::uint32_t>(Sender::kSimulator);
+  if (name == "robots") return static_cast<std::uint32_t>(Sender::kRobots);
   if (name == "coordinator") return kFirstCoordinator;
   const auto space = name.find(' ');
   if (space == std::string::npos) return std::nullopt;

@@ -24,6 +24,7 @@ inline std::string process_name(std::uint32_t id) {
   const auto is = [id](Sender sender) { return id == static_cast<std::uint32_t>(sender); };
   if (is(Sender::kVision)) return "vision";
   if (is(Sender::kSimulator)) return "simulator";
+  if (is(Sender::kRobots)) return "robots";
   if (is(Sender::kOperator)) return "operator";
   if (is(Sender::kReferee)) return "referee";
   if (is_coordinator(id))
@@ -32,7 +33,7 @@ inline std::string process_name(std::uint32_t id) {
 }
 
 /// The id of the process with such a name, also of "coordinator 0"; nullopt if it is no agent, coordinator,
-/// vision or simulator.
+/// vision, simulator or robots.
 [[nodiscard]] std::optional<std::uint32_t> process_id(const std::string& name);
 
 }  // namespace sidestep

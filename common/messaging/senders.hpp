@@ -12,6 +12,7 @@ enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
   kSimulator = 30000,
+  kRobots = 35000,  ///< a process that drives robots of others
   kOperator = 40000,
   kReferee = 50000,
   kScenario = 60000,  ///< orders that the scenario file gives

@@ -72,6 +72,10 @@ enum class DropReason : std::uint16_t {
   kWrongBase,
   kRefusedDisturbance,
   kUnsentLeaguePacket,
+  // Processes that drive robots of others.
+  kUnstoredCommand,
+  kMalformedOdometry,
+  kRejectedByBase,
   // Monitors.
   kUnusedByMonitor,
 };
@@ -169,6 +173,10 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
      "disturbances that are invalid, or that the robot's state does not allow", false},
     {DropReason::kUnsentLeaguePacket, "unsent_league_packet", "packets of the league that could not be sent",
      false},
+    {DropReason::kUnstoredCommand, "unstored_command",
+     "commands that a robot refused because its memory failed", true},
+    {DropReason::kMalformedOdometry, "malformed_odometry", "odometry of bases", true},
+    {DropReason::kRejectedByBase, "rejected_by_base", "errors that bases or their simulator answered", true},
     {DropReason::kUnusedByMonitor, "unused_by_monitor",
      "invalid or overtaken states that the run's metrics did not use", false},
 });

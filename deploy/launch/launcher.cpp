@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "common/log/log.hpp"
 #include "common/messaging/process_names.hpp"
@@ -26,11 +24,6 @@ constexpr Duration kStuckTimeout = 2s;      // since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 constexpr const char* kMonitor = "monitor";
-
-std::vector<std::string> split_words(const std::string& text) {
-  std::istringstream stream(text);
-  return {std::istream_iterator<std::string>(stream), {}};
-}
 
 }  // namespace
 
@@ -88,7 +81,7 @@ Report Launcher::run() {
   for (const std::string& name : group_.terminate(kTerminationTimeout))
     print(name + " did not stop in time and was killed", LogLevel::kWarning);
   report.program = "run";
-  report.seed = options_.seed;
+  report.seed = options_.floor.seed;
   report.abort_reason = abort_reason_;
   report.must_arrive = !metrics_.awaits_orders();
   report.duration_s = to_seconds(bus_.now() - begin);
@@ -167,10 +160,11 @@ void Launcher::start_monitor() {
 
 void Launcher::start_core() {
   const RestartSpec& restart = scenario_.restart;
-  std::vector<std::string> simulator = split_words(options_.simulator_options);
-  simulator.insert(simulator.begin(), {"--seed", std::to_string(options_.seed)});
-  start("simulator", "sidestep-simulator", false, simulator);
-  start("vision", "sidestep-vision", restart.vision, split_words(options_.vision_options));
+  FloorOptions floor = options_.floor;
+  floor.memory_folder = robot_memory_.path();
+  const FloorProcess robots = robots_process(floor), vision = vision_process(floor);
+  start(robots.name, robots.program, !floor.driver.empty() && restart.robots, robots.arguments);
+  start(vision.name, vision.program, restart.vision, vision.arguments);
   if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
   // All begin as standbys, so a restarted coordinator does not take over from the active one.
   for (int number = 0; number < scenario_.coordinators; ++number) {
@@ -229,7 +223,9 @@ bool Launcher::is_over() {
 bool Launcher::is_startup_over() {
   const bool all_started = agents_started_ == scenario_.robots.size();
   // The coordinator grants only after every agent has registered, so their status need not be awaited.
-  is_ready_ = all_started && metrics_.has_truth() && metrics_.granting_since();
+  // Without the simulator there is no ground truth.
+  const bool has_robots = options_.floor.driver.empty() ? metrics_.has_truth() : metrics_.has_seen_robots();
+  is_ready_ = all_started && has_robots && metrics_.granting_since();
   if (is_ready_) {
     ready_at_ = bus_.now();
     print("all processes are running and the coordinator grants");
@@ -241,7 +237,10 @@ bool Launcher::is_startup_over() {
 
 std::string Launcher::startup_failure() const {
   std::vector<std::string> reasons;
-  if (!metrics_.has_truth()) reasons.push_back("no ground truth from the simulator");
+  if (options_.floor.driver.empty() && !metrics_.has_truth())
+    reasons.push_back("no ground truth from the simulator");
+  if (!options_.floor.driver.empty() && !metrics_.has_seen_robots())
+    reasons.push_back("vision sees no robot");
   if (const auto silent = metrics_.silent_agents(); !silent.empty())
     reasons.push_back(fmt::format("no status from agent {}", fmt::join(silent, ", ")));
   if (!metrics_.has_coordinator_state())
@@ -275,9 +274,11 @@ bool Launcher::is_drive_over() {
 
 bool Launcher::is_stuck(Time now) const {
   if (dead_.empty() || now - last_death_ < kStuckTimeout) return false;
-  const bool is_truth_stale = now - *metrics_.truth_at() > kStuckTimeout;
-  if (!is_truth_stale && !metrics_.all_at_rest()) return false;
-  if (dead_.count("simulator") || dead_.count("vision") || are_all_coordinators_dead()) return true;
+  const bool is_unseen = now - *metrics_.seen_at() > kStuckTimeout;
+  if (!is_unseen && !metrics_.all_at_rest()) return false;
+  if (dead_.count("simulator") || dead_.count("robots") || dead_.count("vision") ||
+      are_all_coordinators_dead())
+    return true;
   for (const RobotProgress& row : metrics_.progress()) {
     if (!row.arrived && !dead_.count(agent_process(row.robot))) return false;
   }

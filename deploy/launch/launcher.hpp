@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
+#include "common/file/temporary_folder.hpp"
 #include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/rules_exchange.hpp"
@@ -88,6 +89,7 @@ class Launcher {
   const Scenario& scenario_;
   const Placement& placement_;
   const NamespaceNetwork* network_;
+  TemporaryFolder robot_memory_;  ///< of the robots' side, which begins anew with each run
   ProcessGroup group_;
   std::map<std::string, ProcessSpec> processes_;  ///< by name
   RunDirector director_;

@@ -20,7 +20,7 @@ int run(const RunOptions& given) {
                options.scenario_file);
   const RunHosts hosts(
       options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file),
-      scenario);
+      scenario, !options.floor.driver.empty());
   options.dds.interface = hosts.hosts().interface;
   if (options.monitor_port && hosts.network())
     throw std::invalid_argument(

@@ -7,6 +7,7 @@
 
 #include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "deploy/launch/floor_processes.hpp"
 
 namespace sidestep {
 
@@ -20,14 +21,13 @@ struct RunOptions {
   std::string recording_file;  ///< records all messages except images; empty: none
   std::optional<std::string> monitor_port;  ///< of a page that shows the run; nullopt: none
   DdsSettings dds;
-  std::uint64_t seed = 1;                         ///< of the simulator's noise
-  std::optional<double> seconds;                  ///< overrides the scenario's time limit
-  bool until_idle = false;                        ///< see run()
-  bool faults = false;                            ///< processes accept `sidestep fault network`
-  std::string simulator_options, vision_options;  ///< extra options for these programs, separated by spaces
-  std::string planner;                            ///< of all robots' paths; empty: the scenario's
-  LogLevel log_level = LogLevel::kInfo;           ///< of all processes
-  bool is_quiet = false;                          ///< prints nothing; the log contains everything
+  FloorOptions floor;
+  std::optional<double> seconds;         ///< overrides the scenario's time limit
+  bool until_idle = false;               ///< see run()
+  bool faults = false;                   ///< processes accept `sidestep fault network`
+  std::string planner;                   ///< of all robots' paths; empty: the scenario's
+  LogLevel log_level = LogLevel::kInfo;  ///< of all processes
+  bool is_quiet = false;                 ///< prints nothing; the log contains everything
 };
 
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed

@@ -31,7 +31,7 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
   command.add_optional_value("--monitor", options->monitor_port, "8080",
                              "show the run in the browser, on this port of this machine [8080]");
   command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
-  command.add_option("--seed", options->seed, "random seed of the simulator's noise")
+  command.add_option("--seed", options->floor.seed, "random seed of the simulator's noise")
       .check(non_negative())
       .show_default();
   command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
@@ -43,10 +43,20 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
   add_log_option(command, options->log_level);
   command.add_flag("--faults", options->faults,
                    "let all processes accept `sidestep fault network`; for tests");
-  command.add_option("--simulator", options->simulator_options,
+  command.add_option("--simulator", options->floor.simulator,
                      "extra options for sidestep-simulator, e.g. --simulator=\"--ssl-vision\"");
-  command.add_option("--vision", options->vision_options,
+  command.add_option("--vision", options->floor.vision,
                      "extra options for sidestep-vision, e.g. --vision=\"--tracked --colours hall.yaml\"");
+  command
+      .add_option("--driver", options->floor.driver,
+                  "drive real robots, or those of a foreign simulator, with this driver of sidestep-robot; "
+                  "Sidestep's simulator does not run")
+      .check(one_of(driver_names()))
+      .excludes(command.option("--simulator"));
+  command
+      .add_option("--robots", options->floor.robots,
+                  "extra options for sidestep-robot, e.g. --robots=\"--latency-ms 120\"")
+      .needs(command.option("--driver"));
   command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/launch/README.md")
       .excludes(command.option("--interface"));
   command.on_parsed([options, &action] {

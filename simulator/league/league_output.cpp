@@ -5,24 +5,25 @@
 #include <cstring>
 
 namespace sidestep {
-namespace {
 
-constexpr Duration kGeometryPeriod{3'000'000'000};
-
-}  // namespace
-
-LeagueOutput::LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator,
-                           const std::string& endpoint, const std::string& interface)
+LeagueOutput::LeagueOutput(Bus& bus, const EventReporter& events, const Scenario& scenario,
+                           std::span<const CameraView> views, const std::string& endpoint,
+                           const std::string& interface, const LeagueTraits& traits)
     : bus_(bus),
-      events_(simulator.events()),
-      frames_(scenario, simulator.cameras().views()),
+      events_(events),
+      frames_(scenario, views),
+      traits_(traits),
       sender_(league::parse_multicast_endpoint(endpoint), interface) {
-  simulator.set_detection_listener(
-      [this](const msg::DetectionFrame& frame) { send(frames_.detection(frame, bus_.now())); });
-  simulator.add_drop_source([this](DropCounters& drops) {
-    drops.count(DropReason::kUnsentLeaguePacket, std::nullopt, sender_.failed());
-  });
-  bus_.at(bus_.now(), [this] { send_geometry(); });
+  if (traits.counts_from_start) epoch_ = bus.now().time_since_epoch();
+  if (traits.geometry_period > Duration::zero()) bus_.at(bus_.now(), [this] { send_geometry(); });
+}
+
+void LeagueOutput::send(const msg::DetectionFrame& frame) {
+  league::VisionPacket packet = frames_.detection(frame, bus_.now());
+  packet.detection->captured -= epoch_;
+  packet.detection->sent -= epoch_;
+  if (traits_.geometry_period == Duration::zero()) packet.geometry = frames_.geometry().geometry;
+  send(packet);
 }
 
 void LeagueOutput::send(const league::VisionPacket& packet) {
@@ -34,7 +35,11 @@ void LeagueOutput::send(const league::VisionPacket& packet) {
 
 void LeagueOutput::send_geometry() {
   send(frames_.geometry());
-  bus_.at(bus_.now() + kGeometryPeriod, [this] { send_geometry(); });
+  bus_.at(bus_.now() + traits_.geometry_period, [this] { send_geometry(); });
+}
+
+void LeagueOutput::count_drops(DropCounters& drops) const {
+  drops.count(DropReason::kUnsentLeaguePacket, std::nullopt, sender_.failed());
 }
 
 }  // namespace sidestep

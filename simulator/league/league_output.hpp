@@ -1,24 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "common/league/multicast.hpp"
+#include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/protocol/drop_counters.hpp"
 #include "simulator/league/league_frames.hpp"
-#include "simulator/world/simulator_node.hpp"
 
 namespace sidestep {
 
-/// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry every 3
-/// s. The bus must make no callback after this object's destruction. Throws as MulticastSender,
+/// How a simulator sends league packets; the simulators in use differ.
+struct LeagueTraits {
+  Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
+  bool counts_from_start = false;                      ///< times begin with 0 instead of 1970
+};
+
+/// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry from
+/// time to time. The bus must make no callback after this object's destruction. Throws as MulticastSender,
 /// parse_multicast_endpoint() and LeagueFrames do.
 class LeagueOutput {
  public:
-  LeagueOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, const std::string& endpoint,
-               const std::string& interface);
+  LeagueOutput(Bus& bus, const EventReporter& events, const Scenario& scenario,
+               std::span<const CameraView> views, const std::string& endpoint, const std::string& interface,
+               const LeagueTraits& traits = {});
   LeagueOutput(const LeagueOutput&) = delete;
   LeagueOutput& operator=(const LeagueOutput&) = delete;
+
+  void send(const msg::DetectionFrame& frame);
+  void count_drops(DropCounters& drops) const;
 
  private:
   void send(const league::VisionPacket& packet);
@@ -27,6 +39,8 @@ class LeagueOutput {
   Bus& bus_;
   const EventReporter& events_;
   LeagueFrames frames_;
+  LeagueTraits traits_;
+  Duration epoch_{0};  ///< the sender's time 0
   league::MulticastSender sender_;
   std::uint64_t next_report_ = 1;
 };

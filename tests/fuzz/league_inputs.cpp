@@ -13,7 +13,7 @@
 namespace sidestep::fuzz {
 namespace {
 
-enum Reader : unsigned { kVision, kTracked, kReferee, kLog, kClock, kReaders };
+enum Reader : unsigned { kVision, kTracked, kReferee, kCommands, kControl, kLog, kClock, kReaders };
 
 #define SIDESTEP_REQUIRE(condition)                                                      \
   do {                                                                                   \
@@ -89,6 +89,32 @@ void try_referee(std::span<const std::byte> bytes) {
   SIDESTEP_REQUIRE(!again.packet || again.packet->command == packet.command);
 }
 
+void try_commands(std::span<const std::byte> bytes) {
+  const auto response = league::decode_team_response(bytes);
+  SIDESTEP_REQUIRE(response.packet.has_value() == (response.error == league::DecodeError::kNone));
+  const auto decoded = league::decode_team_commands(bytes);
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
+  if (!decoded.packet) return;
+  for (const league::RobotCommand& robot : decoded.packet->robots) {
+    SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
+    SIDESTEP_REQUIRE(!robot.move || is_within(robot.move->linear_mps, 100));
+    SIDESTEP_REQUIRE(robot.kick_mps >= 0 && robot.kick_mps <= 100);
+  }
+}
+
+void try_control(std::span<const std::byte> bytes) {
+  const auto response = league::decode_simulator_response(bytes);
+  SIDESTEP_REQUIRE(response.packet.has_value() == (response.error == league::DecodeError::kNone));
+  const auto decoded = league::decode_simulator_command(bytes);
+  SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
+  if (!decoded.packet) return;
+  for (const league::RobotTeleport& robot : decoded.packet->robots) {
+    SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
+    SIDESTEP_REQUIRE(std::abs(robot.x_m.value_or(0)) <= 100 &&
+                     std::abs(robot.heading_rad.value_or(0)) <= 3.1416);
+  }
+}
+
 std::size_t read_to_end(league::LogReader& reader) {
   league::LogRecord record;
   std::size_t bytes = 0;
@@ -153,6 +179,10 @@ void try_league_input(std::span<const std::byte> input) {
       return try_tracked(rest);
     case kReferee:
       return try_referee(rest);
+    case kCommands:
+      return try_commands(rest);
+    case kControl:
+      return try_control(rest);
     case kLog:
       return try_log(rest);
     default:
@@ -177,6 +207,8 @@ std::vector<std::vector<std::byte>> league_seeds(std::uint64_t seed) {
     add(kVision, vision);
     add(kTracked, encode(league::test::random_tracked_packet(rng)));
     add(kReferee, encode(league::test::random_referee_packet(rng)));
+    add(kCommands, encode(league::test::random_team_commands(rng)));
+    add(kControl, encode(league::test::random_simulator_command(rng)));
     if (i < 4) {
       const std::size_t size = vision.size();
       append(std::string("\0\0\0\0\x40\0\0\0\0\0\0\4\0\0", 14) + static_cast<char>(size >> 8) +

@@ -28,7 +28,7 @@ RunOptions run_options(const FaultTest& test, const LaunchOptions& options, cons
   run.dds = options.dds;
   run.dds.participant = "sidestep-test";
   run.dds.interface = hosts.hosts().interface;
-  run.seed = options.seed;
+  run.floor.seed = options.seed;
   run.log_level = options.log_level;
   run.faults = has_fault<ImpairmentFault>(test);
   run.is_quiet = true;

@@ -120,12 +120,13 @@ void read_processes(YamlMap& map, HostSpec& host) {
     const YamlLocation element_location = location.of(element, location.what);
     const std::string process = text_from(element, element_location);
     bool* const flag = process == "simulator"     ? &host.simulator
+                       : process == "robots"      ? &host.robots
                        : process == "vision"      ? &host.vision
                        : process == "coordinator" ? &host.coordinator
                                                   : nullptr;
     if (!flag)
-      element_location.fail("expected simulator, vision or coordinator, got \"" + process.substr(0, 40) +
-                            "\"");
+      element_location.fail("expected simulator, robots, vision or coordinator, got \"" +
+                            process.substr(0, 40) + "\"");
     *flag = true;
   }
 }
@@ -197,7 +198,7 @@ Hosts local_hosts(const std::string& interface) {
   HostSpec local;
   local.name = "local";
   local.interface = interface;
-  local.simulator = local.vision = local.coordinator = true;
+  local.simulator = local.robots = local.vision = local.coordinator = true;
   local.standbys.rest = local.agents.rest = true;
   Hosts result;
   result.interface = interface;

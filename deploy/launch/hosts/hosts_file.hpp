@@ -27,7 +27,7 @@ struct HostSpec {
   std::string target;     ///< the namespace, or user@host for ssh
   std::string interface;  ///< its address in the network of the hosts
   std::string programs;   ///< folder of the Sidestep programs there; empty: the launcher's folder
-  bool simulator = false, vision = false, coordinator = false;
+  bool simulator = false, robots = false, vision = false, coordinator = false;
   NumberedShare standbys, agents;
 };
 

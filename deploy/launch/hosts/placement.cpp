@@ -8,8 +8,11 @@
 
 namespace sidestep {
 
-Placement::Placement(const Hosts& hosts, const Scenario& scenario) : hosts_(hosts) {
-  place_single("simulator", &HostSpec::simulator);
+Placement::Placement(const Hosts& hosts, const Scenario& scenario, bool has_driver) : hosts_(hosts) {
+  if (has_driver)
+    place_single("robots", &HostSpec::robots);
+  else
+    place_single("simulator", &HostSpec::simulator);
   place_single("vision", &HostSpec::vision);
   place_single("coordinator", &HostSpec::coordinator);
   std::map<std::uint32_t, std::string> names;

@@ -14,7 +14,8 @@ class Placement {
  public:
   /// Throws ConfigError with the line of the hosts file when a process has no host or more than one, or a
   /// host names processes that the scenario does not have. The hosts must outlive the placement.
-  Placement(const Hosts& hosts, const Scenario& scenario);
+  /// `has_driver`: sidestep-robot runs instead of the simulator.
+  Placement(const Hosts& hosts, const Scenario& scenario, bool has_driver = false);
 
   /// `process`: "simulator", "agent 3" etc. (common/messaging/process_names.hpp)
   const HostSpec& host_of(const std::string& process) const { return *host_by_process_.at(process); }

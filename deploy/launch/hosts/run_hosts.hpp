@@ -16,7 +16,7 @@ namespace sidestep {
 class RunHosts {
  public:
   /// Throws as Placement and NamespaceNetwork.
-  RunHosts(const Hosts& hosts, const Scenario& scenario);
+  RunHosts(const Hosts& hosts, const Scenario& scenario, bool has_driver = false);
   RunHosts(const RunHosts&) = delete;
   RunHosts& operator=(const RunHosts&) = delete;
 

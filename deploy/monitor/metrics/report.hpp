@@ -71,7 +71,7 @@ struct Report {
   /// measured.
   std::optional<double> max_clock_offset_s;
   std::optional<double> clock_uncertainty_s;
-  double robot_time_s = 0;  ///< from the first grant to the latest ground truth
+  double robot_time_s = 0;  ///< from the first grant until robots were seen last
   DurationHistogram negotiation;
   DurationHistogram plan;
   DurationHistogram search;

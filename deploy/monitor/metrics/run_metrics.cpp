@@ -17,6 +17,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kAtRest_mps = 0.02;
+/// Of positions and velocities that vision shows.
+constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 0.1;
 /// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
 constexpr std::size_t kMaxLives = 1000;
 /// The same, of one process, whose counters are kept.
@@ -121,16 +123,45 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
       ++dropped_messages_;
       continue;
     }
-    robot->position_m = {state.x_m(), state.y_m()};
-    robot->speed_mps = std::hypot(state.vx_mps(), state.vy_mps());
     max_reference_error_m_ = std::max(max_reference_error_m_, state.reference_error_m());
-    const bool is_settled =
-        distance_to_go_m(*robot) <= scenario_.goal_tolerance_m && robot->speed_mps < kAtRest_mps;
-    if (!is_settled)
-      robot->settled_since.reset();
-    else if (!robot->settled_since)
-      robot->settled_since = at;
+    place(*robot, {state.x_m(), state.y_m()}, std::hypot(state.vx_mps(), state.vy_mps()),
+          {scenario_.goal_tolerance_m, kAtRest_mps}, at);
   }
+}
+
+void RunMetrics::on_world(const msg::WorldState& world) {
+  if (truth_at_) return;
+  const bool is_newer =
+      is_valid_time(world.valid_at_ns()) && time_from_ns(world.valid_at_ns()) > seen_at_.value_or(Time{});
+  if (!is_newer) {
+    ++dropped_messages_;
+    return;
+  }
+  const Time at = time_from_ns(world.valid_at_ns());
+  for (const msg::TrackedRobot& state : world.robots()) {
+    RobotRecord* robot = find(state.robot());
+    const Vec2 position_m(state.x_m(), state.y_m());
+    const double speed_mps = std::hypot(state.vx_mps(), state.vy_mps());
+    if (!robot || !position_m.allFinite() || !std::isfinite(speed_mps)) {
+      ++dropped_messages_;
+      continue;
+    }
+    seen_at_ = at;
+    place(*robot, position_m, speed_mps, {scenario_.goal_tolerance_m + kSeenTolerance_m, kSeenAtRest_mps},
+          at);
+  }
+}
+
+void RunMetrics::place(RobotRecord& robot, const Vec2& position_m, double speed_mps,
+                       const SettledLimits& limits, Time at) {
+  robot.position_m = position_m;
+  robot.speed_mps = speed_mps;
+  robot.is_at_rest = speed_mps < limits.speed_mps;
+  const bool is_settled = distance_to_go_m(robot) <= limits.distance_m && robot.is_at_rest;
+  if (!is_settled)
+    robot.settled_since.reset();
+  else if (!robot.settled_since)
+    robot.settled_since = at;
 }
 
 void RunMetrics::on_status(const msg::AgentStatus& status) {
@@ -187,7 +218,8 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
 
 bool RunMetrics::has_process(std::uint32_t process) {
   return find(process) || is_coordinator(process) || process == static_cast<std::uint32_t>(Sender::kVision) ||
-         process == static_cast<std::uint32_t>(Sender::kSimulator);
+         process == static_cast<std::uint32_t>(Sender::kSimulator) ||
+         process == static_cast<std::uint32_t>(Sender::kRobots);
 }
 
 void RunMetrics::on_counters(const msg::Counters& message) {
@@ -244,7 +276,7 @@ bool RunMetrics::all_arrived() const { return arrived() == static_cast<int>(robo
 
 bool RunMetrics::all_at_rest() const {
   return std::all_of(robots_.begin(), robots_.end(),
-                     [](const RobotRecord& robot) { return robot.speed_mps < kAtRest_mps; });
+                     [](const RobotRecord& robot) { return robot.is_at_rest; });
 }
 
 std::vector<RobotId> RunMetrics::silent_agents() const {
@@ -273,6 +305,7 @@ std::vector<RobotId> RunMetrics::unregistered_robots() const {
 
 void listen(Bus& bus, RunMetrics& metrics) {
   bus.subscribe<msg::GroundTruth>(topics::kTruth, [&metrics](const auto& truth) { metrics.on_truth(truth); });
+  bus.subscribe<msg::WorldState>(topics::kWorld, [&metrics](const auto& world) { metrics.on_world(world); });
   bus.subscribe<msg::AgentStatus>(topics::kStatus,
                                   [&metrics](const auto& status) { metrics.on_status(status); });
   bus.subscribe<msg::CoordinatorState>(topics::kCoordinator,

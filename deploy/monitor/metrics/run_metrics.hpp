@@ -25,7 +25,7 @@ struct RobotProgress {
   Team team = Team::kBlue;
   std::optional<msg::AgentState> agent_state;  ///< none: no status received yet
   bool arrived = false;
-  double distance_to_go_m = 0;  ///< to the last goal, in ground truth
+  double distance_to_go_m = 0;  ///< to the last goal, in ground truth or by vision
   double speed_mps = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;
@@ -34,14 +34,17 @@ struct RobotProgress {
 };
 
 /// Collects the metrics of one run from its messages. A robot has arrived when its agent reports arrival and
-/// ground truth shows it at its last goal and nearly at rest. Times count from the first message in which a
-/// coordinator reports that it grants. Counters are summed over all incarnations of a process.
+/// ground truth, or vision where there is none, shows it at its last goal and nearly at rest. Times count
+/// from the first message in which a coordinator reports that it grants. Counters are summed over all
+/// incarnations of a process.
 class RunMetrics {
  public:
   /// The scenario must outlive this object.
   explicit RunMetrics(const Scenario& scenario);
 
   void on_truth(const msg::GroundTruth& truth);
+  /// Not used once ground truth has been received.
+  void on_world(const msg::WorldState& world);
   void on_status(const msg::AgentStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
   void on_counters(const msg::Counters& counters);
@@ -62,11 +65,13 @@ class RunMetrics {
   /// A robot without a goal of the scenario has arrived if it has finished its orders, and is at rest.
   bool all_arrived() const;
   int arrived() const;
-  /// Whether no robot moves in the latest ground truth.
+  /// Whether no robot moves, by ground truth or vision.
   bool all_at_rest() const;
   /// Robots whose agents have not sent a status.
   std::vector<RobotId> silent_agents() const;
   bool has_truth() const { return truth_at_.has_value(); }
+  /// Whether vision or ground truth has shown robots.
+  bool has_seen_robots() const { return has_truth() || seen_at_.has_value(); }
   bool has_coordinator_state() const { return active_.has_value(); }
   /// Number of robot pairs in conflict, as last reported by the coordinator.
   std::uint32_t conflicts() const { return active_ ? active_->conflicts() : 0; }
@@ -79,8 +84,8 @@ class RunMetrics {
   std::vector<RobotId> unregistered_robots() const;
   /// When a coordinator first reported that it grants.
   std::optional<Time> granting_since() const { return granting_since_; }
-  /// The latest ground truth's time.
-  std::optional<Time> truth_at() const { return truth_at_; }
+  /// The time at which the robots were seen last, in ground truth or by vision.
+  std::optional<Time> seen_at() const { return truth_at_ ? truth_at_ : seen_at_; }
   /// Number of invalid or outdated messages that were ignored here.
   std::uint64_t dropped_messages() const { return dropped_messages_; }
 
@@ -94,6 +99,7 @@ class RunMetrics {
     const RobotSpec* spec = nullptr;
     Vec2 position_m{0, 0};
     double speed_mps = 0;
+    bool is_at_rest = true;
     std::optional<Time> settled_since;    ///< since when it has been at the last goal and nearly at rest
     std::vector<msg::AgentStatus> lives;  ///< the last status of each incarnation of its agent, in order
     Incarnation authoritative = 0;        ///< the incarnation whose status counts
@@ -105,7 +111,14 @@ class RunMetrics {
     const msg::AgentStatus* status() const;
   };
 
+  /// Distance from the last goal, and speed, up to which a robot has settled there.
+  struct SettledLimits {
+    double distance_m, speed_mps;
+  };
   RobotRecord* find(RobotId robot);
+  /// A robot's state, in ground truth or by vision.
+  void place(RobotRecord& robot, const Vec2& position_m, double speed_mps, const SettledLimits& limits,
+             Time at);
   void record_epoch(const msg::CoordinatorState& state);
   bool has_arrived(const RobotRecord& robot) const;
   double distance_to_go_m(const RobotRecord& robot) const;
@@ -136,7 +149,8 @@ class RunMetrics {
   std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::set<RobotId> quarantined_, displaced_;  ///< named at any time
   std::optional<Time> granting_since_;
-  std::optional<Time> truth_at_;
+  std::optional<Time> truth_at_;  ///< of the latest ground truth
+  std::optional<Time> seen_at_;   ///< of the latest world state
   double max_reference_error_m_ = 0;
   std::uint64_t dropped_messages_ = 0;
   std::vector<Death> deaths_;

@@ -62,8 +62,8 @@ void RunMetrics::add_ground_truth(Report& report) const {
     }
   }
   report.max_reference_error_m = max_reference_error_m_;
-  if (granting_since_ && truth_at_)
-    report.robot_time_s = std::max(0.0, to_seconds(*truth_at_ - *granting_since_));
+  if (granting_since_ && seen_at())
+    report.robot_time_s = std::max(0.0, to_seconds(*seen_at() - *granting_since_));
 }
 
 void RunMetrics::add_arrivals(Report& report) const {

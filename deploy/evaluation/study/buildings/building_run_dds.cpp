@@ -82,7 +82,7 @@ BuildingResult run_building(const BuildingRunOverDds& run) {
   options.scenario_file = stem + ".yaml";
   options.dds.domain = domain.number();
   options.dds.participant = "sidestep-study";
-  options.seed = run.seed;
+  options.floor.seed = run.seed;
   options.planner = run.planner;
   options.is_quiet = true;
   write_without_goals(run.scenario_file, options.scenario_file);

@@ -131,7 +131,8 @@ TEST_CASE("values of a wrong type are rejected with their line") {
   check_rejected(kRobot + "vision:\n  columns: 2.5\n", 3, "expected a whole number");
   check_rejected(kRobot + "obstacles: {centre_m: [0, 0]}\n", 2, "expected a list");
   check_rejected(kRobot + "obstacles:\n- 3\n", 3, "expected a mapping");
-  check_rejected(kRobot + "restart:\n- agents\n- everything\n", 4, "expected agents, coordinator or vision");
+  check_rejected(kRobot + "restart:\n- agents\n- everything\n", 4,
+                 "expected agents, coordinator, vision or robots");
   check_rejected(kRobot + "ball: {position_m: [1]}\n", 2, "expected a list of 2 numbers, got 1");
   check_rejected("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
                  "expected blue or yellow");

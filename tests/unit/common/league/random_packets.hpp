@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/league/control_packet.hpp"
 #include "common/league/referee_packet.hpp"
 #include "common/league/tracked_packet.hpp"
 #include "common/league/vision_packet.hpp"
@@ -153,6 +154,40 @@ inline RefereePacket random_referee_packet(Rng& rng) {
   packet.command_counter = random_u32(rng);
   packet.commanded = from_seconds(rng.uniform(0, 1.8e9));
   packet.designated_position_m = maybe(rng, [&] { return random_vec2(rng, 10); });
+  return packet;
+}
+
+inline TeamCommands random_team_commands(Rng& rng) {
+  TeamCommands packet;
+  for (std::uint64_t i = 1 + rng.below(11); i > 0; --i) {
+    RobotCommand robot;
+    robot.number = static_cast<std::uint32_t>(rng.below(kRobotNumbers));
+    robot.move = maybe(rng, [&] {
+      return RobotMove{static_cast<RobotMove::Kind>(rng.below(3)), random_vec2(rng, 5), rng.uniform(-20, 20)};
+    });
+    robot.kick_mps = rng.uniform(0, 8);
+    robot.kick_angle_rad = rng.uniform(0, 1);
+    packet.robots.push_back(robot);
+  }
+  return packet;
+}
+
+inline SimulatorCommand random_simulator_command(Rng& rng) {
+  SimulatorCommand packet;
+  packet.ball = maybe(rng, [&] { return BallTeleport{random_vec2(rng, 5), random_vec2(rng, 5)}; });
+  for (std::uint64_t i = rng.below(5); i > 0; --i) {
+    RobotTeleport robot;
+    robot.team = rng.chance(0.5) ? Team::kBlue : Team::kYellow;
+    robot.number = static_cast<std::uint32_t>(rng.below(kRobotNumbers));
+    robot.x_m = maybe(rng, [&] { return rng.uniform(-5, 5); });
+    robot.y_m = maybe(rng, [&] { return rng.uniform(-5, 5); });
+    robot.heading_rad = maybe(rng, [&] { return rng.uniform(-3, 3); });
+    robot.is_present = maybe(rng, [&] { return rng.chance(0.5); });
+    packet.robots.push_back(robot);
+  }
+  packet.speed = maybe(rng, [&] { return rng.uniform(0.1, 2); });
+  packet.has_geometry = rng.chance(0.2);
+  packet.has_robot_specs = rng.chance(0.2);
   return packet;
 }
 

@@ -97,7 +97,8 @@ TEST_CASE("an invalid hosts file is refused with the line and the expected value
   check_refused(with(kTwoHosts, "[0-2, 7]", "[2-0]"), "hosts.yaml:7: ", "lower number first");
   check_refused(with(kTwoHosts, "[0-2, 7]", "[one]"), "hosts.yaml:7: ", "a range such as 5-9");
   check_refused(with(kTwoHosts, "[0-2, 7]", "[0-4096]"), "hosts.yaml:7: ", "0 to 1023");
-  check_refused(with(kTwoHosts, "vision,", "visions,"), "hosts.yaml:6: ", "expected simulator, vision");
+  check_refused(with(kTwoHosts, "vision,", "visions,"),
+                "hosts.yaml:6: ", "expected simulator, robots, vision");
   check_refused(with(kTwoHosts, "name: far", "name: floor"), "hosts.yaml:8: ", "another host has this name");
   check_refused("create: true\n" + kTwoHosts, "hosts.yaml:4: ", "requires transport {namespace: NAME}");
   check_refused("create: perhaps\n" + kTwoHosts, "hosts.yaml:1: ", "true or false");

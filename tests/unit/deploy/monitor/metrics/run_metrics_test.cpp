@@ -292,7 +292,7 @@ TEST_CASE("outdated and repeated ground truth is ignored") {
   metrics.on_truth(truth(4, 4, {body(3, 0, 0)}));
   metrics.on_truth(truth(5, 5, {body(3, 0, 0)}));
   CHECK(metrics.progress()[0].distance_to_go_m == Approx(0));
-  CHECK(metrics.truth_at() == after(5));
+  CHECK(metrics.seen_at() == after(5));
   CHECK(metrics.dropped_messages() == 2);
 }
 

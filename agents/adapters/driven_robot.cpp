@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/driven_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/robot/conversion.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A base stops within this time of its last command, wherever that came from.
+constexpr Duration kStoppingTime = milliseconds(500);
+// First fixes of a robot at rest agree within this many standard deviations of one of them, and this.
+constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
+// After a longer pause of this process nobody knows what the base did.
+constexpr Duration kMaxPause = milliseconds(200);
+// Odometry that is older than this is no longer used.
+constexpr Duration kOdometryTimeout = milliseconds(150);
+// A base at rest within this distance of its reference is left there.
+constexpr double kRestTolerance_m = 0.001;
+
+robot::Settings<float> side_settings(const DriveSettings& settings) {
+  robot::Settings<float> side;
+  side.tracking_bound_m = static_cast<float>(settings.tracking_bound_m);
+  side.drift_bound_m = static_cast<float>(drift_bound_m(settings.tracking_bound_m));
+  side.deceleration_mps2 = static_cast<float>(settings.limits.deceleration_mps2);
+  side.actuation_lead_ns = settings.latency.count();
+  return side;
+}
+
+EstimatorSettings estimator_settings(const DriveSettings& settings) {
+  EstimatorSettings estimator;
+  estimator.period = DrivenRobot::kPeriod;
+  estimator.velocity_noise_mps = settings.velocity_noise_mps;
+  estimator.scale_error = settings.scale_error;
+  estimator.fix_noise_m = settings.fix_noise_m;
+  estimator.velocity_gain = 1;
+  return estimator;
+}
+
+template <typename Vector>
+Vector limited(const Vector& vector, double max_norm) {
+  const double norm = vector.norm();
+  return norm > max_norm ? Vector(vector * (max_norm / norm)) : vector;
+}
+
+robot::Vec<float> to_single(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+Vec2 to_double(const robot::Vec<float>& v) { return {v.x, v.y}; }
+
+}  // namespace
+
+DriveSettings drive_settings(const Scenario& scenario, Duration latency) {
+  DriveSettings settings;
+  settings.latency = latency;
+  settings.tracking_bound_m = scenario.tracking_bound_m;
+  settings.limits = scenario.limits;
+  settings.fix_noise_m = scenario.vision.position_noise_m;
+  settings.scale_error = scenario.odometry.scale_error;
+  return settings;
+}
+
+DrivenRobot::DrivenRobot(RobotId robot, const DriveSettings& settings, const robot::DurableState& remembered,
+                         Time now)
+    : robot_(robot),
+      settings_(settings),
+      side_(side_settings(settings), remembered),
+      commands_(settings.latency),
+      estimator_({0, 0}, 0, now, estimator_settings(settings)),
+      moved_at_(now + kStoppingTime) {}
+
+void DrivenRobot::on_command(const Command& command, Time now, robot::StableMemory& memory) {
+  const robot::Version version = command.version ? to_plain(*command.version) : robot::Version{};
+  const robot::Command plain{command.incarnation, command.epoch, to_ns(command.sent_at),
+                             command.version ? &version : nullptr};
+  if (!side_.on_command(plain, to_ns(now), memory)) return;
+  target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
+  if (!command.fix) return;
+  if (side_.has_pose())
+    estimator_.correct(command.fix->captured_at, command.fix->position_m, command.fix->heading_rad);
+  else
+    add_first_fix(*command.fix, now);
+}
+
+void DrivenRobot::on_malformed_command(Time now) { side_.on_malformed_command(to_ns(now)); }
+
+// A single fix may be wrong, and a base that is pushed is nowhere.
+void DrivenRobot::add_first_fix(const PoseFix& fix, Time now) {
+  const bool is_usable =
+      fix.captured_at > moved_at_ && fix.captured_at <= now &&
+      (first_fix_count_ == 0 || fix.captured_at > first_fixes_[first_fix_count_ - 1].captured_at);
+  if (!is_usable) return;
+  const double tolerance_m = kAgreement * settings_.fix_noise_m + kMinAgreement_m;
+  const auto agrees = [&](const PoseFix& other) {
+    return (other.position_m - fix.position_m).norm() <= tolerance_m;
+  };
+  const auto end = first_fixes_.begin() + static_cast<std::ptrdiff_t>(first_fix_count_);
+  if (!std::all_of(first_fixes_.begin(), end, agrees)) first_fix_count_ = 0;
+  first_fixes_[first_fix_count_++] = fix;
+  if (first_fix_count_ < first_fixes_.size()) return;
+  first_fix_count_ = 0;
+  estimator_ = PoseEstimator(fix.position_m, fix.heading_rad, estimator_.time(),
+                             estimator_settings(settings_), settings_.fix_noise_m);
+  target_heading_rad_ = fix.heading_rad;
+  side_.find_pose();
+}
+
+Odometry DrivenRobot::commanded(Time from, Time to, double heading_rad) const {
+  const BodyVelocity body = commands_.mean(from, to);
+  const double middle_rad = heading_rad + 0.5 * body.turn_radps * to_seconds(to - from);
+  return {rotated(body.linear_mps, middle_rad), body.turn_radps};
+}
+
+void DrivenRobot::advance(Time now) {
+  if (now - estimator_.time() > kMaxPause) {
+    if (!side_.is_lifted()) side_.lose_pose();
+    first_fix_count_ = 0;
+    moved_at_ = now + kStoppingTime;
+    estimator_ =
+        PoseEstimator(estimator_.position_m(), estimator_.heading_rad(), now, estimator_settings(settings_));
+    return;
+  }
+  // The base's own measurement is better than what it was commanded, but comes later.
+  const bool is_measured = now - measured_.until() <= kOdometryTimeout;
+  const Time until = is_measured ? std::min(now, measured_.until()) : now;
+  while (estimator_.time() + kPeriod <= until) {
+    const Time from = estimator_.time();
+    Odometry motion = commanded(from, from + kPeriod, estimator_.heading_rad());
+    if (const auto body = measured_.at(from + kPeriod / 2)) {
+      const double middle_rad = estimator_.heading_rad() + 0.5 * body->turn_radps * to_seconds(kPeriod);
+      motion = {rotated(body->linear_mps, middle_rad), body->turn_radps};
+    }
+    estimator_.advance(from + kPeriod, motion, {0, 0}, 0);
+  }
+}
+
+DrivenRobot::Pose DrivenRobot::predicted(Time at) const {
+  Pose pose{estimator_.position_m(), estimator_.heading_rad()};
+  for (Time from = estimator_.time(); from < at; from += kPeriod) {
+    const Time to = std::min(from + kPeriod, at);
+    const Odometry motion = commanded(from, to, pose.heading_rad);
+    pose.position_m += (1 - estimator_.scale_error()) * to_seconds(to - from) * motion.velocity_mps;
+    pose.heading_rad += to_seconds(to - from) * motion.angular_radps;
+  }
+  return pose;
+}
+
+robot::Estimate<float> DrivenRobot::estimate(Time now) const {
+  robot::Estimate<float> estimate;
+  const double obeyed = 1 - estimator_.scale_error();
+  const Pose pose = predicted(now);
+  estimate.position_m = to_single(pose.position_m);
+  estimate.velocity_mps = to_single(obeyed * commanded(now - kPeriod, now, pose.heading_rad).velocity_mps);
+  estimate.jump_m = static_cast<float>(estimator_.jump_m());
+  if (side_.needs_uncertainty(to_ns(now), estimate.position_m))
+    estimate.position_error_rms_m = static_cast<float>(estimator_.position_error_rms_m());
+  const Pose coming = predicted(now + settings_.latency);
+  estimate.coming_velocity_mps =
+      to_single(obeyed * rotated(commands_.latest().linear_mps, coming.heading_rad));
+  return estimate;
+}
+
+BodyVelocity DrivenRobot::track(Time now) const {
+  // The command acts from `begin` on, for a period.
+  const Time begin = now + settings_.latency, middle = begin + kPeriod / 2;
+  const Pose pose = predicted(begin);
+  const auto at_begin = robot::motion_at<float>(side_.planned(to_ns(begin)), to_ns(begin));
+  const auto at_middle = robot::motion_at<float>(side_.planned(to_ns(middle)), to_ns(middle));
+  Vec2 error_m = to_double(at_begin.position_m) - pose.position_m;
+  const Vec2 planned_mps = to_double(at_middle.velocity_mps);
+  if (planned_mps.isZero(0) && error_m.norm() < kRestTolerance_m) error_m.setZero();
+  const Vec2 velocity_mps =
+      planned_mps + limited(Vec2(settings_.position_gain_ps * error_m), settings_.max_correction_mps);
+  BodyVelocity command;
+  double heading_error = wrapped_rad(target_heading_rad_ - pose.heading_rad);
+  command.turn_radps = std::clamp(settings_.heading_gain_ps * heading_error, -settings_.turning_speed_radps,
+                                  settings_.turning_speed_radps);
+  const double middle_rad = pose.heading_rad + 0.5 * command.turn_radps * to_seconds(kPeriod);
+  command.linear_mps = rotated(Vec2(velocity_mps / (1 - estimator_.scale_error())), -middle_rad);
+  return command;
+}
+
+BodyVelocity DrivenRobot::tick(Time now, robot::StableMemory& memory) {
+  while (side_.switch_next(to_ns(now))) {
+  }
+  advance(now);
+  side_.check_reference(to_ns(now), estimate(now), memory);
+  const BodyVelocity command = side_.has_pose() && !side_.is_lifted() ? track(now) : BodyVelocity{};
+  commands_.add(now, command);
+  return command;
+}
+
+Feedback DrivenRobot::feedback(Time now) {
+  Feedback facts = from_plain(side_.facts(to_ns(now)), robot_);
+  const Pose pose = predicted(now);
+  const Vec2 reference_m = facts.executing.trajectory.state_at(now).position_m;
+  facts.estimate = {pose.position_m, commanded(now - kPeriod, now, pose.heading_rad).velocity_mps};
+  facts.heading_rad = wrapped_rad(pose.heading_rad);
+  facts.tracking_error_m = (pose.position_m - reference_m).norm();
+  facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
+  return facts;
+}
+
+}  // namespace sidestep

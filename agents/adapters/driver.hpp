@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "common/geometry/vec2.hpp"
+#include "common/motion/version.hpp"
+#include "common/protocol/drop_counters.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// A velocity in the robot's own frame: x forward, y left.
+struct BodyVelocity {
+  Vec2 linear_mps{0, 0};
+  double turn_radps = 0;
+};
+
+/// What one robot is to do until the next command, about 10 ms later.
+struct BaseCommand {
+  RobotId robot = 0;
+  BodyVelocity velocity;
+};
+
+/// Where a base has moved by its own measurement, in a frame of its own in which errors accumulate.
+struct OdometryReport {
+  RobotId robot = 0;
+  Time measured_at{};
+  Vec2 position_m{0, 0};
+  double heading_rad = 0;
+};
+
+/// Connects robots to whatever moves them: the commands go out, what the bases report comes in. All calls and
+/// callbacks are made in the thread of the process's bus. A base must stop by itself soon after the last
+/// command.
+class Driver {
+ public:
+  virtual ~Driver() = default;
+
+  /// Sends the commands of all robots, once per control period.
+  virtual void send(std::span<const BaseCommand> commands) = 0;
+  /// Sets the callback for odometry. A driver without odometry never calls it. Everything in a report is
+  /// checked: it is finite and of a robot of this driver, and its time is by the process's clock.
+  virtual void on_odometry(std::function<void(const OdometryReport&)> callback) { (void)callback; }
+  /// Adds what the driver has dropped.
+  virtual void count_drops(DropCounters& drops) const { (void)drops; }
+};
+
+}  // namespace sidestep

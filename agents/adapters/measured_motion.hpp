@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "agents/adapters/driver.hpp"
+
+namespace sidestep {
+
+/// The velocities that a base has measured lately, from the differences of its odometry.
+class MeasuredMotion {
+ public:
+  void add(const OdometryReport& report);
+  /// The time of the latest report; Time{} before the first.
+  Time until() const { return last_ ? last_->measured_at : Time{}; }
+  /// The velocity at a time before until(); nullopt if the reports around it are not remembered.
+  std::optional<BodyVelocity> at(Time time) const;
+
+ private:
+  struct Interval {
+    Time from{}, to{};
+    BodyVelocity velocity;
+  };
+  static constexpr std::size_t kRemembered = 64;
+
+  std::optional<OdometryReport> last_;
+  std::array<Interval, kRemembered> intervals_{};  ///< ring buffer
+  std::size_t count_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+
+namespace sidestep {
+
+/// The robots of a scenario that a text names: "all", or numbers and ranges separated by commas, such as
+/// "0-10,16". Throws std::invalid_argument that says what is wrong.
+[[nodiscard]] std::vector<RobotId> select_robots(const Scenario& scenario, const std::string& text);
+
+}  // namespace sidestep

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/motion/version.hpp"
+#include "common/robot/stable_memory.hpp"
+
+namespace sidestep {
+
+/// A robot's memory as a text file, robot-3.memory, in a folder of this host.
+class RobotMemory final : public robot::StableMemory {
+ public:
+  /// Reads the file if it exists, and creates the folder. Throws std::runtime_error with the file, the line
+  /// and the reason if the file cannot be read or is not a robot's memory: a robot that had forgotten whom it
+  /// obeys must not drive.
+  RobotMemory(const std::string& folder, RobotId robot);
+
+  const robot::DurableState& state() const { return state_; }
+  /// Replaces the file as a whole and waits until it is on the disk.
+  [[nodiscard]] bool store(const robot::DurableState& state) override;
+
+ private:
+  std::string folder_, path_;
+  robot::DurableState state_;
+};
+
+/// $XDG_STATE_HOME/sidestep/robots, by default ~/.local/state/sidestep/robots.
+std::string default_memory_folder();
+
+}  // namespace sidestep

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/robots_node.hpp"
+
+#include <algorithm>
+
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Version starts farther ahead than this get no timer; the control period handles them.
+constexpr Duration kMaxTimerAhead = milliseconds(200);
+
+const char* to_text(robot::OwnStopReason reason) {
+  switch (reason) {
+    case robot::OwnStopReason::kOffReference:
+      return "it is farther from its reference than the tracking bound";
+    case robot::OwnStopReason::kDrifted:
+      return "it has drifted and not returned to its reference in time";
+    case robot::OwnStopReason::kDisplaced:
+      return "vision shows it elsewhere than its commands have taken it";
+    case robot::OwnStopReason::kRestart:
+      return "it has found its pose after a start or a pause";
+  }
+  return "?";
+}
+
+}  // namespace
+
+RobotsNode::RobotsNode(Bus& bus, const Scenario& scenario, const std::vector<RobotId>& robots,
+                       Incarnation incarnation, const DriveSettings& settings, Driver& driver,
+                       const std::string& memory_folder)
+    : bus_(bus),
+      cycle_(scenario.cycle),
+      incarnation_(incarnation),
+      driver_(driver),
+      clock_(bus.now()),
+      next_tick_(bus.now()),
+      counters_(bus, static_cast<std::uint32_t>(Sender::kRobots), incarnation,
+                [this](DropCounters& drops) { count_drops(drops); }) {
+  const Time begin = bus.now();
+  robots_.reserve(robots.size());
+  for (const RobotId id : robots) {
+    index_of_[id] = robots_.size();
+    Entry& entry = robots_.emplace_back();
+    entry.memory = std::make_unique<RobotMemory>(memory_folder, id);
+    entry.robot = std::make_unique<DrivenRobot>(id, settings, entry.memory->state(), begin);
+    entry.feedback = bus.advertise(topics::kFeedback, id);
+    entry.feedback_due = begin + cycle_ * static_cast<Duration::rep>(robots_.size()) /
+                                     static_cast<Duration::rep>(robots.size());
+    bus.subscribe<msg::Command>(topics::kCommand, id,
+                                [this, &entry](const msg::Command& command) { on_command(entry, command); });
+  }
+  driver.on_odometry([this](const OdometryReport& report) {
+    const auto found = index_of_.find(report.robot);
+    if (found != index_of_.end()) robots_[found->second].robot->on_odometry(report);
+  });
+  bus.at(begin, [this] { tick(); });
+}
+
+// Never goes back, so that reported facts stay true.
+Time RobotsNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
+
+void RobotsNode::tick() {
+  const Time now = clock();
+  commands_.clear();
+  for (Entry& entry : robots_)
+    commands_.push_back({entry.robot->id(), entry.robot->tick(now, *entry.memory)});
+  driver_.send(commands_);
+  for (Entry& entry : robots_) {
+    publish_if_changed(entry, now);
+    if (entry.feedback_due <= now) publish(entry, now);
+  }
+  // Periods that were missed are not made up for.
+  next_tick_ = std::max(next_tick_ + DrivenRobot::kPeriod, now);
+  bus_.at(next_tick_, [this] { tick(); });
+}
+
+void RobotsNode::on_command(Entry& entry, const msg::Command& message) {
+  const Time now = clock();
+  if (const auto command = decode(message, entry.robot->id(), now))
+    entry.robot->on_command(*command, now, *entry.memory);
+  else
+    entry.robot->on_malformed_command(now);
+  publish_if_changed(entry, now);
+  watch_start(entry, now);
+}
+
+void RobotsNode::watch_start(Entry& entry, Time now) {
+  const Time start = entry.robot->next_start();
+  if (start == entry.watched_start || start - now > kMaxTimerAhead) return;
+  entry.watched_start = start;
+  bus_.at(start, [this, &entry] { publish(entry, clock()); });
+}
+
+void RobotsNode::publish_if_changed(Entry& entry, Time now) {
+  const auto& side = entry.robot->side();
+  if (side.executing().number != entry.executing || side.obeyed_incarnation() != entry.incarnation ||
+      side.obeyed_epoch() != entry.epoch || entry.robot->may_report() != entry.is_known)
+    publish(entry, now);
+}
+
+void RobotsNode::publish(Entry& entry, Time now) {
+  entry.feedback_due = now + cycle_;
+  if (entry.is_known != entry.robot->may_report()) {
+    entry.is_known = entry.robot->may_report();
+    if (!entry.is_known)
+      events_.report(LogLevel::kWarning, entry.robot->id(), "robot {} does not know its pose any more",
+                     entry.robot->id());
+  }
+  if (!entry.is_known) return;
+  Feedback facts = entry.robot->feedback(now);
+  facts.robot_incarnation = incarnation_;
+  report_changes(entry);
+  msg::Feedback message = encode(facts);
+  entry.feedback.publish(message, now);
+  watch_start(entry, now);
+}
+
+void RobotsNode::report_changes(Entry& entry) {
+  const auto& side = entry.robot->side();
+  const bool is_new = side.executing().number != entry.executing;
+  entry.executing = side.executing().number;
+  entry.incarnation = side.obeyed_incarnation();
+  entry.epoch = side.obeyed_epoch();
+  if (is_new && side.is_off_reference())
+    events_.report(
+        side.own_stop_reason() == robot::OwnStopReason::kRestart ? LogLevel::kInfo : LogLevel::kWarning,
+        entry.robot->id(), "robot {} makes its own stop: {}", entry.robot->id(),
+        to_text(side.own_stop_reason()));
+}
+
+bool RobotsNode::is_commanded() const {
+  return std::ranges::any_of(
+      robots_, [](const Entry& entry) { return entry.robot->side().obeyed_incarnation() != 0; });
+}
+
+void RobotsNode::count_drops(DropCounters& drops) const {
+  for (const Entry& entry : robots_) {
+    const RobotId id = entry.robot->id();
+    const robot::Counts& counts = entry.robot->side().counts();
+    drops.count(DropReason::kMalformedCommand, id, counts.refused_malformed);
+    drops.count(DropReason::kFencedCommand, id, counts.refused_fenced);
+    drops.count(DropReason::kLateVersion, id, counts.refused_late);
+    drops.count(DropReason::kWrongBase, id, counts.refused_base);
+    drops.count(DropReason::kUnstoredCommand, id, counts.refused_unstored);
+  }
+  driver_.count_drops(drops);
+}
+
+}  // namespace sidestep

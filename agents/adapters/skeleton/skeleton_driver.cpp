@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/skeleton/skeleton_driver.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+
+SkeletonDriver::SkeletonDriver(const std::vector<RobotId>& robots, std::function<Time()> now)
+    : now_(std::move(now)) {
+  // Open the connection to your bases here. Throw std::invalid_argument if an option is wrong, and
+  // std::runtime_error if the connection cannot be opened.
+  for (const RobotId robot : robots) bases_.push_back({robot, now_(), {0, 0}, 0});
+}
+
+void SkeletonDriver::send(std::span<const BaseCommand> commands) {
+  const Time now = now_();
+  for (const BaseCommand& command : commands) {
+    // Send command.velocity to the base of command.robot here, without waiting. This is what a base does:
+    const auto base = std::ranges::find(bases_, command.robot, &OdometryReport::robot);
+    if (base == bases_.end()) continue;
+    const double elapsed_s = to_seconds(now - base->measured_at);
+    base->position_m += elapsed_s * rotated(command.velocity.linear_mps, base->heading_rad);
+    base->heading_rad += elapsed_s * command.velocity.turn_radps;
+    base->measured_at = now;
+    // When a base reports its odometry, check that its numbers are finite, and pass it on:
+    if (callback_) callback_(*base);
+  }
+}
+
+void SkeletonDriver::on_odometry(std::function<void(const OdometryReport&)> callback) {
+  callback_ = std::move(callback);
+}
+
+const OdometryReport& SkeletonDriver::base(RobotId robot) const {
+  return *std::ranges::find(bases_, robot, &OdometryReport::robot);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/league/control_packet.hpp"
+
+#include <numbers>
+
+#include "common/league/checks.hpp"
+#include "common/league/wire.hpp"
+
+#include "league/control.pb.h"
+
+namespace sidestep::league {
+namespace {
+
+constexpr int kMaxRobots = 64, kMaxErrors = 64;
+constexpr double kMaxSpeed_mps = 100, kMaxTurn_radps = 1000, kMaxWheel_mps = 1000, kMaxSimulationSpeed = 100;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
+constexpr int kYellow = 1, kBlue = 2;
+
+float single(double value) { return static_cast<float>(value); }
+
+std::uint32_t read_number(std::uint32_t id, Checks& checks) {
+  checks.require(id < kRobotNumbers, DecodeError::kRobot);
+  return id;
+}
+
+Vec2 read_velocity(double x, double y, Checks& checks) {
+  return {checks.within(x, kMaxSpeed_mps), checks.within(y, kMaxSpeed_mps)};
+}
+
+void write(const RobotMove& move, wire::control::Move& to) {
+  const float x = single(move.linear_mps.x()), y = single(move.linear_mps.y()),
+              turn = single(move.turn_radps);
+  if (move.kind == RobotMove::Kind::kLocal) {
+    auto& local = *to.mutable_local_velocity();
+    local.set_forward(x), local.set_left(y), local.set_angular(turn);
+  } else if (move.kind == RobotMove::Kind::kGlobal) {
+    auto& global = *to.mutable_global_velocity();
+    global.set_x(x), global.set_y(y), global.set_angular(turn);
+  } else {
+    auto& wheels = *to.mutable_wheel_velocity();
+    wheels.set_front_right(0), wheels.set_back_right(0), wheels.set_back_left(0), wheels.set_front_left(0);
+  }
+}
+
+std::optional<RobotMove> read(const wire::control::Move& from, Checks& checks) {
+  RobotMove move;
+  if (from.has_local_velocity()) {
+    const auto& local = from.local_velocity();
+    move.linear_mps = read_velocity(local.forward(), local.left(), checks);
+    move.turn_radps = checks.within(local.angular(), kMaxTurn_radps);
+  } else if (from.has_global_velocity()) {
+    const auto& global = from.global_velocity();
+    move.kind = RobotMove::Kind::kGlobal;
+    move.linear_mps = read_velocity(global.x(), global.y(), checks);
+    move.turn_radps = checks.within(global.angular(), kMaxTurn_radps);
+  } else if (from.has_wheel_velocity()) {
+    const auto& wheels = from.wheel_velocity();
+    move.kind = RobotMove::Kind::kWheels;
+    for (const float speed :
+         {wheels.front_right(), wheels.back_right(), wheels.back_left(), wheels.front_left()})
+      checks.within(speed, kMaxWheel_mps);
+  } else {
+    return std::nullopt;
+  }
+  return move;
+}
+
+template <typename Errors, typename List>
+void write_errors(const Errors& errors, List& to) {
+  for (const SimulatorError& error : errors) {
+    auto& message = *to.Add();
+    message.set_code(error.code);
+    message.set_message(error.message);
+  }
+}
+
+template <typename List>
+std::vector<SimulatorError> read_errors(const List& from, Checks& checks) {
+  std::vector<SimulatorError> errors;
+  checks.at_most(from, kMaxErrors);
+  if (!checks.is_valid()) return errors;
+  for (const auto& error : from) errors.push_back({checks.text(error.code()), checks.text(error.message())});
+  return errors;
+}
+
+void write(const RobotTeleport& teleport, wire::control::TeleportRobot& to) {
+  to.mutable_id()->set_id(static_cast<std::int32_t>(teleport.number));
+  to.mutable_id()->set_team(teleport.team == Team::kYellow ? kYellow : kBlue);
+  if (teleport.x_m) to.set_x(single(*teleport.x_m));
+  if (teleport.y_m) to.set_y(single(*teleport.y_m));
+  if (teleport.heading_rad) to.set_orientation(single(*teleport.heading_rad));
+  to.set_v_x(single(teleport.velocity_mps.x()));
+  to.set_v_y(single(teleport.velocity_mps.y()));
+  to.set_v_angular(single(teleport.turn_radps));
+  if (teleport.is_present) to.set_present(*teleport.is_present);
+}
+
+RobotTeleport read(const wire::control::TeleportRobot& from, Checks& checks) {
+  RobotTeleport teleport;
+  checks.require(from.id().team() == kYellow || from.id().team() == kBlue, DecodeError::kRobot);
+  teleport.team = from.id().team() == kYellow ? Team::kYellow : Team::kBlue;
+  checks.require(from.id().has_id(), DecodeError::kRobot);
+  teleport.number = read_number(static_cast<std::uint32_t>(from.id().id()), checks);
+  if (from.has_x()) teleport.x_m = checks.within(from.x(), kMaxPosition_m);
+  if (from.has_y()) teleport.y_m = checks.within(from.y(), kMaxPosition_m);
+  if (from.has_orientation())
+    teleport.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
+  teleport.velocity_mps = read_velocity(from.v_x(), from.v_y(), checks);
+  teleport.turn_radps = checks.within(from.v_angular(), kMaxTurn_radps);
+  if (from.has_present()) teleport.is_present = from.present();
+  return teleport;
+}
+
+BallTeleport read(const wire::control::TeleportBall& from, Checks& checks) {
+  BallTeleport ball;
+  if (from.has_x() && from.has_y())
+    ball.position_m = Vec2(checks.within(from.x(), kMaxPosition_m), checks.within(from.y(), kMaxPosition_m));
+  if (from.has_vx() || from.has_vy()) ball.velocity_mps = read_velocity(from.vx(), from.vy(), checks);
+  return ball;
+}
+
+// An answer without content is an empty datagram.
+template <typename Message>
+DecodeError parse_answer(std::span<const std::byte> bytes, Message& message) {
+  return bytes.empty() ? DecodeError::kNone : parse(bytes, message);
+}
+
+template <typename Packet>
+Decoded<Packet> checked(Packet packet, const Checks& checks) {
+  if (!checks.is_valid()) return {{}, checks.error()};
+  return {std::move(packet), DecodeError::kNone};
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const TeamCommands& packet) {
+  wire::control::TeamCommands message;
+  for (const RobotCommand& robot : packet.robots) {
+    auto& to = *message.add_robots();
+    to.set_id(robot.number);
+    if (robot.move) write(*robot.move, *to.mutable_move());
+    to.set_kick_speed(single(robot.kick_mps));
+    to.set_kick_angle(single(robot.kick_angle_rad / kRadPerDegree));
+  }
+  return bytes_of(message);
+}
+
+Decoded<TeamCommands> decode_team_commands(std::span<const std::byte> bytes) {
+  wire::control::TeamCommands message;
+  if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
+  Checks checks;
+  checks.at_most(message.robots(), kMaxRobots);
+  if (!checks.is_valid()) return {{}, checks.error()};
+  TeamCommands packet;
+  for (const auto& from : message.robots()) {
+    RobotCommand robot;
+    robot.number = read_number(from.id(), checks);
+    if (from.has_move()) robot.move = read(from.move(), checks);
+    robot.kick_mps = checks.within(from.kick_speed(), 0, kMaxSpeed_mps);
+    robot.kick_angle_rad = kRadPerDegree * checks.within(from.kick_angle(), 360);
+    packet.robots.push_back(robot);
+  }
+  return checked(std::move(packet), checks);
+}
+
+std::vector<std::byte> encode(const TeamResponse& packet) {
+  wire::control::TeamResponse message;
+  write_errors(packet.errors, *message.mutable_errors());
+  for (const RobotFeedback& robot : packet.feedback) {
+    auto& to = *message.add_feedback();
+    to.set_id(robot.number);
+    to.set_dribbler_ball_contact(robot.has_ball);
+  }
+  return bytes_of(message);
+}
+
+Decoded<TeamResponse> decode_team_response(std::span<const std::byte> bytes) {
+  wire::control::TeamResponse message;
+  if (const DecodeError error = parse_answer(bytes, message); error != DecodeError::kNone) return {{}, error};
+  Checks checks;
+  TeamResponse packet;
+  packet.errors = read_errors(message.errors(), checks);
+  checks.at_most(message.feedback(), kMaxRobots);
+  if (!checks.is_valid()) return {{}, checks.error()};
+  for (const auto& from : message.feedback())
+    packet.feedback.push_back({read_number(from.id(), checks), from.dribbler_ball_contact()});
+  return checked(std::move(packet), checks);
+}
+
+std::vector<std::byte> encode(const SimulatorCommand& packet) {
+  wire::control::SimulatorCommand message;
+  auto& control = *message.mutable_control();
+  if (packet.ball) {
+    auto& ball = *control.mutable_teleport_ball();
+    if (packet.ball->position_m)
+      ball.set_x(single(packet.ball->position_m->x())), ball.set_y(single(packet.ball->position_m->y()));
+    if (packet.ball->velocity_mps)
+      ball.set_vx(single(packet.ball->velocity_mps->x())),
+          ball.set_vy(single(packet.ball->velocity_mps->y()));
+  }
+  for (const RobotTeleport& teleport : packet.robots) write(teleport, *control.add_teleport_robots());
+  if (packet.speed) control.set_simulation_speed(single(*packet.speed));
+  if (packet.has_geometry) message.mutable_config()->mutable_geometry();
+  if (packet.has_robot_specs) message.mutable_config()->add_robot_specs();
+  if (packet.has_realism) message.mutable_config()->mutable_realism();
+  if (packet.vision_port) message.mutable_config()->set_vision_port(*packet.vision_port);
+  return bytes_of(message);
+}
+
+Decoded<SimulatorCommand> decode_simulator_command(std::span<const std::byte> bytes) {
+  wire::control::SimulatorCommand message;
+  if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
+  const auto& control = message.control();
+  Checks checks;
+  checks.at_most(control.teleport_robots(), kMaxRobots);
+  if (!checks.is_valid()) return {{}, checks.error()};
+  SimulatorCommand packet;
+  if (control.has_teleport_ball()) packet.ball = read(control.teleport_ball(), checks);
+  for (const auto& teleport : control.teleport_robots()) packet.robots.push_back(read(teleport, checks));
+  if (control.has_simulation_speed())
+    packet.speed = checks.within(control.simulation_speed(), 0, kMaxSimulationSpeed);
+  packet.has_geometry = message.config().has_geometry();
+  packet.has_robot_specs = message.config().robot_specs_size() > 0;
+  packet.has_realism = message.config().has_realism();
+  if (message.config().has_vision_port()) packet.vision_port = message.config().vision_port();
+  return checked(std::move(packet), checks);
+}
+
+std::vector<std::byte> encode(const SimulatorResponse& packet) {
+  wire::control::SimulatorResponse message;
+  write_errors(packet.errors, *message.mutable_errors());
+  return bytes_of(message);
+}
+
+Decoded<SimulatorResponse> decode_simulator_response(std::span<const std::byte> bytes) {
+  wire::control::SimulatorResponse message;
+  if (const DecodeError error = parse_answer(bytes, message); error != DecodeError::kNone) return {{}, error};
+  Checks checks;
+  SimulatorResponse packet;
+  packet.errors = read_errors(message.errors(), checks);
+  return checked(std::move(packet), checks);
+}
+
+}  // namespace sidestep::league

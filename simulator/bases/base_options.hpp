@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/process/command_line.hpp"
+#include "simulator/bases/base_control.hpp"
+#include "simulator/bases/league_server.hpp"
+#include "simulator/league/league_output.hpp"
+
+namespace sidestep {
+
+/// Options for simulated robots that others drive.
+struct BaseOptions {
+  bool is_league = false;
+  std::string control = "127.0.0.1:10300", blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
+  std::uint32_t team_size = 0;
+  double latency_ms = 100;
+  double silence_ms = 100;
+  double braking_mps2 = BaseSettings{}.braking_mps2;
+  double speed = 1;
+  bool accepts_global = false;
+  bool has_geometry_in_every_packet = false;
+  bool counts_from_start = false;
+};
+
+void add_base_options(const CliCommand& app, BaseOptions& options);
+
+BaseSettings settings_of(const BaseOptions& options);
+LeagueTraits traits_of(const BaseOptions& options);
+/// Throws std::invalid_argument if an address is not one.
+LeagueServerPorts ports_of(const BaseOptions& options);
+
+}  // namespace sidestep

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "idl/monitor.hpp"
+#include "simulator/bases/base_control.hpp"
+#include "simulator/world/ball.hpp"
+#include "simulator/world/body.hpp"
+#include "simulator/world/contacts.hpp"
+
+namespace sidestep {
+
+/// A floor of robots without firmware, which others drive by velocities: those of a scenario, and more that
+/// fill up the teams and count as opponents. In steps of kPhysicsStep.
+class BaseWorld {
+ public:
+  /// The scenario's robots, and opponents up to `team_size` robots of each team, which wait along the field's
+  /// upper edge. Throws std::invalid_argument if two robots share team and number.
+  BaseWorld(const Scenario& scenario, std::uint32_t team_size, const BaseSettings& settings, Time begin);
+
+  void advance(Time to);
+  Time time() const { return time_; }
+
+  /// The scenario with the opponents among its robots.
+  const Scenario& floor() const { return floor_; }
+  std::optional<std::size_t> find(Team team, std::uint32_t number) const;
+  void command(std::size_t robot, const BaseVelocity& velocity, Time now) {
+    controls_[robot].command(velocity, now);
+  }
+  void place(std::size_t robot, const Vec2& position_m, double heading_rad);
+  void remove(std::size_t robot);
+  void set_ball(const State& state);
+  /// Kicks the ball if it is at the robot's front; whether it was.
+  bool kick(std::size_t robot, double speed_mps);
+  bool has_ball(std::size_t robot) const;
+
+  std::span<const Body> bodies() const { return bodies_; }
+  const std::optional<Ball>& ball() const { return ball_; }
+
+  /// Fills in everything but the header. Contacts are those of the scenario's robots with each other and with
+  /// obstacles; crashes are those with opponents. For metrics and audit only.
+  void fill(msg::GroundTruth& truth) const;
+
+  static constexpr double kAtRest_mps = 0.05;
+
+ private:
+  void step();
+  void measure_clearance();
+  void count_contacts(const std::vector<double>& speeds_mps);
+  bool is_ours(std::size_t robot) const { return robot < ours_; }
+
+  std::size_t ours_;  ///< the scenario's robots come first
+  Scenario floor_;
+  BaseSettings settings_;
+  Time time_;
+  std::vector<Body> bodies_;
+  std::vector<BaseControl> controls_;
+  std::vector<Time> pushed_at_;  ///< when an opponent touched it last
+  std::optional<Ball> ball_;
+  Contacts contacts_;
+  std::uint64_t seen_contacts_ = 0;
+  std::vector<double> speeds_mps_;
+  std::uint64_t contact_count_ = 0, crashes_ = 0, moving_crashes_ = 0;
+  std::array<ContactPair, msg::MAX_CONTACTS> recent_contacts_{};
+  std::array<RobotId, msg::MAX_CONTACTS> recent_moving_crashes_{};
+  double max_crash_mps_ = 0;
+  double min_clearance_m_ = 1;  ///< of the scenario's robots among themselves
+};
+
+}  // namespace sidestep

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/measured_motion.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::measured_motion_test {
+
+using namespace std::chrono_literals;
+
+TEST_CASE("a base's velocity follows from its odometry, whatever the frame of that") {
+  const Time begin = time_from_ns(1'000'000'000'000);
+  const double frame_rad = 2.1;
+  MeasuredMotion measured;
+  CHECK(measured.until() == Time{});
+  // Forward at 0.5 m/s and left at 0.2 m/s, without turning.
+  for (int i = 0; i <= 10; ++i) {
+    const double s = 0.02 * i;
+    measured.add({3, begin + i * 20ms, rotated(Vec2(0.5 * s, 0.2 * s), frame_rad) + Vec2(7, 8), frame_rad});
+  }
+  CHECK(measured.until() == begin + 200ms);
+  const auto velocity = measured.at(begin + 55ms);
+  REQUIRE(velocity);
+  CHECK(velocity->linear_mps.x() == Approx(0.5));
+  CHECK(velocity->linear_mps.y() == Approx(0.2));
+  CHECK(velocity->turn_radps == Approx(0).margin(1e-9));
+  CHECK_FALSE(measured.at(begin + 205ms));
+  CHECK_FALSE(measured.at(begin - 5ms));
+}
+
+TEST_CASE("reports of odometry that come late or after a long gap give no velocity") {
+  const Time begin = time_from_ns(1'000'000'000'000);
+  MeasuredMotion measured;
+  measured.add({3, begin, {0, 0}, 0});
+  measured.add({3, begin - 10ms, {5, 0}, 0});
+  CHECK(measured.until() == begin);
+  measured.add({3, begin + 2s, {1, 0}, 0});
+  CHECK_FALSE(measured.at(begin + 1s));
+  measured.add({3, begin + 2020ms, {1.02, 0}, 3.1});
+  measured.add({3, begin + 2040ms, {1.02, 0}, -3.1});
+  REQUIRE(measured.at(begin + 2030ms));
+  CHECK(measured.at(begin + 2030ms)->turn_radps == Approx((2 * 3.14159265 - 6.2) / 0.02));
+}
+
+}  // namespace sidestep::measured_motion_test
