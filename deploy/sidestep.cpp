@@ -8,6 +8,7 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/clock/clock_command.hpp"
+#include "deploy/conformance/conformance_command.hpp"
 #include "deploy/evaluation/camera/frame_command.hpp"
 #include "deploy/evaluation/camera/pattern_command.hpp"
 #include "deploy/evaluation/planning/plan_command.hpp"
@@ -63,6 +64,7 @@ int main(int argc, char** argv) {
   add_attest_command(app, action);
   add_order_commands(app, action);
   add_clock_command(app, action);
+  add_conformance_command(app, action);
   add_referee_command(app, action);
   add_audit_command(app, action);
   add_monitor_command(app, action);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/motion/limits.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+enum class Conformity { kPassed, kFailed, kNotJudged };
+
+/// The result of one of the robot's rules.
+struct ConformanceRow {
+  std::string rule;  ///< as in coordinator/PROTOCOL.md, "What a robot must do"
+  Conformity conformity = Conformity::kNotJudged;
+  std::string figures;  ///< what was measured
+};
+
+/// What the robot was measured to be capable of, for the scenario file.
+struct RobotFigures {
+  std::optional<double> tracking_bound_m;
+  std::optional<double> clock_bound_s;
+  MotionLimits limits;
+  bool is_within_limits = false;  ///< the robot braked and moved as the limits say
+};
+
+struct ConformanceReport {
+  std::vector<ConformanceRow> rows;
+  RobotFigures figures;
+
+  /// Whether every row passed.
+  bool is_conformant() const;
+  /// Whether any row failed; the others may not have been judged.
+  bool has_failed() const;
+};
+
+/// One line.
+std::string to_line(const ConformanceRow& row);
+/// What to write into the scenario file.
+std::string scenario_lines(const RobotFigures& figures);
+/// All of it.
+std::string to_text(const ConformanceReport& report);
+
+}  // namespace sidestep

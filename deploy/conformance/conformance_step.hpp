@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "deploy/conformance/conformance_row.hpp"
+#include "deploy/conformance/robot_probe.hpp"
+#include "deploy/conformance/version_stream.hpp"
+
+namespace sidestep {
+
+/// What steps share.
+struct ConformanceContext {
+  const Scenario& scenario;
+  RobotProbe& probe;
+  VersionStream& stream;
+  ConformanceReport& report;
+  /// Standard deviation of what vision shows of the resting robot, per axis.
+  double vision_noise_m = 0;
+  /// The robot's motors obey at another time than it assumes.
+  bool is_late = false;
+};
+
+/// One part of the examination.
+class ConformanceStep {
+ public:
+  virtual ~ConformanceStep() = default;
+  /// Called once per cycle, before the command is sent, until it returns true. Then the step has added its
+  /// rows.
+  [[nodiscard]] virtual bool update(ConformanceContext& context) = 0;
+  /// A few words for the progress line.
+  virtual std::string name() const = 0;
+  /// Whether the examination cannot go on if this step fails.
+  virtual bool is_required() const { return false; }
+};
+
+/// All steps, in order.
+std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& scenario);
+
+// The steps, for conformance_steps() only.
+std::unique_ptr<ConformanceStep> make_reports_step();
+std::unique_ptr<ConformanceStep> make_clock_step();
+std::unique_ptr<ConformanceStep> make_new_agent_step();
+std::unique_ptr<ConformanceStep> make_fence_step();
+std::unique_ptr<ConformanceStep> make_switch_step();
+std::unique_ptr<ConformanceStep> make_versions_step();
+std::unique_ptr<ConformanceStep> make_rest_step();
+std::unique_ptr<ConformanceStep> make_latency_step();
+std::unique_ptr<ConformanceStep> make_tracking_step(const Scenario& scenario);
+std::unique_ptr<ConformanceStep> make_lost_commands_step();
+std::unique_ptr<ConformanceStep> make_braking_step(const Scenario& scenario);
+std::unique_ptr<ConformanceStep> make_own_stop_step();
+
+}  // namespace sidestep

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/conformance/conformance.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "simulator/world/simulator_node.hpp"
+#include "tests/catch.hpp"
+#include "tests/sim/driven_floor.hpp"
+#include "vision/tracking/vision_node.hpp"
+
+namespace sidestep::conformance_test {
+
+using namespace std::chrono_literals;
+
+constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+constexpr RobotId kRobot = 3;
+
+/// One robot on a floor of division B.
+Scenario lone_robot() {
+  Scenario scenario;
+  scenario.name = "lone robot";
+  RobotSpec robot;
+  robot.id = kRobot;
+  robot.start_m = {-1, 0.5};
+  scenario.robots.push_back(robot);
+  return scenario;
+}
+
+/// The same with vision as in the league, and a budget for bases of others.
+Scenario lone_league_robot() {
+  Scenario scenario = lone_robot();
+  scenario.vision.position_noise_m = 0.0015;
+  scenario.vision.delay = 35ms;
+  scenario.vision.miss_probability = 0.02;
+  scenario.tracking_bound_m = 0.02;
+  scenario.margin_m = 0.046;
+  return scenario;
+}
+
+ConformanceReport examine(SimNetwork& network, const Scenario& scenario) {
+  SimBus vision_bus(network), bus(network);
+  VisionNode vision(vision_bus, scenario, 1);
+  Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
+  const Time limit = network.now() + 300s;
+  while (!conformance.is_finished() && network.now() < limit) network.run_until(network.now() + 100ms);
+  REQUIRE(conformance.is_finished());
+  return conformance.report();
+}
+
+ConformanceReport examine_firmware(const Scenario& scenario, std::uint64_t seed) {
+  SimNetwork network(seed, kBegin, scenario.network);
+  SimBus bus(network);
+  SimulatorNode simulator(bus, scenario, 1, seed);
+  return examine(network, scenario);
+}
+
+ConformanceReport examine_driven(const Scenario& scenario, const BaseSettings& bases, Duration latency,
+                                 std::uint64_t seed) {
+  SimNetwork network(seed, kBegin, scenario.network);
+  DrivenFloor floor(network, scenario, bases, latency, seed);
+  return examine(network, scenario);
+}
+
+std::vector<std::string> failed(const ConformanceReport& report) {
+  std::vector<std::string> rules;
+  for (const ConformanceRow& row : report.rows) {
+    if (row.conformity == Conformity::kFailed) rules.push_back(row.rule);
+  }
+  return rules;
+}
+
+TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const ConformanceReport report = examine_firmware(lone_robot(), seed);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(report.is_conformant());
+}
+
+// Measured by the first examination; see "the latency that is measured".
+constexpr Duration kObeysAfter = 118ms;
+
+TEST_CASE("a base of others that is driven in single precision conforms") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const ConformanceReport report = examine_driven(lone_league_robot(), {}, kObeysAfter, seed);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(report.is_conformant());
+  CHECK(report.figures.is_within_limits);
+}
+
+TEST_CASE("the latency that is measured is the one with which the robot conforms") {
+  const auto [latency, counted] =
+      GENERATE(table<Duration, Duration>({{60ms, 100ms}, {100ms, 60ms}, {100ms, 100ms}, {140ms, 100ms}}));
+  BaseSettings bases;
+  bases.latency = latency;
+  const ConformanceReport report = examine_driven(lone_league_robot(), bases, counted, 4);
+  INFO(to_text(report));
+  const auto row = std::ranges::find(report.rows, "latency", &ConformanceRow::rule);
+  REQUIRE(row != report.rows.end());
+  // The motors need about 18 ms more to reach a velocity.
+  int measured_ms = 0;
+  REQUIRE(std::sscanf(row->figures.c_str(), "the motors obey after %d ms", &measured_ms) == 1);
+  CHECK(std::abs(measured_ms - static_cast<int>(to_seconds(latency) * 1e3) - 18) <= 5);
+}
+
+TEST_CASE("a robot that brakes at 60 % fails in the row of its braking") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  BaseSettings bases;
+  bases.braking_mps2 = 3;
+  const ConformanceReport report = examine_driven(lone_league_robot(), bases, kObeysAfter, seed);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(failed(report) == std::vector<std::string>{"braking"});
+  CHECK_FALSE(report.figures.is_within_limits);
+}
+
+TEST_CASE("a robot that counts on 100 ms of latency and has 150 fails in the row of its latency") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  BaseSettings bases;
+  bases.latency = 150ms - 18ms;
+  const ConformanceReport report = examine_driven(lone_league_robot(), bases, 100ms, seed);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(failed(report) == std::vector<std::string>{"latency"});
+}
+
+TEST_CASE("a robot whose clock is 5 ms off fails in the row of its clock") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const Duration offset = GENERATE(5ms, -5ms);
+  Scenario scenario = lone_robot();
+  scenario.robots.front().clock_offset = offset;
+  const ConformanceReport report = examine_firmware(scenario, seed);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(failed(report) == std::vector<std::string>{"clock"});
+}
+
+TEST_CASE("a robot that ignores fences fails in the row of the fences") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const Scenario scenario = lone_league_robot();
+  SimNetwork network(seed, kBegin, scenario.network);
+  // It takes every command for one of the latest agent and epoch.
+  const auto ignore_fences = [latest =
+                                  std::pair<std::uint64_t, std::uint64_t>()](msg::Command& command) mutable {
+    const Time now = kBegin + 300s;
+    if (!is_plausible(command.header().incarnation(), now) || !is_plausible(command.epoch(), now)) return;
+    latest.first = std::max<std::uint64_t>(latest.first, command.header().incarnation());
+    latest.second = std::max<std::uint64_t>(latest.second, command.epoch());
+    command.header().incarnation(latest.first);
+    command.version().incarnation(latest.first);
+    command.epoch(latest.second);
+  };
+  DrivenFloor floor(network, scenario, {}, kObeysAfter, seed, ignore_fences);
+  const ConformanceReport report = examine(network, scenario);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(failed(report) == std::vector<std::string>{"fences"});
+}
+
+TEST_CASE("a robot that nobody drives or sees is not judged further") {
+  const Scenario scenario = lone_robot();
+  SimNetwork network(1, kBegin, scenario.network);
+  const ConformanceReport report = examine(network, scenario);
+  CHECK(failed(report) == std::vector<std::string>{"reports"});
+  CHECK(report.rows.size() == 1);
+}
+
+}  // namespace sidestep::conformance_test

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "agents/adapters/robots_node.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "simulator/bases/bases_node.hpp"
+
+namespace sidestep {
+
+/// Drives simulated bases without a protocol between: as a cable would.
+class DirectDriver : public Driver {
+ public:
+  DirectDriver(BasesNode& bases, const Scenario& scenario) : bases_(bases), scenario_(scenario) {}
+
+  void send(std::span<const BaseCommand> commands) override {
+    BaseWorld& world = bases_.world_now();
+    for (const BaseCommand& command : commands) {
+      const auto robot = world.find(find_robot(scenario_, command.robot)->team, number_of(command.robot));
+      world.command(*robot, {command.velocity.linear_mps, command.velocity.turn_radps},
+                    bases_.simulated_now());
+    }
+  }
+
+ private:
+  BasesNode& bases_;
+  const Scenario scenario_;
+};
+
+/// The bus of robots with a defect: it changes their commands.
+class DefectiveBus : public SimBus {
+ public:
+  DefectiveBus(SimNetwork& network, std::function<void(msg::Command&)> defect)
+      : SimBus(network), defect_(std::move(defect)) {}
+
+ protected:
+  void make_reader(const TopicInfo& topic, const std::string& channel,
+                   std::function<void(const void*)> callback) override {
+    if (!defect_ || topic.name != std::string("command"))
+      return SimBus::make_reader(topic, channel, std::move(callback));
+    SimBus::make_reader(topic, channel, [this, callback = std::move(callback)](const void* message) {
+      msg::Command command = *static_cast<const msg::Command*>(message);
+      defect_(command);
+      callback(&command);
+    });
+  }
+
+ private:
+  std::function<void(msg::Command&)> defect_;
+};
+
+/// A floor of bases and the process that drives them, on SimBus.
+class DrivenFloor {
+ public:
+  DrivenFloor(SimNetwork& network, const Scenario& scenario, const BaseSettings& bases, Duration latency,
+              std::uint64_t seed, std::function<void(msg::Command&)> defect = {})
+      : floor_bus_(network),
+        robots_bus_(network, std::move(defect)),
+        bases_(floor_bus_, scenario, 0, bases, 1, 1, seed),
+        driver_(bases_, scenario),
+        robots_(robots_bus_, scenario, roster_of(scenario), 1, drive_settings(scenario, latency), driver_,
+                memory_.path()) {}
+
+  BaseWorld& world() { return bases_.world_now(); }
+  RobotsNode& robots() { return robots_; }
+
+ private:
+  TemporaryFolder memory_;
+  SimBus floor_bus_;
+  DefectiveBus robots_bus_;
+  BasesNode bases_;
+  DirectDriver driver_;
+  RobotsNode robots_;
+};
+
+}  // namespace sidestep
