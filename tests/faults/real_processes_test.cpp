@@ -28,7 +28,7 @@ TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,
   const auto folder = std::filesystem::temp_directory_path() / ("sidestep-large-" + std::to_string(getpid()));
   BuildingOptions options;
   options.folder = folder.string();
-  options.floor.seed = 4;
+  options.seed = 4;
   options.resolution_m = 0.02;
   options.robots = 6;
   options.goals = 1;
