@@ -53,7 +53,7 @@ struct LeagueRobots {
   LeagueRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
       : bases(bus, scenario, options.bases.team_size, settings_of(options.bases), options.bases.speed,
               incarnation, options.seed),
-        server(bases, ports_of(options.bases), options.bases.accepts_global),
+        server(bases, ports_of(options.bases), options.bases.accepts_global, options.bases.loss),
         vision(bus, bases.events(), bases.world_now().floor(), bases.cameras().views(),
                options.ssl_vision.value_or(league::kSimulatedVisionEndpoint), options.league_interface,
                traits_of(options.bases)) {

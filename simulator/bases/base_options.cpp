@@ -28,6 +28,10 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
   app.add_option("--braking", options.braking_mps2, "with --league: deceleration of the robots, m/s²")
       .check(in_range(0.1, 20))
       .show_default();
+  app.add_option("--loss", options.loss,
+                 "with --league: probability that a packet of commands or of vision is lost")
+      .check(in_range(0, 1))
+      .show_default();
   app.add_option("--speed", options.speed, "with --league: of the simulation, relative to real time")
       .check(in_range(0.1, 10))
       .show_default();
@@ -51,6 +55,7 @@ LeagueTraits traits_of(const BaseOptions& options) {
   LeagueTraits traits;
   if (options.has_geometry_in_every_packet) traits.geometry_period = Duration::zero();
   traits.counts_from_start = options.counts_from_start;
+  traits.loss = options.loss;
   return traits;
 }
 

@@ -18,6 +18,7 @@ struct BaseOptions {
   double latency_ms = 100;
   double silence_ms = 100;
   double braking_mps2 = BaseSettings{}.braking_mps2;
+  double loss = 0;
   double speed = 1;
   bool accepts_global = false;
   bool has_geometry_in_every_packet = false;

@@ -3,14 +3,16 @@
 
 namespace sidestep {
 
-LeagueServer::LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global)
+LeagueServer::LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global, double loss)
     : node_(node),
       accepts_global_(accepts_global),
       control_(ports.control),
       blue_(ports.blue),
-      yellow_(ports.yellow) {
+      yellow_(ports.yellow),
+      loss_(loss) {
   node.add_drop_source([this](DropCounters& drops) {
     drops.count(DropReason::kMalformedLeaguePacket, std::nullopt, malformed_);
+    drops.count(DropReason::kInjectedLoss, std::nullopt, lost_);
     drops.count(DropReason::kUnsentLeaguePacket, std::nullopt,
                 control_.failed() + blue_.failed() + yellow_.failed());
   });
@@ -36,6 +38,10 @@ bool LeagueServer::accept(const league::Decoded<Packet>& decoded, const league::
 void LeagueServer::receive_team(Team team, league::UnicastSocket& socket) {
   BaseWorld& world = node_.world_now();
   socket.receive([&](std::span<const std::byte> datagram, const league::Endpoint& from) {
+    if (rng_.chance(loss_)) {
+      ++lost_;
+      return;
+    }
     const auto commands = league::decode_team_commands(datagram);
     if (!accept(commands, from)) return;
     const auto response =

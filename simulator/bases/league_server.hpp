@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/league/unicast.hpp"
+#include "common/random/rng.hpp"
 #include "simulator/bases/bases_node.hpp"
 #include "simulator/bases/league_commands.hpp"
 
@@ -16,7 +17,8 @@ struct LeagueServerPorts {
 /// sender. Malformed datagrams are counted and get no answer. Throws std::runtime_error if a port is in use.
 class LeagueServer {
  public:
-  LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global);
+  /// `loss`: probability that a packet of commands is lost.
+  LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global, double loss = 0);
 
   /// `watch` calls back whenever a descriptor is readable.
   void start(const std::function<void(int descriptor, std::function<void()> readable)>& watch);
@@ -30,7 +32,9 @@ class LeagueServer {
   BasesNode& node_;
   bool accepts_global_;
   league::UnicastSocket control_, blue_, yellow_;
-  std::uint64_t malformed_ = 0, next_report_ = 1;
+  double loss_;
+  Rng rng_{2};
+  std::uint64_t malformed_ = 0, lost_ = 0, next_report_ = 1;
 };
 
 }  // namespace sidestep

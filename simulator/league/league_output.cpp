@@ -19,6 +19,10 @@ LeagueOutput::LeagueOutput(Bus& bus, const EventReporter& events, const Scenario
 }
 
 void LeagueOutput::send(const msg::DetectionFrame& frame) {
+  if (rng_.chance(traits_.loss)) {
+    ++lost_;
+    return;
+  }
   league::VisionPacket packet = frames_.detection(frame, bus_.now());
   packet.detection->captured -= epoch_;
   packet.detection->sent -= epoch_;
@@ -40,6 +44,7 @@ void LeagueOutput::send_geometry() {
 
 void LeagueOutput::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kUnsentLeaguePacket, std::nullopt, sender_.failed());
+  drops.count(DropReason::kInjectedLoss, std::nullopt, lost_);
 }
 
 }  // namespace sidestep

@@ -8,6 +8,7 @@
 #include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/protocol/drop_counters.hpp"
+#include "common/random/rng.hpp"
 #include "simulator/league/league_frames.hpp"
 
 namespace sidestep {
@@ -16,6 +17,7 @@ namespace sidestep {
 struct LeagueTraits {
   Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
   bool counts_from_start = false;                      ///< times begin with 0 instead of 1970
+  double loss = 0;  ///< probability that a packet of detections is not sent
 };
 
 /// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry from
@@ -42,7 +44,8 @@ class LeagueOutput {
   LeagueTraits traits_;
   Duration epoch_{0};  ///< the sender's time 0
   league::MulticastSender sender_;
-  std::uint64_t next_report_ = 1;
+  Rng rng_{1};
+  std::uint64_t lost_ = 0, next_report_ = 1;
 };
 
 }  // namespace sidestep

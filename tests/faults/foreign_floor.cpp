@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/faults/foreign_floor.hpp"
+
+#include <csignal>
+#include <fmt/format.h>
+
+#include "tests/catch.hpp"
+
+namespace sidestep {
+
+ForeignFloor::ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options,
+                           const std::vector<std::string>& run_options)
+    : simulator_options_(simulator_options) {
+  std::vector<std::string> options{
+      "--driver", "league",
+      fmt::format("--robots=--latency-ms 119 --blue {} --yellow {}", to_text(blue()), to_text(yellow())),
+      fmt::format("--vision=--source ssl --ssl-vision {}", endpoints_.text(0))};
+  options.insert(options.end(), run_options.begin(), run_options.end());
+  run_ = std::make_unique<LaunchedRun>(scenario, options);
+  start_simulator();
+}
+
+void ForeignFloor::start_simulator() {
+  std::vector<std::string> arguments{
+      "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
+      "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
+      to_text(yellow())};
+  const auto dds = run_->dds_arguments();
+  arguments.insert(arguments.end(), dds.begin(), dds.end());
+  arguments.insert(arguments.end(), simulator_options_.begin(), simulator_options_.end());
+  simulator_ = run_->start(fmt::format("foreign simulator {}", ++starts_), "sidestep-simulator", arguments);
+}
+
+void ForeignFloor::kill_simulator() {
+  REQUIRE(kill(simulator_, SIGKILL) == 0);
+  const std::string name = fmt::format("foreign simulator {}", starts_);
+  REQUIRE(run_->wait_until([&] { return run_->exit_reason(name).has_value(); }));
+}
+
+}  // namespace sidestep

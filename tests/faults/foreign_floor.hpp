@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/league/control_packet.hpp"
+#include "common/league/unicast.hpp"
+#include "tests/faults/launched_run.hpp"
+#include "tests/test_endpoint.hpp"
+
+namespace sidestep {
+
+/// `sidestep run --driver league` on a floor that another process simulates and that the run knows by the
+/// league's protocol only, over UDP on the loopback interface. The simulator is ours, so that there is ground
+/// truth, and no process outlives this object.
+class ForeignFloor {
+ public:
+  explicit ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options = {},
+                        const std::vector<std::string>& run_options = {});
+
+  LaunchedRun& run() { return *run_; }
+  void start_simulator();
+  void kill_simulator();
+  /// The ports of the simulator.
+  league::Endpoint control() const { return endpoints_.unicast(1); }
+  league::Endpoint blue() const { return endpoints_.unicast(2); }
+  league::Endpoint yellow() const { return endpoints_.unicast(3); }
+
+ private:
+  TestEndpoint endpoints_;
+  std::vector<std::string> simulator_options_;
+  std::unique_ptr<LaunchedRun> run_;
+  pid_t simulator_ = 0;
+  int starts_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots that a foreign simulator moves, over the Small Size League's simulation protocol.
+#include "tests/faults/foreign_floor.hpp"
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string outcome(const nlohmann::json& report) {
+  return "makespan " + report["makespan_s"].dump() + " s, minimum clearance " +
+         report["min_clearance_m"].dump() + " m, " + report["denials"].dump() + " of " +
+         report["proposals"].dump() + " proposals denied, missed " + report["missed_cycles"].dump() + " of " +
+         report["cycles"].dump() + " cycles";
+}
+
+/// Drives the yellow team at random, below a speed, for as long as this object exists.
+class RandomTeam {
+ public:
+  RandomTeam(const league::Endpoint& port, std::uint32_t robots, double max_mps, std::uint64_t seed)
+      : port_(port), rng_(seed), moves_(robots), max_mps_(max_mps) {}
+
+  /// To be called often.
+  void act(Time now) {
+    if (now < due_) return;
+    due_ = now + 15ms;
+    league::TeamCommands commands;
+    for (std::uint32_t number = 0; number < moves_.size(); ++number) {
+      Move& move = moves_[number];
+      if (now >= move.until) {
+        move.until = now + Duration{static_cast<std::int64_t>(rng_.uniform(0.3e9, 2e9))};
+        move.velocity = {league::RobotMove::Kind::kLocal,
+                         rotated(Vec2(rng_.uniform(0.3, max_mps_), 0), rng_.uniform(-3.14, 3.14)),
+                         rng_.uniform(-2.0, 2.0)};
+      }
+      league::RobotCommand command;
+      command.number = number;
+      command.move = move.velocity;
+      commands.robots.push_back(command);
+    }
+    (void)socket_.send(encode(commands), port_);
+    socket_.receive([this](std::span<const std::byte>, const league::Endpoint&) { ++answers_; });
+  }
+  std::uint64_t answers() const { return answers_; }
+
+ private:
+  struct Move {
+    Time until{};
+    league::RobotMove velocity;
+  };
+  league::Endpoint port_;
+  league::UnicastSocket socket_{std::nullopt};
+  Rng rng_;
+  std::vector<Move> moves_;
+  double max_mps_;
+  Time due_{};
+  std::uint64_t answers_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("robots of a foreign simulator all arrive without contact, with 5 % of packets lost too",
+          "[both-cores]") {
+  const auto [name, robots, loss] =
+      GENERATE(table<std::string, int, std::string>({{"crossing", 8, "0"},
+                                                     {"crossing", 8, "0.05"},
+                                                     {"two-teams-22", 22, "0"},
+                                                     {"two-teams-22", 22, "0.05"}}));
+  ForeignFloor floor(shipped_scenario("league/" + name), {"--loss", loss});
+  const std::string ended = floor.run().wait_for_end();
+  INFO(floor.run().output());
+  CHECK(ended == "exit code 0");
+  const auto report = floor.run().report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == robots);
+  CHECK(floor.run().truth().contacts() == 0);
+  WARN(name << ", loss " << loss << ": " << outcome(report));
+}
+
+TEST_CASE("robots go on when the foreign simulator is killed and started again", "[both-cores]") {
+  ForeignFloor floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  floor.kill_simulator();
+  floor.start_simulator();
+  const auto incarnation = run.truth().header().incarnation();
+  REQUIRE(run.wait_until([&] { return run.truth().header().incarnation() != incarnation; }));
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  const auto report = run.report();
+  CHECK(report["arrived"] == 8);
+  CHECK(ended == "exit code 0");
+  require_no_violations(report);
+  WARN("after a restart of the simulator: " << ended << ", " << outcome(report));
+}
+
+TEST_CASE(
+    "our robots never touch each other and rest before opponents reach them that somebody drives at random",
+    "[both-cores]") {
+  const std::uint64_t seed = 1 + static_cast<std::uint64_t>(time(nullptr)) % 1000;
+  CAPTURE(seed);
+  ForeignFloor floor(shipped_scenario("league/eleven-blue"), {"--team-size", "11"}, {"--seconds", "60"});
+  LaunchedRun& run = floor.run();
+  RandomTeam opponents(floor.yellow(), 11, 1.4, seed);
+  const bool has_begun = run.wait_until([&] { return run.max_speed_mps() > 0.3; });
+  INFO(run.output());
+  REQUIRE(has_begun);
+  const Time until = run.bus().now() + 30s;
+  (void)run.wait_until([&] {
+    opponents.act(run.bus().now());
+    return run.bus().now() > until;
+  });
+  CHECK(opponents.answers() > 500);
+  CHECK(run.truth().contacts() == 0);
+  CHECK(run.truth().crashes_while_moving() == 0);
+  WARN("opponents driven at random, seed " << seed << ": " << run.truth().crashes()
+                                           << " crashes with robots at rest, minimum clearance "
+                                           << run.truth().min_clearance_m() << " m");
+}
