@@ -8,6 +8,7 @@
 #include "common/process/process.hpp"
 #include "simulator/bases/base_options.hpp"
 #include "simulator/bases/league_server.hpp"
+#include "simulator/bases/velocity_server.hpp"
 #include "simulator/images/image_output.hpp"
 #include "simulator/league/league_output.hpp"
 #include "simulator/world/simulator_node.hpp"
@@ -68,6 +69,29 @@ struct LeagueRobots {
   LeagueOutput vision;
 };
 
+/// Robots that are bases with ROS 2's topics.
+struct VelocityRobots {
+  VelocityRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
+      : bases(bus, scenario, 0, settings_of(options.bases), options.bases.speed, incarnation, options.seed),
+        server(bus, bases, options.bases.topic_prefix, options.bases.odometry_drift) {}
+  BasesNode bases;
+  VelocityServer server;
+};
+
+void require_plain_vision(const Scenario& scenario) {
+  if (scenario.vision.images || scenario.laser)
+    throw std::invalid_argument("robots without firmware have neither images nor lasers, but scenario " +
+                                scenario.name + " asks for them");
+}
+
+RunningNodes start_velocity(DdsBus& bus, const Scenario& scenario, const Options& options,
+                            Incarnation incarnation) {
+  require_plain_vision(scenario);
+  auto nodes = std::make_shared<VelocityRobots>(bus, scenario, options, incarnation);
+  log_events_of(nodes->bases);
+  return {nodes, {}};
+}
+
 RunningNodes start_robots(Bus& bus, const Scenario& scenario, const Options& options,
                           Incarnation incarnation) {
   auto nodes = std::make_shared<Robots>(bus, scenario, options, incarnation);
@@ -77,10 +101,7 @@ RunningNodes start_robots(Bus& bus, const Scenario& scenario, const Options& opt
 
 RunningNodes start_league(DdsBus& bus, const Scenario& scenario, const Options& options,
                           Incarnation incarnation) {
-  if (scenario.vision.images || scenario.laser)
-    throw std::invalid_argument(
-        "--league: the league's protocol has neither images nor lasers, but scenario " + scenario.name +
-        " asks for them");
+  require_plain_vision(scenario);
   auto nodes = std::make_shared<LeagueRobots>(bus, scenario, options, incarnation);
   log_events_of(nodes->bases);
   return {nodes, {}};
@@ -99,8 +120,10 @@ int main(int argc, char** argv) {
   program.process = [] { return static_cast<std::uint32_t>(sidestep::Sender::kSimulator); };
   program.start = [&options](sidestep::DdsBus& bus, const sidestep::Scenario& scenario,
                              sidestep::Incarnation incarnation) -> sidestep::RunningNodes {
-    return options.bases.is_league ? sidestep::start_league(bus, scenario, options, incarnation)
-                                   : sidestep::start_robots(bus, scenario, options, incarnation);
+    check(options.bases);
+    if (options.bases.is_league) return sidestep::start_league(bus, scenario, options, incarnation);
+    if (options.bases.is_velocity) return sidestep::start_velocity(bus, scenario, options, incarnation);
+    return sidestep::start_robots(bus, scenario, options, incarnation);
   };
   return sidestep::run_process(argc, argv, program);
 }

@@ -19,6 +19,8 @@ constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
 constexpr Duration kMaxPause = milliseconds(200);
 // Odometry that is older than this is no longer used.
 constexpr Duration kOdometryTimeout = milliseconds(150);
+// Of odometry, per axis and period.
+constexpr double kOdometryNoise_mps = 0.01;
 // A base at rest within this distance of its reference is left there.
 constexpr double kRestTolerance_m = 0.001;
 
@@ -52,13 +54,14 @@ Vec2 to_double(const robot::Vec<float>& v) { return {v.x, v.y}; }
 
 }  // namespace
 
-DriveSettings drive_settings(const Scenario& scenario, Duration latency) {
+DriveSettings drive_settings(const Scenario& scenario, Duration latency, bool has_odometry) {
   DriveSettings settings;
   settings.latency = latency;
   settings.tracking_bound_m = scenario.tracking_bound_m;
   settings.limits = scenario.limits;
   settings.fix_noise_m = scenario.vision.position_noise_m;
   settings.scale_error = scenario.odometry.scale_error;
+  if (has_odometry) settings.velocity_noise_mps = kOdometryNoise_mps;
   return settings;
 }
 

@@ -28,7 +28,8 @@ struct DriveSettings {
   double turning_speed_radps = 3;
 };
 
-DriveSettings drive_settings(const Scenario& scenario, Duration latency);
+/// `has_odometry`: the bases measure their motion, which is better than what they are commanded.
+DriveSettings drive_settings(const Scenario& scenario, Duration latency, bool has_odometry = false);
 
 /// One robot that a driver moves: the robot's side of the protocol in single precision, with the estimate of
 /// its pose and the control of its velocity. The base obeys after a latency, so the robot predicts where it

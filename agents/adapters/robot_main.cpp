@@ -7,6 +7,7 @@
 #include "agents/adapters/league/league_driver.hpp"
 #include "agents/adapters/robot_list.hpp"
 #include "agents/adapters/robots_node.hpp"
+#include "agents/adapters/velocity/velocity_driver.hpp"
 #include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
@@ -20,12 +21,13 @@ struct Options {
   std::string robots = "all";
   std::string memory_folder = default_memory_folder();
   double latency_ms = 100;
+  std::string topic_prefix = "robot";
   std::string blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
 };
 
 void add_options(const CliCommand& app, Options& options) {
-  app.add_option("--driver", options.driver, "how the robots are moved: league")
-      .check(one_of({"league"}))
+  app.add_option("--driver", options.driver, "how the robots are moved: league, velocity")
+      .check(one_of({"league", "velocity"}))
       .required();
   app.add_option("--robots", options.robots, "numbers and ranges of the scenario's robots, such as 0-10,16")
       .show_default();
@@ -35,25 +37,36 @@ void add_options(const CliCommand& app, Options& options) {
   app.add_option("--memory", options.memory_folder,
                  "folder of what the robots must remember when this program restarts")
       .show_default();
+  app.add_option("--topic-prefix", options.topic_prefix,
+                 "driver velocity: of rt/robot3/cmd_vel and rt/robot3/odom")
+      .show_default();
   app.add_option("--blue", options.blue, "driver league: ADDRESS:PORT for the blue team's commands")
       .show_default();
   app.add_option("--yellow", options.yellow, "driver league: ADDRESS:PORT for the yellow team's commands")
       .show_default();
 }
 
+std::unique_ptr<Driver> make_driver(DdsBus& bus, const Scenario& scenario, const std::vector<RobotId>& robots,
+                                    const Options& options) {
+  if (options.driver == "velocity")
+    return std::make_unique<VelocityDriver>(bus, robots, options.topic_prefix);
+  const LeaguePorts ports{league::parse_unicast_endpoint(options.blue),
+                          league::parse_unicast_endpoint(options.yellow)};
+  auto driver = std::make_unique<LeagueDriver>(scenario, robots, ports);
+  bus.watch(driver->descriptor(), [driver = driver.get()] { driver->receive(); });
+  log_events_of(*driver);
+  return driver;
+}
+
 struct Nodes {
   Nodes(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const Options& options)
       : robots(select_robots(scenario, options.robots)),
-        driver(
-            scenario, robots,
-            {league::parse_unicast_endpoint(options.blue), league::parse_unicast_endpoint(options.yellow)}),
+        driver(make_driver(bus, scenario, robots, options)),
         node(bus, scenario, robots, incarnation,
-             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3)), driver,
-             options.memory_folder) {
-    bus.watch(driver.descriptor(), [this] { driver.receive(); });
-  }
+             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3), options.driver == "velocity"),
+             *driver, options.memory_folder) {}
   std::vector<RobotId> robots;
-  LeagueDriver driver;
+  std::unique_ptr<Driver> driver;
   RobotsNode node;
 };
 
@@ -73,7 +86,6 @@ int main(int argc, char** argv) {
   program.start = [&options](DdsBus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
     auto nodes = std::make_shared<Nodes>(bus, scenario, incarnation, options);
     log_events_of(nodes->node);
-    log_events_of(nodes->driver);
     return {nodes, [&nodes = *nodes] { return nodes.node.is_commanded(); }};
   };
   return run_process(argc, argv, program);

@@ -92,6 +92,13 @@ class Bus {
   std::unique_ptr<RawWriter> relay(const TopicInfo& topic, const std::string& channel) {
     return make_writer(topic, channel);
   }
+  /// For messages without our headers. `callback` takes a const Message&, of the topic's type.
+  template <typename Message, typename Callback>
+  void observe_channel(const TopicInfo& topic, const std::string& channel, Callback callback) {
+    make_reader(topic, channel, [callback = std::move(callback)](const void* message) mutable {
+      callback(*static_cast<const Message*>(message));
+    });
+  }
   /// `callback` takes a const Message&.
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
@@ -109,10 +116,7 @@ class Bus {
   /// As subscribe(), but refuses nothing. For recordings.
   template <typename Message, typename Callback>
   void observe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
-    make_reader(topic, channel_name(topic, robot),
-                [callback = std::move(callback)](const void* message) mutable {
-                  callback(*static_cast<const Message*>(message));
-                });
+    observe_channel<Message>(topic, channel_name(topic, robot), std::move(callback));
   }
 
  protected:

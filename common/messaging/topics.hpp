@@ -37,7 +37,7 @@ struct MessageType {
   /// As the templates of these names in cdr.hpp.
   std::size_t (*cdr_size)(const void* message);
   std::size_t (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
-  CdrKey (*cdr_key)(const void* message);
+  CdrKey (*cdr_key)(const void* message);  ///< null: the type has no key
   bool (*read_cdr)(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
                    void* message);
 };

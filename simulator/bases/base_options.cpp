@@ -8,6 +8,15 @@ namespace sidestep {
 void add_base_options(const CliCommand& app, BaseOptions& options) {
   app.add_flag("--league", options.is_league,
                "robots have no firmware; they are driven by clients of the league's simulation protocol");
+  app.add_flag("--velocity", options.is_velocity,
+               "robots have no firmware; they are bases with ROS 2's topics for velocities and odometry");
+  app.add_option("--topic-prefix", options.topic_prefix,
+                 "with --velocity: of rt/robot3/cmd_vel and rt/robot3/odom")
+      .show_default();
+  app.add_option("--odometry-drift", options.odometry_drift,
+                 "with --velocity: relative error of the odometry")
+      .check(in_range(0, 0.5))
+      .show_default();
   app.add_option("--control", options.control, "with --league: ADDRESS:PORT for simulator commands")
       .show_default();
   app.add_option("--blue", options.blue, "with --league: ADDRESS:PORT for the blue team's commands")
@@ -18,21 +27,21 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
                  "with --league: fill up each team to this many robots, which the scenario does not know")
       .check(in_range(0, league::kRobotNumbers))
       .show_default();
-  app.add_option("--latency-ms", options.latency_ms, "with --league: from a command to first motion")
+  app.add_option("--latency-ms", options.latency_ms, "without firmware: from a command to first motion")
       .check(in_range(0, 1000))
       .show_default();
   app.add_option("--silence-ms", options.silence_ms,
-                 "with --league: robots brake after this without a command")
+                 "without firmware: robots brake after this without a command")
       .check(in_range(10, 10000))
       .show_default();
-  app.add_option("--braking", options.braking_mps2, "with --league: deceleration of the robots, m/s²")
+  app.add_option("--braking", options.braking_mps2, "without firmware: deceleration of the robots, m/s²")
       .check(in_range(0.1, 20))
       .show_default();
   app.add_option("--loss", options.loss,
                  "with --league: probability that a packet of commands or of vision is lost")
       .check(in_range(0, 1))
       .show_default();
-  app.add_option("--speed", options.speed, "with --league: of the simulation, relative to real time")
+  app.add_option("--speed", options.speed, "without firmware: of the simulation, relative to real time")
       .check(in_range(0.1, 10))
       .show_default();
   app.add_flag("--accept-global", options.accepts_global,
@@ -41,6 +50,11 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
                "with --league: send the geometry in every vision packet instead of every 3 s");
   app.add_flag("--times-from-start", options.counts_from_start,
                "with --league: capture times count from the start instead of 1970");
+}
+
+void check(const BaseOptions& options) {
+  if (options.is_league && options.is_velocity)
+    throw UsageError("--velocity: the robots are driven by --league already");
 }
 
 BaseSettings settings_of(const BaseOptions& options) {

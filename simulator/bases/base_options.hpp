@@ -12,7 +12,9 @@ namespace sidestep {
 
 /// Options for simulated robots that others drive.
 struct BaseOptions {
-  bool is_league = false;
+  bool is_league = false, is_velocity = false;
+  std::string topic_prefix = "robot";
+  double odometry_drift = 0;
   std::string control = "127.0.0.1:10300", blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
   std::uint32_t team_size = 0;
   double latency_ms = 100;
@@ -24,6 +26,9 @@ struct BaseOptions {
   bool has_geometry_in_every_packet = false;
   bool counts_from_start = false;
 };
+
+/// Throws UsageError if both are asked for.
+void check(const BaseOptions& options);
 
 void add_base_options(const CliCommand& app, BaseOptions& options);
 

@@ -37,7 +37,7 @@ struct OwnedSample : GuardedType::Sample {
 }  // namespace
 
 GuardedType::GuardedType(const MessageType& type)
-    : DataType(type.name, /*is_keyed=*/true, size_of_empty(type)), type_(type) {}
+    : DataType(type.name, /*is_keyed=*/type.cdr_key != nullptr, size_of_empty(type)), type_(type) {}
 
 void* GuardedType::make_sample() { return static_cast<Sample*>(new OwnedSample(type_.make())); }
 
@@ -71,6 +71,7 @@ bool GuardedType::read(const Payload& payload, void* sample) {
 }
 
 bool GuardedType::key(const void* sample, InstanceHandle_t& handle) {
+  if (!type_.cdr_key) return false;
   const CdrKey key = type_.cdr_key(message_in(sample));
   for (std::size_t i = 0; i < key.size(); ++i) handle.value[i] = key[i];
   return true;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "common/messaging/topics.hpp"
+
+namespace sidestep::ros {
+
+/// geometry_msgs/Twist: metres and radians per second; x forward, y left, z up.
+struct Twist {
+  std::array<double, 3> linear{}, angular{};
+};
+
+/// nav_msgs/Odometry: a pose in the frame `frame_id`, and a velocity in the robot's own frame.
+struct Odometry {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+  std::string frame_id, child_frame_id;
+  std::array<double, 3> position{};
+  std::array<double, 4> orientation{0, 0, 0, 1};  ///< quaternion x, y, z, w
+  std::array<double, 36> pose_covariance{};
+  Twist twist;
+  std::array<double, 36> twist_covariance{};
+};
+
+/// The topic of a robot's base as ROS 2 names it over DDS: "rt/robot3/cmd_vel" for the prefix "robot".
+std::string command_channel(const std::string& prefix, std::uint32_t robot);
+std::string odometry_channel(const std::string& prefix, std::uint32_t robot);
+
+/// Rows as those of the topic table, with ROS 2's type names. They are not in the table, because these
+/// messages have none of our headers: use Bus::relay() and Bus::observe_channel().
+/// Readers are best effort, so that they match every writer.
+extern const TopicInfo kTwist;
+extern const TopicInfo kOdometry;
+/// For writers: reliable, as ROS 2's subscriptions ask by default.
+TopicInfo reliable(TopicInfo topic);
+
+}  // namespace sidestep::ros

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/messaging/bus.hpp"
+#include "common/messaging/ros/ros_messages.hpp"
+#include "simulator/bases/bases_node.hpp"
+
+namespace sidestep {
+
+/// Serves a simulated floor as bases with ROS 2's topics: twists in, odometry out, 50 times a second. The bus
+/// must make no callback after the server's destruction.
+class VelocityServer {
+ public:
+  /// The odometry of a base measures its motion too long by the part `drift`, for every other one too short.
+  VelocityServer(Bus& bus, BasesNode& node, const std::string& prefix, double drift);
+  VelocityServer(const VelocityServer&) = delete;
+  VelocityServer& operator=(const VelocityServer&) = delete;
+
+ private:
+  struct Base {
+    std::size_t index;  ///< in the world
+    double scale;
+    std::unique_ptr<RawWriter> odometry;
+    Vec2 last_m{0, 0};  ///< in the world, at the last report
+    double last_rad = 0;
+    Vec2 position_m{0, 0};  ///< by the odometry, in a frame that begins where the base does
+    double heading_rad = 0;
+  };
+  void receive(const Base& base, const ros::Twist& twist);
+  void publish();
+
+  Bus& bus_;
+  BasesNode& node_;
+  std::vector<Base> bases_;
+  std::uint64_t malformed_ = 0;
+};
+
+}  // namespace sidestep

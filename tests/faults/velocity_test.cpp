@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bases with ROS 2's topics for velocities and odometry, and another vendor's DDS beside them.
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+
+#include "common/messaging/ros/ros_messages.hpp"
+#include "tests/catch.hpp"
+#include "tests/faults/launched_run.hpp"
+
+using namespace sidestep;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kLoopback =
+    "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"true\"/>"
+    "</Interfaces></General></Domain></CycloneDDS>";
+
+}  // namespace
+
+TEST_CASE(
+    "four bases that are driven by velocities all arrive without contact, and ROS 2's programs can read "
+    "their topics",
+    "[both-cores]") {
+  LaunchedRun run(shipped_scenario("bases/four-bases"), {"--driver", "velocity", "--robots=--latency-ms 58"});
+  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--odometry-drift",
+                                     "0.02",       "--latency-ms",      "40"};
+  const auto dds = run.dds_arguments();
+  arguments.insert(arguments.end(), dds.begin(), dds.end());
+  run.start("bases", "sidestep-simulator", arguments);
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
+  // A reader of ROS 2's default profile, for robot 2.
+  const auto path = std::filesystem::temp_directory_path() / fmt::format("sidestep-ros-{}", getpid());
+  const std::string command =
+      fmt::format("CYCLONEDDS_URI='{}' timeout 40 '{}' read {} 2 40 >'{}' 2>&1; echo $? >>'{}' &", kLoopback,
+                  SIDESTEP_ROS_PEER, dds[1], path.string(), path.string());
+  REQUIRE(std::system(command.c_str()) == 0);
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code 0");
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 4);
+  std::ifstream file(path);
+  int twists = 0, odometries = 0;
+  double max_speed_mps = 0;
+  std::string kind, text;
+  while (file >> kind) {
+    if (kind == "twist") {
+      double vx = 0, vy = 0, wz = 0;
+      file >> vx >> vy >> wz;
+      max_speed_mps = std::max(max_speed_mps, std::hypot(vx, vy));
+      ++twists;
+    } else if (kind == "odom") {
+      std::string frame, child;
+      double value = 0;
+      file >> frame >> child;
+      CHECK(frame == "odom");
+      CHECK(child == "base_link");
+      for (int i = 0; i < 6; ++i) file >> value;
+      ++odometries;
+    } else {
+      text += kind + " ";
+    }
+  }
+  INFO(text);
+  CHECK(twists == 40);
+  CHECK(odometries == 40);
+  CHECK(max_speed_mps > 0.1);
+  CHECK(text == "0 ");
+  std::filesystem::remove(path);
+  WARN("four bases, odometry 2 % off, vision at 10 Hz: makespan "
+       << report["makespan_s"].dump() << " s, minimum clearance " << report["min_clearance_m"].dump()
+       << " m");
+}
+
+TEST_CASE("twists and odometry of another vendor's DDS are understood") {
+  const TestDomain domain;
+  DdsBus bus(domain.settings("test"));
+  std::vector<ros::Odometry> odometry;
+  std::vector<ros::Twist> twists;
+  bus.observe_channel<ros::Odometry>(ros::kOdometry, ros::odometry_channel("robot", 5),
+                                     [&](const ros::Odometry& m) { odometry.push_back(m); });
+  bus.observe_channel<ros::Twist>(ros::kTwist, ros::command_channel("robot", 5),
+                                  [&](const ros::Twist& m) { twists.push_back(m); });
+  const std::string command = fmt::format("CYCLONEDDS_URI='{}' exec timeout 40 '{}' write {} 5 0.75",
+                                          kLoopback, SIDESTEP_ROS_PEER, domain.number());
+  std::FILE* const peer = popen(("echo $$; " + command).c_str(), "r");
+  REQUIRE(peer != nullptr);
+  int pid = 0;
+  REQUIRE(std::fscanf(peer, "%d", &pid) == 1);
+  const Time deadline = bus.now() + 30s;
+  while ((odometry.size() < 20 || twists.size() < 20) && bus.now() < deadline)
+    bus.run_until(bus.now() + 20ms);
+  kill(pid, SIGTERM);
+  pclose(peer);
+  REQUIRE(odometry.size() >= 20);
+  REQUIRE(twists.size() >= 20);
+  CHECK(twists.front().linear[0] == 0.75);
+  CHECK(odometry.front().child_frame_id == "base_footprint");
+  CHECK(odometry.front().orientation[3] == 1);
+  CHECK(odometry.back().position[0] - odometry.front().position[0] > 0.1);
+}
