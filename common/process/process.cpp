@@ -43,6 +43,9 @@ void add_dds_options(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99").check(in_range(0, 99)).show_default();
   app.add_option("--interface", settings.interface, "address of the network interface to use, or 'all'")
       .show_default();
+  app.add_option("--peers", settings.peers,
+                 "addresses of the hosts of all processes, on networks without multicast [multicast]")
+      .comma_separated();
 }
 
 int run_guarded(const std::string& name, const std::function<int()>& work) {

@@ -2,6 +2,7 @@
 #include "deploy/conformance/conformance_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -56,6 +57,8 @@ class Floor {
       std::vector<std::string> argv{
           sibling_program_path(process.program), "--scenario",  options.scenario_file, "--domain",
           std::to_string(options.dds.domain),    "--interface", options.dds.interface};
+      if (!options.dds.peers.empty())
+        argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options.dds.peers, ","))});
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());
       group_.start({process.name, argv, false});
     }

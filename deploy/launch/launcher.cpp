@@ -65,8 +65,9 @@ Report Launcher::run() {
   if (network_) {
     print(fmt::format(
         "hosts are network namespaces; to observe them, run: ip netns exec {} sidestep topic list "
-        "--domain {} --interface {}",
-        network_->bridge(), options_.dds.domain, options_.dds.interface));
+        "--domain {} --interface {}{}{}",
+        network_->bridge(), options_.dds.domain, options_.dds.interface,
+        options_.dds.peers.empty() ? "" : " --peers ", fmt::join(options_.dds.peers, ",")));
   }
   if (options_.monitor_port) start_monitor();
   start_core();
@@ -116,7 +117,8 @@ Time Launcher::next_poll() {
 
 void Launcher::start(const std::string& name, const std::string& program, bool is_restarted,
                      const std::vector<std::string>& arguments) {
-  ProcessSpec process{name, program, options_.scenario_file, options_.dds.domain, arguments, is_restarted};
+  ProcessSpec process{name,      program,      options_.scenario_file, options_.dds.domain,
+                      arguments, is_restarted, options_.dds.peers};
   if (options_.faults) process.arguments.push_back("--faults");
   process.arguments.push_back("--log-level");
   process.arguments.emplace_back(to_text(options_.log_level));
@@ -150,11 +152,18 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
 }
 
 void Launcher::start_monitor() {
-  group_.start(
-      {kMonitor,
-       {sibling_program_path("sidestep"), "monitor", options_.scenario_file, "--port", *options_.monitor_port,
-        "--domain", std::to_string(options_.dds.domain), "--interface", options_.dds.interface},
-       false});
+  std::vector<std::string> argv{sibling_program_path("sidestep"),
+                                "monitor",
+                                options_.scenario_file,
+                                "--port",
+                                *options_.monitor_port,
+                                "--domain",
+                                std::to_string(options_.dds.domain),
+                                "--interface",
+                                options_.dds.interface};
+  if (!options_.dds.peers.empty())
+    argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options_.dds.peers, ","))});
+  group_.start({kMonitor, argv, false});
   print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
 }
 

@@ -74,6 +74,7 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
   const std::string program =
       host.programs.empty() ? sibling_program_path(process.program) : host.programs + "/" + process.program;
   Arguments options{"--domain", std::to_string(process.domain), "--interface", host.interface};
+  if (!process.peers.empty()) append(options, {"--peers", fmt::format("{}", fmt::join(process.peers, ","))});
   append(options, process.arguments);
   ChildSpec child{process.name, {}, process.restart};
   if (host.transport == HostTransport::kSsh) {

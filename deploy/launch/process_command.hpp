@@ -17,6 +17,7 @@ struct ProcessSpec {
   int domain = 0;
   std::vector<std::string> arguments;  ///< besides scenario, domain and interface
   bool restart = false;
+  std::vector<std::string> peers{};  ///< as DdsSettings::peers
 };
 
 /// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace

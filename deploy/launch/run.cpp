@@ -22,6 +22,7 @@ int run(const RunOptions& given) {
       options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file),
       scenario, !options.floor.driver.empty());
   options.dds.interface = hosts.hosts().interface;
+  if (!hosts.hosts().peers.empty()) options.dds.peers = hosts.hosts().peers;
   if (options.monitor_port && hosts.network())
     throw std::invalid_argument(
         "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` "

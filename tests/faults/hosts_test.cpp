@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -40,6 +42,45 @@ TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without cont
   for (const char* host : {"floor", "east", "west"}) CHECK(run->robots_on(host).size() >= 7);
   CHECK_FALSE(has_namespaces(run->pid()));
   WARN("22 robots, three hosts, 5 % loss: " << figures(report));
+}
+
+TEST_CASE("22 robots on three hosts without multicast all arrive without contact", "[both-cores]") {
+  SIDESTEP_NEEDS_ROOT();
+  const auto file = std::filesystem::temp_directory_path() / ("sidestep-peers-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(file) << shipped("launch/hosts/three-namespaces-peers.yaml");
+  const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"), {}, file.string());
+  REQUIRE(run->wait_until([&] { return has_namespaces(run->pid()); }));
+  const auto in_namespace = [&](const std::string& host, const std::string& command) {
+    return "ip netns exec sidestep-" + std::to_string(run->pid()) + "-" + host + " " + command;
+  };
+  // Multicast is lost in all directions, and counted.
+  for (const char* host : {"floor", "east", "west"}) {
+    for (const char* command : {"nft add table ip peers", "nft 'add chain ip peers out { type filter hook output priority 0; }'",
+                                "nft 'add chain ip peers in { type filter hook input priority 0; }'",
+                                "nft add rule ip peers out ip daddr 224.0.0.0/4 ip protocol udp counter drop",
+                                "nft add rule ip peers in ip daddr 224.0.0.0/4 counter drop"})
+      REQUIRE(std::system(in_namespace(host, command).c_str()) == 0);
+  }
+  REQUIRE(run->wait_until([&] { return run->printed("the coordinator grants"); }));
+  std::string sent;
+  for (const char* host : {"floor", "east", "west"}) {
+    std::FILE* const list = popen(in_namespace(host, "nft list chain ip peers out").c_str(), "r");
+    REQUIRE(list != nullptr);
+    char line[256];
+    while (std::fgets(line, sizeof line, list)) sent += line;
+    pclose(list);
+  }
+  const std::string ended = run->wait_for_end();
+  INFO(run->output() << sent);
+  CHECK(ended == "exit code 0");
+  const auto report = run->report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 22);
+  std::size_t silent = 0;
+  for (std::size_t at = 0; (at = sent.find("packets 0 bytes 0", at)) != std::string::npos; ++at) ++silent;
+  CHECK(silent == 3);
+  WARN("22 robots, three hosts, no multicast: started after " << report["wall_clock"]["startup_s"].dump() << " s, " << figures(report));
+  std::filesystem::remove(file);
 }
 
 TEST_CASE("vision finds the robots in images of cameras on another host", "[both-cores]") {

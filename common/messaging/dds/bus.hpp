@@ -4,17 +4,21 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/messaging/bus.hpp"
 
 namespace sidestep {
 
 struct DdsSettings {
-  int domain = 0;                        ///< 0 .. 99
-  std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": every one
+  int domain = 0;                       ///< 0 .. 99
+  std::string interface = "127.0.0.1";  ///< address of the only interface to use; "all": every one
   std::string participant = "sidestep";  ///< name announced to the domain
   bool faults = false;                   ///< arriving messages can be impaired, see DdsBus::impair()
   bool is_operator = false;              ///< messages from this participant are never impaired
+  /// Addresses of the hosts where the other processes are, this one included. Empty: processes find each
+  /// other by multicast.
+  std::vector<std::string> peers{};
 };
 
 /// The version of Fast DDS that this program was built with, e.g. "3.1.2".

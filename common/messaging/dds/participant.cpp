@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "common/log/log.hpp"
+#include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "fast_dds_version.hpp"
 
@@ -30,6 +31,16 @@ constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle o
 constexpr int kEventDepth = 64;
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
+
+/// Throws std::runtime_error.
+fast_dds::rtps::Locator_t locator_at(const std::string& address) {
+  fast_dds::rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = 0;  // Fast DDS fills in the ports of all participants
+  if (inet_pton(AF_INET, address.c_str(), locator.address + 12) != 1)
+    throw std::runtime_error(fmt::format("peers: expected IPv4 addresses, got '{}'", address));
+  return locator;
+}
 
 std::string own_addresses() {
   std::string result;
@@ -68,6 +79,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   auto udp = std::make_shared<fast_dds::transport::UDPv4TransportDescriptor>();
   udp->sendBufferSize = kSocketBufferBytes;
   udp->receiveBufferSize = kSocketBufferBytes;
+  if (!settings.peers.empty()) udp->maxInitialPeersRange = kPortsPerPeer;
   if (settings.interface != "all") udp->interfaceWhiteList.push_back(settings.interface);
   qos.transport().use_builtin_transports = false;
   if (shared_memory_bytes > 0) {
@@ -81,6 +93,11 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   builtin.mutation_tries = kMutationTries;
   builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;  // see Presence
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
+  for (const std::string& peer : settings.peers) builtin.initialPeersList.push_back(locator_at(peer));
+  // With an address of its own for discovery, Fast DDS uses no multicast.
+  if (!settings.peers.empty())
+    builtin.metatrafficUnicastLocatorList.push_back(
+        locator_at(settings.interface == "all" ? "0.0.0.0" : settings.interface));
   fast_dds::disable_type_propagation(qos);
   return qos;
 }

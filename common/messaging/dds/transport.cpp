@@ -13,6 +13,7 @@
 
 #include "common/messaging/dds/datagram.hpp"
 #include "common/messaging/dds/delayed_datagrams.hpp"
+#include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "fast_dds/chained_transport.hpp"
@@ -29,10 +30,6 @@ constexpr std::array<std::uint8_t, 4> kOperatorMark{'s', 's', 'o', 'p'};
 constexpr Duration kCheckInterval{500'000'000};
 /// Fast DDS announces a participant some milliseconds before it can process the answers.
 constexpr Duration kUntilReady{50'000'000};
-
-/// Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for discovery, 1 and 11 + 2 i for messages (RTPS
-/// 2.2, 9.6.1).
-bool is_discovery(const rtps::Locator_t& local) { return local.port % 2 == 0; }
 
 bool is_operator(const ParticipantId& id) {
   return std::equal(kOperatorMark.begin(), kOperatorMark.end(), id.begin());
@@ -61,7 +58,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
 
   transport::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
-  std::vector<std::uint8_t> before_multicast(Bytes first_part) override {
+  std::vector<std::uint8_t> before_announcement(Bytes first_part) override {
     const std::optional<ParticipantId> self = sender_of(first_part);
     if (!self) return {};
     const std::lock_guard lock(state_);

@@ -150,6 +150,29 @@ HostSpec read_host(const YAML::Node& node, const YamlLocation& location) {
   return host;
 }
 
+/// `peers: hosts`, or a list of addresses besides those of the hosts.
+void read_peers(YamlMap& map, Hosts& hosts) {
+  const YAML::Node node = map.find("peers");
+  if (!node.IsDefined()) return;
+  const YamlLocation location = map.location_of("peers");
+  hosts.peers.push_back(hosts.interface);
+  if (node.IsScalar()) {
+    if (node.Scalar() != "hosts")
+      location.fail("expected hosts, or a list of addresses besides those of the hosts");
+    return;
+  }
+  for (const YAML::Node& element : list_from(node, location, kMaxHosts))
+    hosts.peers.push_back(address_from(element, location.of(element, location.what)));
+}
+
+void add_own_peers(Hosts& hosts) {
+  if (hosts.peers.empty()) return;
+  for (const HostSpec& host : hosts.hosts) {
+    if (std::ranges::find(hosts.peers, host.interface) == hosts.peers.end())
+      hosts.peers.push_back(host.interface);
+  }
+}
+
 void check_unique(const Hosts& hosts) {
   std::set<std::string> names, addresses, targets;
   if (hosts.create) addresses.insert(hosts.interface);
@@ -181,6 +204,7 @@ Hosts parse_hosts(const std::string& text, const std::string& file_name) {
   result.interface = address_from(launcher.require("interface"), launcher.location_of("interface"));
   launcher.finish();
   map.read("prefix_length", {8, 30}, result.prefix_length);
+  read_peers(map, result);
   const YamlLocation location = map.location_of("hosts");
   for (const YAML::Node& element : list_from(map.require("hosts"), location, kMaxHosts)) {
     result.hosts.push_back(
@@ -188,6 +212,7 @@ Hosts parse_hosts(const std::string& text, const std::string& file_name) {
   }
   map.finish();
   if (result.hosts.empty()) location.fail("expected at least one host");
+  add_own_peers(result);
   check_unique(result);
   return result;
 }

@@ -37,6 +37,8 @@ struct Hosts {
   bool create = false;     ///< the launcher creates and removes the namespaces and their network
   std::string interface;   ///< the launcher's address in that network
   int prefix_length = 24;  ///< of all addresses, if the launcher creates the network
+  /// Where processes look for each other; empty: they find each other by multicast.
+  std::vector<std::string> peers;
   std::vector<HostSpec> hosts;
 };
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "common/messaging/dds/destinations.hpp"
 #include "fast_dds/library.hpp"
 
 namespace sidestep::fast_dds {
@@ -20,9 +21,10 @@ class ChainedTransport : public transport::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;
 
-  /// Called before a datagram, of which this is the first part, goes to a multicast address, as announcements
-  /// of the participant do. The result is a datagram to be sent there before it; empty: none.
-  virtual std::vector<std::uint8_t> before_multicast(std::span<const std::uint8_t> first_part) = 0;
+  /// Called before a datagram, of which this is the first part, goes to everybody, as announcements of the
+  /// participant do: to a multicast address, or to all ports at which peers may be. The result is a datagram
+  /// to be sent there before it; empty: none.
+  virtual std::vector<std::uint8_t> before_announcement(std::span<const std::uint8_t> first_part) = 0;
   /// A datagram has arrived. `next` is what handles it unless it is dropped here.
   virtual void on_datagram(transport::TransportReceiverInterface& next,
                            std::span<const std::uint8_t> datagram, const rtps::Locator_t& local,
@@ -36,25 +38,17 @@ class ChainedTransport : public transport::ChainingTransport {
   bool send(rtps::SenderResource* sender, const rtps::octet* data, std::uint32_t size,
             transport::LocatorsIterator* begin, transport::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) final {
-    if (!goes_to_multicast(*begin, *end)) return sender->send(data, size, begin, end, timeout);
+    if (*begin == *end || !is_discovery(**begin)) return sender->send(data, size, begin, end, timeout);
     transport::LocatorList destinations;
     for (; *begin != *end; ++*begin) destinations.push_back(**begin);
     const auto send_to_all = [&](const rtps::octet* bytes, std::uint32_t count) {
       transport::Locators from(destinations.begin()), to(destinations.end());
       return sender->send(bytes, count, &from, &to, timeout);
     };
-    const std::vector<std::uint8_t> first = before_multicast({data, size});
+    if (!goes_to_everybody(destinations)) return send_to_all(data, size);
+    const std::vector<std::uint8_t> first = before_announcement({data, size});
     if (!first.empty()) send_to_all(first.data(), static_cast<std::uint32_t>(first.size()));
     return send_to_all(data, size);
-  }
-
- private:
-  static bool goes_to_multicast(const transport::LocatorsIterator& begin,
-                                const transport::LocatorsIterator& end) {
-    constexpr std::uint8_t kFirst = 224, kLast = 239;  // of an IPv4 address, which is the last of 16 bytes
-    if (begin == end) return false;
-    const std::uint8_t first = (*begin).address[12];
-    return first >= kFirst && first <= kLast;
   }
 };
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "common/messaging/dds/destinations.hpp"
 #include "fast_dds/library.hpp"
 
 namespace sidestep::fast_dds {
@@ -20,9 +21,10 @@ class ChainedTransport : public transport::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;
 
-  /// Called before a datagram, of which this is the first part, goes to a multicast address, as announcements
-  /// of the participant do. The result is a datagram to be sent there before it; empty: none.
-  virtual std::vector<std::uint8_t> before_multicast(std::span<const std::uint8_t> first_part) = 0;
+  /// Called before a datagram, of which this is the first part, goes to everybody, as announcements of the
+  /// participant do: to a multicast address, or to all ports at which peers may be. The result is a datagram
+  /// to be sent there before it; empty: none.
+  virtual std::vector<std::uint8_t> before_announcement(std::span<const std::uint8_t> first_part) = 0;
   /// A datagram has arrived. `next` is what handles it unless it is dropped here.
   virtual void on_datagram(transport::TransportReceiverInterface& next,
                            std::span<const std::uint8_t> datagram, const rtps::Locator_t& local,
@@ -36,29 +38,20 @@ class ChainedTransport : public transport::ChainingTransport {
   bool send(rtps::SenderResource* sender, const std::vector<rtps::NetworkBuffer>& buffers, std::uint32_t size,
             transport::LocatorsIterator* begin, transport::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) final {
-    if (!goes_to_multicast(*begin, *end) || buffers.empty()) {
+    if (*begin == *end || !is_discovery(**begin) || buffers.empty())
       return sender->send(buffers, size, begin, end, timeout);
-    }
     transport::LocatorList destinations;
     for (; *begin != *end; ++*begin) destinations.push_back(**begin);
     const auto send_to_all = [&](const std::vector<rtps::NetworkBuffer>& parts, std::uint32_t count) {
       transport::Locators from(destinations.begin()), to(destinations.end());
       return sender->send(parts, count, &from, &to, timeout);
     };
+    if (!goes_to_everybody(destinations)) return send_to_all(buffers, size);
     const std::vector<std::uint8_t> first =
-        before_multicast({static_cast<const std::uint8_t*>(buffers[0].buffer), buffers[0].size});
+        before_announcement({static_cast<const std::uint8_t*>(buffers[0].buffer), buffers[0].size});
     const auto first_size = static_cast<std::uint32_t>(first.size());
     if (!first.empty()) send_to_all({{first.data(), first_size}}, first_size);
     return send_to_all(buffers, size);
-  }
-
- private:
-  static bool goes_to_multicast(const transport::LocatorsIterator& begin,
-                                const transport::LocatorsIterator& end) {
-    constexpr std::uint8_t kFirst = 224, kLast = 239;  // of an IPv4 address, which is the last of 16 bytes
-    if (begin == end) return false;
-    const std::uint8_t first = (*begin).address[12];
-    return first >= kFirst && first <= kLast;
   }
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/hosts/hosts_file.hpp"
 
+#include <algorithm>
+
 #include "common/config/scenario_loader.hpp"
 #include "deploy/launch/hosts/placement.hpp"
 #include "tests/catch.hpp"
@@ -148,6 +150,20 @@ TEST_CASE("the shipped hosts files fit any scenario") {
     const Hosts hosts = load_hosts(SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/" + std::string(name) + ".yaml");
     CHECK_NOTHROW(Placement(hosts, scenario));
   }
+}
+
+TEST_CASE("peers are the hosts' addresses and the launcher's, and others that are listed") {
+  const Hosts none = parse_hosts(kTwoHosts, "hosts.yaml");
+  CHECK(none.peers.empty());
+  const Hosts hosts = parse_hosts("peers: hosts\n" + std::string(kTwoHosts), "hosts.yaml");
+  REQUIRE(hosts.peers.size() == hosts.hosts.size() + 1);
+  CHECK(hosts.peers.front() == hosts.interface);
+  for (const HostSpec& host : hosts.hosts) CHECK(std::ranges::count(hosts.peers, host.interface) == 1);
+  const Hosts more = parse_hosts("peers: [10.9.9.9]\n" + std::string(kTwoHosts), "hosts.yaml");
+  CHECK(more.peers.size() == hosts.peers.size() + 1);
+  CHECK(std::ranges::count(more.peers, "10.9.9.9") == 1);
+  check_refused("peers: all\n" + std::string(kTwoHosts), "hosts.yaml:1: ", "expected hosts, or a list of addresses");
+  check_refused("peers: [10.9.9]\n" + std::string(kTwoHosts), "hosts.yaml:1: ", "expected an IPv4 address");
 }
 
 }  // namespace sidestep::hosts_file_test
