@@ -9,8 +9,8 @@
 namespace sidestep {
 
 ForeignFloor::ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options,
-                           const std::vector<std::string>& run_options)
-    : simulator_options_(simulator_options) {
+                           const std::vector<std::string>& run_options, bool has_truth)
+    : simulator_options_(simulator_options), has_truth_(has_truth) {
   std::vector<std::string> options{
       "--driver", "league",
       fmt::format("--robots=--latency-ms 119 --blue {} --yellow {}", to_text(blue()), to_text(yellow())),
@@ -25,7 +25,10 @@ void ForeignFloor::start_simulator() {
       "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
       "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
       to_text(yellow())};
-  const auto dds = run_->dds_arguments();
+  // In a domain of its own nobody hears it.
+  const auto dds = has_truth_
+                       ? run_->dds_arguments()
+                       : std::vector<std::string>{"--domain", std::to_string(endpoints_.domain().number())};
   arguments.insert(arguments.end(), dds.begin(), dds.end());
   arguments.insert(arguments.end(), simulator_options_.begin(), simulator_options_.end());
   simulator_ = run_->start(fmt::format("foreign simulator {}", ++starts_), "sidestep-simulator", arguments);

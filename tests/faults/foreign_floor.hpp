@@ -17,8 +17,10 @@ namespace sidestep {
 /// truth, and no process outlives this object.
 class ForeignFloor {
  public:
+  /// `has_truth`: the run hears the ground truth; otherwise vision has to judge, as with a simulator of
+  /// others.
   explicit ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options = {},
-                        const std::vector<std::string>& run_options = {});
+                        const std::vector<std::string>& run_options = {}, bool has_truth = true);
 
   LaunchedRun& run() { return *run_; }
   void start_simulator();
@@ -31,6 +33,7 @@ class ForeignFloor {
  private:
   TestEndpoint endpoints_;
   std::vector<std::string> simulator_options_;
+  bool has_truth_;
   std::unique_ptr<LaunchedRun> run_;
   pid_t simulator_ = 0;
   int starts_ = 0;

@@ -2,6 +2,8 @@
 // Robots that a foreign simulator moves, over the Small Size League's simulation protocol.
 #include "tests/faults/foreign_floor.hpp"
 
+#include <csignal>
+
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
@@ -79,6 +81,37 @@ TEST_CASE("robots of a foreign simulator all arrive without contact, with 5 % of
   CHECK(report["arrived"] == robots);
   CHECK(floor.run().truth().contacts() == 0);
   WARN(name << ", loss " << loss << ": " << outcome(report));
+}
+
+TEST_CASE("where there is no ground truth, agents report arrivals and vision judges contacts",
+          "[both-cores]") {
+  ForeignFloor floor(shipped_scenario("league/crossing"), {}, {}, false);
+  const std::string ended = floor.run().wait_for_end();
+  INFO(floor.run().output());
+  CHECK(ended == "exit code 0");
+  const auto report = floor.run().report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 8);
+  CHECK(floor.run().truth().robots().empty());
+  CHECK(floor.run().printed("positions and contacts from: vision"));
+  WARN("judged by vision: " << outcome(report));
+}
+
+TEST_CASE("robots go on when the process that drives them is killed and started again", "[both-cores]") {
+  ForeignFloor floor(shipped_scenario("league/crossing") + "restart: [robots]\n");
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  const pid_t robots = run.pid_of("robots");
+  REQUIRE(robots != 0);
+  REQUIRE(kill(robots, SIGKILL) == 0);
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code 0");
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 8);
+  CHECK(run.pid_of("robots") != robots);
+  WARN("after a restart of the robots' process: " << outcome(report));
 }
 
 TEST_CASE("robots go on when the foreign simulator is killed and started again", "[both-cores]") {

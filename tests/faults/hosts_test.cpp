@@ -46,7 +46,8 @@ TEST_CASE("22 robots on three hosts with 5 % packet loss all arrive without cont
 
 TEST_CASE("22 robots on three hosts without multicast all arrive without contact", "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
-  const auto file = std::filesystem::temp_directory_path() / ("sidestep-peers-" + std::to_string(getpid()) + ".yaml");
+  const auto file =
+      std::filesystem::temp_directory_path() / ("sidestep-peers-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << shipped("launch/hosts/three-namespaces-peers.yaml");
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"), {}, file.string());
   REQUIRE(run->wait_until([&] { return has_namespaces(run->pid()); }));
@@ -55,10 +56,11 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
   };
   // Multicast is lost in all directions, and counted.
   for (const char* host : {"floor", "east", "west"}) {
-    for (const char* command : {"nft add table ip peers", "nft 'add chain ip peers out { type filter hook output priority 0; }'",
-                                "nft 'add chain ip peers in { type filter hook input priority 0; }'",
-                                "nft add rule ip peers out ip daddr 224.0.0.0/4 ip protocol udp counter drop",
-                                "nft add rule ip peers in ip daddr 224.0.0.0/4 counter drop"})
+    for (const char* command :
+         {"nft add table ip peers", "nft 'add chain ip peers out { type filter hook output priority 0; }'",
+          "nft 'add chain ip peers in { type filter hook input priority 0; }'",
+          "nft add rule ip peers out ip daddr 224.0.0.0/4 ip protocol udp counter drop",
+          "nft add rule ip peers in ip daddr 224.0.0.0/4 counter drop"})
       REQUIRE(std::system(in_namespace(host, command).c_str()) == 0);
   }
   REQUIRE(run->wait_until([&] { return run->printed("the coordinator grants"); }));
@@ -79,7 +81,8 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
   std::size_t silent = 0;
   for (std::size_t at = 0; (at = sent.find("packets 0 bytes 0", at)) != std::string::npos; ++at) ++silent;
   CHECK(silent == 3);
-  WARN("22 robots, three hosts, no multicast: started after " << report["wall_clock"]["startup_s"].dump() << " s, " << figures(report));
+  WARN("22 robots, three hosts, no multicast: started after " << report["wall_clock"]["startup_s"].dump()
+                                                              << " s, " << figures(report));
   std::filesystem::remove(file);
 }
 

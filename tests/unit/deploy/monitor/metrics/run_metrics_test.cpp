@@ -428,4 +428,37 @@ TEST_CASE("counters of ever new processes, incarnations and robots take a limite
   CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 10'000 - 32);
 }
 
+msg::WorldState world(double at_s, double x_m, double vx_mps) {
+  msg::WorldState message;
+  message.valid_at_ns(to_ns(after(at_s)));
+  message.robots().resize(1);
+  message.robots()[0].robot(3);
+  message.robots()[0].x_m(x_m);
+  message.robots()[0].vx_mps(vx_mps);
+  return message;
+}
+
+TEST_CASE("without ground truth a robot has arrived when its agent says so and vision shows it at its goal") {
+  RunMetrics metrics(kTwo);
+  CHECK_FALSE(metrics.has_seen_robots());
+  metrics.on_status(status(3, 1, msg::AgentState::AGENT_ARRIVED));
+  metrics.on_world(world(1, 0.9, 0));
+  CHECK(metrics.has_seen_robots());
+  CHECK(metrics.seen_at() == after(1));
+  CHECK(metrics.arrived() == 0);
+  metrics.on_world(world(2, kNaN, 0));
+  CHECK(metrics.seen_at() == after(1));
+  metrics.on_world(world(3, 1.02, 0.2));
+  CHECK(metrics.arrived() == 1);
+  metrics.on_world(world(2.5, 0, 0));  // late
+  CHECK(metrics.arrived() == 1);
+  metrics.on_status(status(3, 2, msg::AgentState::AGENT_DRIVING));
+  CHECK(metrics.arrived() == 0);
+  // Ground truth comes first, once there is some.
+  metrics.on_status(status(3, 3, msg::AgentState::AGENT_ARRIVED));
+  metrics.on_truth(truth(1, 4, {body(3, 0.5, 0)}));
+  metrics.on_world(world(5, 1, 0));
+  CHECK(metrics.arrived() == 0);
+}
+
 }  // namespace sidestep::run_metrics_test
