@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <stdexcept>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace sidestep {
@@ -85,6 +86,15 @@ bool sync_folder(const std::string& path) {
 
 }  // namespace
 
+MemoryLock::MemoryLock(const std::string& path)
+    : file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  if (file_ >= 0) close(file_);
+  throw std::runtime_error(fmt::format("{}: cannot be locked; does another process drive this robot?", path));
+}
+
+MemoryLock::~MemoryLock() { close(file_); }
+
 RobotMemory::RobotMemory(const std::string& folder, RobotId robot)
     : folder_(folder), path_(fmt::format("{}/robot-{}.memory", folder, robot)) {
   std::error_code error;
@@ -92,6 +102,7 @@ RobotMemory::RobotMemory(const std::string& folder, RobotId robot)
   if (!std::filesystem::is_directory(folder, error))
     throw std::runtime_error(
         fmt::format("{}: cannot create this folder for the robots' memories: {}", folder, error.message()));
+  lock_.emplace(path_ + ".lock");
   if (std::filesystem::exists(path_, error))
     state_ = MemoryReader(path_).read();
   else if (error)

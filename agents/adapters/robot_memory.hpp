@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/motion/version.hpp"
@@ -8,12 +9,25 @@
 
 namespace sidestep {
 
+/// Held by the one process that drives a robot, until it ends however.
+class MemoryLock {
+ public:
+  /// Throws std::runtime_error if another process holds it.
+  explicit MemoryLock(const std::string& path);
+  ~MemoryLock();
+  MemoryLock(const MemoryLock&) = delete;
+  MemoryLock& operator=(const MemoryLock&) = delete;
+
+ private:
+  int file_;
+};
+
 /// A robot's memory as a text file, robot-3.memory, in a folder of this host.
 class RobotMemory final : public robot::StableMemory {
  public:
   /// Reads the file if it exists, and creates the folder. Throws std::runtime_error with the file, the line
   /// and the reason if the file cannot be read or is not a robot's memory: a robot that had forgotten whom it
-  /// obeys must not drive.
+  /// obeys must not drive. Also if another process has this robot's memory: only one may drive a robot.
   RobotMemory(const std::string& folder, RobotId robot);
 
   const robot::DurableState& state() const { return state_; }
@@ -22,6 +36,7 @@ class RobotMemory final : public robot::StableMemory {
 
  private:
   std::string folder_, path_;
+  std::optional<MemoryLock> lock_;
   robot::DurableState state_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/robot/own_stop_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -13,20 +14,6 @@ using std::chrono::milliseconds;
 
 // Version starts farther ahead than this get no timer; the control period handles them.
 constexpr Duration kMaxTimerAhead = milliseconds(200);
-
-const char* to_text(robot::OwnStopReason reason) {
-  switch (reason) {
-    case robot::OwnStopReason::kOffReference:
-      return "it is farther from its reference than the tracking bound";
-    case robot::OwnStopReason::kDrifted:
-      return "it has drifted and not returned to its reference in time";
-    case robot::OwnStopReason::kDisplaced:
-      return "vision shows it elsewhere than its commands have taken it";
-    case robot::OwnStopReason::kRestart:
-      return "it has found its pose after a start or a pause";
-  }
-  return "?";
-}
 
 }  // namespace
 

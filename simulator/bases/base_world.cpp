@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
 
 namespace sidestep {
 namespace {
@@ -15,6 +17,9 @@ constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 
 Scenario with_opponents(const Scenario& scenario, std::uint32_t team_size) {
   require_unique_numbers(scenario);
+  if (team_size > 0 && !scenario.robots.empty() && scenario.robots.back().id >= kFirstBlueOpponent)
+    throw std::invalid_argument(fmt::format("robots from {} on are opponents, but scenario {} has robot {}",
+                                            kFirstBlueOpponent, scenario.name, scenario.robots.back().id));
   Scenario floor = scenario;
   const double spacing_m = 2.5 * scenario.radius_m;
   for (const Team team : {Team::kBlue, Team::kYellow}) {

@@ -30,20 +30,6 @@ class SimulatedFlash final : public robot::StableMemory {
   [[nodiscard]] bool store(const robot::DurableState&) override { return true; }
 };
 
-constexpr const char* to_text(robot::OwnStopReason reason) {
-  switch (reason) {
-    case robot::OwnStopReason::kOffReference:
-      return "it is farther from its reference than the tracking bound";
-    case robot::OwnStopReason::kDrifted:
-      return "it has drifted and not returned to its reference in time";
-    case robot::OwnStopReason::kDisplaced:
-      return "it was displaced without its wheels measuring it";
-    case robot::OwnStopReason::kRestart:
-      return "its firmware has restarted";
-  }
-  return "?";
-}
-
 /// The firmware of a simulated robot: the robot's side of the protocol (common/robot/robot_side.hpp), with
 /// control and estimation. Initially it executes version 0, at rest at its start position.
 ///

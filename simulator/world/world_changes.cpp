@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/protocol/disturbance_text.hpp"
+#include "common/robot/own_stop_text.hpp"
 
 namespace sidestep {
 

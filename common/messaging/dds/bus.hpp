@@ -11,8 +11,8 @@
 namespace sidestep {
 
 struct DdsSettings {
-  int domain = 0;                       ///< 0 .. 99
-  std::string interface = "127.0.0.1";  ///< address of the only interface to use; "all": every one
+  int domain = 0;                        ///< 0 .. 99
+  std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": every one
   std::string participant = "sidestep";  ///< name announced to the domain
   bool faults = false;                   ///< arriving messages can be impaired, see DdsBus::impair()
   bool is_operator = false;              ///< messages from this participant are never impaired

@@ -17,8 +17,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kAtRest_mps = 0.02;
-/// Of positions and velocities that vision shows. Its velocities are too noisy to tell a slow robot from one at
-/// rest; agents know that.
+/// Of positions and velocities that vision shows. Its velocities are too noisy to tell a slow robot from one
+/// at rest; agents know that.
 constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 1;
 /// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
 constexpr std::size_t kMaxLives = 1000;

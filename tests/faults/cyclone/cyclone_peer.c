@@ -84,7 +84,7 @@ static void print_feedback(const sidestep_msg_Feedback* m) {
   SIGNED(m, valid_at_ns), OBJECT(m, executing, print_version), BOOL(m, is_off_reference), BOOL(m, is_lifted);
   SIGNED(m, command_stamp_ns), SIGNED(m, command_received_at_ns), REAL(m, x_m), REAL(m, y_m), REAL(m, vx_mps);
   REAL(m, vy_mps), REAL(m, heading_rad), REAL(m, tracking_error_m), REAL(m, position_error_rms_m);
-  REAL(m, odometry_scale_stddev), BOOL(m, has_moved), UNSIGNED(m, activated);
+  REAL(m, odometry_scale_stddev), BOOL(m, has_moved), UNSIGNED(m, activated), SIGNED(m, lead_ns);
 }
 static void print_verdict(const sidestep_msg_Verdict* m) {
   UNSIGNED(m, robot), OBJECT(m, header, print_header), UNSIGNED(m, epoch), UNSIGNED(m, proposal_number);

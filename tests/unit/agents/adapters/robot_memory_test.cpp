@@ -39,6 +39,17 @@ TEST_CASE("a memory that is broken is refused with its file and line, and not ov
   CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == broken.first);
 }
 
+TEST_CASE("only one process has the memory of a robot") {
+  const TemporaryFolder folder;
+  {
+    const RobotMemory memory(folder.path(), 3);
+    CHECK_THROWS_WITH(RobotMemory(folder.path(), 3),
+                      ContainsSubstring("does another process drive this robot?"));
+    CHECK_NOTHROW(RobotMemory(folder.path(), 4));
+  }
+  CHECK_NOTHROW(RobotMemory(folder.path(), 3));
+}
+
 TEST_CASE("a robot whose folder is gone cannot store") {
   const TemporaryFolder folder;
   RobotMemory memory(folder.file("robots"), 3);

@@ -162,7 +162,8 @@ TEST_CASE("peers are the hosts' addresses and the launcher's, and others that ar
   const Hosts more = parse_hosts("peers: [10.9.9.9]\n" + std::string(kTwoHosts), "hosts.yaml");
   CHECK(more.peers.size() == hosts.peers.size() + 1);
   CHECK(std::ranges::count(more.peers, "10.9.9.9") == 1);
-  check_refused("peers: all\n" + std::string(kTwoHosts), "hosts.yaml:1: ", "expected hosts, or a list of addresses");
+  check_refused("peers: all\n" + std::string(kTwoHosts),
+                "hosts.yaml:1: ", "expected hosts, or a list of addresses");
   check_refused("peers: [10.9.9]\n" + std::string(kTwoHosts), "hosts.yaml:1: ", "expected an IPv4 address");
 }
 

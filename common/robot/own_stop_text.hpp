@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/robot/robot_side.hpp"
+
+namespace sidestep {
+
+constexpr const char* to_text(robot::OwnStopReason reason) {
+  switch (reason) {
+    case robot::OwnStopReason::kOffReference:
+      return "it is farther from its reference than the tracking bound";
+    case robot::OwnStopReason::kDrifted:
+      return "it has drifted and not returned to its reference in time";
+    case robot::OwnStopReason::kDisplaced:
+      return "it was displaced without its wheels measuring it";
+    case robot::OwnStopReason::kRestart:
+      return "its firmware has restarted, or it has found its pose";
+  }
+  return "?";
+}
+
+}  // namespace sidestep
