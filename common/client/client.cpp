@@ -20,7 +20,8 @@ DdsSettings dds_settings(const Settings& settings) {
   if (settings.name.empty() && !settings.is_operator)
     throw std::invalid_argument("client: expected a name, or is_operator");
   const std::string name = settings.name.empty() ? "operator" : settings.name;
-  return {settings.domain, settings.interface, "sidestep-client " + name, false, settings.is_operator, settings.peers};
+  return {settings.domain, settings.interface,   "sidestep-client " + name,
+          false,           settings.is_operator, settings.peers};
 }
 
 ClientId id_of(const Settings& settings) {
