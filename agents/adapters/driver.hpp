@@ -43,7 +43,7 @@ class Driver {
   virtual void send(std::span<const BaseCommand> commands) = 0;
   /// Sets the callback for odometry. A driver without odometry never calls it. Everything in a report is
   /// checked: it is finite and of a robot of this driver, and its time is by the process's clock.
-  virtual void on_odometry(std::function<void(const OdometryReport&)> callback) { (void)callback; }
+  virtual void on_odometry(std::function<void(const OdometryReport&)> /*callback*/) {}
   /// Adds what the driver has dropped.
   virtual void count_drops(DropCounters& drops) const { (void)drops; }
 };

@@ -153,7 +153,8 @@ class LatencyStep final : public ConformanceStep {
     context.stream.forget();
     const Time at = probe.robot_now() + context.stream.notice() + 200ms;
     const State from = probe.fact()->executing.trajectory.state_at(at);
-    const Vec2 direction = rotated(Vec2(1, 0), std::numbers::pi * (starts_ % 2 + 0.25 * (starts_ / 2)));
+    const Vec2 direction =
+        rotated(Vec2(1, 0), std::numbers::pi * (starts_ % 2 + 0.25 * std::floor(starts_ / 2.0)));
     Trajectory trajectory(at, {from.position_m, Vec2(0, 0)});
     trajectory.append(250ms, 0.8 * context.scenario.limits.acceleration_mps2 * direction);
     append_stop(trajectory, context.scenario.limits.deceleration_mps2);

@@ -85,7 +85,7 @@ class RobotProbe {
   std::optional<PoseFix> fix_;  ///< not sent yet
   struct Executed {
     Version version;
-    bool is_off_reference;
+    bool is_off_reference = false;
   };
   std::deque<Executed> executed_;  ///< in the order of their facts
   std::deque<RobotObservation> unjudged_;

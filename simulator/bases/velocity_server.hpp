@@ -22,8 +22,8 @@ class VelocityServer {
 
  private:
   struct Base {
-    std::size_t index;  ///< in the world
-    double scale;
+    std::size_t index = 0;  ///< in the world
+    double scale = 1;
     std::unique_ptr<RawWriter> odometry;
     Vec2 last_m{0, 0};  ///< in the world, at the last report
     double last_rad = 0;

@@ -64,7 +64,7 @@ class Reader {
     value = {};
     at_ = (at_ + sizeof(Number) - 1) / sizeof(Number) * sizeof(Number);
     if (!has(sizeof(Number))) return;
-    std::array<std::uint8_t, sizeof(Number)> copy;
+    std::array<std::uint8_t, sizeof(Number)> copy{};
     std::memcpy(copy.data(), bytes_.data() + at_, copy.size());
     if (order_ == ByteOrder::kBigEndian) std::reverse(copy.begin(), copy.end());
     std::memcpy(&value, copy.data(), copy.size());
@@ -147,7 +147,8 @@ MessageType type_of(const char* name) {
   const auto copy = [](const void* m) -> std::shared_ptr<const void> {
     return std::make_shared<const Message>(*static_cast<const Message*>(m));
   };
-  return {name, 0, make, copy, size_of<Message>, write_message<Message>, nullptr, read_message<Message>};
+  return {
+      name, 0, make, copy, size_of<Message>, write_message<Message>, nullptr, nullptr, read_message<Message>};
 }
 
 std::string channel(const std::string& prefix, std::uint32_t robot, const char* topic) {
@@ -164,10 +165,20 @@ std::string odometry_channel(const std::string& prefix, std::uint32_t robot) {
   return channel(prefix, robot, "odom");
 }
 
-const TopicInfo kTwist{"cmd_vel", "robots", Qos::kState,
-                       false,     false,    type_of<Twist>("geometry_msgs::msg::dds_::Twist_")};
-const TopicInfo kOdometry{"odom", "base", Qos::kState,
-                          false,  false,  type_of<Odometry>("nav_msgs::msg::dds_::Odometry_")};
+const TopicInfo kTwist{"cmd_vel",
+                       Role::kRobot,
+                       Role::kSimulator,
+                       Qos::kState,
+                       false,
+                       false,
+                       type_of<Twist>("geometry_msgs::msg::dds_::Twist_")};
+const TopicInfo kOdometry{"odom",
+                          Role::kSimulator,
+                          Role::kRobot,
+                          Qos::kState,
+                          false,
+                          false,
+                          type_of<Odometry>("nav_msgs::msg::dds_::Odometry_")};
 
 TopicInfo reliable(TopicInfo topic) {
   topic.qos = Qos::kEvent;
