@@ -60,9 +60,11 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   bus_.subscribe(topics::kAttestation,
                  [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
   bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { on_order(message); });
-  bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& message) {
-    take(decode(message, bus_.now()), DropReason::kMalformedOrder);
-  });
+  for (const auto& memory : {topics::kOrderMemory, topics::kAgentOrders}) {
+    bus_.subscribe(memory, [this](const msg::OrderMemory& message) {
+      take(decode(message, bus_.now()), DropReason::kMalformedOrder);
+    });
+  }
   bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& message) {
     take(decode(message), DropReason::kMalformedOrder);
   });

@@ -52,7 +52,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)),
-      order_writer_(bus.advertise(topics::kOrderMemory)),
+      order_writer_(bus.advertise(topics::kAgentOrders)),
       order_status_writer_(bus.advertise(topics::kOrderStatus)),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
   if (scenario.laser) scans_.emplace(robot, scenario.laser->settings);

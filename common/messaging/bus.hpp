@@ -60,6 +60,14 @@ class Bus {
     return nullptr;
   }
 
+  /// Whether this process's keys allow it to write a topic's channel of a robot; true without keys. If not,
+  /// advertise() throws std::invalid_argument. A subscription that they do not allow gets no messages.
+  virtual bool may_write(const TopicInfo& topic, std::uint32_t robot) const {
+    (void)topic;
+    (void)robot;
+    return true;
+  }
+
   /// From now on, every new writer announces these rules (Header.rules), and messages of processes with other
   /// rules, or none, are refused on all topics with TopicInfo::is_checked: callbacks do not get them, but
   /// `on_refused` gets their topics and headers. Call it before the first advertise().

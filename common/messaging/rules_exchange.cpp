@@ -16,13 +16,12 @@ RulesExchange::RulesExchange(Bus& bus, std::uint32_t process, const SharedRules&
     : bus_(bus), process_(process), rules_(rules), on_mismatch_(std::move(on_mismatch)) {
   bus_.use_rules(rules_.fingerprint(),
                  [this](const TopicInfo& topic, const msg::Header& header) { on_refused(topic, header); });
-  writer_ = bus_.advertise(topics::kRules);
   bus_.subscribe(topics::kRules, [this](const msg::SharedRules& message) { on_rules(message); });
 }
 
 void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header) {
   // The simulator speaks for its robots with their numbers.
-  const bool is_simulator = std::string_view(topic.writer) == "simulator";
+  const bool is_simulator = topic.per_robot && topic.writers.has(Role::kSimulator);
   report(is_simulator ? static_cast<std::uint32_t>(Sender::kSimulator) : header.sender(), header.rules(), {});
   publish_if_due();
 }
@@ -47,13 +46,16 @@ void RulesExchange::report(std::uint32_t process, Fingerprint fingerprint,
 
 void RulesExchange::publish_if_due() {
   const Time now = bus_.now();
+  if (!bus_.may_write(topics::kRules, 0)) return;
   if (published_at_ && now - *published_at_ < kPeriod) return;
   published_at_ = now;
   msg::SharedRules message;
   message.process(process_);
   message.header().sender(process_);
   message.text().assign(rules_.text().begin(), rules_.text().end());
-  writer_.publish(message, now);
+  // Only now: among many processes, writers that are not needed are what takes time at the start.
+  if (!writer_) writer_ = bus_.advertise(topics::kRules);
+  writer_->publish(message, now);
 }
 
 std::string describe(const RulesMismatch& mismatch) {

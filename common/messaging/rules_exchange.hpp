@@ -42,7 +42,7 @@ class RulesExchange {
   const std::uint32_t process_;
   const SharedRules rules_;
   const OnMismatch on_mismatch_;
-  Writer<msg::SharedRules> writer_;
+  std::optional<Writer<msg::SharedRules>> writer_;  ///< nullopt: nothing was refused yet
   std::optional<Time> published_at_;
   /// By process and fingerprint: whether the differences have been reported.
   std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;

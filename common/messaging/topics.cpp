@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/topics.hpp"
 
+#include <charconv>
+#include <string_view>
+
 namespace sidestep {
 
 std::vector<TopicInfo> all_topics() {
   std::vector<TopicInfo> topics;
   for_each_topic([&](const TopicInfo& topic) { topics.push_back(topic); });
   return topics;
+}
+
+std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel) {
+  if (!topic.per_robot) return channel == topic.name ? std::optional<std::uint32_t>(0) : std::nullopt;
+  const std::string prefix = std::string(topic.name) + "/";
+  if (!channel.starts_with(prefix)) return std::nullopt;
+  const std::string_view digits = std::string_view(channel).substr(prefix.size());
+  std::uint32_t robot = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), robot);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return robot;
 }
 
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes) {

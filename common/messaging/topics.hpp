@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/messaging/cdr.hpp"
+#include "common/messaging/roles.hpp"
 #include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
 #include "idl/laser.hpp"
@@ -38,6 +40,8 @@ struct MessageType {
   std::size_t (*cdr_size)(const void* message);
   std::size_t (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
   CdrKey (*cdr_key)(const void* message);  ///< null: the type has no key
+  /// Header.sender of the message; null: the type has no header.
+  std::uint32_t (*sender)(const void* message);
   bool (*read_cdr)(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
                    void* message);
 };
@@ -45,7 +49,7 @@ struct MessageType {
 /// A row of the topic table.
 struct TopicInfo {
   const char* name;
-  const char* writer;  ///< program that writes the topic
+  Roles writers, readers;
   Qos qos;
   bool per_robot;   ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
   bool is_checked;  ///< processes refuse its messages if they come from a process with other rules
@@ -60,15 +64,12 @@ constexpr MessageType message_type(const char* name, std::size_t max_elements = 
   const auto copy = [](const void* m) -> std::shared_ptr<const void> {
     return std::make_shared<const Message>(*static_cast<const Message*>(m));
   };
+  std::uint32_t (*sender)(const void*) = nullptr;
+  if constexpr (requires(const Message& m) { m.header().sender(); })
+    sender = [](const void* m) -> std::uint32_t { return static_cast<const Message*>(m)->header().sender(); };
   const auto make = [] { return std::shared_ptr<void>(std::make_shared<Message>()); };
-  return {name,
-          max_elements,
-          make,
-          copy,
-          cdr_size<Message>,
-          write_cdr<Message>,
-          cdr_key<Message>,
-          read_cdr<Message>};
+  return {name,   max_elements,     make, copy, cdr_size<Message>, write_cdr<Message>, cdr_key<Message>,
+          sender, read_cdr<Message>};
 }
 
 /// The DDS topic name: the topic's name, followed by the robot's number for topics with one channel per
@@ -76,6 +77,10 @@ constexpr MessageType message_type(const char* name, std::size_t max_elements = 
 inline std::string channel_name(const TopicInfo& topic, std::uint32_t robot) {
   return topic.per_robot ? std::string(topic.name) + "/" + std::to_string(robot) : topic.name;
 }
+
+/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the
+/// channel does not belong to the topic.
+[[nodiscard]] std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel);
 
 /// Appends the message's CDR bytes, little-endian, without an encapsulation header.
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes);
@@ -88,79 +93,89 @@ void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::ui
 namespace topics {
 
 inline constexpr Topic<msg::CameraImage> kImages{
-    {"images", "simulator", Qos::kImage, false, true,
+    {"images", Role::kSimulator, Role::kVision | kWatchers, Qos::kImage, false, true,
      message_type<msg::CameraImage>("sidestep::msg::CameraImage", msg::MAX_IMAGE_BYTES)}};
 inline constexpr Topic<msg::DetectionFrame> kDetections{
-    {"detections", "simulator", Qos::kState, false, true,
+    {"detections", Role::kSimulator, Role::kVision | kWatchers, Qos::kState, false, true,
      message_type<msg::DetectionFrame>("sidestep::msg::DetectionFrame", 1024)}};
 inline constexpr Topic<msg::WorldState> kWorld{
-    {"world", "vision", Qos::kState, false, true,
-     message_type<msg::WorldState>("sidestep::msg::WorldState", 1024)}};
+    {"world", Role::kVision, Role::kAgent | Role::kCoordinator | Role::kReferee | Role::kClient | kWatchers,
+     Qos::kState, false, true, message_type<msg::WorldState>("sidestep::msg::WorldState", 1024)}};
 inline constexpr Topic<msg::ObstacleList> kObstacles{
-    {"obstacles", "vision", Qos::kState, false, true,
+    {"obstacles", Role::kVision, Role::kAgent | kWatchers, Qos::kState, false, true,
      message_type<msg::ObstacleList>("sidestep::msg::ObstacleList", msg::MAX_OBSTACLES)}};
-inline constexpr Topic<msg::Command> kCommand{
-    {"command", "agent", Qos::kState, true, true, message_type<msg::Command>("sidestep::msg::Command")}};
-inline constexpr Topic<msg::Feedback> kFeedback{{"feedback", "simulator", Qos::kState, true, true,
-                                                 message_type<msg::Feedback>("sidestep::msg::Feedback")}};
+inline constexpr Topic<msg::Command> kCommand{{"command", Role::kAgent,
+                                               Role::kSimulator | Role::kRobot | kWatchers, Qos::kState, true,
+                                               true, message_type<msg::Command>("sidestep::msg::Command")}};
+inline constexpr Topic<msg::Feedback> kFeedback{
+    {"feedback", Role::kSimulator | Role::kRobot, Role::kAgent | Role::kCoordinator | kWatchers, Qos::kState,
+     true, true, message_type<msg::Feedback>("sidestep::msg::Feedback")}};
 inline constexpr Topic<msg::LaserScan> kScan{
-    {"scan", "simulator", Qos::kState, true, true,
+    {"scan", Role::kSimulator | Role::kRobot, Role::kAgent | kWatchers, Qos::kState, true, true,
      message_type<msg::LaserScan>("sidestep::msg::LaserScan", msg::MAX_BEAMS)}};
 inline constexpr Topic<msg::Registration> kRegistration{
-    {"registration", "agent", Qos::kState, false, true,
+    {"registration", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kState, false, true,
      message_type<msg::Registration>("sidestep::msg::Registration")}};
-inline constexpr Topic<msg::Proposal> kProposal{
-    {"proposal", "agent", Qos::kState, false, true, message_type<msg::Proposal>("sidestep::msg::Proposal")}};
-inline constexpr Topic<msg::Verdict> kVerdict{{"verdict", "coordinator", Qos::kState, true, true,
+inline constexpr Topic<msg::Proposal> kProposal{{"proposal", Role::kAgent, Role::kCoordinator | kWatchers,
+                                                 Qos::kState, false, true,
+                                                 message_type<msg::Proposal>("sidestep::msg::Proposal")}};
+inline constexpr Topic<msg::Verdict> kVerdict{{"verdict", Role::kCoordinator, Role::kAgent | kWatchers,
+                                               Qos::kState, true, true,
                                                message_type<msg::Verdict>("sidestep::msg::Verdict")}};
 inline constexpr Topic<msg::LedgerPage> kLedger{
-    {"ledger", "coordinator", Qos::kState, false, true,
+    {"ledger", Role::kCoordinator, Role::kAgent | kWatchers, Qos::kState, false, true,
      message_type<msg::LedgerPage>("sidestep::msg::LedgerPage", 256)}};
 inline constexpr Topic<msg::CoordinatorState> kCoordinator{
-    {"coordinator", "coordinator", Qos::kState, false, true,
+    {"coordinator", Role::kCoordinator, kParts | Role::kClient | kWatchers, Qos::kState, false, true,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 inline constexpr Topic<msg::AbsenceAttestation> kAttestation{
-    {"attestation", "robot absent", Qos::kEvent, false, false,
+    {"attestation", Role::kOperator, Role::kCoordinator | kWatchers, Qos::kEvent, false, false,
      message_type<msg::AbsenceAttestation>("sidestep::msg::AbsenceAttestation")}};
 inline constexpr Topic<msg::Order> kOrder{
-    {"order", "client", Qos::kEvent, false, false,
-     message_type<msg::Order>("sidestep::msg::Order", msg::MAX_ORDER_POSES)}};
+    {"order", Role::kClient | Role::kReferee | Role::kOperator, Role::kCoordinator | kWatchers, Qos::kEvent,
+     false, false, message_type<msg::Order>("sidestep::msg::Order", msg::MAX_ORDER_POSES)}};
 inline constexpr Topic<msg::OrderAnswer> kOrderAnswer{
-    {"order_answer", "coordinator", Qos::kEvent, false, false,
-     message_type<msg::OrderAnswer>("sidestep::msg::OrderAnswer")}};
+    {"order_answer", Role::kCoordinator, Role::kClient | Role::kReferee | kWatchers, Qos::kEvent, false,
+     false, message_type<msg::OrderAnswer>("sidestep::msg::OrderAnswer")}};
 inline constexpr Topic<msg::OrderMemory> kOrderMemory{
-    {"order_memory", "coordinator", Qos::kEvent, false, true,
+    {"order_memory", Role::kCoordinator,
+     Role::kCoordinator | Role::kAgent | Role::kClient | Role::kReferee | kWatchers, Qos::kEvent, false, true,
+     message_type<msg::OrderMemory>("sidestep::msg::OrderMemory", msg::MAX_MEMORY_POSES)}};
+/// A topic of its own, so that agents, which ignore each other's memories, need not find each other's
+/// endpoints.
+inline constexpr Topic<msg::OrderMemory> kAgentOrders{
+    {"agent_orders", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kEvent, false, true,
      message_type<msg::OrderMemory>("sidestep::msg::OrderMemory", msg::MAX_MEMORY_POSES)}};
 inline constexpr Topic<msg::OrderStatus> kOrderStatus{
-    {"order_status", "agent", Qos::kState, false, true,
-     message_type<msg::OrderStatus>("sidestep::msg::OrderStatus")}};
+    {"order_status", Role::kAgent, Role::kCoordinator | Role::kClient | Role::kReferee | kWatchers,
+     Qos::kState, false, true, message_type<msg::OrderStatus>("sidestep::msg::OrderStatus")}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
-    {"status", "agent", Qos::kState, false, true,
+    {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
 /// What each process has refused, dropped or received too late.
 inline constexpr Topic<msg::Counters> kCounters{
-    {"counters", "any process", Qos::kState, false, true,
+    {"counters", kParts, kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
 inline constexpr Topic<msg::Disturbance> kDisturbance{
-    {"disturbance", "fault", Qos::kEvent, false, false,
-     message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
+    {"disturbance", Role::kOperator, Role::kAgent | Role::kSimulator | Role::kRobot | kWatchers, Qos::kEvent,
+     false, false, message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
-    {"network_fault", "fault", Qos::kEvent, false, false,
+    {"network_fault", Role::kOperator, kParts | kWatchers, Qos::kEvent, false, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
 inline constexpr Topic<msg::ClockProbe> kClockProbe{
-    {"clock_probe", "clock", Qos::kState, false, false,
+    {"clock_probe", Role::kOperator, kParts | kWatchers, Qos::kState, false, false,
      message_type<msg::ClockProbe>("sidestep::msg::ClockProbe")}};
 inline constexpr Topic<msg::ClockReading> kClockReading{
-    {"clock_reading", "any process", Qos::kState, false, false,
+    {"clock_reading", kParts, kWatchers, Qos::kState, false, false,
      message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_HOST_NAME)}};
 /// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
-    {"truth", "simulator", Qos::kState, false, true,
+    {"truth", Role::kSimulator, Role::kJudge, Qos::kState, false, true,
      message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024)}};
 
 /// From every process that has received messages of a process with other rules.
 inline constexpr Topic<msg::SharedRules> kRules{
-    {"rules", "any process", Qos::kEvent, false, false,
+    {"rules", kParts | Role::kOperator, kParts | Role::kClient | kWatchers, Qos::kEvent, false, false,
      message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};
 
 }  // namespace topics
@@ -185,6 +200,7 @@ void for_each_topic(Visitor visit) {
   visit(topics::kOrder);
   visit(topics::kOrderAnswer);
   visit(topics::kOrderMemory);
+  visit(topics::kAgentOrders);
   visit(topics::kOrderStatus);
   visit(topics::kDisturbance);
   visit(topics::kNetworkFault);

@@ -16,7 +16,8 @@ constexpr std::array kCommanding = {
     std::string_view(topics::kVerdict.name),      std::string_view(topics::kLedger.name),
     std::string_view(topics::kCoordinator.name),  std::string_view(topics::kAttestation.name),
     std::string_view(topics::kOrder.name),        std::string_view(topics::kOrderMemory.name),
-    std::string_view(topics::kDisturbance.name),  std::string_view(topics::kNetworkFault.name)};
+    std::string_view(topics::kAgentOrders.name),  std::string_view(topics::kDisturbance.name),
+    std::string_view(topics::kNetworkFault.name)};
 
 }  // namespace
 

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "common/messaging/bus.hpp"
 
 namespace sidestep {
-
-/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the
-/// channel does not belong to the topic.
-[[nodiscard]] std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel);
 
 /// Says on stderr that a channel belongs to no topic, and which topics there are.
 void print_unknown_topic(const std::string& channel);
@@ -23,7 +18,7 @@ template <typename Use>
 [[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
   bool is_known = false;
   for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
-    const std::optional<std::uint32_t> robot = channel_robot(topic, channel);
+    const auto robot = channel_robot(topic, channel);
     if (!robot) return;
     is_known = true;
     bus.subscribe<Message>(topic, *robot, [use](const Message& message) { use(message); });

@@ -116,7 +116,12 @@ TEST_CASE("a shared topic carries the state of hundreds of robots") {
 
 TEST_CASE("all events arrive, in order") {
   constexpr std::uint64_t kEvents = 300;
-  constexpr Topic<msg::Verdict> kEvent{{"test/event", "test", Qos::kEvent, false, false,
+  constexpr Topic<msg::Verdict> kEvent{{"test/event",
+                                        {},
+                                        {},
+                                        Qos::kEvent,
+                                        false,
+                                        false,
                                         message_type<msg::Verdict>("sidestep::msg::Verdict")}};
   DdsBus from(test_settings());
   DdsBus to(test_settings());

@@ -25,7 +25,12 @@ const DiscoveredEndpoint* find(const std::vector<DiscoveredEndpoint>& endpoints,
 }
 
 TEST_CASE("a listener lists writers and readers, and notices when they leave") {
-  constexpr Topic<msg::Verdict> kEvent{{"test/event", "test", Qos::kEvent, false, false,
+  constexpr Topic<msg::Verdict> kEvent{{"test/event",
+                                        {},
+                                        {},
+                                        Qos::kEvent,
+                                        false,
+                                        false,
                                         message_type<msg::Verdict>("sidestep::msg::Verdict")}};
   DdsListener listener(test_settings("listener"));
   {

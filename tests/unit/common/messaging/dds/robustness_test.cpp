@@ -24,7 +24,7 @@ namespace sidestep::robustness_test {
 
 template <typename Message>
 Topic<Message> test_topic(Qos qos, const char* type) {
-  return {{"test/robustness", "test", qos, false, false, message_type<Message>(type)}};
+  return {{"test/robustness", {}, {}, qos, false, false, message_type<Message>(type)}};
 }
 
 /// Shared-memory files that a process has open or mapped.

@@ -10,7 +10,12 @@ namespace sidestep::bus_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 constexpr Topic<msg::CoordinatorState> kReliable{
-    {"reliable", "test", Qos::kEvent, false, false,
+    {"reliable",
+     {},
+     {},
+     Qos::kEvent,
+     false,
+     false,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 
 NetworkSpec delays(double min_s, double max_s, double loss = 0, double duplicate = 0) {

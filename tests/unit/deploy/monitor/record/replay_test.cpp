@@ -128,7 +128,7 @@ TEST_CASE("what agents, coordinators, robots and operators write commands") {
     if (is_commanding(topic)) names += std::string(topic.name) + " ";
   CHECK(names ==
         "command feedback registration proposal verdict ledger coordinator attestation order order_memory "
-        "disturbance network_fault ");
+        "agent_orders disturbance network_fault ");
 }
 
 TEST_CASE("a replay of unknown topics is refused") {
