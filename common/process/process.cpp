@@ -46,6 +46,10 @@ void add_dds_options(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--peers", settings.peers,
                  "addresses of the hosts of all processes, on networks without multicast [multicast]")
       .comma_separated();
+  app.add_option("--keys", settings.keys,
+                 "folder of this process's keys, as `sidestep keys issue` writes it");
+  app.add_flag("--insecure", settings.insecure,
+               "work without keys, although other machines can reach the interface and command the robots");
 }
 
 int run_guarded(const std::string& name, const std::function<int()>& work) {

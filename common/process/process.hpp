@@ -52,7 +52,7 @@ int run_process(int argc, char** argv, const Program& program);
 /// others would refuse the latter because it is too far ahead of the clock.
 [[nodiscard]] Incarnation next_incarnation(Incarnation previous, Time now);
 
-/// Adds --domain, --interface and --peers.
+/// Adds --domain, --interface, --peers, --keys and --insecure.
 void add_dds_options(const CliCommand& app, DdsSettings& settings);
 
 /// Calls `work` and returns its exit code. Prints exceptions on stderr and returns kExitUsage for

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/bus.hpp"
 
+#include <fmt/core.h>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "common/log/log.hpp"
 #include "common/messaging/dds/endpoints.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/images.hpp"
@@ -71,9 +74,22 @@ void DdsBus::add_drops(DropCounters& drops) const {
   drops.count(DropReason::kInjectedLoss, std::nullopt, transport.impaired);
   drops.count(DropReason::kQueueFull, std::nullopt, transport.overflowed);
   drops.count(DropReason::kForgottenPeer, std::nullopt, transport.forgotten);
+  if (const Gate* const gate = impl_->session->participant.gate()) {
+    drops.count(DropReason::kUnknownParticipant, std::nullopt, gate->unknown());
+    drops.count(DropReason::kRefusedParticipant, std::nullopt, gate->refused());
+    drops.count(DropReason::kForgedSender, std::nullopt, gate->forged());
+  }
+}
+
+bool DdsBus::may_write(const TopicInfo& topic, std::uint32_t robot) const {
+  const Identity* const identity = impl_->session->participant.identity();
+  return !identity || sidestep::may_write(*identity, topic, robot);
 }
 
 std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std::string& channel) {
+  if (!may_write(topic, channel_robot(topic, channel).value_or(0)))
+    throw std::invalid_argument(fmt::format("the keys of {} do not allow writing the topic '{}'",
+                                            to_text(*impl_->session->participant.identity()), channel));
   impl_->session->type_mismatches.expect(channel, topic.type.name);
   if (!impl_->shares_memory(topic)) return std::make_unique<DdsWriter>(impl_->participant(), topic, channel);
   if (!impl_->image_participant) impl_->image_participant = image_publisher_participant(impl_->settings);
@@ -82,6 +98,12 @@ std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std
 
 void DdsBus::make_reader(const TopicInfo& topic, const std::string& channel,
                          std::function<void(const void*)> callback) {
+  if (const Identity* const identity = impl_->session->participant.identity();
+      identity && !may_read(*identity, topic, channel_robot(topic, channel).value_or(0))) {
+    log(LogLevel::kDebug,
+        fmt::format("the keys of {} do not allow reading the topic '{}'", to_text(*identity), channel));
+    return;
+  }
   impl_->session->type_mismatches.expect(channel, topic.type.name);
   if (impl_->shares_memory(topic)) {
     impl_->image_readers.push_back(std::make_unique<DdsImageReader>(

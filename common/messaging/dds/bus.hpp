@@ -19,6 +19,10 @@ struct DdsSettings {
   /// Addresses of the hosts where the other processes are, this one included. Empty: processes find each
   /// other by multicast.
   std::vector<std::string> peers{};
+  /// Folder of the keys of this process's identity, as `sidestep keys issue` writes it. Empty: no keys, so
+  /// that anybody on the network can command the robots.
+  std::string keys{};
+  bool insecure = false;  ///< may work without keys on networks that other machines can reach
 };
 
 /// The version of Fast DDS that this program was built with, e.g. "3.1.2".
@@ -28,7 +32,8 @@ struct LinkQuality;
 
 /// A bus over Fast DDS and UDPv4. A second participant per process carries images by shared memory. All
 /// callbacks are made by the thread that calls run(). Throws std::runtime_error with the reason if a
-/// participant or an endpoint cannot be created.
+/// participant or an endpoint cannot be created, and std::invalid_argument if its keys are wrong, or it has
+/// none and needs some (see DdsSettings), or they do not allow what it is to do.
 class DdsBus : public Bus {
  public:
   explicit DdsBus(const DdsSettings& settings);
@@ -65,6 +70,8 @@ class DdsBus : public Bus {
 
   /// From now on impairs all arriving messages except an operator's. Precondition: DdsSettings::faults.
   void impair(const LinkQuality& quality, std::uint64_t seed);
+
+  bool may_write(const TopicInfo& topic, std::uint32_t robot) const override;
 
  protected:
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;

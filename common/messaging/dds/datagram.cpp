@@ -19,6 +19,11 @@ constexpr std::array<std::uint8_t, 4> kProtocol{'R', 'T', 'P', 'S'};
 constexpr std::uint8_t kLittleEndian = 1;
 constexpr std::size_t kSubmessageHeaderSize = 4;
 
+constexpr std::uint8_t kPadSubmessage = 0x01, kTimestampSubmessage = 0x09, kSourceSubmessage = 0x0c,
+                       kDataSubmessage = 0x15, kDataPartSubmessage = 0x16;
+constexpr std::array<std::uint8_t, 4> kParticipantWriter{0, 1, 0, 0xc2};
+constexpr std::size_t kDataHeaderSize = 20;
+
 // Vendors may use 0x80 to 0xff (RTPS 2.2, 9.4.5.1.1).
 constexpr std::uint8_t kPresenceSubmessage = 0xf0;
 constexpr std::array<std::uint8_t, 4> kPresenceMark{'S', 'i', 'd', '1'};
@@ -49,6 +54,61 @@ Datagram one_submessage(const ParticipantId& sender, std::uint8_t kind, std::uin
   return result;
 }
 
+/// Calls `use(id, value)` for each parameter of a list (RTPS 2.2, 9.4.2.11), and removes the list from
+/// `bytes`. False if the list is malformed.
+template <typename Use>
+bool for_each_parameter(Bytes& bytes, bool is_little_endian, Use use) {
+  constexpr std::uint16_t kEnd = 1;
+  const auto number = [&](std::size_t at) {
+    return static_cast<std::uint16_t>(is_little_endian ? bytes[at] | bytes[at + 1] << 8
+                                                       : bytes[at] << 8 | bytes[at + 1]);
+  };
+  while (bytes.size() >= 4) {
+    const std::uint16_t id = number(0);
+    const std::size_t size = number(2);
+    bytes = bytes.subspan(4);
+    if (id == kEnd) return true;
+    if (size > bytes.size()) return false;
+    use(id, bytes.first(size));
+    bytes = bytes.subspan(size);
+  }
+  return false;
+}
+
+/// `body`: of a DATA submessage of the writer that announces participants (RTPS 2.2, 9.4.5.3). False if it is
+/// malformed, or about another participant than the sender.
+bool read_announcement(Bytes body, std::uint8_t flags, Bytes sender, ParticipantAnnouncement& result) {
+  constexpr std::uint8_t kHasInlineQos = 2, kHasPayload = 4;
+  constexpr std::uint16_t kKeyHash = 0x70, kGuid = 0x50, kUserData = 0x2c;
+  bool is_of_sender = true;
+  const auto check_guid = [&](Bytes guid) {
+    is_of_sender =
+        is_of_sender && guid.size() >= sender.size() && std::ranges::equal(guid.first(sender.size()), sender);
+  };
+  body = body.subspan(kDataHeaderSize);
+  if ((flags & kHasInlineQos) != 0 &&
+      !for_each_parameter(body, (flags & kLittleEndian) != 0, [&](std::uint16_t id, Bytes value) {
+        if (id == kKeyHash) check_guid(value);
+      }))
+    return false;
+  result.is_departure = (flags & kHasPayload) == 0;
+  if (result.is_departure) return is_of_sender;
+  constexpr std::size_t kEncapsulationSize = 4;
+  constexpr std::uint8_t kBigEndianList = 2, kLittleEndianList = 3;
+  if (body.size() < kEncapsulationSize || body[0] != 0 ||
+      (body[1] != kBigEndianList && body[1] != kLittleEndianList))
+    return false;
+  const bool is_little_endian = body[1] == kLittleEndianList;
+  body = body.subspan(kEncapsulationSize);
+  const bool is_valid = for_each_parameter(body, is_little_endian, [&](std::uint16_t id, Bytes value) {
+    if (id == kGuid) check_guid(value);
+    if (id != kUserData || value.size() < 4) return;
+    const std::size_t size = is_little_endian ? value[0] | value[1] << 8 : value[2] << 8 | value[3];
+    if (size <= value.size() - 4) result.user_data = value.subspan(4, size);
+  });
+  return is_valid && is_of_sender;
+}
+
 }  // namespace
 
 std::optional<ParticipantId> sender_of(Bytes datagram) {
@@ -57,6 +117,60 @@ std::optional<ParticipantId> sender_of(Bytes datagram) {
   ParticipantId result;
   std::memcpy(result.data(), datagram.data() + kHeader.size(), result.size());
   return result;
+}
+
+std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, bool& is_plain) {
+  is_plain = false;
+  if (datagram.size() < kHeaderSize) return std::nullopt;
+  const Bytes sender = datagram.subspan(kHeader.size(), sizeof(ParticipantId));
+  std::optional<ParticipantAnnouncement> result;
+  for (Bytes left = datagram.subspan(kHeaderSize); !left.empty();) {
+    if (left.size() < kSubmessageHeaderSize) return std::nullopt;
+    const std::uint8_t kind = left[0], flags = left[1];
+    const bool is_little_endian = (flags & kLittleEndian) != 0;
+    std::size_t size = is_little_endian ? left[2] | left[3] << 8 : left[2] << 8 | left[3];
+    left = left.subspan(kSubmessageHeaderSize);
+    if (size == 0 && kind != kTimestampSubmessage && kind != kPadSubmessage)
+      size = left.size();  // the last one
+    if (size > left.size() || kind == kSourceSubmessage) return std::nullopt;
+    const Bytes body = left.first(size);
+    left = left.subspan(size);
+    if ((kind != kDataSubmessage && kind != kDataPartSubmessage) || body.size() < kDataHeaderSize) continue;
+    const Bytes writer = body.subspan(8, 4);
+    if (!std::ranges::equal(writer, kParticipantWriter)) continue;
+    if (kind == kDataPartSubmessage) return std::nullopt;  // announcements are not that large
+    ParticipantAnnouncement found;
+    if (!read_announcement(body, flags, sender, found)) return std::nullopt;
+    result = found;
+  }
+  is_plain = true;
+  return result;
+}
+
+bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
+  constexpr std::uint8_t kDestination = 0x0e, kPrefix = 0x31, kBody = 0x30, kPostfix = 0x32;
+  constexpr std::size_t kPlainTimestampSize = 12;  // with its header
+  std::size_t begin = kHeaderSize;
+  const auto size_at = [&](std::size_t at) -> std::size_t {
+    const bool is_little_endian = (datagram[at + 1] & kLittleEndian) != 0;
+    return is_little_endian ? datagram[at + 2] | datagram[at + 3] << 8
+                            : datagram[at + 2] << 8 | datagram[at + 3];
+  };
+  const auto has = [&](std::size_t at, std::uint8_t kind) {
+    return datagram.size() >= at + kSubmessageHeaderSize && datagram[at] == kind &&
+           datagram.size() - at - kSubmessageHeaderSize >= size_at(at);
+  };
+  const auto next = [&](std::size_t at) { return at + kSubmessageHeaderSize + size_at(at); };
+  if (has(begin, kDestination)) begin = next(begin);
+  if (!has(begin, kPrefix)) return false;
+  const std::size_t body = next(begin);
+  // The body is the encrypted submessage after its size.
+  if (!has(body, kBody) || size_at(body) != kPlainTimestampSize + 4) return false;
+  const std::size_t postfix = next(body);
+  if (!has(postfix, kPostfix) || !has(next(postfix), kPrefix)) return false;
+  copy.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(begin));
+  append(copy, datagram.subspan(next(postfix)));
+  return true;
 }
 
 Datagram departure_of(const ParticipantId& participant) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/endpoints.hpp"
 
+#include <algorithm>
 #include <fastdds/dds/topic/TopicDescription.hpp>
 #include <fmt/core.h>
 #include <utility>
@@ -42,8 +43,9 @@ DdsReader::DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participan
                      const std::string& channel, std::function<void(const void*)> callback)
     : loop_(loop),
       participant_(std::move(participant)),
-      qos_(topic.qos),
+      topic_(topic),
       channel_(channel),
+      robot_(channel_robot(topic, channel).value_or(0)),
       callback_(std::move(callback)),
       type_(new GuardedType(topic.type)),
       sample_(static_cast<GuardedType::Sample*>(guarded(type_).make_sample())),
@@ -55,7 +57,7 @@ DdsReader::~DdsReader() {
 }
 
 void DdsReader::move_to(std::shared_ptr<DdsParticipant> participant) {
-  DataReader* const next = participant->create_reader(channel_, type_, dds_reader_qos(qos_), this);
+  DataReader* const next = participant->create_reader(channel_, type_, dds_reader_qos(topic_.qos), this);
   participant_->delete_reader(reader_);
   participant_ = std::move(participant);
   reader_ = next;
@@ -67,11 +69,10 @@ bool DdsReader::drain() {
   for (int i = 0; i < kMaxBatch && !loop_.stopped(); ++i) {
     if (!fast_dds::is_ok(reader_->take_next_sample(sample_, &info))) return false;
     if (!info.valid_data) continue;
-    if (sample_->is_valid) {
-      callback_(sample_->message);
-    } else {
+    if (!sample_->is_valid)
       count_refused();
-    }
+    else if (is_genuine(info))
+      callback_(sample_->message);
   }
   return true;
 }
@@ -79,6 +80,14 @@ bool DdsReader::drain() {
 void DdsReader::on_requested_incompatible_qos(DataReader*, const RequestedIncompatibleQosStatus& status) {
   log_dds(fmt::format("topic '{}': a writer offers less than this reader requests, policy {}", channel_,
                       dds_policy_name(status.last_policy_id)));
+}
+
+bool DdsReader::is_genuine(const SampleInfo& info) {
+  Gate* const gate = participant_->gate();
+  if (!gate || !topic_.type.sender) return true;
+  ParticipantId writer;
+  std::ranges::copy(info.sample_identity.writer_guid().guidPrefix.value, writer.begin());
+  return gate->may_send(writer, topic_, robot_, topic_.type.sender(sample_->message));
 }
 
 void DdsReader::count_refused() {

@@ -57,11 +57,14 @@ class DdsReader : public EventLoop::Source, public fast_dds::dds::DataReaderList
 
  private:
   void count_refused();
+  /// Whether the keys of the sample's writer allow the message.
+  bool is_genuine(const fast_dds::dds::SampleInfo& info);
 
   EventLoop& loop_;
   std::shared_ptr<DdsParticipant> participant_;
-  Qos qos_;
+  TopicInfo topic_;
   std::string channel_;
+  std::uint32_t robot_;  ///< of the channel
   std::function<void(const void*)> callback_;
   fast_dds::dds::TypeSupport type_;  ///< a GuardedType
   GuardedType::Sample* sample_;

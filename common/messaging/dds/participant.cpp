@@ -13,6 +13,8 @@
 
 #include "common/log/log.hpp"
 #include "common/messaging/dds/destinations.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/open_network.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "fast_dds_version.hpp"
 
@@ -70,9 +72,35 @@ void check(const DdsSettings& settings) {
   }
 }
 
+/// The properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
+void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
+  auto& properties = qos.properties().properties();
+  const auto set = [&](const std::string& name, const std::string& value) {
+    properties.emplace_back(name, value);
+  };
+  const auto set_file = [&](const std::string& name, const char* file) {
+    set(name, "file://" + keys.file(file));
+  };
+  const std::string authentication = "dds.sec.auth.builtin.PKI-DH.",
+                    access = "dds.sec.access.builtin.Access-Permissions.";
+  set("dds.sec.auth.plugin", "builtin.PKI-DH");
+  set_file(authentication + "identity_ca", key_files::kIdentityAuthority);
+  set_file(authentication + "identity_certificate", key_files::kCertificate);
+  set_file(authentication + "identity_crl", key_files::kRevoked);
+  set_file(authentication + "private_key", key_files::kPrivateKey);
+  set("dds.sec.access.plugin", "builtin.Access-Permissions");
+  set_file(access + "permissions_ca", key_files::kPermissionsAuthority);
+  set_file(access + "governance", key_files::kGovernance);
+  set_file(access + "permissions", key_files::kPermissions);
+  set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  const std::vector<std::uint8_t> announced = credentials(keys.certificate, fast_dds_version());
+  qos.user_data().setValue(announced);
+}
+
 DomainParticipantQos participant_qos(const DdsSettings& settings,
                                      const std::shared_ptr<Impairment>& impairment,
                                      const std::shared_ptr<TransportCounts>& counts,
+                                     const std::optional<KeyFolder>& keys, const std::shared_ptr<Gate>& gate,
                                      std::uint32_t shared_memory_bytes) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
@@ -87,8 +115,10 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
     memory->segment_size(shared_memory_bytes);
     qos.transport().user_transports.push_back(memory);
   }
-  qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts));
-  if (settings.is_operator) qos.wire_protocol().prefix = operator_prefix();
+  qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, gate));
+  if (keys) use_keys(*keys, qos);
+  // Keys bring a prefix of their own, and say who is an operator.
+  if (settings.is_operator && !keys) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
   builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;  // see Presence
@@ -126,14 +156,22 @@ std::runtime_error failure(const std::string& entity, const std::string& channel
 DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
+  if (!settings.keys.empty()) {
+    keys_ = load_key_folder(settings.keys, EventLoop::now());
+    gate_ = std::make_shared<Gate>(*keys_, fast_dds_version());
+  } else {
+    require_safe_network(settings);
+  }
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   fast_dds::disable_intraprocess_delivery();
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain),
-      participant_qos(settings, impairment_, counts_, shared_memory_bytes), listener, StatusMask::none());
+      participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener,
+      StatusMask::none());
   if (participant_ == nullptr) {
-    throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}",
-                                         settings.domain, settings.interface));
+    throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}{}",
+                                         settings.domain, settings.interface,
+                                         keys_ ? " with the keys in " + keys_->path : ""));
   }
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);

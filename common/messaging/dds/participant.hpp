@@ -5,9 +5,11 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/dds/gate.hpp"
 #include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
 #include "fast_dds/library.hpp"
@@ -21,7 +23,7 @@ class DdsParticipant {
   /// The listener, if any, must outlive the participant. `shared_memory_bytes` > 0 is the size of the segment
   /// for written messages. Two participants on one host that both have shared memory use it instead of UDP,
   /// even if their segments are not visible to each other (containers); faults do not affect it. Throws
-  /// std::runtime_error with the reason.
+  /// std::runtime_error with the reason, std::invalid_argument if the keys are wrong or missing.
   DdsParticipant(const DdsSettings& settings, fast_dds::dds::DomainParticipantListener* listener,
                  std::uint32_t shared_memory_bytes = 0);
   ~DdsParticipant();
@@ -41,11 +43,17 @@ class DdsParticipant {
   /// As DdsBus::impair().
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
   const TransportCounts& counts() const { return *counts_; }
+  /// Null without keys.
+  Gate* gate() const { return gate_.get(); }
+  /// Whose keys this process has; nullptr without keys.
+  const Identity* identity() const { return keys_ ? &keys_->identity : nullptr; }
 
  private:
   fast_dds::dds::Topic* topic(const std::string& channel, const fast_dds::dds::TypeSupport& type);
 
   std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
+  std::optional<KeyFolder> keys_;
+  std::shared_ptr<Gate> gate_;
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
   fast_dds::dds::DomainParticipant* participant_ = nullptr;
   fast_dds::dds::Publisher* publisher_ = nullptr;

@@ -15,6 +15,7 @@
 #include "common/messaging/dds/delayed_datagrams.hpp"
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/gate.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "fast_dds/chained_transport.hpp"
 
@@ -31,22 +32,24 @@ constexpr Duration kCheckInterval{500'000'000};
 /// Fast DDS announces a participant some milliseconds before it can process the answers.
 constexpr Duration kUntilReady{50'000'000};
 
-bool is_operator(const ParticipantId& id) {
+bool has_operator_mark(const ParticipantId& id) {
   return std::equal(kOperatorMark.begin(), kOperatorMark.end(), id.begin());
 }
 
 struct UdpDescriptor : transport::ChainingTransportDescriptor {
   UdpDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> udp,
                 std::shared_ptr<Impairment> impairment_of_process,
-                std::shared_ptr<TransportCounts> counts_of_process)
+                std::shared_ptr<TransportCounts> counts_of_process, std::shared_ptr<Gate> gate_of_participant)
       : ChainingTransportDescriptor(std::move(udp)),
         impairment(std::move(impairment_of_process)),
-        counts(std::move(counts_of_process)) {}
+        counts(std::move(counts_of_process)),
+        gate(std::move(gate_of_participant)) {}
 
   transport::TransportInterface* create_transport() const override;
 
   std::shared_ptr<Impairment> impairment;
   std::shared_ptr<TransportCounts> counts;
+  std::shared_ptr<Gate> gate;  ///< null without keys
 };
 
 class UdpTransport : public fast_dds::ChainedTransport {
@@ -71,6 +74,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
                    const rtps::Locator_t& remote) override {
     const std::optional<ParticipantId> sender = sender_of(datagram);
     if (!sender) return;  // Fast DDS would refuse it too
+    if (!passes_gate(*sender, datagram, local, remote)) return;
     if (is_discovery(local))
       on_discovery(next, *sender, datagram, local, remote);
     else if (accept(*sender))
@@ -83,6 +87,16 @@ class UdpTransport : public fast_dds::ChainedTransport {
   }
 
  private:
+  bool passes_gate(const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
+                   const rtps::Locator_t& remote) {
+    return !descriptor_.gate || descriptor_.gate->passes(sender, datagram, is_discovery(local),
+                                                         std::span(remote.address).last<4>());
+  }
+
+  bool is_operator(const ParticipantId& id) const {
+    return descriptor_.gate ? descriptor_.gate->is_operator(id) : has_operator_mark(id);
+  }
+
   bool accept(const ParticipantId& sender) {
     const std::lock_guard lock(state_);
     const bool is_accepted = presence_.accept(sender, EventLoop::now());
@@ -128,12 +142,18 @@ class UdpTransport : public fast_dds::ChainedTransport {
       checked_at_ = now;
       const std::vector<ParticipantId> silent = presence_.newly_silent(now);
       result.insert(result.end(), silent.begin(), silent.end());
+      if (descriptor_.gate) {
+        const std::vector<ParticipantId> refused = descriptor_.gate->newly_refused();
+        result.insert(result.end(), refused.begin(), refused.end());
+      }
     }
     return result;
   }
 
   void on_message(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
                   const rtps::Locator_t& remote) {
+    static thread_local Datagram copy;
+    if (descriptor_.gate && copy_without_timestamp(datagram, copy)) datagram = copy;
     if (!descriptor_.impairment || is_operator(sender)) return pass_on(next, datagram, local, remote);
     const MessageCopies copies = descriptor_.impairment->receive(sender);
     descriptor_.counts->impaired += copies.count == 0;
@@ -175,8 +195,9 @@ transport::TransportInterface* UdpDescriptor::create_transport() const { return 
 
 std::shared_ptr<transport::TransportDescriptorInterface> udp_transport(
     std::shared_ptr<transport::UDPv4TransportDescriptor> udp, std::shared_ptr<Impairment> impairment,
-    std::shared_ptr<TransportCounts> counts) {
-  return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment), std::move(counts));
+    std::shared_ptr<TransportCounts> counts, std::shared_ptr<Gate> gate) {
+  return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment), std::move(counts),
+                                         std::move(gate));
 }
 
 rtps::GuidPrefix_t operator_prefix() {

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/keys/key_folder.hpp"
+
+#include <ctime>
+#include <filesystem>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require_files(const std::string& path) {
+  std::error_code none;
+  if (fs::is_directory(path + "/enclaves", none))
+    throw std::invalid_argument(fmt::format(
+        "--keys: {} has the keys of several identities; expected one of {}/enclaves", path, path));
+  for (const char* name : key_files::kAll) {
+    if (!fs::exists(path + "/" + name, none))
+      throw std::invalid_argument(fmt::format(
+          "--keys: expected a folder that `sidestep keys issue` has written, but {}/{} does not exist", path,
+          name));
+  }
+}
+
+void require_own_private_key(const std::string& file, const Certificate& certificate) {
+  constexpr auto kOthers = fs::perms::group_all | fs::perms::others_all;
+  if ((fs::status(file).permissions() & kOthers) != fs::perms::none)
+    throw std::invalid_argument(
+        fmt::format("{}: other users may read or change this private key; chmod 600 {}", file, file));
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(BIO_new_file(file.c_str(), "r"), BIO_free_all);
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      bio ? PEM_read_bio_PrivateKey(bio.get(), nullptr, nullptr, nullptr) : nullptr, EVP_PKEY_free);
+  if (!key) throw std::invalid_argument(file + ": expected a private key (PEM) without a passphrase");
+  if (X509_check_private_key(certificate.x509(), key.get()) != 1)
+    throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
+}
+
+}  // namespace
+
+std::string date_text(Time time) {
+  const std::time_t seconds =
+      std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count();
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
+  return text;
+}
+
+std::string key_folder_of(const std::string& store, const Identity& identity) {
+  std::error_code none;
+  const std::string enclaves = store + "/enclaves";
+  if (!fs::is_directory(enclaves, none))
+    throw std::invalid_argument(fmt::format(
+        "--keys: expected a folder that `sidestep keys init` has made, but {} does not exist", enclaves));
+  const std::string exact = enclaves + "/" + folder_name(identity);
+  if (fs::is_directory(exact, none)) return exact;
+  for (const auto& entry : fs::directory_iterator(enclaves, none)) {
+    std::string name = entry.path().filename().string();
+    if (identity.role != Role::kRobot || !name.starts_with("robot-")) continue;
+    const auto other = parse_identity(name.replace(5, 1, " "));
+    if (other && other->first <= identity.first && other->last >= identity.last) return entry.path().string();
+  }
+  throw std::invalid_argument(
+      fmt::format("--keys: {} has no keys of {}; `sidestep keys issue --scenario FILE --keys {}` makes all "
+                  "that a run needs",
+                  enclaves, to_text(identity), store));
+}
+
+KeyFolder load_key_folder(const std::string& path, Time now) {
+  require_files(path);
+  const auto file = [&](const char* name) {
+    return fs::absolute(path).lexically_normal().string() + "/" + name;
+  };
+  const Certificate certificate = Certificate::load(file(key_files::kCertificate));
+  const Certificate authority = Certificate::load(file(key_files::kIdentityAuthority));
+  const auto identity = certificate.identity();
+  const std::string where = file(key_files::kCertificate);
+  if (!identity)
+    throw std::invalid_argument(fmt::format("{}: expected the certificate of an identity, got that of '{}'",
+                                            where, certificate.subject()));
+  if (!certificate.is_issued_by(authority))
+    throw std::invalid_argument(fmt::format("{}: another authority has issued it than {}", where,
+                                            file(key_files::kIdentityAuthority)));
+  if (now > certificate.not_after())
+    throw std::invalid_argument(
+        fmt::format("{}: the key of {} expired on {}; `sidestep keys issue` makes a new one", where,
+                    to_text(*identity), date_text(certificate.not_after())));
+  if (now < certificate.not_before())
+    throw std::invalid_argument(
+        fmt::format("{}: the key of {} is not valid before {}; is this host's clock right?", where,
+                    to_text(*identity), date_text(certificate.not_before())));
+  if (load_revoked_serials(file(key_files::kRevoked), authority).count(certificate.serial()) > 0)
+    throw std::invalid_argument(fmt::format("{}: the key of {} is revoked", where, to_text(*identity)));
+  require_own_private_key(file(key_files::kPrivateKey), certificate);
+  return {fs::absolute(path).lexically_normal().string(), *identity, certificate, authority};
+}
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/keys/certificate.hpp"
+
+namespace sidestep {
+
+/// The files in the folder of one identity, as `sidestep keys issue` writes them and ROS 2's sros2 names
+/// them.
+namespace key_files {
+
+inline constexpr const char* kCertificate = "cert.pem";
+inline constexpr const char* kPrivateKey = "key.pem";
+inline constexpr const char* kIdentityAuthority = "identity_ca.cert.pem";
+inline constexpr const char* kPermissionsAuthority = "permissions_ca.cert.pem";
+inline constexpr const char* kRevoked = "crl.pem";
+inline constexpr const char* kGovernance = "governance.p7s";
+inline constexpr const char* kPermissions = "permissions.p7s";
+
+/// All of them.
+inline constexpr const char* kAll[] = {kCertificate, kPrivateKey, kIdentityAuthority, kPermissionsAuthority,
+                                       kRevoked,     kGovernance, kPermissions};
+
+}  // namespace key_files
+
+/// The keys of one identity.
+struct KeyFolder {
+  std::string path;
+  Identity identity;
+  Certificate certificate, authority;  ///< the latter has issued the certificates of all identities
+
+  std::string file(const char* name) const { return path + "/" + name; }
+};
+
+/// Loads the keys of one identity and checks all that the identity itself can check of them. Throws
+/// std::invalid_argument that says what is wrong: a file is missing, the certificate has expired or is
+/// revoked, the private key is another's, or other users may read it.
+[[nodiscard]] KeyFolder load_key_folder(const std::string& path, Time now);
+
+/// The folder with the keys of an identity, in one that `sidestep keys init` has made; of robots, one whose
+/// keys cover them. Throws std::invalid_argument if there is none.
+[[nodiscard]] std::string key_folder_of(const std::string& store, const Identity& identity);
+
+/// "2026-11-26 14:03 UTC"
+[[nodiscard]] std::string date_text(Time time);
+
+}  // namespace sidestep

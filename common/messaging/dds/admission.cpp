@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/admission.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace sidestep {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'y', '1'};
+constexpr std::size_t kMaxKnown = 4096;
+
+struct Announced {
+  std::string version;
+  std::span<const std::uint8_t> certificate;
+};
+
+std::optional<Announced> parse(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kMark.size() + 1 || !std::equal(kMark.begin(), kMark.end(), bytes.begin()))
+    return std::nullopt;
+  const std::size_t size = bytes[kMark.size()];
+  bytes = bytes.subspan(kMark.size() + 1);
+  if (bytes.size() < size) return std::nullopt;
+  return Announced{std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)),
+                   bytes.subspan(size)};
+}
+
+/// Those of equal first numbers understand each other.
+std::string first_number(const std::string& version) { return version.substr(0, version.find('.')); }
+
+const char* reason_text(Admission::Refusal refusal) {
+  using Refusal = Admission::Refusal;
+  switch (refusal) {
+    case Refusal::kNone:
+    case Refusal::kNotNeeded:
+      return "";
+    case Refusal::kNoCredentials:
+      return " that announces no key: start it with --keys";
+    case Refusal::kOtherVersion:
+      return " that uses another version of Fast DDS: processes with keys understand only their own version";
+    case Refusal::kNoCertificate:
+      return ", whose announcement has no valid certificate";
+    case Refusal::kOtherAuthority:
+      return ", whose key another authority has issued";
+    case Refusal::kUnknownSubject:
+      return ", whose certificate is for nobody that Sidestep knows";
+    case Refusal::kOtherPrefix:
+      return " that announces the certificate of another participant";
+    case Refusal::kNotValidNow:
+      return ", whose key has expired, or is not valid yet";
+    case Refusal::kRevoked:
+      return ", whose key is revoked";
+    case Refusal::kTooMany:
+      return ", because too many participants have the same key";
+    case Refusal::kTooFast:
+      return ", because too many certificates are announced at once";
+  }
+  return "";
+}
+
+bool has_prefix(const ParticipantId& id, const CertifiedPrefix& prefix) {
+  return std::equal(prefix.begin(), prefix.end(), id.begin());
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> credentials(const Certificate& certificate, const std::string& version) {
+  std::vector<std::uint8_t> result(kMark.begin(), kMark.end());
+  result.push_back(static_cast<std::uint8_t>(version.size()));
+  result.insert(result.end(), version.begin(), version.end());
+  const std::vector<std::uint8_t> der = certificate.der();
+  result.insert(result.end(), der.begin(), der.end());
+  return result;
+}
+
+Admission::Admission(Identity self, Certificate authority, std::string version, Time now)
+    : self_(std::move(self)),
+      authority_(std::move(authority)),
+      version_(std::move(version)),
+      checks_at_(now) {}
+
+Admission::Decision Admission::on_announcement(const ParticipantId& id,
+                                               std::span<const std::uint8_t> announced, Time now) {
+  const auto parsed = parse(announced);
+  if (!parsed) return {Refusal::kNoCredentials};
+  Refusal refusal = Refusal::kNone;
+  const Known* const known = find_known(parsed->certificate, now, refusal);
+  if (!known) return {refusal};
+  return {admit(id, *known, parsed->version, now), to_text(known->identity)};
+}
+
+Admission::Refusal Admission::admit(const ParticipantId& id, const Known& known, const std::string& version,
+                                    Time now) {
+  if (!has_prefix(id, known.prefix)) return Refusal::kOtherPrefix;
+  if (const Refusal refusal = check_now(known, now); refusal != Refusal::kNone) return refusal;
+  if (!known.is_needed) return Refusal::kNotNeeded;
+  if (first_number(version) != first_number(version_)) return Refusal::kOtherVersion;
+  if (const auto found = participants_.find(id); found != participants_.end()) {
+    found->second.last_heard = now;
+    return Refusal::kNone;
+  }
+  const auto same =
+      std::ranges::count_if(participants_, [&](const auto& p) { return p.second.known == &known; });
+  if (static_cast<std::size_t>(same) >= kMaxPerCertificate || participants_.size() >= kMaxParticipants)
+    return Refusal::kTooMany;
+  participants_[id] = {&known, now};
+  return Refusal::kNone;
+}
+
+bool Admission::admits(const ParticipantId& id, Time now) {
+  const auto found = participants_.find(id);
+  if (found == participants_.end()) return false;
+  found->second.last_heard = now;
+  return true;
+}
+
+const Identity* Admission::identity_of(const ParticipantId& id) const {
+  const auto found = participants_.find(id);
+  return found == participants_.end() ? nullptr : &found->second.known->identity;
+}
+
+std::vector<ParticipantId> Admission::newly_refused(Time now) {
+  std::vector<ParticipantId> result;
+  for (const auto& [id, participant] : participants_) {
+    if (now - participant.last_heard > kForgetAfter || check_now(*participant.known, now) != Refusal::kNone)
+      result.push_back(id);
+  }
+  for (const ParticipantId& id : result) participants_.erase(id);
+  return result;
+}
+
+const Admission::Known* Admission::find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal) {
+  std::string bytes(der.begin(), der.end());
+  if (const auto found = known_.find(bytes); found != known_.end()) return &found->second;
+  const auto refuse = [&refusal](Refusal why) {
+    refusal = why;
+    return nullptr;
+  };
+  if (known_.size() >= kMaxKnown) return refuse(Refusal::kTooMany);
+  if (!may_check_signature(now)) return refuse(Refusal::kTooFast);
+  const auto certificate = Certificate::from_der(der);
+  if (!certificate) return refuse(Refusal::kNoCertificate);
+  if (!certificate->is_issued_by(authority_)) return refuse(Refusal::kOtherAuthority);
+  const auto identity = certificate->identity();
+  if (!identity) return refuse(Refusal::kUnknownSubject);
+  const Known found{*identity,
+                    certificate->serial(),
+                    certificate->prefix(),
+                    *identity == self_ || exchange_messages(*identity, self_),
+                    certificate->not_before(),
+                    certificate->not_after()};
+  return &known_.emplace(std::move(bytes), found).first->second;
+}
+
+Admission::Refusal Admission::check_now(const Known& known, Time now) const {
+  if (revoked_.count(known.serial) > 0) return Refusal::kRevoked;
+  return now < known.not_before || now > known.not_after ? Refusal::kNotValidNow : Refusal::kNone;
+}
+
+bool Admission::may_check_signature(Time now) {
+  checks_left_ = std::min(kMaxChecks, checks_left_ + to_seconds(now - checks_at_) * kChecksPerSecond);
+  checks_at_ = now;
+  if (checks_left_ < 1) return false;
+  checks_left_ -= 1;
+  return true;
+}
+
+std::string Admission::describe(const Decision& decision, const std::string& address) {
+  return (decision.who.empty() ? "a process" : decision.who) + " at " + address +
+         reason_text(decision.refusal);
+}
+
+}  // namespace sidestep

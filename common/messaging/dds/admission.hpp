@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/keys/certificate.hpp"
+#include "common/messaging/dds/presence.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// What a participant with keys announces of itself, as its user data: the version of Fast DDS, and the
+/// certificate.
+std::vector<std::uint8_t> credentials(const Certificate& certificate, const std::string& version);
+
+/// Decides which participants a process with keys listens to, and knows who they are.
+///
+/// Fast DDS authenticates participants, but tells nobody as whom, keeps what everybody announces, and learns
+/// of revoked keys only at its start. Participants therefore announce their certificate. The prefix of a
+/// participant's GUID depends on the certificate, and Fast DDS checks that the owner of the GUID has the
+/// certificate's private key. What is decided here is therefore true of all that Fast DDS accepts. An
+/// attacker can repeat the announcement of another, and then gets no further than authentication, so the
+/// participants with one certificate are limited. Participants that exchange no messages, as agents among
+/// each other, are not admitted either: among many robots, most of the time at the start would go into their
+/// handshakes.
+class Admission {
+ public:
+  static constexpr std::size_t kMaxPerCertificate = 24;
+  static constexpr std::size_t kMaxParticipants = 1024;
+  /// Announcements come once a second.
+  static constexpr Duration kForgetAfter{10'000'000'000};
+  /// Signatures that are checked: a burst, and then so many a second.
+  static constexpr double kMaxChecks = 200, kChecksPerSecond = 50;
+
+  enum class Refusal : std::uint8_t {
+    kNone,
+    kNotNeeded,  ///< the two exchange no messages
+    kNoCredentials,
+    kOtherVersion,
+    kNoCertificate,
+    kOtherAuthority,
+    kUnknownSubject,
+    kOtherPrefix,
+    kNotValidNow,
+    kRevoked,
+    kTooMany,
+    kTooFast
+  };
+
+  struct Decision {
+    Refusal refusal = Refusal::kNone;
+    std::string who{};  ///< "agent 3", as its certificate says; empty: unknown
+  };
+
+  /// `version`: of this process's Fast DDS. A process admits itself.
+  Admission(Identity self, Certificate authority, std::string version, Time now);
+
+  /// Processes an announcement of a participant: untrusted bytes, as of credentials().
+  [[nodiscard]] Decision on_announcement(const ParticipantId& id, std::span<const std::uint8_t> announced,
+                                         Time now);
+  /// Whether datagrams of the participant may be passed on. Its announcement comes first.
+  [[nodiscard]] bool admits(const ParticipantId& id, Time now);
+  /// Who the participant is; nullptr if it is not admitted.
+  const Identity* identity_of(const ParticipantId& id) const;
+  /// The serial numbers of revoked certificates.
+  void set_revoked(std::set<std::string> serials) { revoked_ = std::move(serials); }
+  /// Participants that are no longer admitted, because they are silent, or their certificate has expired or
+  /// is revoked. Fast DDS must forget them.
+  [[nodiscard]] std::vector<ParticipantId> newly_refused(Time now);
+
+  /// The refusal in plain words: "agent 3 at 10.0.0.7, whose key is revoked".
+  static std::string describe(const Decision& decision, const std::string& address);
+
+ private:
+  struct Known {
+    Identity identity;
+    std::string serial;
+    CertifiedPrefix prefix;
+    bool is_needed;
+    Time not_before, not_after;
+  };
+  struct Participant {
+    const Known* known;
+    Time last_heard;
+  };
+
+  /// The certificate, if the authority has issued it; otherwise says why not.
+  const Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
+  Refusal admit(const ParticipantId& id, const Known& known, const std::string& version, Time now);
+  Refusal check_now(const Known& known, Time now) const;
+  bool may_check_signature(Time now);
+
+  const Identity self_;
+  const Certificate authority_;
+  const std::string version_;
+  std::set<std::string> revoked_;
+  std::map<std::string, Known> known_;  ///< by certificate (DER); only those of the authority
+  std::map<ParticipantId, Participant> participants_;
+  double checks_left_ = kMaxChecks;
+  Time checks_at_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/gate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "common/log/log.hpp"
+#include "common/messaging/dds/datagram.hpp"
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/process_names.hpp"
+
+namespace sidestep {
+namespace {
+
+// A hostile sender can be refused for any number of reasons.
+constexpr std::size_t kMaxReported = 64;
+
+}  // namespace
+
+Gate::Gate(const KeyFolder& keys, const std::string& version)
+    : revoked_file_(keys.file(key_files::kRevoked)),
+      authority_(keys.authority),
+      admission_(keys.identity, keys.authority, version, EventLoop::now()) {
+  admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
+  std::error_code none;
+  revoked_at_ = std::filesystem::last_write_time(revoked_file_, none);
+}
+
+bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> datagram, bool is_discovery,
+                  std::span<const std::uint8_t, 4> address) {
+  const Time now = EventLoop::now();
+  if (is_discovery) {
+    bool is_plain = false;
+    const auto announcement = participant_announcement(datagram, is_plain);
+    if (!is_plain) return false;
+    if (announcement && !announcement->is_departure) {
+      const std::lock_guard lock(mutex_);
+      const Admission::Decision decision = admission_.on_announcement(sender, announcement->user_data, now);
+      if (decision.refusal == Admission::Refusal::kNone) return true;
+      if (decision.refusal == Admission::Refusal::kNotNeeded) return false;
+      ++refused_;
+      if (reported_.size() < kMaxReported)
+        report("refuses " + Admission::describe(decision, fmt::format("{}", fmt::join(address, "."))));
+      return false;
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  const bool is_admitted = admission_.admits(sender, now);
+  unknown_ += !is_admitted && !is_discovery;
+  return is_admitted;
+}
+
+std::vector<ParticipantId> Gate::newly_refused() {
+  const std::lock_guard lock(mutex_);
+  read_revoked();
+  return admission_.newly_refused(EventLoop::now());
+}
+
+bool Gate::may_send(const ParticipantId& participant, const TopicInfo& topic, std::uint32_t robot,
+                    std::uint32_t sender) {
+  const std::lock_guard lock(mutex_);
+  const Identity* const identity = admission_.identity_of(participant);
+  if (identity && may_write(*identity, topic, robot) && may_speak_as(*identity, sender)) return true;
+  ++forged_;
+  report(fmt::format("refuses messages of {} on topic '{}' in the name of {}",
+                     identity ? to_text(*identity) : "an unknown participant", topic.name,
+                     process_name(sender)));
+  return false;
+}
+
+bool Gate::is_operator(const ParticipantId& participant) const {
+  const std::lock_guard lock(mutex_);
+  const Identity* const identity = admission_.identity_of(participant);
+  return identity && identity->role == Role::kOperator;
+}
+
+void Gate::on_unauthorised(const ParticipantId& participant) {
+  const std::lock_guard lock(mutex_);
+  const Identity* const identity = admission_.identity_of(participant);
+  report(fmt::format("refuses {}: its private key, certificate or permissions are not genuine",
+                     identity ? "a process that announces itself as " + to_text(*identity) : "a process"));
+}
+
+void Gate::read_revoked() {
+  std::error_code error;
+  const auto changed_at = std::filesystem::last_write_time(revoked_file_, error);
+  if (error || changed_at == revoked_at_) return;
+  revoked_at_ = changed_at;
+  try {
+    admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
+    log(LogLevel::kInfo, "read the list of revoked keys again");
+  } catch (const std::invalid_argument& problem) {
+    log(LogLevel::kError, fmt::format("{}; the former list still counts", problem.what()));
+  }
+}
+
+void Gate::report(const std::string& text) {
+  if (reported_.size() < kMaxReported && reported_.insert(text).second)
+    log(LogLevel::kWarning, "keys: " + text);
+}
+
+}  // namespace sidestep

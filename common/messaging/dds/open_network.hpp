@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/messaging/dds/bus.hpp"
+
+namespace sidestep {
+
+/// For a process without keys: logs once that anybody on the network can command the robots. Throws
+/// std::invalid_argument if other machines can reach the interface, unless DdsSettings::insecure. The
+/// loopback interface and the network namespaces of `sidestep run` cannot be reached.
+void require_safe_network(const DdsSettings& settings);
+
+}  // namespace sidestep
