@@ -15,6 +15,7 @@
 #include "deploy/fault/attest_command.hpp"
 #include "deploy/fault/fault_command.hpp"
 #include "deploy/fault/test_command.hpp"
+#include "deploy/keys/keys_command.hpp"
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/run_command.hpp"
 #include "deploy/monitor/audit/audit_command.hpp"
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   add_attest_command(app, action);
   add_order_commands(app, action);
   add_clock_command(app, action);
+  add_keys_command(app, action);
   add_conformance_command(app, action);
   add_referee_command(app, action);
   add_audit_command(app, action);

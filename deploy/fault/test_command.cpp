@@ -78,6 +78,8 @@ int run_tests(const TestOptions& options) {
   for (const std::string& file : options.files) tests.push_back(load_fault_test(file));
   DdsSettings dds;
   dds.interface = options.interface;
+  dds.keys = options.keys;
+  dds.insecure = options.insecure;
   std::optional<FreeDomain> free_domain;
   if (options.is_over_dds) dds.domain = options.domain ? *options.domain : free_domain.emplace().number();
   const std::vector<TestResult> results = run_all(tests, options, dds);
@@ -112,6 +114,11 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
           .add_option("--interface", options->interface, "address of the network interface to use, or 'all'")
           .show_default()
           .needs(dds);
+  command.add_option("--keys", options->keys, "folder with the keys of all identities").needs(dds);
+  command
+      .add_flag("--insecure", options->insecure,
+                "run without keys on a network that other machines can reach")
+      .needs(dds);
   command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/launch/README.md")
       .needs(dds)
       .excludes(interface);

@@ -21,6 +21,8 @@ struct TestOptions {
   std::string hosts_file;     ///< see LaunchOptions
   std::optional<int> domain;  ///< nullopt: one that is free
   std::string interface = "127.0.0.1";
+  std::string keys;                   ///< folder with the keys of all identities; empty: none
+  bool insecure = false;              ///< as DdsSettings::insecure
   std::optional<LogLevel> log_level;  ///< nullopt: info over DDS, off on SimBus
 };
 

@@ -10,6 +10,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/launch/process_command.hpp"
+#include "deploy/launch/process_keys.hpp"
 
 namespace sidestep {
 namespace {
@@ -117,8 +118,15 @@ Time Launcher::next_poll() {
 
 void Launcher::start(const std::string& name, const std::string& program, bool is_restarted,
                      const std::vector<std::string>& arguments) {
-  ProcessSpec process{name,      program,      options_.scenario_file, options_.dds.domain,
-                      arguments, is_restarted, options_.dds.peers};
+  ProcessSpec process{name,
+                      program,
+                      options_.scenario_file,
+                      options_.dds.domain,
+                      arguments,
+                      is_restarted,
+                      options_.dds.peers,
+                      keys_of(name),
+                      options_.dds.insecure};
   if (options_.faults) process.arguments.push_back("--faults");
   process.arguments.push_back("--log-level");
   process.arguments.emplace_back(to_text(options_.log_level));
@@ -151,6 +159,11 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
   start(spec, placement_.host_of(agent_process(robot)));
 }
 
+std::string Launcher::keys_of(const std::string& process) const {
+  return options_.keys.empty() ? std::string()
+                               : key_folder_of(options_.keys, identity_of_process(process, scenario_));
+}
+
 void Launcher::start_monitor() {
   std::vector<std::string> argv{sibling_program_path("sidestep"),
                                 "monitor",
@@ -163,6 +176,9 @@ void Launcher::start_monitor() {
                                 options_.dds.interface};
   if (!options_.dds.peers.empty())
     argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options_.dds.peers, ","))});
+  if (!options_.keys.empty())
+    argv.insert(argv.end(), {"--keys", key_folder_of(options_.keys, {Role::kViewer})});
+  if (options_.dds.insecure) argv.emplace_back("--insecure");
   group_.start({kMonitor, argv, false});
   print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
 }

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fstream>
+#include <iterator>
 
 #include "common/config/yaml_document.hpp"
+#include "common/keys/key_folder.hpp"
 #include "deploy/launch/hosts/command.hpp"
 
 namespace sidestep {
@@ -13,16 +16,22 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// The shell script on the remote host. Its stdin carries the scenario and reaches its end when the
-/// connection ends for any reason. Descriptor 3 preserves stdin, because a shell replaces it for background
-/// processes. HUP and PIPE are ignored so that the script can clean up after the connection is lost.
+/// The shell script on the remote host. Its stdin carries the scenario and the keys, and reaches its end when
+/// the connection ends for any reason. Descriptor 3 preserves stdin, because a shell replaces it for
+/// background processes. HUP and PIPE are ignored so that the script can clean up after the connection is
+/// lost.
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
-size=$1 name=$2 program=$3
+scenario=$1 program=$2 files=$3
 shift 3
-folder=$(mktemp -d) && head -c "$size" <&3 >"$folder/$name" || exit 1
-"$program" --scenario "$folder/$name" "$@" </dev/null 3<&- &
+folder=$(mktemp -d) && cd "$folder" || exit 1
+while [ "$files" -gt 0 ]; do
+  head -c "$1" <&3 >"$2" || exit 1
+  files=$((files - 1))
+  shift 2
+done
+"$program" --scenario "$folder/$scenario" "$@" </dev/null 3<&- &
 child=$!
 { cat <&3; kill "$child"; sleep 3; kill -9 "$child"; } >/dev/null 2>&1 &
 watchdog=$!
@@ -46,15 +55,28 @@ void append(Arguments& arguments, const Arguments& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());
 }
 
-Arguments ssh_arguments(const ProcessSpec& process, const HostSpec& host, const std::string& program,
-                        std::size_t scenario_size, const Arguments& options) {
-  Arguments remote{"sh",
-                   "-c",
-                   kRemoteScript,
-                   "sidestep",
-                   std::to_string(scenario_size),
-                   std::filesystem::path(process.scenario_file).filename().string(),
-                   program};
+struct SentFile {
+  std::string name, content;
+};
+
+/// The files that the process needs, for a host that does not have them.
+std::vector<SentFile> sent_files(const ProcessSpec& process) {
+  std::vector<SentFile> files{{std::filesystem::path(process.scenario_file).filename().string(),
+                               read_yaml_file(process.scenario_file, "a scenario")}};
+  if (process.keys.empty()) return files;
+  for (const char* name : key_files::kAll) {
+    std::ifstream file(process.keys + "/" + name);
+    if (!file) throw std::runtime_error(fmt::format("cannot read {}/{}", process.keys, name));
+    files.push_back({name, {std::istreambuf_iterator<char>(file), {}}});
+  }
+  return files;
+}
+
+Arguments ssh_arguments(const HostSpec& host, const std::string& program, const std::vector<SentFile>& files,
+                        const Arguments& options) {
+  Arguments remote{
+      "sh", "-c", kRemoteScript, "sidestep", files.front().name, program, std::to_string(files.size())};
+  for (const SentFile& file : files) append(remote, {std::to_string(file.content.size()), file.name});
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
   // A hanging connection ends within seconds here, and on the remote host if its server is configured
@@ -75,11 +97,15 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
       host.programs.empty() ? sibling_program_path(process.program) : host.programs + "/" + process.program;
   Arguments options{"--domain", std::to_string(process.domain), "--interface", host.interface};
   if (!process.peers.empty()) append(options, {"--peers", fmt::format("{}", fmt::join(process.peers, ","))});
+  const bool is_remote = host.transport == HostTransport::kSsh;
+  if (!process.keys.empty()) append(options, {"--keys", is_remote ? "." : process.keys});
+  if (process.insecure) append(options, {"--insecure"});
   append(options, process.arguments);
   ChildSpec child{process.name, {}, process.restart};
-  if (host.transport == HostTransport::kSsh) {
-    child.input = read_yaml_file(process.scenario_file, "a scenario");
-    child.argv = ssh_arguments(process, host, program, child.input.size(), options);
+  if (is_remote) {
+    const std::vector<SentFile> files = sent_files(process);
+    for (const SentFile& file : files) child.input += file.content;
+    child.argv = ssh_arguments(host, program, files, options);
     return child;
   }
   if (host.transport == HostTransport::kNamespace)

@@ -18,11 +18,13 @@ struct ProcessSpec {
   std::vector<std::string> arguments;  ///< besides scenario, domain and interface
   bool restart = false;
   std::vector<std::string> peers{};  ///< as DdsSettings::peers
+  std::string keys{};                ///< as DdsSettings::keys, on this machine
+  bool insecure = false;             ///< as DdsSettings::insecure
 };
 
 /// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace
-/// `namespace_name`, or ssh. Over ssh the scenario travels along, and the remote process ends with the
-/// connection. Throws std::runtime_error when ip or ssh is missing or the scenario cannot be read.
+/// `namespace_name`, or ssh. Over ssh the scenario and the keys travel along, and the remote process ends
+/// with the connection. Throws std::runtime_error when ip or ssh is missing, or a file cannot be read.
 [[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host,
                                    const std::string& namespace_name);
 

@@ -61,6 +61,7 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .excludes(command.option("--interface"));
   command.on_parsed([options, &action] {
     if (options->monitor_port) require_port(*options->monitor_port);
+    options->keys = options->dds.keys;
     action = [options] { return run(*options); };
   });
 }

@@ -11,6 +11,7 @@
 #include "deploy/fault/plan/test_end.hpp"
 #include "deploy/fault/play/launched_faults.hpp"
 #include "deploy/fault/play/run_end.hpp"
+#include "deploy/launch/process_keys.hpp"
 
 namespace sidestep {
 namespace {
@@ -27,12 +28,20 @@ RunOptions run_options(const FaultTest& test, const LaunchOptions& options, cons
   run.report_file = default_report_path(test.scenario.name, std::nullopt);
   run.dds = options.dds;
   run.dds.participant = "sidestep-test";
+  run.keys = options.dds.keys;
   run.dds.interface = hosts.hosts().interface;
   run.floor.seed = options.seed;
   run.log_level = options.log_level;
   run.faults = has_fault<ImpairmentFault>(test);
   run.is_quiet = true;
+  use_judge_keys(run, test.scenario);
   return run;
+}
+
+DdsSettings operator_settings(const RunOptions& options) {
+  DdsSettings dds = options.dds;
+  if (!options.keys.empty()) dds.keys = key_folder_of(options.keys, {Role::kOperator});
+  return dds;
 }
 
 /// Plays the faults of a test while the launcher runs.
@@ -43,7 +52,7 @@ class LaunchedTestRun {
         options_(options),
         launcher_(launcher),
         observer_(launcher.bus()),
-        faults_(test, hosts, options.dds, launcher, observer_),
+        faults_(test, hosts, operator_settings(options), launcher, observer_),
         end_(test) {
     launcher.follow({[this] { return next(); }, [this] { return act(); }});
   }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "common/process/command_line.hpp"
+
+namespace sidestep {
+
+/// Adds `sidestep keys`. Parsing it sets `action`, which returns the exit code, and throws as KeyStore does.
+void add_keys_command(const CliCommand& root, std::function<int()>& action);
+
+}  // namespace sidestep
