@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/participant.hpp"
 
+#include <algorithm>
 #include <arpa/inet.h>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
@@ -153,12 +154,19 @@ std::runtime_error failure(const std::string& entity, const std::string& channel
 
 }  // namespace
 
-DdsParticipant::DdsParticipant(const DdsSettings& settings, DomainParticipantListener* listener,
+DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
                                std::uint32_t shared_memory_bytes) {
   check(settings);
   if (!settings.keys.empty()) {
     keys_ = load_key_folder(settings.keys, EventLoop::now());
     gate_ = std::make_shared<Gate>(*keys_, fast_dds_version());
+    if (listener != nullptr) {
+      listener->on_unauthorised = [gate = gate_](const fast_dds::rtps::GuidPrefix_t& prefix) {
+        ParticipantId id;
+        std::ranges::copy(prefix.value, id.begin());
+        gate->on_unauthorised(id);
+      };
+    }
   } else {
     require_safe_network(settings);
   }

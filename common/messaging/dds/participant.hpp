@@ -12,6 +12,7 @@
 #include "common/messaging/dds/gate.hpp"
 #include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
+#include "fast_dds/discovery_listener.hpp"
 #include "fast_dds/library.hpp"
 
 namespace sidestep {
@@ -24,7 +25,7 @@ class DdsParticipant {
   /// for written messages. Two participants on one host that both have shared memory use it instead of UDP,
   /// even if their segments are not visible to each other (containers); faults do not affect it. Throws
   /// std::runtime_error with the reason, std::invalid_argument if the keys are wrong or missing.
-  DdsParticipant(const DdsSettings& settings, fast_dds::dds::DomainParticipantListener* listener,
+  DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
                  std::uint32_t shared_memory_bytes = 0);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;

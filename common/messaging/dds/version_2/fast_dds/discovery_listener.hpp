@@ -4,6 +4,7 @@
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <functional>
 #include <sstream>
 #include <string>
 
@@ -21,6 +22,15 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
 
+  /// Called when Fast DDS has refused a participant: its private key, certificate or permissions are not
+  /// genuine. Set it before the listener is used.
+  std::function<void(const rtps::GuidPrefix_t&)> on_unauthorised;
+
+  void onParticipantAuthentication(dds::DomainParticipant*,
+                                   rtps::ParticipantAuthenticationInfo&& info) final {
+    if (on_unauthorised && info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+      on_unauthorised(info.guid.guidPrefix);
+  }
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) final {
     const bool has_gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                           info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;

@@ -7,6 +7,7 @@
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.hpp>
 #include <fastdds/rtps/reader/ReaderDiscoveryStatus.hpp>
 #include <fastdds/rtps/writer/WriterDiscoveryStatus.hpp>
+#include <functional>
 #include <sstream>
 #include <string>
 
@@ -24,6 +25,15 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
 
+  /// Called when Fast DDS has refused a participant: its private key, certificate or permissions are not
+  /// genuine. Set it before the listener is used.
+  std::function<void(const rtps::GuidPrefix_t&)> on_unauthorised;
+
+  void onParticipantAuthentication(dds::DomainParticipant*,
+                                   rtps::ParticipantAuthenticationInfo&& info) final {
+    if (on_unauthorised && info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+      on_unauthorised(info.guid.guidPrefix);
+  }
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
                                 const rtps::ParticipantBuiltinTopicData& info, bool&) final {
     const bool has_gone = status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
