@@ -10,6 +10,7 @@
 
 #include "idl/clockCdrAux.hpp"
 #include "idl/disturbanceCdrAux.hpp"
+#include "idl/laserCdrAux.hpp"
 #include "idl/monitorCdrAux.hpp"
 #include "idl/negotiationCdrAux.hpp"
 #include "idl/orderCdrAux.hpp"
