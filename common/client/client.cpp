@@ -20,8 +20,15 @@ DdsSettings dds_settings(const Settings& settings) {
   if (settings.name.empty() && !settings.is_operator)
     throw std::invalid_argument("client: expected a name, or is_operator");
   const std::string name = settings.name.empty() ? "operator" : settings.name;
-  return {settings.domain, settings.interface,   "sidestep-client " + name,
-          false,           settings.is_operator, settings.peers};
+  return {settings.domain,
+          settings.interface,
+          "sidestep-client " + name,
+          false,
+          settings.is_operator,
+          settings.peers,
+          settings.keys,
+          settings.insecure,
+          settings.is_operator ? Identity{Role::kOperator} : Identity{Role::kClient, 0, 0, settings.name}};
 }
 
 ClientId id_of(const Settings& settings) {

@@ -21,6 +21,10 @@ struct Settings {
   std::string interface = "127.0.0.1";  ///< address of the network interface to use, or "all"
   /// Addresses of the hosts of all processes, on networks without multicast; empty: multicast.
   std::vector<std::string> peers{};
+  /// Folder with this program's keys ("client NAME" or "operator"), or one that `sidestep keys init` has
+  /// made; empty: no keys.
+  std::string keys{};
+  bool insecure = false;  ///< may work without keys on networks that other machines can reach
 };
 
 /// Robots are numbered from 0, as in the scenario.

@@ -16,9 +16,6 @@ namespace fs = std::filesystem;
 
 void require_files(const std::string& path) {
   std::error_code none;
-  if (fs::is_directory(path + "/enclaves", none))
-    throw std::invalid_argument(fmt::format(
-        "--keys: {} has the keys of several identities; expected one of {}/enclaves", path, path));
   for (const char* name : key_files::kAll) {
     if (!fs::exists(path + "/" + name, none))
       throw std::invalid_argument(fmt::format(
@@ -70,6 +67,11 @@ std::string key_folder_of(const std::string& store, const Identity& identity) {
       fmt::format("--keys: {} has no keys of {}; `sidestep keys issue --scenario FILE --keys {}` makes all "
                   "that a run needs",
                   enclaves, to_text(identity), store));
+}
+
+std::string own_key_folder(const std::string& path, const Identity& identity) {
+  std::error_code none;
+  return fs::is_directory(path + "/enclaves", none) ? key_folder_of(path, identity) : path;
 }
 
 KeyFolder load_key_folder(const std::string& path, Time now) {

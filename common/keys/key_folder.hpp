@@ -43,6 +43,9 @@ struct KeyFolder {
 /// keys cover them. Throws std::invalid_argument if there is none.
 [[nodiscard]] std::string key_folder_of(const std::string& store, const Identity& identity);
 
+/// As key_folder_of(), but `path` may also be the folder with the keys of one identity, of whomever.
+[[nodiscard]] std::string own_key_folder(const std::string& path, const Identity& identity);
+
 /// "2026-11-26 14:03 UTC"
 [[nodiscard]] std::string date_text(Time time);
 

@@ -60,9 +60,15 @@ class Bus {
     return nullptr;
   }
 
-  /// Whether this process's keys allow it to write a topic's channel of a robot; true without keys. If not,
-  /// advertise() throws std::invalid_argument. A subscription that they do not allow gets no messages.
+  /// Whether this process's keys allow it to write, or read, a topic's channel of a robot; true without keys.
+  /// If not, advertise() throws std::invalid_argument. A subscription that they do not allow gets no
+  /// messages.
   virtual bool may_write(const TopicInfo& topic, std::uint32_t robot) const {
+    (void)topic;
+    (void)robot;
+    return true;
+  }
+  virtual bool may_read(const TopicInfo& topic, std::uint32_t robot) const {
     (void)topic;
     (void)robot;
     return true;

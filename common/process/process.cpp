@@ -10,6 +10,7 @@
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
+#include "common/process/process_identity.hpp"
 #include "common/process/process_run.hpp"
 
 namespace sidestep {
@@ -47,7 +48,7 @@ void add_dds_options(const CliCommand& app, DdsSettings& settings) {
                  "addresses of the hosts of all processes, on networks without multicast [multicast]")
       .comma_separated();
   app.add_option("--keys", settings.keys,
-                 "folder of this process's keys, as `sidestep keys issue` writes it");
+                 "folder with the keys of this process, or that `sidestep keys init` has made");
   app.add_flag("--insecure", settings.insecure,
                "work without keys, although other machines can reach the interface and command the robots");
 }
@@ -74,7 +75,9 @@ int run_process(int argc, char** argv, const Program& program) {
   dds.participant = program.participant ? program.participant() : program.name;
   set_up_log(dds.participant, log_level);
   const auto work = [&] {
-    run_program(program, load_scenario(scenario_file), dds);
+    const Scenario scenario = load_scenario(scenario_file);
+    dds.identity = identity_of_process(program.process(), scenario);
+    run_program(program, scenario, dds);
     return 0;
   };
   return run_reporting(work, [](const std::string& problem) { log(LogLevel::kError, problem); });

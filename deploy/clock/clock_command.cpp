@@ -108,6 +108,7 @@ void add_clock_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand command = root.add_subcommand("clock", "Shows the offsets of the processes' clocks");
   const auto options = std::make_shared<ClockOptions>();
   options->dds.participant = "sidestep-clock";
+  options->dds.identity = {Role::kOperator};
   options->reference_name = "this machine";
   add_dds_options(command, options->dds);
   command.add_option(

@@ -12,6 +12,7 @@
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/process/process.hpp"
+#include "common/process/process_identity.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/conformance/conformance.hpp"
 #include "deploy/launch/floor_processes.hpp"
@@ -59,6 +60,9 @@ class Floor {
           std::to_string(options.dds.domain),    "--interface", options.dds.interface};
       if (!options.dds.peers.empty())
         argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options.dds.peers, ","))});
+      // Each takes its own from a folder with the keys of all.
+      if (!options.dds.keys.empty()) argv.insert(argv.end(), {"--keys", options.dds.keys});
+      if (options.dds.insecure) argv.emplace_back("--insecure");
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());
       group_.start({process.name, argv, false});
     }
@@ -84,7 +88,9 @@ class Floor {
 int examine(const ConformanceOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
   const RobotSpec& robot = only_robot(scenario);
-  DdsBus bus(options.dds);
+  DdsSettings dds = options.dds;
+  dds.identity = identity_of_process(robot.id, scenario);
+  DdsBus bus(dds);
   bool is_interrupted = false;
   const StopSignals stop_signals([&] {
     is_interrupted = true;

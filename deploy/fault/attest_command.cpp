@@ -82,6 +82,7 @@ void add_attest_command(const CliCommand& root, std::function<int()>& action) {
   robot.require_subcommand();
   const auto options = std::make_shared<AttestOptions>();
   options->dds.participant = "sidestep-robot";
+  options->dds.identity = {Role::kOperator};
   options->dds.is_operator = true;
   const CliCommand absent = robot.add_subcommand(
       "absent", "Attests that a silent robot, for which all others wait, is not on the floor");

@@ -85,6 +85,7 @@ std::string usage_error(const NetworkOptions& options) {
 void add_network_command(const CliCommand& fault, std::function<int()>& action) {
   const auto options = std::make_shared<NetworkOptions>();
   options->dds.participant = "sidestep-fault";
+  options->dds.identity = {Role::kOperator};
   const CliCommand command = fault.add_subcommand(
       "network", "Loses, delays and duplicates messages at processes started with --faults");
   command

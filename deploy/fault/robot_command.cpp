@@ -67,6 +67,7 @@ int disturb(const RobotOptions& options, Kind kind) {
 void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
   const auto options = std::make_shared<RobotOptions>();
   options->dds.participant = "sidestep-fault";
+  options->dds.identity = {Role::kOperator};
   const auto add = [&](const char* name, const char* description, Kind kind) {
     const CliCommand command = fault.add_subcommand(name, description);
     command.add_option("ROBOT", options->robot, "robot id").required().check(in_range(0U, kMaxRobots - 1));

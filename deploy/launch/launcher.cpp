@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <limits>
 
+#include "common/keys/key_folder.hpp"
 #include "common/log/log.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/senders.hpp"
@@ -125,7 +126,7 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
                       arguments,
                       is_restarted,
                       options_.dds.peers,
-                      keys_of(name),
+                      key_folder_of_process(options_, name, scenario_),
                       options_.dds.insecure};
   if (options_.faults) process.arguments.push_back("--faults");
   process.arguments.push_back("--log-level");
@@ -159,11 +160,6 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
   start(spec, placement_.host_of(agent_process(robot)));
 }
 
-std::string Launcher::keys_of(const std::string& process) const {
-  return options_.keys.empty() ? std::string()
-                               : key_folder_of(options_.keys, identity_of_process(process, scenario_));
-}
-
 void Launcher::start_monitor() {
   std::vector<std::string> argv{sibling_program_path("sidestep"),
                                 "monitor",
@@ -176,8 +172,8 @@ void Launcher::start_monitor() {
                                 options_.dds.interface};
   if (!options_.dds.peers.empty())
     argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options_.dds.peers, ","))});
-  if (!options_.keys.empty())
-    argv.insert(argv.end(), {"--keys", key_folder_of(options_.keys, {Role::kViewer})});
+  if (!options_.dds.keys.empty())
+    argv.insert(argv.end(), {"--keys", key_folder_of(options_.dds.keys, {Role::kViewer})});
   if (options_.dds.insecure) argv.emplace_back("--insecure");
   group_.start({kMonitor, argv, false});
   print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));

@@ -89,9 +89,6 @@ class Launcher {
   const Scenario& scenario_;
   const Placement& placement_;
   const NamespaceNetwork* network_;
-  /// The folder with the keys of a process; empty without keys.
-  std::string keys_of(const std::string& process) const;
-
   TemporaryFolder robot_memory_;  ///< of the robots' side, which begins anew with each run
   ProcessGroup group_;
   std::map<std::string, ProcessSpec> processes_;  ///< by name

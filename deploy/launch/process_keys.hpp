@@ -4,16 +4,16 @@
 #include <string>
 
 #include "common/config/scenario.hpp"
-#include "common/keys/key_folder.hpp"
 #include "deploy/launch/run.hpp"
 
 namespace sidestep {
 
-/// Whose keys a process of a run has: "agent 3", and so on; "robots" has those of all robots of the scenario.
-[[nodiscard]] Identity identity_of_process(const std::string& process, const Scenario& scenario);
+/// The folder with the keys of a process of a run, e.g. "agent 3"; empty for a run without keys. Throws
+/// std::invalid_argument if there are none.
+[[nodiscard]] std::string key_folder_of_process(const RunOptions& options, const std::string& process,
+                                                const Scenario& scenario);
 
-/// Gives the launcher of a run with RunOptions::keys those of a judge, after checking that there are keys for
-/// every process of the scenario. Throws std::invalid_argument if some are missing.
-void use_judge_keys(RunOptions& options, const Scenario& scenario);
+/// Throws std::invalid_argument if a run with keys lacks those of a process.
+void require_keys(const RunOptions& options, const Scenario& scenario);
 
 }  // namespace sidestep

@@ -31,7 +31,7 @@ int run(const RunOptions& given) {
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
-  use_judge_keys(options, scenario);
+  require_keys(options, scenario);
   const Report report = Launcher(options, scenario, hosts.placement(), hosts.network(), log_path).run();
   write_report(report, report_path);
   fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);

@@ -20,9 +20,7 @@ struct RunOptions {
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
   std::optional<std::string> monitor_port;  ///< of a page that shows the run; nullopt: none
-  DdsSettings dds;                          ///< with the keys of a judge
-  std::string
-      keys;  ///< folder with the keys of all identities, of which each process gets its own; empty: none
+  DdsSettings dds;  ///< if it has keys, then those of all identities: each process gets its own
   FloorOptions floor;
   std::optional<double> seconds;         ///< overrides the scenario's time limit
   bool until_idle = false;               ///< see run()

@@ -23,6 +23,7 @@ void require_port(const std::string& text) {
 void add_run_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<RunOptions>();
   options->dds.participant = "sidestep-run";
+  options->dds.identity = {Role::kJudge};
   const CliCommand command =
       root.add_subcommand("run", "Runs a scenario over DDS, with one process for each part of the system");
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
@@ -61,7 +62,6 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .excludes(command.option("--interface"));
   command.on_parsed([options, &action] {
     if (options->monitor_port) require_port(*options->monitor_port);
-    options->keys = options->dds.keys;
     action = [options] { return run(*options); };
   });
 }

@@ -335,6 +335,7 @@ void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
     if (options->has_control) {
       options->access.token = random_token();
       options->dds.is_operator = true;
+      options->dds.identity = {Role::kOperator};
     }
     action = [options] {
       return options->shows_recording() ? monitor_recording(*options) : monitor_system(*options);

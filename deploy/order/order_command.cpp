@@ -47,10 +47,17 @@ ClientId client_of(const OrderOptions& options) {
   return options.client.empty() ? static_cast<ClientId>(Sender::kOperator) : client_id(options.client);
 }
 
+/// A client sends with its own keys.
+DdsSettings dds_of(const OrderOptions& options) {
+  DdsSettings dds = options.dds;
+  if (!options.client.empty()) dds.identity = {Role::kClient, 0, 0, options.client};
+  return dds;
+}
+
 /// Sends orders by `send`, and prints what becomes of them until they are accepted or, with `waits`, over.
 int give_orders(const OrderOptions& options,
                 const std::function<std::vector<OrderHandle>(OrderClient&)>& send) {
-  DdsBus bus(options.dds);
+  DdsBus bus(dds_of(options));
   const StopSignals stop_signals([&bus] { bus.stop(); });
   OrderClient client(bus, client_of(options));
   std::vector<OrderHandle> handles;
@@ -106,7 +113,7 @@ int go(const OrderOptions& options) {
 }
 
 int show_status(const OrderOptions& options) {
-  DdsBus bus(options.dds);
+  DdsBus bus(dds_of(options));
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const OrderClient client(bus, client_of(options));
   if (options.once || isatty(STDOUT_FILENO) == 0) {
@@ -131,6 +138,7 @@ using Options = std::shared_ptr<OrderOptions>;
 Options add_command(const CliCommand& command) {
   const auto options = std::make_shared<OrderOptions>();
   options->dds.participant = "sidestep-order";
+  options->dds.identity = {Role::kOperator};
   options->dds.is_operator = true;
   add_dds_options(command, options->dds);
   return options;

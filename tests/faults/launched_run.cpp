@@ -65,6 +65,8 @@ LaunchedRun::LaunchedRun(const std::string& scenario, const std::vector<std::str
                                 "--report",
                                 (folder_ / "report.json").string()};
   argv.insert(argv.end(), extra_arguments.begin(), extra_arguments.end());
+  const auto keys = std::ranges::find(extra_arguments, "--keys");
+  if (keys != extra_arguments.end()) keys_ = keys[1];
   pid_ = group_.start({"run", argv, false});
 }
 
@@ -79,7 +81,10 @@ LaunchedRun::~LaunchedRun() {
 }
 
 void LaunchedRun::subscribe() {
-  bus_ = std::make_unique<DdsBus>(DdsSettings{domain_.number(), interface_, "test"});
+  DdsSettings settings{domain_.number(), interface_, "test"};
+  settings.keys = keys_;
+  settings.identity = {Role::kJudge};
+  bus_ = std::make_unique<DdsBus>(settings);
   bus_->subscribe(topics::kTruth, std::function([this](const msg::GroundTruth& truth) { truth_ = truth; }));
 }
 

@@ -24,7 +24,8 @@ std::string three_hosts_file();
 /// fails the test.
 class LaunchedRun {
  public:
-  /// `scenario` is the text of a scenario file.
+  /// `scenario` is the text of a scenario file. With the argument --keys, this object observes the run as a
+  /// judge.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments = {});
   /// A run on the hosts of a hosts file that creates namespaces. This thread stays in their network during
   /// the lifetime of the object. Needs root.
@@ -90,6 +91,7 @@ class LaunchedRun {
 
   TestDomain domain_;
   std::string interface_;
+  std::string keys_;
   std::filesystem::path folder_;
   ProcessGroup group_;
   std::optional<ScopedNamespace> visit_;

@@ -33,6 +33,7 @@ const char* reason_text(Admission::Refusal refusal) {
   switch (refusal) {
     case Refusal::kNone:
     case Refusal::kNotNeeded:
+    case Refusal::kOtherPrefix:
       return "";
     case Refusal::kNoCredentials:
       return " that announces no key: start it with --keys";
@@ -44,8 +45,6 @@ const char* reason_text(Admission::Refusal refusal) {
       return ", whose key another authority has issued";
     case Refusal::kUnknownSubject:
       return ", whose certificate is for nobody that Sidestep knows";
-    case Refusal::kOtherPrefix:
-      return " that announces the certificate of another participant";
     case Refusal::kNotValidNow:
       return ", whose key has expired, or is not valid yet";
     case Refusal::kRevoked:
@@ -103,7 +102,7 @@ Admission::Refusal Admission::admit(const ParticipantId& id, const Known& known,
       std::ranges::count_if(participants_, [&](const auto& p) { return p.second.known == &known; });
   if (static_cast<std::size_t>(same) >= kMaxPerCertificate || participants_.size() >= kMaxParticipants)
     return Refusal::kTooMany;
-  participants_[id] = {&known, now};
+  participants_[id] = {&known, now, now};
   return Refusal::kNone;
 }
 
@@ -117,6 +116,22 @@ bool Admission::admits(const ParticipantId& id, Time now) {
 const Identity* Admission::identity_of(const ParticipantId& id) const {
   const auto found = participants_.find(id);
   return found == participants_.end() ? nullptr : &found->second.known->identity;
+}
+
+void Admission::on_authenticated(const ParticipantId& id) {
+  if (const auto found = participants_.find(id); found != participants_.end())
+    found->second.unproven_since.reset();
+}
+
+std::vector<Identity> Admission::newly_unproven(Time now) {
+  std::vector<Identity> result;
+  for (auto& [id, participant] : participants_) {
+    if (!participant.unproven_since || now - *participant.unproven_since < kMaxUnproven) continue;
+    participant.unproven_since.reset();
+    if (id == self_id_) continue;
+    result.push_back(participant.known->identity);
+  }
+  return result;
 }
 
 std::vector<ParticipantId> Admission::newly_refused(Time now) {
@@ -166,8 +181,10 @@ bool Admission::may_check_signature(Time now) {
 }
 
 std::string Admission::describe(const Decision& decision, const std::string& address) {
-  return (decision.who.empty() ? "a process" : decision.who) + " at " + address +
-         reason_text(decision.refusal);
+  const bool is_impostor = decision.refusal == Refusal::kOtherPrefix;
+  const std::string who = decision.who.empty() || is_impostor ? "a process" : decision.who;
+  return who + " at " + address +
+         (is_impostor ? " that announces the certificate of " + decision.who : reason_text(decision.refusal));
 }
 
 }  // namespace sidestep

@@ -36,6 +36,8 @@ class Admission {
   static constexpr std::size_t kMaxParticipants = 1024;
   /// Announcements come once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
+  /// Fast DDS has shown within this time that a genuine participant is one.
+  static constexpr Duration kMaxUnproven{8'000'000'000};
   /// Signatures that are checked: a burst, and then so many a second.
   static constexpr double kMaxChecks = 200, kChecksPerSecond = 50;
 
@@ -62,6 +64,8 @@ class Admission {
   /// `version`: of this process's Fast DDS. A process admits itself.
   Admission(Identity self, Certificate authority, std::string version, Time now);
 
+  /// The id of this process's own participant, which need not authenticate itself.
+  void set_self(const ParticipantId& id) { self_id_ = id; }
   /// Processes an announcement of a participant: untrusted bytes, as of credentials().
   [[nodiscard]] Decision on_announcement(const ParticipantId& id, std::span<const std::uint8_t> announced,
                                          Time now);
@@ -69,6 +73,11 @@ class Admission {
   [[nodiscard]] bool admits(const ParticipantId& id, Time now);
   /// Who the participant is; nullptr if it is not admitted.
   const Identity* identity_of(const ParticipantId& id) const;
+  /// Fast DDS has accepted the participant's private key and permissions.
+  void on_authenticated(const ParticipantId& id);
+  /// Whom participants announce themselves as for kMaxUnproven without on_authenticated(); each is returned
+  /// once.
+  [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
   /// The serial numbers of revoked certificates.
   void set_revoked(std::set<std::string> serials) { revoked_ = std::move(serials); }
   /// Participants that are no longer admitted, because they are silent, or their certificate has expired or
@@ -89,6 +98,7 @@ class Admission {
   struct Participant {
     const Known* known;
     Time last_heard;
+    std::optional<Time> unproven_since;  ///< nullopt: proven, or reported
   };
 
   /// The certificate, if the authority has issued it; otherwise says why not.
@@ -98,6 +108,7 @@ class Admission {
   bool may_check_signature(Time now);
 
   const Identity self_;
+  std::optional<ParticipantId> self_id_;
   const Certificate authority_;
   const std::string version_;
   std::set<std::string> revoked_;

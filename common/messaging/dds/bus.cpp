@@ -86,10 +86,12 @@ bool DdsBus::may_write(const TopicInfo& topic, std::uint32_t robot) const {
   return !identity || sidestep::may_write(*identity, topic, robot);
 }
 
+bool DdsBus::may_read(const TopicInfo& topic, std::uint32_t robot) const {
+  const Identity* const identity = impl_->session->participant.identity();
+  return !identity || sidestep::may_read(*identity, topic, robot);
+}
+
 std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std::string& channel) {
-  if (!may_write(topic, channel_robot(topic, channel).value_or(0)))
-    throw std::invalid_argument(fmt::format("the keys of {} do not allow writing the topic '{}'",
-                                            to_text(*impl_->session->participant.identity()), channel));
   impl_->session->type_mismatches.expect(channel, topic.type.name);
   if (!impl_->shares_memory(topic)) return std::make_unique<DdsWriter>(impl_->participant(), topic, channel);
   if (!impl_->image_participant) impl_->image_participant = image_publisher_participant(impl_->settings);
@@ -98,10 +100,8 @@ std::unique_ptr<RawWriter> DdsBus::make_writer(const TopicInfo& topic, const std
 
 void DdsBus::make_reader(const TopicInfo& topic, const std::string& channel,
                          std::function<void(const void*)> callback) {
-  if (const Identity* const identity = impl_->session->participant.identity();
-      identity && !may_read(*identity, topic, channel_robot(topic, channel).value_or(0))) {
-    log(LogLevel::kDebug,
-        fmt::format("the keys of {} do not allow reading the topic '{}'", to_text(*identity), channel));
+  if (!may_read(topic, channel_robot(topic, channel).value_or(0))) {
+    log(LogLevel::kDebug, fmt::format("no keys for reading the topic '{}'", channel));
     return;
   }
   impl_->session->type_mismatches.expect(channel, topic.type.name);

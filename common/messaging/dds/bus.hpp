@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/keys/identity.hpp"
 #include "common/messaging/bus.hpp"
 
 namespace sidestep {
@@ -19,10 +20,12 @@ struct DdsSettings {
   /// Addresses of the hosts where the other processes are, this one included. Empty: processes find each
   /// other by multicast.
   std::vector<std::string> peers{};
-  /// Folder of the keys of this process's identity, as `sidestep keys issue` writes it. Empty: no keys, so
-  /// that anybody on the network can command the robots.
+  /// Folder with the keys of one identity, or one that `sidestep keys init` has made. Empty: no keys, so that
+  /// anybody on the network can command the robots.
   std::string keys{};
   bool insecure = false;  ///< may work without keys on networks that other machines can reach
+  /// Whose keys to take from a folder with those of several.
+  Identity identity{Role::kViewer};
 };
 
 /// The version of Fast DDS that this program was built with, e.g. "3.1.2".
@@ -72,6 +75,7 @@ class DdsBus : public Bus {
   void impair(const LinkQuality& quality, std::uint64_t seed);
 
   bool may_write(const TopicInfo& topic, std::uint32_t robot) const override;
+  bool may_read(const TopicInfo& topic, std::uint32_t robot) const override;
 
  protected:
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;

@@ -50,10 +50,21 @@ bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> dat
   return is_admitted;
 }
 
+void Gate::set_self(const ParticipantId& id) {
+  const std::lock_guard lock(mutex_);
+  admission_.set_self(id);
+}
+
 std::vector<ParticipantId> Gate::newly_refused() {
   const std::lock_guard lock(mutex_);
   read_revoked();
-  return admission_.newly_refused(EventLoop::now());
+  const Time now = EventLoop::now();
+  for (const Identity& identity : admission_.newly_unproven(now))
+    report(fmt::format(
+        "refuses a process that announces itself as {}: for {:.0f} s it has not shown a genuine private "
+        "key and genuine permissions",
+        to_text(identity), to_seconds(Admission::kMaxUnproven)));
+  return admission_.newly_refused(now);
 }
 
 bool Gate::may_send(const ParticipantId& participant, const TopicInfo& topic, std::uint32_t robot,
@@ -74,10 +85,11 @@ bool Gate::is_operator(const ParticipantId& participant) const {
   return identity && identity->role == Role::kOperator;
 }
 
-void Gate::on_unauthorised(const ParticipantId& participant) {
+void Gate::on_authentication(const ParticipantId& participant, bool is_genuine) {
   const std::lock_guard lock(mutex_);
+  if (is_genuine) return admission_.on_authenticated(participant);
   const Identity* const identity = admission_.identity_of(participant);
-  report(fmt::format("refuses {}: its private key, certificate or permissions are not genuine",
+  report(fmt::format("refuses {}: its private key or certificate is not genuine",
                      identity ? "a process that announces itself as " + to_text(*identity) : "a process"));
 }
 

@@ -24,6 +24,8 @@ class Gate {
   /// Throws std::invalid_argument if the list of revoked keys cannot be read.
   Gate(const KeyFolder& keys, const std::string& version);
 
+  /// As Admission::set_self().
+  void set_self(const ParticipantId& id);
   /// Whether a datagram of the sender may be passed on. `address`: the IPv4 address from which it comes, for
   /// the log.
   [[nodiscard]] bool passes(const ParticipantId& sender, std::span<const std::uint8_t> datagram,
@@ -35,8 +37,8 @@ class Gate {
   [[nodiscard]] bool may_send(const ParticipantId& participant, const TopicInfo& topic, std::uint32_t robot,
                               std::uint32_t sender);
   [[nodiscard]] bool is_operator(const ParticipantId& participant) const;
-  /// Logs that Fast DDS has refused a participant.
-  void on_unauthorised(const ParticipantId& participant);
+  /// What Fast DDS says of a participant's private key and certificate; false is logged.
+  void on_authentication(const ParticipantId& participant, bool is_genuine);
 
   /// Datagrams with messages of participants that were not admitted.
   std::uint64_t unknown() const { return unknown_; }

@@ -73,6 +73,16 @@ void check(const DdsSettings& settings) {
   }
 }
 
+ParticipantId id_of(const fast_dds::rtps::GuidPrefix_t& prefix) {
+  ParticipantId result;
+  std::ranges::copy(prefix.value, result.begin());
+  return result;
+}
+
+class NoListener : public fast_dds::DiscoveryListener {
+  void on_endpoint(const fast_dds::rtps::GUID_t&, DiscoveredEndpoint&&, EndpointChange) override {}
+};
+
 /// The properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
 void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
   auto& properties = qos.properties().properties();
@@ -155,18 +165,17 @@ std::runtime_error failure(const std::string& entity, const std::string& channel
 }  // namespace
 
 DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
-                               std::uint32_t shared_memory_bytes) {
+                               std::uint32_t shared_memory_bytes)
+    : own_listener_(listener == nullptr ? std::make_unique<NoListener>() : nullptr),
+      listener_(listener == nullptr ? own_listener_.get() : listener) {
   check(settings);
   if (!settings.keys.empty()) {
-    keys_ = load_key_folder(settings.keys, EventLoop::now());
+    keys_ = load_key_folder(own_key_folder(settings.keys, settings.identity), EventLoop::now());
     gate_ = std::make_shared<Gate>(*keys_, fast_dds_version());
-    if (listener != nullptr) {
-      listener->on_unauthorised = [gate = gate_](const fast_dds::rtps::GuidPrefix_t& prefix) {
-        ParticipantId id;
-        std::ranges::copy(prefix.value, id.begin());
-        gate->on_unauthorised(id);
-      };
-    }
+    listener_->on_authentication = [gate = gate_](const fast_dds::rtps::GuidPrefix_t& prefix,
+                                                  bool is_genuine) {
+      gate->on_authentication(id_of(prefix), is_genuine);
+    };
   } else {
     require_safe_network(settings);
   }
@@ -174,13 +183,14 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   fast_dds::disable_intraprocess_delivery();
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain),
-      participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener,
+      participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener_,
       StatusMask::none());
   if (participant_ == nullptr) {
     throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}{}",
                                          settings.domain, settings.interface,
                                          keys_ ? " with the keys in " + keys_->path : ""));
   }
+  if (gate_) gate_->set_self(id_of(participant_->guid().guidPrefix));
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);
   if (publisher_ == nullptr || subscriber_ == nullptr)
@@ -208,8 +218,21 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, const TypeSupport&
   return created;
 }
 
+/// What Fast DDS would refuse too, without saying why.
+void DdsParticipant::require_permission(const std::string& channel, bool writes) const {
+  if (!keys_) return;
+  for (const TopicInfo& topic : all_topics()) {
+    const auto robot = channel_robot(topic, channel);
+    if (robot && !(writes ? may_write : may_read)(keys_->identity, topic, *robot))
+      throw std::invalid_argument(fmt::format("the keys of {} do not allow {} the topic '{}'",
+                                              to_text(keys_->identity), writes ? "writing" : "reading",
+                                              channel));
+  }
+}
+
 DataWriter* DdsParticipant::create_writer(const std::string& channel, const TypeSupport& type,
                                           const DataWriterQos& qos, DataWriterListener* listener) {
+  require_permission(channel, true);
   const StatusMask mask = StatusMask::publication_matched() << StatusMask::offered_incompatible_qos();
   DataWriter* writer = publisher_->create_datawriter(topic(channel, type), qos, listener, mask);
   if (writer == nullptr) throw failure("writer", channel);
@@ -218,6 +241,7 @@ DataWriter* DdsParticipant::create_writer(const std::string& channel, const Type
 
 DataReader* DdsParticipant::create_reader(const std::string& channel, const TypeSupport& type,
                                           const DataReaderQos& qos, DataReaderListener* listener) {
+  require_permission(channel, false);
   const StatusMask mask = StatusMask::data_available() << StatusMask::requested_incompatible_qos();
   DataReader* reader = subscriber_->create_datareader(topic(channel, type), qos, listener, mask);
   if (reader == nullptr) throw failure("reader", channel);

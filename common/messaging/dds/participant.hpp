@@ -50,8 +50,11 @@ class DdsParticipant {
   const Identity* identity() const { return keys_ ? &keys_->identity : nullptr; }
 
  private:
+  void require_permission(const std::string& channel, bool writes) const;
   fast_dds::dds::Topic* topic(const std::string& channel, const fast_dds::dds::TypeSupport& type);
 
+  std::unique_ptr<fast_dds::DiscoveryListener> own_listener_;
+  fast_dds::DiscoveryListener* listener_;
   std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
   std::optional<KeyFolder> keys_;
   std::shared_ptr<Gate> gate_;

@@ -28,19 +28,19 @@ RunOptions run_options(const FaultTest& test, const LaunchOptions& options, cons
   run.report_file = default_report_path(test.scenario.name, std::nullopt);
   run.dds = options.dds;
   run.dds.participant = "sidestep-test";
-  run.keys = options.dds.keys;
+  run.dds.identity = {Role::kJudge};
   run.dds.interface = hosts.hosts().interface;
   run.floor.seed = options.seed;
   run.log_level = options.log_level;
   run.faults = has_fault<ImpairmentFault>(test);
   run.is_quiet = true;
-  use_judge_keys(run, test.scenario);
+  require_keys(run, test.scenario);
   return run;
 }
 
 DdsSettings operator_settings(const RunOptions& options) {
   DdsSettings dds = options.dds;
-  if (!options.keys.empty()) dds.keys = key_folder_of(options.keys, {Role::kOperator});
+  dds.identity = {Role::kOperator};
   return dds;
 }
 

@@ -145,6 +145,9 @@ void add_replay_command(const CliCommand& root, std::function<int()>& action) {
       if (std::ranges::none_of(known, [&](const TopicInfo& topic) { return topic.name == name; }))
         throw UsageError(fmt::format("--topics: there is no topic '{}'", name));
     }
+    if (!options->dds.keys.empty())
+      throw UsageError(
+          "--keys: a replay says what others have said, which no key allows; replay without keys");
     action = [options] { return Replay(*options).run(); };
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 #include "common/messaging/bus.hpp"
@@ -14,6 +15,7 @@ void print_unknown_topic(const std::string& channel);
 void print_damage(const std::string& recording_file, const std::string& damage);
 
 /// Calls `use` with each message of a channel. False, after print_unknown_topic(): it belongs to no topic.
+/// Throws std::invalid_argument if this process's keys do not allow reading it.
 template <typename Use>
 [[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
   bool is_known = false;
@@ -21,6 +23,9 @@ template <typename Use>
     const auto robot = channel_robot(topic, channel);
     if (!robot) return;
     is_known = true;
+    if (!bus.may_read(topic, *robot))
+      throw std::invalid_argument("the keys of this process do not allow reading the topic '" + channel +
+                                  "'");
     bus.subscribe<Message>(topic, *robot, [use](const Message& message) { use(message); });
   });
   if (!is_known) print_unknown_topic(channel);

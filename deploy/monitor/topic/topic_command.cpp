@@ -91,7 +91,10 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   pub.add_option("--rate", options->rate_hz, "messages per second").check(positive()).show_default();
   pub.add_option("--idl", options->idl_file, "IDL file with the type of another program's topic");
   pub.add_option("--type", options->type, "name of that type [as the topic's endpoints announce it]");
-  pub.on_parsed([options, &action] { action = [options] { return publish_topic(*options); }; });
+  pub.on_parsed([options, &action] {
+    options->dds.identity = {Role::kOperator};
+    action = [options] { return publish_topic(*options); };
+  });
 
   for (const CliCommand& command : {list, info, hz, bw, delay, echo, pub})
     add_dds_options(command, options->dds);

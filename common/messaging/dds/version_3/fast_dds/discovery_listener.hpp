@@ -25,14 +25,15 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
 
-  /// Called when Fast DDS has refused a participant: its private key, certificate or permissions are not
-  /// genuine. Set it before the listener is used.
-  std::function<void(const rtps::GuidPrefix_t&)> on_unauthorised;
+  /// Called when Fast DDS has accepted a participant's private key, certificate and permissions, or has
+  /// refused the former two; it does not tell if permissions are refused. Set it before the listener is used.
+  std::function<void(const rtps::GuidPrefix_t&, bool is_genuine)> on_authentication;
 
   void onParticipantAuthentication(dds::DomainParticipant*,
                                    rtps::ParticipantAuthenticationInfo&& info) final {
-    if (on_unauthorised && info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
-      on_unauthorised(info.guid.guidPrefix);
+    if (on_authentication)
+      on_authentication(info.guid.guidPrefix,
+                        info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
   }
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
                                 const rtps::ParticipantBuiltinTopicData& info, bool&) final {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+namespace sidestep {
+
+/// A UDP datagram to a port of this machine's loopback interface.
+struct CapturedDatagram {
+  std::uint16_t port = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// The UDP ports of a DDS domain on which processes of this network namespace listen (RTPS 2.2, 9.6.1.1).
+std::vector<std::uint16_t> open_ports(int domain);
+
+/// Captures the datagrams of a DDS domain on the loopback interface from its construction on. Needs root.
+class Capture {
+ public:
+  /// Throws std::runtime_error.
+  explicit Capture(int domain);
+  ~Capture();
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
+
+  /// A copy of what has been captured so far, oldest first; at most the first hundred thousand.
+  std::vector<CapturedDatagram> datagrams() const;
+
+ private:
+  void run();
+
+  int socket_;
+  std::uint16_t first_port_, last_port_;
+  std::atomic<bool> is_stopped_{false};
+  mutable std::mutex mutex_;
+  std::vector<CapturedDatagram> datagrams_;
+  std::thread thread_;
+};
+
+/// Sends datagrams to ports of the loopback interface from a port of its own.
+class DatagramSender {
+ public:
+  DatagramSender();
+  ~DatagramSender();
+  DatagramSender(const DatagramSender&) = delete;
+  DatagramSender& operator=(const DatagramSender&) = delete;
+
+  void send(std::uint16_t port, std::span<const std::uint8_t> bytes);
+  /// To the multicast group in which participants of a DDS domain find each other.
+  void announce(int domain, std::span<const std::uint8_t> bytes);
+
+ private:
+  int socket_;
+};
+
+}  // namespace sidestep
