@@ -15,6 +15,7 @@
 #include "common/log/log.hpp"
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/library_log.hpp"
 #include "common/messaging/dds/open_network.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "fast_dds_version.hpp"
@@ -179,6 +180,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   } else {
     require_safe_network(settings);
   }
+  log_library();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   fast_dds::disable_intraprocess_delivery();
   participant_ = DomainParticipantFactory::get_instance()->create_participant(

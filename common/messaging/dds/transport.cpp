@@ -32,6 +32,9 @@ constexpr Duration kCheckInterval{500'000'000};
 /// Fast DDS announces a participant some milliseconds before it can process the answers.
 constexpr Duration kUntilReady{50'000'000};
 
+/// So many that writers never reach it; they have periodic heartbeats.
+constexpr std::uint32_t kBytesUntilHeartbeat = 1U << 30;
+
 bool has_operator_mark(const ParticipantId& id) {
   return std::equal(kOperatorMark.begin(), kOperatorMark.end(), id.begin());
 }
@@ -46,6 +49,11 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
         gate(std::move(gate_of_participant)) {}
 
   transport::TransportInterface* create_transport() const override;
+  /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent so many bytes. Of the
+  /// writers of discovery it counts far too many (2.9.1 adds up sums), so that each new participant would
+  /// cause heartbeats from and to all others for every second endpoint: among 25, most of the packets at the
+  /// start.
+  std::uint32_t min_send_buffer_size() const override { return kBytesUntilHeartbeat; }
 
   std::shared_ptr<Impairment> impairment;
   std::shared_ptr<TransportCounts> counts;

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace sidestep {
+
+/// From now on this process's log has what Fast DDS logs, instead of stderr. Of each function of Fast DDS it
+/// has only a few lines a minute, because every hostile datagram can cause one. Later calls have no effect.
+void log_library();
+
+}  // namespace sidestep
