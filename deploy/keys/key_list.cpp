@@ -18,8 +18,8 @@ std::vector<Identity> split(const std::string& text) {
   // Robots have ranges; those of agents and coordinators are read in the same way.
   const auto space = text.find(' ');
   const std::string word = text.substr(0, space);
-  const auto range =
-      word == "agent" || word == "coordinator" ? parse_identity("robot" + text.substr(space)) : std::nullopt;
+  const bool has_range = space != std::string::npos && (word == "agent" || word == "coordinator");
+  const auto range = has_range ? parse_identity("robot" + text.substr(space)) : std::nullopt;
   std::vector<Identity> result;
   for (std::uint32_t i = range ? range->first : 1; range && i <= range->last; ++i) {
     const auto identity = parse_identity(word + " " + std::to_string(i));

@@ -17,7 +17,7 @@
 #include "tests/catch.hpp"
 #include "tests/faults/attacker.hpp"
 #include "tests/faults/datagrams.hpp"
-#include "tests/faults/launched_run.hpp"
+#include "tests/faults/keyed_run.hpp"
 #include "tests/needs_root.hpp"
 #include "tests/test_keys.hpp"
 
@@ -28,16 +28,6 @@ using std::chrono::seconds;
 
 constexpr double kMoving_mps = 0.1;
 constexpr int kDatagramsPerSecond = 10'000;
-
-/// Three robots that stand until somebody orders them to drive.
-const char* const kWaitingRobots =
-    "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 600\nrobots:\n"
-    "  - {id: 0, start_m: [-2, -1]}\n  - {id: 1, start_m: [-2, 0]}\n  - {id: 2, start_m: [-2, 1]}\n";
-
-std::vector<std::string> all_identities() {
-  return {"agent", "0-2",    "coordinator", "0",      "vision",  "simulator",
-          "judge", "viewer", "operator",    "client", "forklift"};
-}
 
 /// An order to robot 0 that nobody who may give it has given.
 msg::Order order_as(std::uint32_t sender, Time now) {
@@ -82,83 +72,8 @@ void use_own_permissions(AttackerSettings& settings, const TestKeys& others) {
                                                certificate.not_before(), certificate.not_after())));
 }
 
-/// A run with keys whose robots stand.
-struct KeyedRun {
-  KeyedRun() : keys(all_identities()), run(kWaitingRobots, {"--keys", keys.folder()}) {
-    INFO(run.output());
-    REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
-    // Agents that do not answer yet are asked again.
-    REQUIRE(run.wait_until([&] { return command({"status", "--once"}) == "exit code 0"; }));
-  }
-
-  /// Runs `sidestep` with the keys of the run.
-  std::string command(std::vector<std::string> arguments) {
-    const auto dds = run.dds_arguments();
-    arguments.insert(arguments.end(), dds.begin(), dds.end());
-    if (std::ranges::find(arguments, "--keys") == arguments.end())
-      arguments.insert(arguments.end(), {"--keys", keys.folder()});
-    return run.command(arguments);
-  }
-  /// A participant that knows these keys, and announces them as our processes do.
-  AttackerSettings with_keys(const std::string& folder) const {
-    const Certificate certificate = Certificate::load(folder + "/" + key_files::kCertificate);
-    return {domain(), AttackerKeys::of(folder), credentials(certificate, fast_dds_version())};
-  }
-  int domain() const { return std::stoi(run.dds_arguments()[1]); }
-
-  /// The operator's own orders still count, and nothing has touched.
-  void check_unharmed() {
-    INFO(run.output());
-    CHECK(command({"go", "0", "2,-1", "--wait"}) == "exit code 0");
-    check_safe();
-  }
-  void check_safe() {
-    REQUIRE(kill(run.pid(), SIGINT) == 0);
-    CHECK(run.wait_for_end() != "");
-    CHECK(run.report()["contacts"] == 0);
-    CHECK(run.report()["audit"]["violations"] == 0);
-  }
-
-  TestKeys keys;
-  LaunchedRun run;
-};
-
-/// An operator who sends the robots to and fro.
-class Shuttle {
- public:
-  explicit Shuttle(const KeyedRun& keyed)
-      : bus_(settings(keyed)), client_(bus_, static_cast<ClientId>(Sender::kOperator)) {}
-
-  /// Goes on for a moment. Returns how many orders have been carried out.
-  int drive() {
-    bus_.run_until(bus_.now() + milliseconds(1));
-    for (RobotId robot = 0; robot < handles_.size(); ++robot) {
-      auto& handle = handles_[robot];
-      if (handle && client_.find(*handle)->phase != OrderPhase::kArrived) continue;
-      arrived_ += handle.has_value();
-      sign_[robot] = -sign_[robot];
-      handle = client_.go(robot, {{{2.0 * sign_[robot], -1.0 + robot}}});
-    }
-    return arrived_;
-  }
-
- private:
-  static DdsSettings settings(const KeyedRun& keyed) {
-    DdsSettings result{keyed.domain(), "127.0.0.1", "shuttle"};
-    result.keys = keyed.keys.folder();
-    result.identity = {Role::kOperator};
-    return result;
-  }
-
-  DdsBus bus_;
-  OrderClient client_;
-  std::array<std::optional<OrderHandle>, 3> handles_{};
-  std::array<double, 3> sign_{-1, -1, -1};
-  int arrived_ = 0;
-};
-
 TEST_CASE("without keys, anybody's order moves a robot") {
-  LaunchedRun run(kWaitingRobots);
+  LaunchedRun run(kThreeWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
   Attacker attacker({std::stoi(run.dds_arguments()[1])});
   INFO(run.output());

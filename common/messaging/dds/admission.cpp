@@ -128,7 +128,8 @@ std::vector<Identity> Admission::newly_unproven(Time now) {
   for (auto& [id, participant] : participants_) {
     if (!participant.unproven_since || now - *participant.unproven_since < kMaxUnproven) continue;
     participant.unproven_since.reset();
-    if (id == self_id_) continue;
+    // One that has ended meanwhile may have been too brief.
+    if (id == self_id_ || now - participant.last_heard > kMaxUnproven / 2) continue;
     result.push_back(participant.known->identity);
   }
   return result;

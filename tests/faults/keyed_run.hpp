@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <signal.h>
+#include <string>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "common/messaging/dds/admission.hpp"
+#include "common/messaging/senders.hpp"
+#include "tests/catch.hpp"
+#include "tests/faults/attacker.hpp"
+#include "tests/faults/launched_run.hpp"
+#include "tests/test_keys.hpp"
+
+namespace sidestep {
+
+/// Three robots that stand until somebody orders them to drive.
+inline constexpr const char* kThreeWaitingRobots =
+    "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 600\nrobots:\n"
+    "  - {id: 0, start_m: [-2, -1]}\n  - {id: 1, start_m: [-2, 0]}\n  - {id: 2, start_m: [-2, 1]}\n";
+
+inline std::vector<std::string> all_identities() {
+  return {"agent", "0-2",    "coordinator", "0",      "vision",  "simulator",
+          "judge", "viewer", "operator",    "client", "forklift"};
+}
+
+/// A run with keys whose robots stand.
+struct KeyedRun {
+  KeyedRun() : keys(all_identities()), run(kThreeWaitingRobots, {"--keys", keys.folder()}) {
+    INFO(run.output());
+    REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
+    // Agents that do not answer yet are asked again.
+    REQUIRE(run.wait_until([&] { return command({"status", "--once"}) == "exit code 0"; }));
+  }
+
+  /// Runs `sidestep` with the keys of the run.
+  std::string command(std::vector<std::string> arguments) {
+    const auto dds = run.dds_arguments();
+    arguments.insert(arguments.end(), dds.begin(), dds.end());
+    if (std::ranges::find(arguments, "--keys") == arguments.end())
+      arguments.insert(arguments.end(), {"--keys", keys.folder()});
+    return run.command(arguments);
+  }
+  /// A participant that knows these keys, and announces them as our processes do.
+  AttackerSettings with_keys(const std::string& folder) const {
+    const Certificate certificate = Certificate::load(folder + "/" + key_files::kCertificate);
+    return {domain(), AttackerKeys::of(folder), credentials(certificate, fast_dds_version())};
+  }
+  int domain() const { return std::stoi(run.dds_arguments()[1]); }
+
+  /// The operator's own orders still count, and nothing has touched.
+  void check_unharmed() {
+    INFO(run.output());
+    CHECK(command({"go", "0", "2,-1", "--wait"}) == "exit code 0");
+    check_safe();
+  }
+  void check_safe() {
+    REQUIRE(kill(run.pid(), SIGINT) == 0);
+    CHECK(run.wait_for_end() != "");
+    CHECK(run.report()["contacts"] == 0);
+    CHECK(run.report()["audit"]["violations"] == 0);
+  }
+
+  TestKeys keys;
+  LaunchedRun run;
+};
+
+/// An operator who sends the robots to and fro.
+class Shuttle {
+ public:
+  explicit Shuttle(const KeyedRun& keyed)
+      : bus_(settings(keyed)), client_(bus_, static_cast<ClientId>(Sender::kOperator)) {}
+
+  /// Goes on for a moment. Returns how many orders have been carried out.
+  int drive() {
+    bus_.run_until(bus_.now() + std::chrono::milliseconds(1));
+    for (RobotId robot = 0; robot < handles_.size(); ++robot) {
+      auto& handle = handles_[robot];
+      if (handle && client_.find(*handle)->phase != OrderPhase::kArrived) continue;
+      arrived_ += handle.has_value();
+      sign_[robot] = -sign_[robot];
+      handle = client_.go(robot, {{{2.0 * sign_[robot], -1.0 + robot}}});
+    }
+    return arrived_;
+  }
+
+ private:
+  static DdsSettings settings(const KeyedRun& keyed) {
+    DdsSettings result{keyed.domain(), "127.0.0.1", "shuttle"};
+    result.keys = keyed.keys.folder();
+    result.identity = {Role::kOperator};
+    return result;
+  }
+
+  DdsBus bus_;
+  OrderClient client_;
+  std::array<std::optional<OrderHandle>, 3> handles_{};
+  std::array<double, 3> sign_{-1, -1, -1};
+  int arrived_ = 0;
+};
+
+}  // namespace sidestep

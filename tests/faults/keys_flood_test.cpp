@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ten thousand hostile datagrams a second, on every port of a run with keys.
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+#include "common/random/rng.hpp"
+#include "tests/faults/datagrams.hpp"
+#include "tests/faults/keyed_run.hpp"
+#include "tests/faults/process_usage.hpp"
+
+namespace sidestep::keys_flood_test {
+
+using std::chrono::seconds;
+
+constexpr int kPerSecond = 10'000;
+constexpr double kStanding_mps = 0.05;
+/// A process that kept what it is sent would grow by more in the shortest flood.
+constexpr double kMaxGrowth_mb = 6;
+
+/// An RTPS datagram of this sender that announces a participant with this user data (RTPS 2.2, 9.4.5.3).
+std::vector<std::uint8_t> announcement(const ParticipantId& id, const std::vector<std::uint8_t>& user_data) {
+  std::vector<std::uint8_t> result{'R', 'T', 'P', 'S', 2, 2, 1, 15};
+  const auto append = [&](const auto& bytes) { result.insert(result.end(), bytes.begin(), bytes.end()); };
+  const auto append_16 = [&](std::size_t number) {
+    result.push_back(static_cast<std::uint8_t>(number));
+    result.push_back(static_cast<std::uint8_t>(number >> 8));
+  };
+  const std::size_t padded = (user_data.size() + 3) / 4 * 4;
+  append(id);
+  append(std::array<std::uint8_t, 2>{0x15, 5});
+  append_16(0);  // up to the end
+  append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
+  append(std::array<std::uint8_t, 8>{0, 3, 0, 0, 0x15, 0, 4, 0});  // a list; the protocol's version:
+  append(std::array<std::uint8_t, 4>{2, 2, 0, 0});
+  append(std::array<std::uint8_t, 4>{0x50, 0, 16, 0});  // GUID
+  append(id);
+  append(std::array<std::uint8_t, 4>{0, 0, 1, 0xc1});
+  append_16(0x2c);
+  append_16(4 + padded);
+  append_16(user_data.size());
+  append_16(0);
+  append(user_data);
+  result.resize(result.size() + padded - user_data.size());
+  append(std::array<std::uint8_t, 4>{1, 0, 0, 0});
+  return result;
+}
+
+/// Strangers, some of whom know a genuine announcement.
+class Strangers {
+ public:
+  Strangers(const KeyedRun& keyed, std::uint64_t seed) : rng_(seed), domain_(keyed.domain()) {
+    const TestKeys others({"agent", "0"});
+    foreign_ = keyed.with_keys(others.folder_of("agent 0")).announced;
+    for (const char* identity : {"agent 0", "coordinator 0", "vision", "simulator"}) {
+      const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of(identity));
+      genuine_.emplace_back(Certificate::load(genuine.keys->certificate).prefix(), genuine.announced);
+    }
+  }
+
+  void send(const std::vector<std::uint16_t>& ports) {
+    const std::uint16_t port = ports[rng_.below(ports.size())];
+    ParticipantId id{};
+    for (std::uint8_t& byte : id) byte = random_byte();
+    const auto& [prefix, announced] = genuine_[rng_.below(genuine_.size())];
+    switch (rng_.below(6)) {
+      case 0:
+        return sender_.announce(domain_, announcement(id, random_bytes(rng_.below(600))));
+      case 1:
+        return sender_.announce(domain_, announcement(id, foreign_));
+      case 2:
+        std::ranges::copy(prefix, id.begin());
+        return sender_.announce(domain_, announcement(id, announced));
+      case 3: {
+        std::ranges::copy(prefix, id.begin());
+        std::vector<std::uint8_t> datagram = announcement(id, announced);
+        for (std::uint64_t i = rng_.below(20); i > 0; --i)
+          datagram[20 + rng_.below(datagram.size() - 20)] = random_byte();
+        return sender_.send(port, datagram);
+      }
+      case 4: {
+        std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 2, 1, 15};
+        std::ranges::copy(prefix, id.begin());
+        datagram.insert(datagram.end(), id.begin(), id.end());
+        const auto body = random_bytes(rng_.below(1400));
+        datagram.insert(datagram.end(), body.begin(), body.end());
+        return sender_.send(port, datagram);
+      }
+      default:
+        return sender_.send(port, random_bytes(rng_.below(1400)));
+    }
+  }
+
+ private:
+  std::uint8_t random_byte() { return static_cast<std::uint8_t>(rng_.bits()); }
+  std::vector<std::uint8_t> random_bytes(std::uint64_t size) {
+    std::vector<std::uint8_t> result(size);
+    for (std::uint8_t& byte : result) byte = random_byte();
+    return result;
+  }
+
+  Rng rng_;
+  int domain_;
+  DatagramSender sender_;
+  std::vector<std::uint8_t> foreign_;
+  std::vector<std::pair<CertifiedPrefix, std::vector<std::uint8_t>>> genuine_;
+};
+
+void check_flood(Duration duration) {
+  KeyedRun keyed;
+  LaunchedRun& run = keyed.run;
+  Shuttle shuttle(keyed);
+  Strangers strangers(keyed, Catch::rngSeed());
+  CAPTURE(Catch::rngSeed());
+  INFO(run.output());
+  REQUIRE(run.wait_until([&] { return shuttle.drive() >= 3; }));
+  const std::vector<std::uint16_t> ports = open_ports(keyed.domain());
+  REQUIRE(ports.size() > 10);
+  double standing_s = 0, longest_s = 0, current_s = 0;
+  std::map<std::string, std::vector<MemorySample>> memory;
+  int sent = 0;
+  const auto flood = [&](Duration length) {
+    const Time begin = run.bus().now();
+    Time last = begin;
+    int count = 0;
+    REQUIRE(run.wait_until([&] {
+      shuttle.drive();
+      const Time now = run.bus().now();
+      const double step_s = to_seconds(now - last);
+      last = now;
+      const bool is_standing = run.max_speed_mps() < kStanding_mps;
+      standing_s += is_standing ? step_s : 0;
+      current_s = is_standing ? current_s + step_s : 0;
+      longest_s = std::max(longest_s, current_s);
+      // A delay of this process is not made up for at once.
+      count = std::max(count, static_cast<int>(to_seconds(now - begin) * kPerSecond) - kPerSecond / 10);
+      for (; count < to_seconds(now - begin) * kPerSecond; ++count, ++sent) strangers.send(ports);
+      return now - begin > length;
+    }));
+  };
+  flood(seconds(5));
+  const Time begin = run.bus().now();
+  const int arrived_before = shuttle.drive();
+  standing_s = longest_s = current_s = 0;
+  sent = 0;
+  const auto sample = [&] {
+    for (const auto& [process, usage] : usage_of(run))
+      memory[process].push_back({to_seconds(run.bus().now() - begin), usage.memory_mb});
+  };
+  sample();
+  for (Duration left = duration; left > Duration{0}; left -= seconds(5)) {
+    flood(std::min<Duration>(left, seconds(5)));
+    sample();
+  }
+  const double flooded_s = to_seconds(run.bus().now() - begin);
+  for (const auto& [process, samples] : memory) {
+    const double growth_mb = samples.back().memory_mb - samples.front().memory_mb;
+    WARN(fmt::format("{}: {:.1f} MB, grown by {:.2f} MB, {:.0f} MB/h", process, samples.front().memory_mb,
+                     growth_mb, memory_slope_mb_per_h(samples)));
+    CHECK(growth_mb < kMaxGrowth_mb);
+  }
+  WARN(fmt::format(
+      "{:.0f} datagrams a second to {} ports for {:.0f} s; orders carried out meanwhile: {}; all robots "
+      "stood for "
+      "{:.1f} s, at most {:.1f} s at a time",
+      sent / flooded_s, ports.size(), flooded_s, shuttle.drive() - arrived_before, standing_s, longest_s));
+  CHECK(sent / flooded_s > 0.8 * kPerSecond);
+  const int arrived = shuttle.drive();
+  CHECK(run.wait_until([&] { return shuttle.drive() > arrived + 3; }));
+  keyed.check_unharmed();
+}
+
+TEST_CASE("a flood of strangers on every port costs time, and neither safety nor memory", "[both-cores]") {
+  check_flood(seconds(15));
+}
+
+TEST_CASE("a flood of strangers on every port for five minutes fills no memory", "[.long]") {
+  check_flood(std::chrono::minutes(5));
+}
+
+}  // namespace sidestep::keys_flood_test

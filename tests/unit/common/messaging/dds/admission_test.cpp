@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/admission.hpp"
+
+#include <algorithm>
+
+#include "common/random/rng.hpp"
+#include "deploy/keys/authority.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::admission_test {
+
+using namespace std::chrono_literals;
+using Refusal = Admission::Refusal;
+
+constexpr const char* kVersion = "2.9.1";
+
+Identity identity(const char* text) { return parse_identity(text).value(); }
+
+/// The id of the `number`th participant with this certificate.
+ParticipantId id_with(const Certificate& certificate, std::uint16_t number = 1) {
+  ParticipantId id{};
+  std::ranges::copy(certificate.prefix(), id.begin());
+  id[10] = static_cast<std::uint8_t>(number >> 8);
+  id[11] = static_cast<std::uint8_t>(number);
+  return id;
+}
+
+struct Fixture {
+  Certificate issue(const char* text, Duration validity = 1h) {
+    return authority.issue(identity(text), make_private_key(), now, now + validity);
+  }
+  Refusal announce(const ParticipantId& id, const Certificate& certificate,
+                   const std::string& version = kVersion) {
+    return admission.on_announcement(id, credentials(certificate, version), now).refusal;
+  }
+
+  Time now = time_from_ns(1'800'000'000'000'000'000);
+  Authority authority{"identity authority", now, now + 24h};
+  Authority other{"identity authority", now, now + 24h};
+  Admission admission{identity("coordinator 0"), authority.certificate(), kVersion, now};
+};
+
+TEST_CASE("a participant with a valid certificate is admitted, and known by its identity") {
+  Fixture f;
+  const Certificate agent = f.issue("agent 3");
+  const ParticipantId id = id_with(agent);
+  CHECK_FALSE(f.admission.admits(id, f.now));
+  CHECK(f.admission.identity_of(id) == nullptr);
+  CHECK(f.announce(id, agent) == Refusal::kNone);
+  CHECK(f.admission.admits(id, f.now));
+  REQUIRE(f.admission.identity_of(id) != nullptr);
+  CHECK(*f.admission.identity_of(id) == identity("agent 3"));
+}
+
+TEST_CASE("whoever has no valid certificate of this network is refused") {
+  Fixture f;
+  const Certificate agent = f.issue("agent 3"),
+                    foreign = f.other.issue(identity("agent 3"), make_private_key(), f.now, f.now + 1h);
+  const ParticipantId id = id_with(agent);
+  const auto refusal = [&](const std::vector<std::uint8_t>& announced) {
+    return f.admission.on_announcement(id, announced, f.now).refusal;
+  };
+  CHECK(refusal({}) == Refusal::kNoCredentials);
+  CHECK(refusal({'S', 'k', 'y', '1'}) == Refusal::kNoCredentials);
+  CHECK(refusal({'S', 'k', 'y', '1', 9, '2'}) == Refusal::kNoCredentials);
+  CHECK(refusal({'S', 'k', 'y', '1', 1, '2'}) == Refusal::kNoCertificate);
+  CHECK(f.announce(id, foreign) == Refusal::kOtherAuthority);
+  CHECK(f.announce(id_with(f.authority.certificate()), f.authority.certificate()) ==
+        Refusal::kUnknownSubject);
+  CHECK(f.announce(id_with(f.issue("agent 4")), agent) == Refusal::kOtherPrefix);
+  CHECK(f.announce(id, agent, "3.1.2") == Refusal::kOtherVersion);
+  CHECK(f.announce(id, agent, "2.14.0") == Refusal::kNone);
+}
+
+TEST_CASE("announcements of random bytes, or with a bit changed, are refused") {
+  Fixture f;
+  const Certificate agent = f.issue("agent 3");
+  const std::vector<std::uint8_t> genuine = credentials(agent, kVersion);
+  Rng rng(Catch::rngSeed());
+  CAPTURE(Catch::rngSeed());
+  for (int i = 0; i < 500; ++i) {
+    f.now += 1s;  // so that checks of signatures are not used up
+    std::vector<std::uint8_t> changed = genuine;
+    // The text of the version is not signed.
+    const std::size_t bit = 8 * 10 + rng.below(8 * (genuine.size() - 10));
+    CAPTURE(bit);
+    changed[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    CHECK(f.admission.on_announcement(id_with(agent), changed, f.now).refusal != Refusal::kNone);
+  }
+}
+
+TEST_CASE("a certificate counts only while it is valid") {
+  Fixture f;
+  const Certificate agent = f.issue("agent 3", 60s);
+  const ParticipantId id = id_with(agent);
+  f.now -= 1s;
+  CHECK(f.announce(id, agent) == Refusal::kNotValidNow);
+  f.now += 2s;
+  CHECK(f.announce(id, agent) == Refusal::kNone);
+  f.now += 58s;
+  CHECK(f.announce(id, agent) == Refusal::kNone);
+  CHECK(f.admission.newly_refused(f.now).empty());
+  f.now += 2s;
+  CHECK(f.admission.newly_refused(f.now) == std::vector{id});
+  CHECK_FALSE(f.admission.admits(id, f.now));
+  CHECK(f.announce(id, agent) == Refusal::kNotValidNow);
+}
+
+TEST_CASE("a revoked key is refused, also that of a participant that was admitted") {
+  Fixture f;
+  const Certificate agent = f.issue("agent 3"), newer = f.issue("agent 3");
+  const ParticipantId id = id_with(agent);
+  CHECK(f.announce(id, agent) == Refusal::kNone);
+  f.admission.set_revoked({agent.serial()});
+  CHECK(f.admission.newly_refused(f.now) == std::vector{id});
+  CHECK(f.admission.newly_refused(f.now).empty());
+  CHECK_FALSE(f.admission.admits(id, f.now));
+  CHECK(f.announce(id, agent) == Refusal::kRevoked);
+  CHECK(f.announce(id, newer) == Refusal::kNone);
+}
+
+TEST_CASE("participants that exchange no messages do not authenticate each other") {
+  Fixture f;
+  Admission agent(identity("agent 1"), f.authority.certificate(), kVersion, f.now);
+  const auto refusal = [&](const char* text) {
+    const Certificate certificate = f.issue(text);
+    return agent.on_announcement(id_with(certificate), credentials(certificate, kVersion), f.now).refusal;
+  };
+  CHECK(refusal("agent 2") == Refusal::kNotNeeded);
+  CHECK(refusal("coordinator 0") == Refusal::kNone);
+  CHECK(refusal("agent 1") == Refusal::kNone);  // itself, or its twin
+}
+
+TEST_CASE("silent participants are forgotten, others are not") {
+  Fixture f;
+  const Certificate silent = f.issue("agent 3"), other = f.issue("agent 4");
+  CHECK(f.announce(id_with(silent), silent) == Refusal::kNone);
+  CHECK(f.announce(id_with(other), other) == Refusal::kNone);
+  for (int i = 0; i < 11; ++i) {
+    f.now += 1s;
+    CHECK(f.admission.admits(id_with(other), f.now));
+  }
+  CHECK(f.admission.newly_refused(f.now) == std::vector{id_with(silent)});
+}
+
+TEST_CASE("one certificate cannot take the places of all others") {
+  Fixture f;
+  const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
+  for (std::uint16_t i = 0; i < 2000; ++i)
+    CHECK(f.announce(id_with(thief, i), thief) ==
+          (i < Admission::kMaxPerCertificate ? Refusal::kNone : Refusal::kTooMany));
+  CHECK(f.announce(id_with(other), other) == Refusal::kNone);
+}
+
+TEST_CASE("checks of signatures are limited, and known certificates need none") {
+  Fixture f;
+  const Certificate known = f.issue("agent 3");
+  CHECK(f.announce(id_with(known), known) == Refusal::kNone);
+  int checked = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::uint8_t> announced = credentials(known, kVersion);
+    announced.back() ^= 1;
+    checked +=
+        f.admission.on_announcement(id_with(known), announced, f.now).refusal == Refusal::kOtherAuthority;
+  }
+  CHECK(checked == static_cast<int>(Admission::kMaxChecks) - 1);
+  CHECK(f.announce(id_with(known), known) == Refusal::kNone);
+  const Certificate fresh = f.issue("agent 4");
+  CHECK(f.announce(id_with(fresh), fresh) == Refusal::kTooFast);
+  f.now += 1s;
+  CHECK(f.announce(id_with(fresh), fresh) == Refusal::kNone);
+}
+
+TEST_CASE("who announces a genuine certificate and does not prove it is reported once") {
+  Fixture f;
+  const Certificate genuine = f.issue("agent 3"), impostor = f.issue("agent 4"),
+                    self = f.issue("coordinator 0");
+  const Certificate brief = f.issue("agent 5");
+  f.admission.set_self(id_with(self));
+  for (const Certificate* certificate : {&genuine, &impostor, &self, &brief})
+    CHECK(f.announce(id_with(*certificate), *certificate) == Refusal::kNone);
+  f.admission.on_authenticated(id_with(genuine));
+  f.now += Admission::kMaxUnproven - 1s;
+  for (const Certificate* certificate : {&genuine, &impostor, &self})
+    CHECK(f.admission.admits(id_with(*certificate), f.now));
+  CHECK(f.admission.newly_unproven(f.now).empty());
+  f.now += 1s;
+  CHECK(f.admission.newly_unproven(f.now) == std::vector{identity("agent 4")});
+  CHECK(f.admission.newly_unproven(f.now).empty());
+}
+
+TEST_CASE("refusals are described in plain words") {
+  CHECK(Admission::describe({Refusal::kRevoked, "agent 3"}, "10.0.0.7") ==
+        "agent 3 at 10.0.0.7, whose key is revoked");
+  CHECK(Admission::describe({Refusal::kNoCredentials}, "10.0.0.7") ==
+        "a process at 10.0.0.7 that announces no key: start it with --keys");
+  CHECK(Admission::describe({Refusal::kOtherPrefix, "agent 3"}, "10.0.0.7") ==
+        "a process at 10.0.0.7 that announces the certificate of agent 3");
+}
+
+}  // namespace sidestep::admission_test

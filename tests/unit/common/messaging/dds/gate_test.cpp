@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the gate lets through and logs. Its decisions are tested with Admission.
+#include "common/messaging/dds/gate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "common/file/write_file.hpp"
+#include "common/messaging/dds/datagram.hpp"
+#include "common/messaging/senders.hpp"
+#include "tests/catch.hpp"
+#include "tests/test_keys.hpp"
+#include "tests/unit/common/messaging/dds/test_support.hpp"
+
+namespace sidestep::gate_test {
+
+constexpr std::array<std::uint8_t, 4> kAddress{10, 0, 0, 7};
+
+/// The announcement of a participant with this certificate, as Fast DDS sends it (RTPS 2.2, 9.4.5.3).
+Datagram announcement_of(const ParticipantId& id, const Certificate& certificate) {
+  std::vector<std::uint8_t> user_data = credentials(certificate, "2.9.1");
+  const std::size_t user_data_size = user_data.size();
+  while (user_data.size() % 4 != 0) user_data.push_back(0);
+  Datagram result{'R', 'T', 'P', 'S', 2, 2, 1, 15};
+  const auto append = [&](const auto& bytes) { result.insert(result.end(), bytes.begin(), bytes.end()); };
+  const auto append_16 = [&](std::size_t number) {
+    result.push_back(static_cast<std::uint8_t>(number));
+    result.push_back(static_cast<std::uint8_t>(number >> 8));
+  };
+  append(id);
+  const std::size_t payload = 4 + 4 + 4 + user_data.size() + 4;
+  append(std::array<std::uint8_t, 2>{0x15, 5});
+  append_16(20 + payload);
+  append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
+  append(std::array<std::uint8_t, 4>{0, 3, 0, 0});
+  append_16(0x2c);
+  append_16(4 + user_data.size());
+  append_16(user_data_size);
+  append_16(0);
+  append(user_data);
+  append(std::array<std::uint8_t, 4>{1, 0, 0, 0});
+  return result;
+}
+
+ParticipantId id_with(const Certificate& certificate) {
+  ParticipantId id{};
+  std::ranges::copy(certificate.prefix(), id.begin());
+  return id;
+}
+
+struct Fixture {
+  ParticipantId announce(const std::string& text) {
+    const Certificate certificate = Certificate::load(keys.folder_of(text) + "/cert.pem");
+    const ParticipantId id = id_with(certificate);
+    CHECK(gate.passes(id, announcement_of(id, certificate), true, kAddress));
+    return id;
+  }
+
+  TestKeys keys{{"agent", "3", "coordinator", "0", "client", "a", "operator", "viewer"}};
+  Gate gate{load_key_folder(keys.folder_of("coordinator 0"), keys.now()), "2.9.1"};
+};
+
+TEST_CASE("messages of participants that have not announced themselves do not pass") {
+  Fixture f;
+  const ParticipantId stranger{1, 2, 3};
+  const Datagram message{'R', 'T', 'P', 'S'};
+  CHECK_FALSE(f.gate.passes(stranger, message, false, kAddress));
+  CHECK(f.gate.unknown() == 1);
+  const ParticipantId agent = f.announce("agent 3");
+  CHECK(f.gate.passes(agent, message, false, kAddress));
+  CHECK(f.gate.unknown() == 1);
+}
+
+TEST_CASE("a process may send what its keys say, and what it may not send is logged once") {
+  Fixture f;
+  const CaptureStderr log;
+  const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer"),
+                      client = f.announce("client a"), op = f.announce("operator");
+  CHECK(f.gate.may_send(agent, topics::kProposal, 0, 3));
+  CHECK(f.gate.may_send(agent, topics::kCommand, 3, 3));
+  CHECK(f.gate.may_send(client, topics::kOrder, 0, client_id("a")));
+  CHECK(f.gate.may_send(op, topics::kOrder, 0, static_cast<std::uint32_t>(Sender::kOperator)));
+  CHECK(f.gate.forged() == 0);
+  for (int i = 0; i < 3; ++i) CHECK_FALSE(f.gate.may_send(agent, topics::kProposal, 0, 4));
+  CHECK_FALSE(f.gate.may_send(agent, topics::kCommand, 4, 3));
+  CHECK_FALSE(f.gate.may_send(agent, topics::kVerdict, 3, 3));
+  CHECK_FALSE(f.gate.may_send(client, topics::kOrder, 0, static_cast<std::uint32_t>(Sender::kOperator)));
+  for (const TopicInfo& topic : all_topics()) CHECK_FALSE(f.gate.may_send(viewer, topic, 3, 3));
+  CHECK_FALSE(f.gate.may_send({9, 9}, topics::kOrder, 0, client_id("a")));
+  CHECK(f.gate.forged() == 3 + 3 + all_topics().size() + 1);
+  CHECK(f.gate.is_operator(op));
+  CHECK_FALSE(f.gate.is_operator(agent));
+  const std::string line = "refuses messages of agent 3 on topic 'proposal' in the name of agent 4";
+  const std::string text = log.text();
+  REQUIRE(text.find(line) != std::string::npos);
+  CHECK(text.find(line, text.find(line) + 1) == std::string::npos);
+}
+
+TEST_CASE("the list of revoked keys is read again when it changes, and a broken list changes nothing") {
+  Fixture f;
+  const CaptureStderr log;
+  const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer");
+  CHECK(f.gate.newly_refused().empty());
+  const std::string file = f.keys.folder() + "/public/crl.pem";
+  const auto change = [&](const auto& how) {
+    const auto before = std::filesystem::last_write_time(file);
+    how();
+    // File systems have coarse clocks.
+    std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
+  };
+  change([&] { f.keys.store().revoke({Role::kAgent, 3, 3}, f.keys.now()); });
+  CHECK(f.gate.newly_refused() == std::vector{agent});
+  change([&] { write_file(file, "nonsense"); });
+  CHECK(f.gate.newly_refused().empty());
+  CHECK(log.has("the former list still counts"));
+  CHECK_FALSE(f.gate.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
+  CHECK(f.gate.passes(viewer, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
+}
+
+TEST_CASE("whom the library refuses is named") {
+  Fixture f;
+  const CaptureStderr log;
+  f.gate.on_authentication(f.announce("agent 3"), false);
+  CHECK(log.has(
+      "refuses a process that announces itself as agent 3: its private key or certificate is not genuine"));
+}
+
+}  // namespace sidestep::gate_test

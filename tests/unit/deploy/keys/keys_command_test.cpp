@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/keys/keys_command.hpp"
+
+#include <filesystem>
+
+#include "common/file/temporary_folder.hpp"
+#include "common/keys/key_folder.hpp"
+#include "common/process/command_line.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::keys_command_test {
+
+namespace fs = std::filesystem;
+
+/// Runs `sidestep` with these arguments. Returns what is wrong; empty: nothing.
+std::string run(const std::vector<std::string>& arguments) {
+  CommandLine command_line("test", "sidestep");
+  std::function<int()> action;
+  add_keys_command(command_line.root(), action);
+  try {
+    command_line.parse(arguments);
+    return action && action() == 0 ? "" : "no action";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST_CASE("keys are made, replaced, revoked and shown") {
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys"), agent = keys + "/enclaves/agent-3";
+  REQUIRE(run({"keys", "init", keys}).empty());
+  CHECK(run({"keys", "issue", "agent", "3", "vision", "--keys", keys}).empty());
+  CHECK(fs::exists(agent + "/cert.pem"));
+  CHECK_THAT(run({"keys", "issue", "agent", "3", "--keys", keys}),
+             ContainsSubstring("agent 3 has a key already; --again"));
+  const std::string first = Certificate::load(agent + "/cert.pem").serial();
+  CHECK(run({"keys", "issue", "agent", "3", "--again", "--days", "2", "--keys", keys}).empty());
+  CHECK(Certificate::load(agent + "/cert.pem").serial() != first);
+  const Certificate second = Certificate::load(agent + "/cert.pem");
+  CHECK(second.not_after() - second.not_before() == std::chrono::hours(48));
+  CHECK(run({"keys", "show", "--keys", keys}).empty());
+  CHECK(run({"keys", "revoke", "agent", "3", "--keys", keys}).empty());
+  CHECK_FALSE(fs::exists(agent));
+  CHECK_THAT(run({"keys", "revoke", "agent", "3", "--keys", keys}), ContainsSubstring("no valid key"));
+}
+
+TEST_CASE("a scenario's keys are made at once, and those that exist stay") {
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys");
+  const std::vector<std::string> issue{
+      "keys", "issue", "--scenario", SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml", "--keys", keys};
+  REQUIRE(run({"keys", "init", keys}).empty());
+  CHECK(run(issue).empty());
+  const std::string first = Certificate::load(keys + "/enclaves/agent-3/cert.pem").serial();
+  CHECK(run(issue).empty());
+  CHECK(Certificate::load(keys + "/enclaves/agent-3/cert.pem").serial() == first);
+}
+
+TEST_CASE("wrong uses are explained") {
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys");
+  CHECK_THAT(run({"keys", "issue", "vision", "--keys", keys}),
+             ContainsSubstring("expected a folder that `sidestep keys init` has made"));
+  REQUIRE(run({"keys", "init", keys}).empty());
+  CHECK_THAT(run({"keys", "init", keys}), ContainsSubstring("never overwritten"));
+  CHECK_THAT(run({"keys", "issue", "--keys", keys}), ContainsSubstring("--scenario FILE, or identities"));
+  CHECK_THAT(run({"keys", "issue", "robots", "--keys", keys}), ContainsSubstring("got 'robots'"));
+  CHECK_THAT(run({"keys", "revoke", "--keys", keys}), ContainsSubstring("expected identities"));
+  CHECK_THAT(run({"keys", "issue", "vision", "--days", "-1", "--keys", keys}), ContainsSubstring("--days"));
+  CHECK_FALSE(run({"keys"}).empty());
+}
+
+}  // namespace sidestep::keys_command_test
