@@ -3,12 +3,15 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <signal.h>
 #include <string>
 #include <vector>
 
 #include "common/client/order_client.hpp"
+#include "common/config/scenario_loader.hpp"
+#include "common/file/write_file.hpp"
 #include "common/messaging/dds/admission.hpp"
 #include "common/messaging/senders.hpp"
 #include "tests/catch.hpp"
@@ -17,6 +20,16 @@
 #include "tests/test_keys.hpp"
 
 namespace sidestep {
+
+/// Keys for all processes of a scenario.
+inline std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
+  auto keys = std::make_unique<TestKeys>(std::vector<std::string>{});
+  const TemporaryFolder folder;
+  write_file(folder.file("scenario.yaml"), scenario);
+  for (const Identity& identity : identities_of(load_scenario(folder.file("scenario.yaml"))))
+    keys->issue(identity);
+  return keys;
+}
 
 /// Three robots that stand until somebody orders them to drive.
 inline constexpr const char* kThreeWaitingRobots =

@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What keys cost: the same runs with and without.
+#include "tests/faults/keyed_run.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <signal.h>
 
-#include "common/config/scenario_loader.hpp"
-#include "common/file/write_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/process_usage.hpp"
 #include "tests/faults/takeover_watch.hpp"
-#include "tests/test_keys.hpp"
 
 namespace sidestep::keyed_run_test {
-
-/// Keys for all processes of a scenario.
-std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
-  auto keys = std::make_unique<TestKeys>(std::vector<std::string>{});
-  const TemporaryFolder folder;
-  write_file(folder.file("scenario.yaml"), scenario);
-  for (const Identity& identity : identities_of(load_scenario(folder.file("scenario.yaml"))))
-    keys->issue(identity);
-  return keys;
-}
 
 struct Result {
   double startup_s = 0, missed = 0, p50_ms = 0, p99_ms = 0, cpu = 0, agent_mb = 0;

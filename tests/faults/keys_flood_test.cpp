@@ -168,6 +168,12 @@ void check_flood(Duration duration) {
   const int arrived = shuttle.drive();
   CHECK(run.wait_until([&] { return shuttle.drive() > arrived + 3; }));
   keyed.check_unharmed();
+  const nlohmann::json report = run.report();
+  int refused = 0;
+  for (const auto& [process, counts] : report["counters"].items())
+    refused += counts.value("refused_participant", 0);
+  WARN(refused << " announcements refused");
+  CHECK(refused > sent);  // each of some processes hears what is sent to all
 }
 
 TEST_CASE("a flood of strangers on every port costs time, and neither safety nor memory", "[both-cores]") {

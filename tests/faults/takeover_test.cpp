@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "tests/catch.hpp"
+#include "tests/faults/keyed_run.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/faults/takeover_watch.hpp"
 
@@ -12,10 +13,8 @@ namespace {
 
 constexpr int kKills = 20;
 
-}  // namespace
-
-TEST_CASE("the standby takes over twenty times while robots move, without contact") {
-  LaunchedRun run(shuttles(100, "coordinators: 2\nrestart: [coordinator]\n"));
+void kill_active_coordinators(const std::string& scenario, const std::vector<std::string>& arguments) {
+  LaunchedRun run(scenario, arguments);
   TakeoverWatch watch(run.bus(), 8);
   std::vector<double> first_ms, half_ms;
   for (int i = 0; i < kKills; ++i) {
@@ -44,4 +43,17 @@ TEST_CASE("the standby takes over twenty times while robots move, without contac
       "median "
       << median(first_ms) << " ms of " << kKills << " (" << *min << " to " << *max
       << "), until half of the robots do: median " << median(half_ms) << " ms");
+}
+
+std::string shuttles_with_standby() { return shuttles(100, "coordinators: 2\nrestart: [coordinator]\n"); }
+
+}  // namespace
+
+TEST_CASE("the standby takes over twenty times while robots move, without contact") {
+  kill_active_coordinators(shuttles_with_standby(), {});
+}
+
+TEST_CASE("the standby takes over twenty times with keys") {
+  const auto keys = keys_for(shuttles_with_standby());
+  kill_active_coordinators(shuttles_with_standby(), {"--keys", keys->folder()});
 }
