@@ -8,6 +8,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fmt/core.h>
 #include <ifaddrs.h>
+#include <mutex>
 #include <netinet/in.h>
 #include <sstream>
 #include <stdexcept>
@@ -159,6 +160,17 @@ void set_common(EndpointQos& qos, Qos kind) {
   qos.data_sharing().off();
 }
 
+void warn_of_expiry(const KeyFolder& keys) {
+  constexpr std::chrono::hours kSoon(7 * 24);
+  static std::once_flag once;
+  if (const Time end = keys.certificate.not_after(); end - EventLoop::now() < kSoon)
+    std::call_once(once, [&] {
+      log(LogLevel::kWarning,
+          fmt::format("keys: others will refuse this process after {}, when its key expires",
+                      date_text(end)));
+    });
+}
+
 std::runtime_error failure(const std::string& entity, const std::string& channel) {
   return std::runtime_error(fmt::format("DDS failed to create the {} of topic '{}'", entity, channel));
 }
@@ -172,6 +184,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   check(settings);
   if (!settings.keys.empty()) {
     keys_ = load_key_folder(own_key_folder(settings.keys, settings.identity), EventLoop::now());
+    warn_of_expiry(*keys_);
     gate_ = std::make_shared<Gate>(*keys_, fast_dds_version());
     listener_->on_authentication = [gate = gate_](const fast_dds::rtps::GuidPrefix_t& prefix,
                                                   bool is_genuine) {

@@ -43,7 +43,7 @@ bool drive_round(Client& client, RobotId robot, const std::vector<Goal>& places)
 
 int patrol(int domain, RobotId robot, long rounds, const std::vector<Goal>& places) {
   Settings settings;
-  settings.name = "patrol of robot " + std::to_string(robot);
+  settings.name = "patrol-" + std::to_string(robot);
   settings.domain = domain;
   Client client(settings);
   for (long round = 1; round <= rounds; ++round) {

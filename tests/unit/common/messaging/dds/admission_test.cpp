@@ -76,8 +76,9 @@ TEST_CASE("announcements of random bytes, or with a bit changed, are refused") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");
   const std::vector<std::uint8_t> genuine = credentials(agent, kVersion);
-  Rng rng(Catch::rngSeed());
-  CAPTURE(Catch::rngSeed());
+  const std::uint64_t seed = 43;
+  CAPTURE(seed);
+  Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
     f.now += 1s;  // so that checks of signatures are not used up
     std::vector<std::uint8_t> changed = genuine;
