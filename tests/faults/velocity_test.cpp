@@ -9,6 +9,7 @@
 
 #include "common/messaging/ros/ros_messages.hpp"
 #include "tests/catch.hpp"
+#include "tests/faults/keyed_run.hpp"
 #include "tests/faults/launched_run.hpp"
 
 using namespace sidestep;
@@ -22,6 +23,22 @@ constexpr const char* kLoopback =
     "</Interfaces></General></Domain></CycloneDDS>";
 
 }  // namespace
+
+TEST_CASE("four bases are driven by velocities with keys") {
+  const auto keys = keys_for(shipped_scenario("bases/four-bases"));
+  LaunchedRun run(shipped_scenario("bases/four-bases"),
+                  {"--driver", "velocity", "--robots=--latency-ms 58", "--keys", keys->folder()});
+  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--latency-ms", "40",
+                                     "--keys",     keys->folder()};
+  const auto dds = run.dds_arguments();
+  arguments.insert(arguments.end(), dds.begin(), dds.end());
+  run.start("bases", "sidestep-simulator", arguments);
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code 0");
+  require_no_violations(run.report());
+  CHECK(run.report()["arrived"] == 4);
+}
 
 TEST_CASE(
     "four bases that are driven by velocities all arrive without contact, and ROS 2's programs can read "

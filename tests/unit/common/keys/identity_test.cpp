@@ -9,13 +9,15 @@
 
 namespace sidestep::identity_test {
 
-constexpr Role kAllRoles[] = {Role::kAgent,   Role::kCoordinator, Role::kVision, Role::kSimulator, Role::kRobot,
-                              Role::kReferee, Role::kClient,      Role::kOperator, Role::kViewer,  Role::kJudge};
+constexpr Role kAllRoles[] = {Role::kAgent,  Role::kCoordinator, Role::kVision, Role::kSimulator,
+                              Role::kRobot,  Role::kReferee,     Role::kClient, Role::kOperator,
+                              Role::kViewer, Role::kJudge};
 
 Identity identity(const std::string& text) { return parse_identity(text).value(); }
 
 /// The names of all topics of which it may write, or read, some channel.
-std::set<std::string> topics_of(const Identity& who, bool (*may)(const Identity&, const TopicInfo&, std::uint32_t)) {
+std::set<std::string> topics_of(const Identity& who,
+                                bool (*may)(const Identity&, const TopicInfo&, std::uint32_t)) {
   std::set<std::string> result;
   for (const TopicInfo& topic : all_topics())
     for (std::uint32_t robot = 0; robot < 20; ++robot)
@@ -24,8 +26,9 @@ std::set<std::string> topics_of(const Identity& who, bool (*may)(const Identity&
 }
 
 TEST_CASE("identities are read as they are written") {
-  for (const char* text : {"agent 0", "agent 3", "coordinator 1", "vision", "simulator", "robot 3", "robot 0-10", "referee",
-                           "client forklift", "client a_b-C9", "operator", "viewer", "judge"}) {
+  for (const char* text :
+       {"agent 0", "agent 3", "coordinator 1", "vision", "simulator", "robot 3", "robot 0-10", "referee",
+        "client forklift", "client a_b-C9", "operator", "viewer", "judge"}) {
     CAPTURE(text);
     CHECK(to_text(identity(text)) == text);
   }
@@ -34,11 +37,36 @@ TEST_CASE("identities are read as they are written") {
 }
 
 TEST_CASE("each identity has one text, and other texts are refused") {
-  for (const char* text :
-       {"", "agent", "agent ", "agent 03", "agent -1", "agent 3 ", "agent 0-3", "agent 1024", "agent x", "agent 3x", "Agent 3",
-        "coordinator 8", "coordinator 0-1", "vision 1", "robot", "robot 3-3", "robot 4-3", "robot 3-", "robot -3", "robot 0-1024",
-        "client", "client ", "client a b", "client a/b", "client -a", "client ..", "client 123456789012345678901234567890123",
-        "operator x", "nobody", "viewer\n"}) {
+  for (const char* text : {"",
+                           "agent",
+                           "agent ",
+                           "agent 03",
+                           "agent -1",
+                           "agent 3 ",
+                           "agent 0-3",
+                           "agent 1024",
+                           "agent x",
+                           "agent 3x",
+                           "Agent 3",
+                           "coordinator 8",
+                           "coordinator 0-1",
+                           "vision 1",
+                           "robot",
+                           "robot 3-3",
+                           "robot 4-3",
+                           "robot 3-",
+                           "robot -3",
+                           "robot 0-1024",
+                           "client",
+                           "client ",
+                           "client a b",
+                           "client a/b",
+                           "client -a",
+                           "client ..",
+                           "client 123456789012345678901234567890123",
+                           "operator x",
+                           "nobody",
+                           "viewer\n"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_identity(text));
   }
@@ -53,8 +81,9 @@ TEST_CASE("only judges read the ground truth, and whoever watches writes nothing
   CHECK(topics_of({Role::kViewer}, may_write).empty());
   CHECK(topics_of({Role::kJudge}, may_write).empty());
   CHECK(topics_of({Role::kClient, 0, 0, "a"}, may_write) == std::set<std::string>{"order"});
-  CHECK(topics_of({Role::kOperator}, may_write) ==
-        std::set<std::string>{"attestation", "order", "disturbance", "network_fault", "clock_probe", "rules"});
+  CHECK(topics_of({Role::kOperator}, may_write) == std::set<std::string>{"attestation", "order",
+                                                                         "disturbance", "network_fault",
+                                                                         "clock_probe", "rules"});
 }
 
 TEST_CASE("agents and robots have the channels of their own robots only") {
@@ -74,13 +103,17 @@ TEST_CASE("agents and robots have the channels of their own robots only") {
 }
 
 TEST_CASE("agents exchange no messages with each other, and all others that work together do") {
-  const auto exchange = [](const char* a, const char* b) { return exchange_messages(identity(a), identity(b)); };
+  const auto exchange = [](const char* a, const char* b) {
+    return exchange_messages(identity(a), identity(b));
+  };
   CHECK_FALSE(exchange("agent 1", "agent 2"));
   CHECK_FALSE(exchange("agent 1", "robot 2-4"));
   CHECK_FALSE(exchange("viewer", "judge"));
   CHECK(exchange("agent 3", "robot 2-4"));
+  CHECK(exchange("simulator", "robot 2-4"));  // of bases with ROS 2's topics
   CHECK(exchange("robot 2-4", "agent 3"));
-  for (const char* other : {"coordinator 0", "vision", "simulator", "viewer", "judge", "operator", "client a", "referee"}) {
+  for (const char* other :
+       {"coordinator 0", "vision", "simulator", "viewer", "judge", "operator", "client a", "referee"}) {
     CAPTURE(other);
     CHECK(exchange("agent 1", other));
     CHECK(exchange(other, "agent 1"));
@@ -90,8 +123,8 @@ TEST_CASE("agents exchange no messages with each other, and all others that work
 
 TEST_CASE("nobody speaks for another process") {
   std::set<std::uint32_t> senders{1, 2, 3, kMaxRobots - 1, client_id("a"), client_id("b")};
-  for (const Sender sender : {Sender::kVision, Sender::kSimulator, Sender::kRobots, Sender::kOperator, Sender::kReferee,
-                              Sender::kScenario})
+  for (const Sender sender : {Sender::kVision, Sender::kSimulator, Sender::kRobots, Sender::kOperator,
+                              Sender::kReferee, Sender::kScenario})
     senders.insert(static_cast<std::uint32_t>(sender));
   for (std::uint32_t number = 0; number < 3; ++number)
     senders.insert(static_cast<std::uint32_t>(Sender::kCoordinator) + number);
@@ -108,11 +141,13 @@ TEST_CASE("nobody speaks for another process") {
   CHECK(spoken_for("referee") == std::set<std::uint32_t>{number(Sender::kReferee)});
   CHECK(spoken_for("robot 2-3") == std::set<std::uint32_t>{2, 3, number(Sender::kRobots)});
   CHECK(spoken_for("client a") == std::set<std::uint32_t>{client_id("a")});
-  CHECK(spoken_for("operator") == std::set<std::uint32_t>{number(Sender::kOperator), client_id("a"), client_id("b")});
+  CHECK(spoken_for("operator") ==
+        std::set<std::uint32_t>{number(Sender::kOperator), client_id("a"), client_id("b")});
   CHECK(spoken_for("viewer").empty());
   CHECK(spoken_for("judge").empty());
   // The simulator has the robots' side of all robots.
-  CHECK(spoken_for("simulator") == std::set<std::uint32_t>{1, 2, 3, kMaxRobots - 1, number(Sender::kSimulator)});
+  CHECK(spoken_for("simulator") ==
+        std::set<std::uint32_t>{1, 2, 3, kMaxRobots - 1, number(Sender::kSimulator)});
 }
 
 }  // namespace sidestep::identity_test
