@@ -7,6 +7,7 @@
 #include <signal.h>
 
 #include "tests/catch.hpp"
+#include "tests/faults/keyed_run.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/faults/takeover_watch.hpp"
 
@@ -85,4 +86,21 @@ TEST_CASE("a fleet of two versions of Fast DDS survives packet loss and the coor
   std::filesystem::remove(file);
   fmt::print("takeover: median {:.0f} ms of {}\n", median(takeovers_ms), takeovers_ms.size());
   CHECK(median(takeovers_ms) <= kMaxMedian_ms);
+}
+
+TEST_CASE("a fleet of two versions of Fast DDS with keys does not start, and says why", "[.mixed]") {
+  const char* other = std::getenv("SIDESTEP_OTHER_PROGRAMS");
+  REQUIRE(other);
+  const auto file =
+      std::filesystem::temp_directory_path() / ("sidestep-mixed-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(file) << hosts_file("", other);
+  const std::string scenario = shipped_scenario("crossing");
+  const auto keys = keys_for(scenario);
+  const auto run = LaunchedRun::on_namespaces(scenario, {"--keys", keys->folder()}, file.string());
+  const std::string why =
+      "that uses another version of Fast DDS: processes with keys understand only their own version";
+  CHECK(run->wait_until([&] { return run->logged("keys: refuses agent 0 at 10.77.0.2 " + why); }));
+  CHECK(run->logged("keys: refuses coordinator 0 at 10.77.0.1 " + why));
+  CHECK(run->wait_for_end() == "exit code 1");
+  std::filesystem::remove(file);
 }
