@@ -39,15 +39,16 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
 
 }  // namespace
 
-std::string date_text(Time time) {
+std::string utc_text(Time time, const char* format) {
   const std::time_t seconds =
       std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count();
   std::tm parts{};
   gmtime_r(&seconds, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
-  return text;
+  char text[64];
+  return {text, std::strftime(text, sizeof text, format, &parts)};
 }
+
+std::string date_text(Time time) { return utc_text(time, "%Y-%m-%d %H:%M UTC"); }
 
 std::string key_folder_of(const std::string& store, const Identity& identity) {
   std::error_code none;

@@ -46,6 +46,8 @@ struct KeyFolder {
 /// As key_folder_of(), but `path` may also be the folder with the keys of one identity, of whomever.
 [[nodiscard]] std::string own_key_folder(const std::string& path, const Identity& identity);
 
+/// The time in UTC, in a format of strftime() that gives at most 63 characters.
+[[nodiscard]] std::string utc_text(Time time, const char* format);
 /// "2026-11-26 14:03 UTC"
 [[nodiscard]] std::string date_text(Time time);
 

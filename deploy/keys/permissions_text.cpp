@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/keys/permissions_text.hpp"
 
-#include <ctime>
 #include <fmt/format.h>
 
+#include "common/keys/key_folder.hpp"
 #include "common/messaging/ros/ros_messages.hpp"
 
 namespace sidestep {
@@ -11,15 +11,7 @@ namespace {
 
 constexpr const char* kDomains = "<domains><id_range><min>0</min><max>99</max></id_range></domains>";
 
-std::string xml_time(Time time) {
-  const std::time_t seconds =
-      std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count();
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  return text;
-}
+std::string xml_time(Time time) { return utc_text(time, "%Y-%m-%dT%H:%M:%S"); }
 
 /// The channels of a topic that the identity may use; `may` is may_write or may_read.
 std::string topics_of(const Identity& identity, const TopicInfo& topic,

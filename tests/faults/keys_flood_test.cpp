@@ -8,6 +8,7 @@
 #include "tests/faults/datagrams.hpp"
 #include "tests/faults/keyed_run.hpp"
 #include "tests/faults/process_usage.hpp"
+#include "tests/participant_datagram.hpp"
 
 namespace sidestep::keys_flood_test {
 
@@ -17,34 +18,6 @@ constexpr int kPerSecond = 10'000;
 constexpr double kStanding_mps = 0.05;
 /// A process that kept what it is sent would grow by more in the shortest flood.
 constexpr double kMaxGrowth_mb = 6;
-
-/// An RTPS datagram of this sender that announces a participant with this user data (RTPS 2.2, 9.4.5.3).
-std::vector<std::uint8_t> announcement(const ParticipantId& id, const std::vector<std::uint8_t>& user_data) {
-  std::vector<std::uint8_t> result{'R', 'T', 'P', 'S', 2, 2, 1, 15};
-  const auto append = [&](const auto& bytes) { result.insert(result.end(), bytes.begin(), bytes.end()); };
-  const auto append_16 = [&](std::size_t number) {
-    result.push_back(static_cast<std::uint8_t>(number));
-    result.push_back(static_cast<std::uint8_t>(number >> 8));
-  };
-  const std::size_t padded = (user_data.size() + 3) / 4 * 4;
-  append(id);
-  append(std::array<std::uint8_t, 2>{0x15, 5});
-  append_16(0);  // up to the end
-  append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
-  append(std::array<std::uint8_t, 8>{0, 3, 0, 0, 0x15, 0, 4, 0});  // a list; the protocol's version:
-  append(std::array<std::uint8_t, 4>{2, 2, 0, 0});
-  append(std::array<std::uint8_t, 4>{0x50, 0, 16, 0});  // GUID
-  append(id);
-  append(std::array<std::uint8_t, 4>{0, 0, 1, 0xc1});
-  append_16(0x2c);
-  append_16(4 + padded);
-  append_16(user_data.size());
-  append_16(0);
-  append(user_data);
-  result.resize(result.size() + padded - user_data.size());
-  append(std::array<std::uint8_t, 4>{1, 0, 0, 0});
-  return result;
-}
 
 /// Strangers, some of whom know a genuine announcement.
 class Strangers {
@@ -65,15 +38,15 @@ class Strangers {
     const auto& [prefix, announced] = genuine_[rng_.below(genuine_.size())];
     switch (rng_.below(6)) {
       case 0:
-        return sender_.announce(domain_, announcement(id, random_bytes(rng_.below(600))));
+        return sender_.announce(domain_, participant_datagram(id, random_bytes(rng_.below(600))));
       case 1:
-        return sender_.announce(domain_, announcement(id, foreign_));
+        return sender_.announce(domain_, participant_datagram(id, foreign_));
       case 2:
         std::ranges::copy(prefix, id.begin());
-        return sender_.announce(domain_, announcement(id, announced));
+        return sender_.announce(domain_, participant_datagram(id, announced));
       case 3: {
         std::ranges::copy(prefix, id.begin());
-        std::vector<std::uint8_t> datagram = announcement(id, announced);
+        std::vector<std::uint8_t> datagram = participant_datagram(id, announced);
         for (std::uint64_t i = rng_.below(20); i > 0; --i)
           datagram[20 + rng_.below(datagram.size() - 20)] = random_byte();
         return sender_.send(port, datagram);

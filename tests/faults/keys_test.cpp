@@ -30,8 +30,11 @@ using std::chrono::seconds;
 constexpr double kMoving_mps = 0.1;
 constexpr int kDatagramsPerSecond = 10'000;
 
-/// An order to robot 0 that nobody who may give it has given.
-msg::Order order_as(std::uint32_t sender, Time now) {
+/// An order to robot 0, in this name, to drive to the other side of the field.
+msg::Order order_as(std::uint32_t sender, const LaunchedRun& run) {
+  const Time now = run.bus().now();
+  const auto& robots = run.truth().robots();
+  const auto robot = std::ranges::find_if(robots, [](const auto& r) { return r.robot() == 0; });
   msg::Order order;
   order.header().sender(sender);
   order.header().incarnation(1);
@@ -40,23 +43,35 @@ msg::Order order_as(std::uint32_t sender, Time now) {
   order.terms().order_kind(msg::OrderKind::ORDER_GO);
   order.terms().order_number(static_cast<OrderNumber>(to_ns(now)));
   order.poses().resize(1);
-  order.poses()[0].x_m(2);
+  order.poses()[0].x_m(robot == robots.end() || robot->x_m() < 0 ? 2 : -2);
   order.poses()[0].y_m(-1);
   order.poses()[0].tolerance_m(0.05);
   return order;
 }
 
-/// Writes orders in the operator's name for some seconds. Returns whether a robot moved.
-bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(4),
+/// Writes orders for some seconds, by default in the operator's name. Returns whether a robot moved; all
+/// stand before.
+bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(3),
             std::uint32_t sender = static_cast<std::uint32_t>(Sender::kOperator)) {
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
+  const msg::Order order = order_as(sender, run);
   const Time begin = run.bus().now();
   bool has_moved = false;
   REQUIRE(run.wait_until([&] {
-    attacker.write(topics::kOrder, 0, order_as(sender, run.bus().now()));
+    attacker.write(topics::kOrder, 0, order);
     has_moved = has_moved || run.max_speed_mps() > kMoving_mps;
     return has_moved || run.bus().now() - begin > duration;
   }));
   return has_moved;
+}
+
+/// The attacker moves no robot, finds no reader, and the log has this line.
+void check_refused(LaunchedRun& run, const AttackerSettings& settings, const std::string& line) {
+  CAPTURE(line);
+  Attacker attacker(settings);
+  CHECK_FALSE(attack(run, attacker));
+  CHECK(attacker.readers() == 0);
+  CHECK(run.wait_until([&] { return run.logged("keys: refuses " + line); }));
 }
 
 /// Replaces the permissions by some that another authority has signed: those of an operator, for the same
@@ -87,53 +102,28 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot") {
   LaunchedRun& run = keyed.run;
   const TestKeys others(all_identities());
   INFO(run.output());
-  SECTION("somebody without keys") {
-    Attacker attacker({keyed.domain()});
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    CHECK(run.logged("keys: refuses a process at 127.0.0.1 that announces no key"));
-  }
-  SECTION("somebody without keys who repeats the announcement of the operator") {
-    const auto genuine = keyed.with_keys(keyed.keys.folder_of("operator"));
-    const Certificate certificate = Certificate::load(genuine.keys->certificate);
-    Attacker attacker({keyed.domain(), std::nullopt, genuine.announced, certificate.prefix()});
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    CHECK(run.logged("keys: refuses a process that announces itself as operator"));
-  }
-  SECTION("somebody with keys of another authority") {
-    Attacker attacker(keyed.with_keys(others.folder_of("operator")));
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    CHECK(run.logged("keys: refuses a process at 127.0.0.1, whose key another authority has issued"));
-  }
-  SECTION("somebody with keys of another authority who repeats the announcement of the operator") {
-    AttackerSettings settings = keyed.with_keys(others.folder_of("operator"));
-    settings.announced = keyed.with_keys(keyed.keys.folder_of("operator")).announced;
-    Attacker attacker(settings);
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    // Authorities name the operator alike, so the two have the same prefix.
-    CHECK(run.logged("keys: refuses a process that announces itself as operator"));
-  }
-  SECTION("a viewer who repeats the announcement of the operator") {
-    AttackerSettings settings = keyed.with_keys(keyed.keys.folder_of("viewer"));
-    settings.announced = keyed.with_keys(keyed.keys.folder_of("operator")).announced;
-    use_own_permissions(settings, others);
-    Attacker attacker(settings);
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    CHECK(run.logged("keys: refuses a process at 127.0.0.1 that announces the certificate of operator"));
-  }
-  SECTION("a viewer who has signed permissions to write everything") {
-    AttackerSettings settings = keyed.with_keys(keyed.keys.folder_of("viewer"));
-    use_own_permissions(settings, others);
-    Attacker attacker(settings);
-    CHECK_FALSE(attack(run, attacker));
-    CHECK(attacker.readers() == 0);
-    CHECK(run.wait_until(
-        [&] { return run.logged("keys: refuses a process that announces itself as viewer"); }));
-  }
+  const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of("operator"));
+
+  check_refused(run, {keyed.domain()}, "a process at 127.0.0.1 that announces no key");
+  // Without keys, but with the operator's announcement.
+  const CertifiedPrefix prefix = Certificate::load(genuine.keys->certificate).prefix();
+  check_refused(run, {keyed.domain(), std::nullopt, genuine.announced, prefix},
+                "a process that announces itself as operator");
+
+  AttackerSettings foreign = keyed.with_keys(others.folder_of("judge"));
+  use_own_permissions(foreign, others);
+  check_refused(run, foreign, "a process at 127.0.0.1, whose key another authority has issued");
+  // Authorities name their operators alike, so that their participants have the same prefix.
+  foreign = keyed.with_keys(others.folder_of("operator"));
+  foreign.announced = genuine.announced;
+  check_refused(run, foreign, "a process that announces itself as operator");
+
+  // A viewer who lets himself write everything.
+  AttackerSettings viewer = keyed.with_keys(keyed.keys.folder_of("viewer"));
+  use_own_permissions(viewer, others);
+  check_refused(run, viewer, "a process that announces itself as viewer");
+  viewer.announced = genuine.announced;
+  check_refused(run, viewer, "a process at 127.0.0.1 that announces the certificate of operator");
   keyed.check_unharmed();
 }
 
@@ -141,101 +131,96 @@ TEST_CASE("with keys, processes speak only for themselves") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  SECTION("a client gives its own orders, and none of the operator's") {
-    Attacker client(keyed.with_keys(keyed.keys.folder_of("client forklift")));
-    CHECK_FALSE(attack(run, client));
-    CHECK(client.readers() > 0);
-    CHECK(run.logged("keys: refuses messages of client forklift on topic 'order' in the name of operator"));
-    CHECK(attack(run, client, seconds(20), client_id("forklift")));
-    keyed.check_safe();
-  }
-  SECTION("a program orders with its own keys, and not without any") {
-    client::Settings settings;
-    settings.name = "forklift";
-    settings.domain = keyed.domain();
-    client::Client stranger(settings);
-    settings.keys = keyed.keys.folder();
-    client::Client forklift(settings);
-    const client::OrderId strange = stranger.go(1, {{2, 0}});
-    const client::OrderId order = forklift.go(0, {{2, -1}});
-    CHECK(run.wait_until([&] {
-      const auto state = forklift.wait(order, milliseconds(1));
-      return state && state->phase == client::OrderPhase::kArrived;
-    }));
-    const auto state = stranger.state(strange);
-    REQUIRE(state);
-    CHECK(state->phase == client::OrderPhase::kSent);
-    settings.name = "nobody";
-    CHECK_THROWS_WITH(client::Client(settings), ContainsSubstring("has no keys of client nobody"));
-    keyed.check_safe();
-  }
-  SECTION("agent 1 writes nothing in the name of agent 0") {
-    Attacker agent(keyed.with_keys(keyed.keys.folder_of("agent 1")));
-    CHECK_THROWS(agent.write(topics::kCommand, 0, msg::Command()));
-    const std::string refused = "keys: refuses messages of agent 1 on topic '{}' in the name of agent 0";
-    REQUIRE(run.wait_until([&] {
-      const auto header = order_as(0, run.bus().now()).header();
-      msg::Registration registration;
-      registration.header() = header;
-      agent.write(topics::kRegistration, 0, registration);
-      msg::Proposal proposal;
-      proposal.header() = header;
-      agent.write(topics::kProposal, 0, proposal);
-      msg::OrderStatus status;
-      status.header() = header;
-      agent.write(topics::kOrderStatus, 0, status);
-      return run.logged(fmt::format(fmt::runtime(refused), "registration")) &&
-             run.logged(fmt::format(fmt::runtime(refused), "proposal")) &&
-             run.logged(fmt::format(fmt::runtime(refused), "order_status"));
-    }));
-    keyed.check_unharmed();
-  }
-  SECTION("a viewer writes nothing") {
-    CHECK(keyed.command({"topic", "pub", "order", "{}", "--keys", keyed.keys.folder_of("viewer")}) ==
-          "exit code 2");
-    CHECK(run.printed("the keys of viewer do not allow writing the topic 'order'"));
-    Attacker viewer(keyed.with_keys(keyed.keys.folder_of("viewer")));
-    CHECK_THROWS(viewer.write(topics::kCommand, 0, msg::Command()));
-    keyed.check_unharmed();
-  }
-  SECTION("a viewer does not read the ground truth") {
-    CHECK(keyed.command({"topic", "echo", "truth", "--once"}) == "exit code 2");
-    CHECK(run.printed("do not allow reading the topic 'truth'"));
-    CHECK(keyed.command({"topic", "echo", "world", "--once"}) == "exit code 0");
-    keyed.check_unharmed();
-  }
+  // A viewer reads and writes no more than he may, and his own library says so.
+  CHECK(keyed.command({"topic", "pub", "order", "{}", "--keys", keyed.keys.folder_of("viewer")}) ==
+        "exit code 2");
+  CHECK(run.printed("the keys of viewer do not allow writing the topic 'order'"));
+  CHECK(keyed.command({"topic", "echo", "truth", "--once"}) == "exit code 2");
+  CHECK(run.printed("do not allow reading the topic 'truth'"));
+  CHECK(keyed.command({"topic", "echo", "world", "--once"}) == "exit code 0");
+  Attacker viewer(keyed.with_keys(keyed.keys.folder_of("viewer")));
+  CHECK_THROWS(viewer.write(topics::kCommand, 0, msg::Command()));
+
+  // Agent 1 may write these topics, but not in the name of agent 0.
+  Attacker agent(keyed.with_keys(keyed.keys.folder_of("agent 1")));
+  CHECK_THROWS(agent.write(topics::kCommand, 0, msg::Command()));
+  const std::string refused = "keys: refuses messages of agent 1 on topic '{}' in the name of agent 0";
+  REQUIRE(run.wait_until([&] {
+    const auto header = order_as(0, run).header();
+    msg::Registration registration;
+    registration.header() = header;
+    agent.write(topics::kRegistration, 0, registration);
+    msg::Proposal proposal;
+    proposal.header() = header;
+    agent.write(topics::kProposal, 0, proposal);
+    msg::OrderStatus status;
+    status.header() = header;
+    agent.write(topics::kOrderStatus, 0, status);
+    return run.logged(fmt::format(fmt::runtime(refused), "registration")) &&
+           run.logged(fmt::format(fmt::runtime(refused), "proposal")) &&
+           run.logged(fmt::format(fmt::runtime(refused), "order_status"));
+  }));
+
+  // A client gives its own orders, and none of the operator's.
+  Attacker client(keyed.with_keys(keyed.keys.folder_of("client forklift")));
+  CHECK_FALSE(attack(run, client));
+  CHECK(client.readers() > 0);
+  CHECK(run.logged("keys: refuses messages of client forklift on topic 'order' in the name of operator"));
+  CHECK(attack(run, client, seconds(20), client_id("forklift")));
+  keyed.check_safe();
+}
+
+TEST_CASE("a program orders with its own keys, and not without any") {
+  KeyedRun keyed;
+  LaunchedRun& run = keyed.run;
+  INFO(run.output());
+  client::Settings settings;
+  settings.name = "forklift";
+  settings.domain = keyed.domain();
+  client::Client stranger(settings);
+  settings.keys = keyed.keys.folder();
+  client::Client forklift(settings);
+  const client::OrderId strange = stranger.go(1, {{2, 0}});
+  const client::OrderId order = forklift.go(0, {{2, -1}});
+  CHECK(run.wait_until([&] {
+    const auto state = forklift.wait(order, milliseconds(1));
+    return state && state->phase == client::OrderPhase::kArrived;
+  }));
+  const auto state = stranger.state(strange);
+  REQUIRE(state);
+  CHECK(state->phase == client::OrderPhase::kSent);
+  settings.name = "nobody";
+  CHECK_THROWS_WITH(client::Client(settings), ContainsSubstring("has no keys of client nobody"));
+  keyed.check_safe();
 }
 
 TEST_CASE("keys that are revoked or expire during a run are refused within seconds") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  SECTION("revoked") {
-    Attacker client(keyed.with_keys(keyed.keys.folder_of("client forklift")));
-    REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
-    REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
-    const std::vector<std::string> revoke{"keys",     "revoke", "client",
-                                          "forklift", "--keys", keyed.keys.folder()};
-    REQUIRE(run.command(revoke) == "exit code 0");
-    REQUIRE(run.wait_until(
-        [&] { return run.logged("keys: refuses client forklift at 127.0.0.1, whose key is revoked"); }));
-    CHECK_FALSE(attack(run, client, seconds(4), client_id("forklift")));
-  }
-  SECTION("expired") {
-    const std::string folder =
-        keyed.keys.issue({Role::kClient, 0, 0, "brief"}, run.bus().now() - keyed.keys.now() + seconds(8));
-    Attacker client(keyed.with_keys(folder));
-    REQUIRE(attack(run, client, seconds(20), client_id("brief")));
-    REQUIRE(run.wait_until(
-        [&] { return run.logged("keys: refuses client brief at 127.0.0.1, whose key has expired"); }));
-    REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
-    CHECK_FALSE(attack(run, client, seconds(4), client_id("brief")));
-  }
-  SECTION("of an agent: its robot stays, and others drive on") {
-    REQUIRE(run.command({"keys", "revoke", "agent", "2", "--keys", keyed.keys.folder()}) == "exit code 0");
-    REQUIRE(run.wait_until(
-        [&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
-  }
+  const auto revoke = [&](const std::vector<std::string>& identity) {
+    std::vector<std::string> command{"keys", "revoke", "--keys", keyed.keys.folder()};
+    command.insert(command.end(), identity.begin(), identity.end());
+    return run.command(command);
+  };
+  Attacker client(keyed.with_keys(keyed.keys.folder_of("client forklift")));
+  REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
+  REQUIRE(revoke({"client", "forklift"}) == "exit code 0");
+  REQUIRE(run.wait_until(
+      [&] { return run.logged("keys: refuses client forklift at 127.0.0.1, whose key is revoked"); }));
+  CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
+
+  const Duration validity = run.bus().now() - keyed.keys.now() + seconds(8);
+  Attacker brief(keyed.with_keys(keyed.keys.issue({Role::kClient, 0, 0, "brief"}, validity)));
+  REQUIRE(attack(run, brief, seconds(7), client_id("brief")));
+  REQUIRE(run.wait_until(
+      [&] { return run.logged("keys: refuses client brief at 127.0.0.1, whose key has expired"); }));
+  CHECK_FALSE(attack(run, brief, seconds(3), client_id("brief")));
+
+  // The robot of a revoked agent stays, and others drive on.
+  REQUIRE(revoke({"agent", "2"}) == "exit code 0");
+  REQUIRE(
+      run.wait_until([&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
   keyed.check_unharmed();
 }
 

@@ -10,38 +10,13 @@
 #include "common/messaging/dds/datagram.hpp"
 #include "common/messaging/senders.hpp"
 #include "tests/catch.hpp"
+#include "tests/participant_datagram.hpp"
 #include "tests/test_keys.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::gate_test {
 
 constexpr std::array<std::uint8_t, 4> kAddress{10, 0, 0, 7};
-
-/// The announcement of a participant with this certificate, as Fast DDS sends it (RTPS 2.2, 9.4.5.3).
-Datagram announcement_of(const ParticipantId& id, const Certificate& certificate) {
-  std::vector<std::uint8_t> user_data = credentials(certificate, "2.9.1");
-  const std::size_t user_data_size = user_data.size();
-  while (user_data.size() % 4 != 0) user_data.push_back(0);
-  Datagram result{'R', 'T', 'P', 'S', 2, 2, 1, 15};
-  const auto append = [&](const auto& bytes) { result.insert(result.end(), bytes.begin(), bytes.end()); };
-  const auto append_16 = [&](std::size_t number) {
-    result.push_back(static_cast<std::uint8_t>(number));
-    result.push_back(static_cast<std::uint8_t>(number >> 8));
-  };
-  append(id);
-  const std::size_t payload = 4 + 4 + 4 + user_data.size() + 4;
-  append(std::array<std::uint8_t, 2>{0x15, 5});
-  append_16(20 + payload);
-  append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
-  append(std::array<std::uint8_t, 4>{0, 3, 0, 0});
-  append_16(0x2c);
-  append_16(4 + user_data.size());
-  append_16(user_data_size);
-  append_16(0);
-  append(user_data);
-  append(std::array<std::uint8_t, 4>{1, 0, 0, 0});
-  return result;
-}
 
 ParticipantId id_with(const Certificate& certificate) {
   ParticipantId id{};
@@ -53,7 +28,7 @@ struct Fixture {
   ParticipantId announce(const std::string& text) {
     const Certificate certificate = Certificate::load(keys.folder_of(text) + "/cert.pem");
     const ParticipantId id = id_with(certificate);
-    CHECK(gate.passes(id, announcement_of(id, certificate), true, kAddress));
+    CHECK(gate.passes(id, participant_datagram(id, credentials(certificate, "2.9.1")), true, kAddress));
     return id;
   }
 
