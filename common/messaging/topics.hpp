@@ -48,12 +48,13 @@ struct MessageType {
 
 /// A row of the topic table.
 struct TopicInfo {
-  const char* name;
+  const char* name = nullptr;
   Roles writers, readers;
-  Qos qos;
-  bool per_robot;   ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
-  bool is_checked;  ///< processes refuse its messages if they come from a process with other rules
-  MessageType type;
+  Qos qos{};
+  bool per_robot =
+      false;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
+  bool is_checked = false;  ///< processes refuse its messages if they come from a process with other rules
+  MessageType type{};
 };
 
 template <typename Message>

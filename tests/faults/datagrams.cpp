@@ -52,8 +52,8 @@ std::vector<std::uint16_t> open_ports(int domain) {
     std::from_chars(local.data() + colon + 1, local.data() + local.size(), port, 16);
     if (port >= first_port(domain) && port < first_port(domain) + kPortsOfDomain) result.push_back(port);
   }
-  std::ranges::sort(result);
-  result.erase(std::ranges::unique(result).begin(), result.end());
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 

@@ -96,7 +96,7 @@ class Admission {
     Time not_before, not_after;
   };
   struct Participant {
-    const Known* known;
+    const Known* known = nullptr;
     Time last_heard;
     std::optional<Time> unproven_since;  ///< nullopt: proven, or reported
   };

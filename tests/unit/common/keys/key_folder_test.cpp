@@ -47,8 +47,10 @@ TEST_CASE("what is wrong with keys is said in plain words") {
     const TemporaryFolder copy;
     fs::copy(folder, copy.file("agent-3"));
     keys.store().revoke({Role::kAgent, 3, 3}, keys.now());
-    fs::copy_file(keys.folder() + "/public/crl.pem", copy.file("agent-3/crl.pem"), fs::copy_options::overwrite_existing);
-    CHECK_THAT(problem_of(copy.file("agent-3"), keys.now()), ContainsSubstring("the key of agent 3 is revoked"));
+    fs::copy_file(keys.folder() + "/public/crl.pem", copy.file("agent-3/crl.pem"),
+                  fs::copy_options::overwrite_existing);
+    CHECK_THAT(problem_of(copy.file("agent-3"), keys.now()),
+               ContainsSubstring("the key of agent 3 is revoked"));
   }
   SECTION("a file is missing") {
     for (const char* name : key_files::kAll) {
@@ -56,7 +58,8 @@ TEST_CASE("what is wrong with keys is said in plain words") {
       const TemporaryFolder copy;
       fs::copy(folder, copy.file("keys"));
       fs::remove(copy.file("keys/") + name);
-      CHECK_THAT(problem_of(copy.file("keys"), keys.now()), ContainsSubstring(std::string(name) + " does not exist"));
+      CHECK_THAT(problem_of(copy.file("keys"), keys.now()),
+                 ContainsSubstring(std::string(name) + " does not exist"));
     }
   }
   SECTION("others may read the private key") {
@@ -64,11 +67,13 @@ TEST_CASE("what is wrong with keys is said in plain words") {
     CHECK_THAT(problem(), ContainsSubstring("other users may read or change this private key; chmod 600"));
   }
   SECTION("the private key of another") {
-    fs::copy_file(keys.folder_of("agent 4") + "/key.pem", folder + "/key.pem", fs::copy_options::overwrite_existing);
+    fs::copy_file(keys.folder_of("agent 4") + "/key.pem", folder + "/key.pem",
+                  fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("this private key is not that of the certificate"));
   }
   SECTION("another authority") {
-    fs::copy_file(others.folder_of("agent 3") + "/cert.pem", folder + "/cert.pem", fs::copy_options::overwrite_existing);
+    fs::copy_file(others.folder_of("agent 3") + "/cert.pem", folder + "/cert.pem",
+                  fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("cert.pem: another authority has issued it"));
   }
   SECTION("the certificate of an authority") {
@@ -76,12 +81,16 @@ TEST_CASE("what is wrong with keys is said in plain words") {
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("expected the certificate of an identity"));
   }
-  SECTION("no folder") { CHECK_THAT(problem_of(folder + "-none", keys.now()), ContainsSubstring("does not exist")); }
+  SECTION("no folder") {
+    CHECK_THAT(problem_of(folder + "-none", keys.now()), ContainsSubstring("does not exist"));
+  }
 }
 
 TEST_CASE("a process takes its own keys from a folder with those of several") {
   TestKeys keys({"agent", "3", "robot", "0-10", "vision"});
-  const auto own = [&](const char* text) { return own_key_folder(keys.folder(), parse_identity(text).value()); };
+  const auto own = [&](const char* text) {
+    return own_key_folder(keys.folder(), parse_identity(text).value());
+  };
   CHECK(own("agent 3") == keys.folder() + "/enclaves/agent-3");
   CHECK(own("robot 4") == keys.folder() + "/enclaves/robot-0-10");
   CHECK(own("robot 2-7") == keys.folder() + "/enclaves/robot-0-10");
@@ -89,7 +98,8 @@ TEST_CASE("a process takes its own keys from a folder with those of several") {
   CHECK_THROWS_WITH(own("agent 4"), ContainsSubstring("sidestep keys issue"));
   // Somebody who names the folder of one identity means that one.
   CHECK(own_key_folder(keys.folder_of("vision"), {Role::kViewer}) == keys.folder_of("vision"));
-  CHECK_THROWS_WITH(key_folder_of(keys.folder_of("vision"), {Role::kVision}), ContainsSubstring("sidestep keys init"));
+  CHECK_THROWS_WITH(key_folder_of(keys.folder_of("vision"), {Role::kVision}),
+                    ContainsSubstring("sidestep keys init"));
 }
 
 }  // namespace sidestep::key_folder_test

@@ -47,8 +47,8 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
 TEST_CASE("a scenario's keys are made at once, and those that exist stay") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys");
-  const std::vector<std::string> issue{
-      "keys", "issue", "--scenario", SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml", "--keys", keys};
+  const std::string scenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+  const std::vector<std::string> issue{"keys", "issue", "--scenario", scenario, "--keys", keys};
   REQUIRE(run({"keys", "init", keys}).empty());
   CHECK(run(issue).empty());
   const std::string first = Certificate::load(keys + "/enclaves/agent-3/cert.pem").serial();
