@@ -10,6 +10,7 @@
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/command.hpp"
 #include "tests/catch.hpp"
+#include "tests/test_keys.hpp"
 
 using namespace sidestep;
 namespace fs = std::filesystem;
@@ -108,6 +109,25 @@ TEST_CASE("over ssh the scenario is copied, and the process ends when the launch
   CHECK(where.find("it's a scenario.yaml") != std::string::npos);
   CHECK(group.terminate(std::chrono::seconds(20)).empty());
   CHECK(fixture.read("end") == "ended\n");
+  CHECK_FALSE(fs::exists(fixture.remote_folder()));
+}
+
+TEST_CASE("over ssh the process gets its own keys, and nobody else can read them there") {
+  const Fixture fixture;
+  HostSpec host = host_of(HostTransport::kSsh, "robot@far");
+  host.programs = fixture.folder.string();
+  const TestKeys keys({"agent", "3-4"});
+  ProcessSpec process = agent_spec(fixture);
+  process.keys = keys.folder_of("agent 3");
+  ProcessGroup group(fixture.path("log"));
+  group.start(child_spec(process, host, ""));
+  REQUIRE(fixture.wait_for(group, fixture.path("arguments")));
+  CHECK(fixture.read("scenario") == "robots: all of them\n");
+  CHECK_THAT(fixture.read("arguments"), ContainsSubstring("\n--keys\n.\n"));
+  const KeyFolder copied = load_key_folder(fixture.remote_folder(), keys.now());
+  CHECK(to_text(copied.identity) == "agent 3");
+  for (const char* name : key_files::kAll) CHECK_FALSE(fs::is_symlink(copied.file(name)));
+  CHECK(group.terminate(std::chrono::seconds(20)).empty());
   CHECK_FALSE(fs::exists(fixture.remote_folder()));
 }
 
