@@ -100,7 +100,7 @@ TEST_CASE("a fleet of two versions of Fast DDS with keys does not start, and say
   const std::string why =
       "that uses another version of Fast DDS: processes with keys understand only their own version";
   CHECK(run->wait_until([&] { return run->logged("keys: refuses agent 0 at 10.77.0.2 " + why); }));
-  CHECK(run->logged("keys: refuses coordinator 0 at 10.77.0.1 " + why));
+  CHECK(run->wait_until([&] { return run->logged("keys: refuses coordinator 0 at 10.77.0.1 " + why); }));
   CHECK(run->wait_for_end() == "exit code 1");
   std::filesystem::remove(file);
 }
