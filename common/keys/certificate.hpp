@@ -14,7 +14,6 @@
 #include "common/time/time.hpp"
 
 struct x509_st;
-struct X509_crl_st;
 
 namespace sidestep {
 

@@ -25,6 +25,7 @@ exec 3<&0
 umask 077
 scenario=$1 program=$2 files=$3
 shift 3
+case $program in */*) program=$(realpath -- "$program") ;; esac
 folder=$(mktemp -d) && cd "$folder" || exit 1
 while [ "$files" -gt 0 ]; do
   head -c "$1" <&3 >"$2" || exit 1

@@ -113,10 +113,11 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot") {
   AttackerSettings foreign = keyed.with_keys(others.folder_of("judge"));
   use_own_permissions(foreign, others);
   check_refused(run, foreign, "a process at 127.0.0.1, whose key another authority has issued");
-  // Authorities name their operators alike, so that their participants have the same prefix.
-  foreign = keyed.with_keys(others.folder_of("operator"));
-  foreign.announced = genuine.announced;
-  check_refused(run, foreign, "a process that announces itself as operator");
+  // Authorities name their processes alike, so that their participants have the same prefix.
+  foreign = keyed.with_keys(others.folder_of("vision"));
+  foreign.announced = keyed.with_keys(keyed.keys.folder_of("vision")).announced;
+  use_own_permissions(foreign, others);
+  check_refused(run, foreign, "a process that announces itself as vision");
 
   // A viewer who lets himself write everything.
   AttackerSettings viewer = keyed.with_keys(keyed.keys.folder_of("viewer"));

@@ -72,11 +72,8 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const std:
   return result;
 }
 
-Admission::Admission(Identity self, Certificate authority, std::string version, Time now)
-    : self_(std::move(self)),
-      authority_(std::move(authority)),
-      version_(std::move(version)),
-      checks_at_(now) {}
+Admission::Admission(Identity self, Certificate authority, std::string version)
+    : self_(std::move(self)), authority_(std::move(authority)), version_(std::move(version)) {}
 
 Admission::Decision Admission::on_announcement(const ParticipantId& id,
                                                std::span<const std::uint8_t> announced, Time now) {
@@ -153,7 +150,7 @@ const Admission::Known* Admission::find_known(std::span<const std::uint8_t> der,
     return nullptr;
   };
   if (known_.size() >= kMaxKnown) return refuse(Refusal::kTooMany);
-  if (!may_check_signature(now)) return refuse(Refusal::kTooFast);
+  if (!checks_.admit(now)) return refuse(Refusal::kTooFast);
   const auto certificate = Certificate::from_der(der);
   if (!certificate) return refuse(Refusal::kNoCertificate);
   if (!certificate->is_issued_by(authority_)) return refuse(Refusal::kOtherAuthority);
@@ -171,14 +168,6 @@ const Admission::Known* Admission::find_known(std::span<const std::uint8_t> der,
 Admission::Refusal Admission::check_now(const Known& known, Time now) const {
   if (revoked_.count(known.serial) > 0) return Refusal::kRevoked;
   return now < known.not_before || now > known.not_after ? Refusal::kNotValidNow : Refusal::kNone;
-}
-
-bool Admission::may_check_signature(Time now) {
-  checks_left_ = std::min(kMaxChecks, checks_left_ + to_seconds(now - checks_at_) * kChecksPerSecond);
-  checks_at_ = now;
-  if (checks_left_ < 1) return false;
-  checks_left_ -= 1;
-  return true;
 }
 
 std::string Admission::describe(const Decision& decision, const std::string& address) {

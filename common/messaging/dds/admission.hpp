@@ -12,6 +12,7 @@
 
 #include "common/keys/certificate.hpp"
 #include "common/messaging/dds/presence.hpp"
+#include "common/time/rate_limit.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
@@ -39,7 +40,7 @@ class Admission {
   /// Fast DDS has shown within this time that a genuine participant is one.
   static constexpr Duration kMaxUnproven{8'000'000'000};
   /// Signatures that are checked: a burst, and then so many a second.
-  static constexpr double kMaxChecks = 200, kChecksPerSecond = 50;
+  static constexpr int kMaxChecks = 200, kChecksPerSecond = 50;
 
   enum class Refusal : std::uint8_t {
     kNone,
@@ -62,7 +63,7 @@ class Admission {
   };
 
   /// `version`: of this process's Fast DDS. A process admits itself.
-  Admission(Identity self, Certificate authority, std::string version, Time now);
+  Admission(Identity self, Certificate authority, std::string version);
 
   /// The id of this process's own participant, which need not authenticate itself.
   void set_self(const ParticipantId& id) { self_id_ = id; }
@@ -105,7 +106,6 @@ class Admission {
   const Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, const Known& known, const std::string& version, Time now);
   Refusal check_now(const Known& known, Time now) const;
-  bool may_check_signature(Time now);
 
   const Identity self_;
   std::optional<ParticipantId> self_id_;
@@ -114,8 +114,7 @@ class Admission {
   std::set<std::string> revoked_;
   std::map<std::string, Known> known_;  ///< by certificate (DER); only those of the authority
   std::map<ParticipantId, Participant> participants_;
-  double checks_left_ = kMaxChecks;
-  Time checks_at_;
+  RateLimit checks_{kMaxChecks, std::chrono::milliseconds(1000 / kChecksPerSecond)};
 };
 
 }  // namespace sidestep

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxReported = 64;
 Gate::Gate(const KeyFolder& keys, const std::string& version)
     : revoked_file_(keys.file(key_files::kRevoked)),
       authority_(keys.authority),
-      admission_(keys.identity, keys.authority, version, EventLoop::now()) {
+      admission_(keys.identity, keys.authority, version) {
   admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
   std::error_code none;
   revoked_at_ = std::filesystem::last_write_time(revoked_file_, none);
@@ -32,7 +32,10 @@ bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> dat
   if (is_discovery) {
     bool is_plain = false;
     const auto announcement = participant_announcement(datagram, is_plain);
-    if (!is_plain) return false;
+    if (!is_plain) {
+      ++refused_;
+      return false;
+    }
     if (announcement && !announcement->is_departure) {
       const std::lock_guard lock(mutex_);
       const Admission::Decision decision = admission_.on_announcement(sender, announcement->user_data, now);

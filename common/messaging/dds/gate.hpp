@@ -4,12 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "common/keys/key_folder.hpp"
@@ -42,7 +40,7 @@ class Gate {
 
   /// Datagrams with messages of participants that were not admitted.
   std::uint64_t unknown() const { return unknown_; }
-  /// Announcements that were refused.
+  /// Announcements, and malformed datagrams of discovery, that were refused.
   std::uint64_t refused() const { return refused_; }
   /// Messages for which may_send() was false.
   std::uint64_t forged() const { return forged_; }

@@ -115,7 +115,7 @@ TEST_CASE("over ssh the scenario is copied, and the process ends when the launch
 TEST_CASE("over ssh the process gets its own keys, and nobody else can read them there") {
   const Fixture fixture;
   HostSpec host = host_of(HostTransport::kSsh, "robot@far");
-  host.programs = fixture.folder.string();
+  host.programs = fs::relative(fixture.folder).string();  // from the folder in which ssh begins
   const TestKeys keys({"agent", "3-4"});
   ProcessSpec process = agent_spec(fixture);
   process.keys = keys.folder_of("agent 3");

@@ -37,7 +37,7 @@ struct Fixture {
   Time now = time_from_ns(1'800'000'000'000'000'000);
   Authority authority{"identity authority", now, now + 24h};
   Authority other{"identity authority", now, now + 24h};
-  Admission admission{identity("coordinator 0"), authority.certificate(), kVersion, now};
+  Admission admission{identity("coordinator 0"), authority.certificate(), kVersion};
 };
 
 TEST_CASE("a participant with a valid certificate is admitted, and known by its identity") {
@@ -122,7 +122,7 @@ TEST_CASE("a revoked key is refused, also that of a participant that was admitte
 
 TEST_CASE("participants that exchange no messages do not authenticate each other") {
   Fixture f;
-  Admission agent(identity("agent 1"), f.authority.certificate(), kVersion, f.now);
+  Admission agent(identity("agent 1"), f.authority.certificate(), kVersion);
   const auto refusal = [&](const char* text) {
     const Certificate certificate = f.issue(text);
     return agent.on_announcement(id_with(certificate), credentials(certificate, kVersion), f.now).refusal;
@@ -164,7 +164,7 @@ TEST_CASE("checks of signatures are limited, and known certificates need none") 
     checked +=
         f.admission.on_announcement(id_with(known), announced, f.now).refusal == Refusal::kOtherAuthority;
   }
-  CHECK(checked == static_cast<int>(Admission::kMaxChecks) - 1);
+  CHECK(checked == Admission::kMaxChecks - 1);
   CHECK(f.announce(id_with(known), known) == Refusal::kNone);
   const Certificate fresh = f.issue("agent 4");
   CHECK(f.announce(id_with(fresh), fresh) == Refusal::kTooFast);
