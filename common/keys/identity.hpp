@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Whom a key stands for: "agent 3", "coordinator 1", "vision", "simulator", "robot 0-10", "referee",
+/// The owner of a key: "agent 3", "coordinator 1", "vision", "simulator", "robot 0-10", "referee",
 /// "client NAME", "operator", "viewer" or "judge". It is the common name of the key's certificate.
 struct Identity {
   Role role = Role::kViewer;

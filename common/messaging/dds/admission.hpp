@@ -23,14 +23,14 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const std:
 
 /// Decides which participants a process with keys listens to, and knows who they are.
 ///
-/// Fast DDS authenticates participants, but tells nobody as whom, keeps what everybody announces, and learns
-/// of revoked keys only at its start. Participants therefore announce their certificate. The prefix of a
-/// participant's GUID depends on the certificate, and Fast DDS checks that the owner of the GUID has the
-/// certificate's private key. What is decided here is therefore true of all that Fast DDS accepts. An
-/// attacker can repeat the announcement of another, and then gets no further than authentication, so the
-/// participants with one certificate are limited. Participants that exchange no messages, as agents among
-/// each other, are not admitted either: among many robots, most of the time at the start would go into their
-/// handshakes.
+/// Fast DDS authenticates participants, but does not tell their identities, keeps what everybody announces,
+/// and reads the list of revoked keys only at its start. Participants therefore announce their certificate.
+/// The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the owner of the
+/// GUID has the certificate's private key. What is decided here is therefore true of all that Fast DDS
+/// accepts. An attacker can repeat the announcement of another, and then gets no further than authentication,
+/// so the participants with one certificate are limited. Participants that exchange no messages, as agents
+/// among each other, are not admitted either: among many robots, most of the time at the start would go into
+/// their handshakes.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
@@ -76,8 +76,8 @@ class Admission {
   const Identity* identity_of(const ParticipantId& id) const;
   /// Fast DDS has accepted the participant's private key and permissions.
   void on_authenticated(const ParticipantId& id);
-  /// Whom participants announce themselves as for kMaxUnproven without on_authenticated(); each is returned
-  /// once.
+  /// The identities of participants that have announced themselves for kMaxUnproven without
+  /// on_authenticated(). Each participant is returned once.
   [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
   /// The serial numbers of revoked certificates.
   void set_revoked(std::set<std::string> serials) { revoked_ = std::move(serials); }
