@@ -350,8 +350,11 @@ const std::vector<Cause> kCauses{
 
 /// Reasons that no message on SimBus causes, and the tests that cause them.
 const std::set<DropReason> kElsewhere{
-    DropReason::kUnreadable,             // dds/robustness_test
-    DropReason::kForgottenPeer,          // dds/presence_test, of processes that sleep for seconds
+    DropReason::kUnreadable,          // dds/robustness_test
+    DropReason::kForgottenPeer,       // dds/presence_test, of processes that sleep for seconds
+    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, as the next two
+    DropReason::kRefusedParticipant,
+    DropReason::kForgedSender,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
     DropReason::kMalformedLeaguePacket,  // league/league_source_test, as the next three
     DropReason::kRepeatedLeagueFrame,
