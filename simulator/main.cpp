@@ -73,8 +73,10 @@ struct LeagueRobots {
 struct VelocityRobots {
   VelocityRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
       : bases(bus, scenario, 0, settings_of(options.bases), options.bases.speed, incarnation, options.seed),
-        server(bus, bases, options.bases.topic_prefix, options.bases.odometry_drift) {}
+        velocity_bus(bases_bus(bus, options.bases.velocity)),
+        server(*velocity_bus, bases, options.bases.velocity.topic_prefix, options.bases.odometry_drift) {}
   BasesNode bases;
+  std::shared_ptr<Bus> velocity_bus;
   VelocityServer server;
 };
 

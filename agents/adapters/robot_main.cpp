@@ -10,6 +10,7 @@
 #include "agents/adapters/velocity/velocity_driver.hpp"
 #include "common/log/log.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/process/bases_bus.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
@@ -21,7 +22,7 @@ struct Options {
   std::string robots = "all";
   std::string memory_folder = default_memory_folder();
   double latency_ms = 100;
-  std::string topic_prefix = "robot";
+  BasesBusOptions bases;
   std::string blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
 };
 
@@ -37,19 +38,17 @@ void add_options(const CliCommand& app, Options& options) {
   app.add_option("--memory", options.memory_folder,
                  "folder of what the robots must remember when this program restarts")
       .show_default();
-  app.add_option("--topic-prefix", options.topic_prefix,
-                 "driver velocity: of rt/robot3/cmd_vel and rt/robot3/odom")
-      .show_default();
+  add_bases_bus_options(app, "driver velocity", options.bases);
   app.add_option("--blue", options.blue, "driver league: ADDRESS:PORT for the blue team's commands")
       .show_default();
   app.add_option("--yellow", options.yellow, "driver league: ADDRESS:PORT for the yellow team's commands")
       .show_default();
 }
 
-std::unique_ptr<Driver> make_driver(DdsBus& bus, const Scenario& scenario, const std::vector<RobotId>& robots,
-                                    const Options& options) {
-  if (options.driver == "velocity")
-    return std::make_unique<VelocityDriver>(bus, robots, options.topic_prefix);
+/// `bases` is null unless the driver is `velocity`.
+std::unique_ptr<Driver> make_driver(DdsBus& bus, Bus* bases, const Scenario& scenario,
+                                    const std::vector<RobotId>& robots, const Options& options) {
+  if (bases) return std::make_unique<VelocityDriver>(*bases, robots, options.bases.topic_prefix);
   const LeaguePorts ports{league::parse_unicast_endpoint(options.blue),
                           league::parse_unicast_endpoint(options.yellow)};
   auto driver = std::make_unique<LeagueDriver>(scenario, robots, ports);
@@ -61,11 +60,13 @@ std::unique_ptr<Driver> make_driver(DdsBus& bus, const Scenario& scenario, const
 struct Nodes {
   Nodes(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const Options& options)
       : robots(select_robots(scenario, options.robots)),
-        driver(make_driver(bus, scenario, robots, options)),
+        bases(options.driver == "velocity" ? bases_bus(bus, options.bases) : nullptr),
+        driver(make_driver(bus, bases.get(), scenario, robots, options)),
         node(bus, scenario, robots, incarnation,
-             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3), options.driver == "velocity"),
-             *driver, options.memory_folder) {}
+             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3), bases != nullptr), *driver,
+             options.memory_folder) {}
   std::vector<RobotId> robots;
+  std::shared_ptr<Bus> bases;
   std::unique_ptr<Driver> driver;
   RobotsNode node;
 };

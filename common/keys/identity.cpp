@@ -6,7 +6,6 @@
 #include <charconv>
 #include <fmt/format.h>
 
-#include "common/messaging/ros/ros_messages.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/motion/version.hpp"
 
@@ -126,14 +125,12 @@ bool exchange_messages(const Identity& a, const Identity& b) {
   // Of per-robot topics, whoever has its own channels has those of `first` .. `last`.
   const std::uint32_t robots[] = {std::max(a.first, b.first), std::min(a.last, b.last), a.first, b.first};
   bool result = false;
-  const auto consider = [&](const TopicInfo& topic) {
+  for_each_topic([&](const TopicInfo& topic) {
     if (std::string_view(topic.name) == topics::kRules.name) return;
     for (const std::uint32_t robot : robots)
       result = result || (may_write(a, topic, robot) && may_read(b, topic, robot)) ||
                (may_write(b, topic, robot) && may_read(a, topic, robot));
-  };
-  for_each_topic(consider);
-  for (const TopicInfo* topic : {&ros::kTwist, &ros::kOdometry}) consider(*topic);
+  });
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "common/keys/key_folder.hpp"
-#include "common/messaging/ros/ros_messages.hpp"
 
 namespace sidestep {
 namespace {
@@ -70,12 +69,6 @@ std::string permissions_text(const Identity& identity, const std::string& subjec
   for (const TopicInfo& topic : all_topics()) {
     written += topics_of(identity, topic, may_write);
     read += topics_of(identity, topic, may_read);
-  }
-  // The topics of bases: their names depend on the user's.
-  for (const TopicInfo& topic : {ros::kTwist, ros::kOdometry}) {
-    const std::string line = fmt::format("          <topic>rt/*/{}</topic>\n", topic.name);
-    if (may_write(identity, topic, 0)) written += line;
-    if (may_read(identity, topic, 0)) read += line;
   }
   return fmt::format(R"(<?xml version="1.0" encoding="utf-8"?>
 <dds>

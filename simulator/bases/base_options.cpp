@@ -10,9 +10,7 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
                "robots have no firmware; they are driven by clients of the league's simulation protocol");
   app.add_flag("--velocity", options.is_velocity,
                "robots have no firmware; they are bases with ROS 2's topics for velocities and odometry");
-  app.add_option("--topic-prefix", options.topic_prefix,
-                 "with --velocity: of rt/robot3/cmd_vel and rt/robot3/odom")
-      .show_default();
+  add_bases_bus_options(app, "with --velocity", options.velocity);
   app.add_option("--odometry-drift", options.odometry_drift,
                  "with --velocity: relative error of the odometry")
       .check(in_range(0, 0.5))

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "common/process/bases_bus.hpp"
 #include "common/process/command_line.hpp"
 #include "simulator/bases/base_control.hpp"
 #include "simulator/bases/league_server.hpp"
@@ -13,7 +14,7 @@ namespace sidestep {
 /// Options for simulated robots that others drive.
 struct BaseOptions {
   bool is_league = false, is_velocity = false;
-  std::string topic_prefix = "robot";
+  BasesBusOptions velocity;
   double odometry_drift = 0;
   std::string control = "127.0.0.1:10300", blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
   std::uint32_t team_size = 0;

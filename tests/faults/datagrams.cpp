@@ -57,6 +57,18 @@ std::vector<std::uint16_t> open_ports(int domain) {
   return result;
 }
 
+std::uint64_t datagrams_read() {
+  std::ifstream file("/proc/net/snmp");
+  std::string protocol, names;
+  // Two lines for each protocol: names, and values.
+  while (file >> protocol && protocol != "Udp:") std::getline(file, names);
+  std::getline(file, names);
+  std::uint64_t result = 0;
+  if (!names.starts_with(" InDatagrams ") || !(file >> protocol >> result))
+    throw std::runtime_error("cannot read how many datagrams arrived");
+  return result;
+}
+
 Capture::Capture(int domain)
     : socket_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC, htons(ETH_P_IP))),
       first_port_(first_port(domain)),

@@ -19,6 +19,9 @@ struct CapturedDatagram {
 /// The UDP ports of a DDS domain on which processes of this network namespace listen (RTPS 2.2, 9.6.1.1).
 std::vector<std::uint16_t> open_ports(int domain);
 
+/// How many UDP datagrams the processes of this network namespace have read so far.
+std::uint64_t datagrams_read();
+
 /// Captures the datagrams of a DDS domain on the loopback interface from its construction on. Needs root.
 class Capture {
  public:

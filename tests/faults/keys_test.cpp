@@ -242,6 +242,7 @@ TEST_CASE("replayed and altered datagrams do no harm to robots that drive with k
   REQUIRE(captured.size() > 1000);
   DatagramSender sender;
   int replayed = 0, altered = 0;
+  const std::uint64_t read_before = datagrams_read();
   const Time begin = run.bus().now();
   REQUIRE(run.wait_until([&] {
     shuttle.drive();
@@ -256,6 +257,9 @@ TEST_CASE("replayed and altered datagrams do no harm to robots that drive with k
     }
     return elapsed_s > 10;
   }));
+  // They reached processes, beside what those said to each other.
+  const std::uint64_t read = datagrams_read() - read_before;
+  CHECK(read > static_cast<std::uint64_t>(replayed + altered));
   WARN(captured.size() << " datagrams captured, " << replayed << " replayed, " << altered
                        << " altered; orders carried out: " << shuttle.drive());
   keyed.check_unharmed();

@@ -22,22 +22,84 @@ constexpr const char* kLoopback =
     "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"true\"/>"
     "</Interfaces></General></Domain></CycloneDDS>";
 
-}  // namespace
+constexpr int kRead = 40;
 
-TEST_CASE("four bases are driven by velocities with keys") {
-  const auto keys = keys_for(shipped_scenario("bases/four-bases"));
-  LaunchedRun run(shipped_scenario("bases/four-bases"),
-                  {"--driver", "velocity", "--robots=--latency-ms 58", "--keys", keys->folder()});
-  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--latency-ms", "40",
-                                     "--keys",     keys->folder()};
+/// A reader of another vendor's DDS, with ROS 2's default profile, for robot 2.
+class RosReader {
+ public:
+  explicit RosReader(int domain)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("sidestep-ros-{}", getpid())) {
+    const std::string command =
+        fmt::format("CYCLONEDDS_URI='{}' timeout 40 '{}' read {} 2 {} >'{}' 2>&1; echo $? >>'{}' &",
+                    kLoopback, SIDESTEP_ROS_PEER, domain, kRead, path_.string(), path_.string());
+    REQUIRE(std::system(command.c_str()) == 0);
+  }
+  ~RosReader() { std::filesystem::remove(path_); }
+  RosReader(const RosReader&) = delete;
+  RosReader& operator=(const RosReader&) = delete;
+
+  /// It has read twists of a robot that moves, and its odometry.
+  void check() const {
+    std::ifstream file(path_);
+    int twists = 0, odometries = 0;
+    double max_speed_mps = 0;
+    std::string kind, text;
+    while (file >> kind) {
+      if (kind == "twist") {
+        double vx = 0, vy = 0, wz = 0;
+        file >> vx >> vy >> wz;
+        max_speed_mps = std::max(max_speed_mps, std::hypot(vx, vy));
+        ++twists;
+      } else if (kind == "odom") {
+        std::string frame, child;
+        double value = 0;
+        file >> frame >> child;
+        CHECK(frame == "odom");
+        CHECK(child == "base_link");
+        for (int i = 0; i < 6; ++i) file >> value;
+        ++odometries;
+      } else {
+        text += kind + " ";
+      }
+    }
+    INFO(text);
+    CHECK(twists == kRead);
+    CHECK(odometries == kRead);
+    CHECK(max_speed_mps > 0.1);
+    CHECK(text == "0 ");
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Starts simulated bases beside a run.
+void start_bases(LaunchedRun& run, const std::vector<std::string>& options) {
+  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--latency-ms", "40"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
   const auto dds = run.dds_arguments();
   arguments.insert(arguments.end(), dds.begin(), dds.end());
   run.start("bases", "sidestep-simulator", arguments);
+}
+
+}  // namespace
+
+TEST_CASE("a run with keys drives ROS 2's bases, which have none, in a domain of their own") {
+  const auto keys = keys_for(shipped_scenario("bases/four-bases"));
+  const TestDomain bases;
+  const std::string domain = std::to_string(bases.number());
+  LaunchedRun run(
+      shipped_scenario("bases/four-bases"),
+      {"--driver", "velocity", "--robots=--latency-ms 58 --base-domain " + domain, "--keys", keys->folder()});
+  start_bases(run, {"--keys", keys->folder(), "--base-domain", domain});
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
+  const RosReader reader(bases.number());
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");
   require_no_violations(run.report());
   CHECK(run.report()["arrived"] == 4);
+  reader.check();
 }
 
 TEST_CASE(
@@ -45,52 +107,16 @@ TEST_CASE(
     "their topics",
     "[both-cores]") {
   LaunchedRun run(shipped_scenario("bases/four-bases"), {"--driver", "velocity", "--robots=--latency-ms 58"});
-  std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--odometry-drift",
-                                     "0.02",       "--latency-ms",      "40"};
-  const auto dds = run.dds_arguments();
-  arguments.insert(arguments.end(), dds.begin(), dds.end());
-  run.start("bases", "sidestep-simulator", arguments);
+  start_bases(run, {"--odometry-drift", "0.02"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
-  // A reader of ROS 2's default profile, for robot 2.
-  const auto path = std::filesystem::temp_directory_path() / fmt::format("sidestep-ros-{}", getpid());
-  const std::string command =
-      fmt::format("CYCLONEDDS_URI='{}' timeout 40 '{}' read {} 2 40 >'{}' 2>&1; echo $? >>'{}' &", kLoopback,
-                  SIDESTEP_ROS_PEER, dds[1], path.string(), path.string());
-  REQUIRE(std::system(command.c_str()) == 0);
+  const RosReader reader(std::stoi(run.dds_arguments()[1]));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 4);
-  std::ifstream file(path);
-  int twists = 0, odometries = 0;
-  double max_speed_mps = 0;
-  std::string kind, text;
-  while (file >> kind) {
-    if (kind == "twist") {
-      double vx = 0, vy = 0, wz = 0;
-      file >> vx >> vy >> wz;
-      max_speed_mps = std::max(max_speed_mps, std::hypot(vx, vy));
-      ++twists;
-    } else if (kind == "odom") {
-      std::string frame, child;
-      double value = 0;
-      file >> frame >> child;
-      CHECK(frame == "odom");
-      CHECK(child == "base_link");
-      for (int i = 0; i < 6; ++i) file >> value;
-      ++odometries;
-    } else {
-      text += kind + " ";
-    }
-  }
-  INFO(text);
-  CHECK(twists == 40);
-  CHECK(odometries == 40);
-  CHECK(max_speed_mps > 0.1);
-  CHECK(text == "0 ");
-  std::filesystem::remove(path);
+  reader.check();
   WARN("four bases, odometry 2 % off, vision at 10 Hz: makespan "
        << report["makespan_s"].dump() << " s, minimum clearance " << report["min_clearance_m"].dump()
        << " m");

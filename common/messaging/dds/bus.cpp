@@ -27,14 +27,15 @@ struct Session {
 
 /// Writers share ownership of the participants, so they may outlive the bus.
 struct DdsBus::Impl {
-  explicit Impl(const DdsSettings& with) : settings(with), session(std::make_shared<Session>(with)) {}
+  Impl(const DdsSettings& with, std::shared_ptr<EventLoop> runs)
+      : loop(std::move(runs)), settings(with), session(std::make_shared<Session>(with)) {}
 
   std::shared_ptr<DdsParticipant> participant() { return {session, &session->participant}; }
 
   /// Faults are injected into UDP only, so a process with faults does not use shared memory.
   bool shares_memory(const TopicInfo& topic) const { return topic.qos == Qos::kImage && !settings.faults; }
 
-  EventLoop loop;
+  std::shared_ptr<EventLoop> loop;
   DdsSettings settings;
   std::shared_ptr<Session> session;
   std::shared_ptr<DdsParticipant> image_participant;  ///< null until images are written
@@ -42,21 +43,32 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<DdsImageReader>> image_readers;
 };
 
-DdsBus::DdsBus(const DdsSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+DdsBus::DdsBus(const DdsSettings& settings)
+    : DdsBus(std::make_unique<Impl>(settings, std::make_shared<EventLoop>())) {}
+DdsBus::DdsBus(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 DdsBus::~DdsBus() = default;
 
 Time DdsBus::now() const { return EventLoop::now(); }
 Time DdsBus::clock() { return EventLoop::now(); }
 Duration DdsBus::host_clock_ahead() { return EventLoop::host_clock_ahead(); }
 void DdsBus::adopt_host_clock() { EventLoop::adopt_host_clock(); }
-void DdsBus::at(Time when, std::function<void()> callback) { impl_->loop.at(when, std::move(callback)); }
+void DdsBus::at(Time when, std::function<void()> callback) { impl_->loop->at(when, std::move(callback)); }
 void DdsBus::watch(int descriptor, std::function<void()> readable) {
-  impl_->loop.watch(descriptor, std::move(readable));
+  impl_->loop->watch(descriptor, std::move(readable));
 }
-void DdsBus::post(std::function<void()> callback) { impl_->loop.post(std::move(callback)); }
-void DdsBus::run() { impl_->loop.run_until(Time::max()); }
-void DdsBus::run_until(Time when) { impl_->loop.run_until(when); }
-void DdsBus::stop() { impl_->loop.stop(); }
+void DdsBus::post(std::function<void()> callback) { impl_->loop->post(std::move(callback)); }
+void DdsBus::run() { impl_->loop->run_until(Time::max()); }
+void DdsBus::run_until(Time when) { impl_->loop->run_until(when); }
+void DdsBus::stop() { impl_->loop->stop(); }
+std::unique_ptr<DdsBus> DdsBus::local_bus(int domain) const {
+  if (domain == impl_->settings.domain)
+    throw std::invalid_argument(
+        fmt::format("DDS domain {} is that of this process already; expected another one", domain));
+  DdsSettings settings{domain, "127.0.0.1", impl_->settings.participant};
+  settings.is_local_bus = true;
+  return std::unique_ptr<DdsBus>(new DdsBus(std::make_unique<Impl>(settings, impl_->loop)));
+}
+
 std::string DdsBus::locators() const {
   return impl_->readers.empty() ? std::string() : impl_->readers.front()->locators();
 }
@@ -80,6 +92,8 @@ void DdsBus::add_drops(DropCounters& drops) const {
     drops.count(DropReason::kForgedSender, std::nullopt, gate->forged());
   }
 }
+
+bool DdsBus::has_keys() const { return impl_->session->participant.identity() != nullptr; }
 
 bool DdsBus::may_write(const TopicInfo& topic, std::uint32_t robot) const {
   const Identity* const identity = impl_->session->participant.identity();
@@ -107,10 +121,10 @@ void DdsBus::make_reader(const TopicInfo& topic, const std::string& channel,
   impl_->session->type_mismatches.expect(channel, topic.type.name);
   if (impl_->shares_memory(topic)) {
     impl_->image_readers.push_back(std::make_unique<DdsImageReader>(
-        impl_->loop, impl_->settings, impl_->session->type_mismatches, topic, channel, std::move(callback)));
+        *impl_->loop, impl_->settings, impl_->session->type_mismatches, topic, channel, std::move(callback)));
   } else {
     impl_->readers.push_back(
-        std::make_unique<DdsReader>(impl_->loop, impl_->participant(), topic, channel, std::move(callback)));
+        std::make_unique<DdsReader>(*impl_->loop, impl_->participant(), topic, channel, std::move(callback)));
   }
 }
 

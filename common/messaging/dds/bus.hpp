@@ -26,6 +26,7 @@ struct DdsSettings {
   bool insecure = false;  ///< may work without keys on networks that other machines can reach
   /// Whose keys to take from a folder with those of several.
   Identity identity{Role::kViewer};
+  bool is_local_bus = false;  ///< of DdsBus::local_bus(): says nothing about its missing keys
 };
 
 /// The version of Fast DDS that this program was built with, e.g. "3.1.2".
@@ -67,6 +68,11 @@ class DdsBus : public Bus {
   /// async-signal-safe.
   void stop();
 
+  /// A bus without keys in another domain, over the loopback interface: for other people's programs on this
+  /// machine. The thread that runs this bus makes its callbacks, too; it must outlive the last of them.
+  /// Throws std::invalid_argument if the domain is this bus's own, and as the constructor does.
+  std::unique_ptr<DdsBus> local_bus(int domain) const;
+
   /// The addresses on which this participant listens for messages, for the log; empty before the first
   /// subscription.
   std::string locators() const;
@@ -74,6 +80,7 @@ class DdsBus : public Bus {
   /// From now on impairs all arriving messages except an operator's. Precondition: DdsSettings::faults.
   void impair(const LinkQuality& quality, std::uint64_t seed);
 
+  bool has_keys() const;
   bool may_write(const TopicInfo& topic, std::uint32_t robot) const override;
   bool may_read(const TopicInfo& topic, std::uint32_t robot) const override;
 
@@ -85,6 +92,7 @@ class DdsBus : public Bus {
 
  private:
   struct Impl;
+  explicit DdsBus(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

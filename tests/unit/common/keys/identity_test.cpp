@@ -110,7 +110,6 @@ TEST_CASE("agents exchange no messages with each other, and all others that work
   CHECK_FALSE(exchange("agent 1", "robot 2-4"));
   CHECK_FALSE(exchange("viewer", "judge"));
   CHECK(exchange("agent 3", "robot 2-4"));
-  CHECK(exchange("simulator", "robot 2-4"));  // of bases with ROS 2's topics
   CHECK(exchange("robot 2-4", "agent 3"));
   for (const char* other :
        {"coordinator 0", "vision", "simulator", "viewer", "judge", "operator", "client a", "referee"}) {
