@@ -27,6 +27,12 @@ constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 constexpr const char* kMonitor = "monitor";
 
+/// For audit and recording.
+DdsSettings seeing_all(DdsSettings dds) {
+  dds.keeps_all = true;
+  return dds;
+}
+
 }  // namespace
 
 Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
@@ -36,7 +42,8 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       placement_(placement),
       network_(network),
       group_(log_path),
-      bus_(options.dds),
+      revoked_keys_(key_folder_of_process(options, "vision", scenario)),
+      bus_(seeing_all(options.dds)),
       rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
              [this](const RulesMismatch& mismatch) {
                metrics_.on_mismatch(mismatch);
@@ -75,6 +82,7 @@ Report Launcher::run() {
   start_core();
   while (!is_over()) {
     start_due_agents();
+    send_revoked_keys();
     bus_.run_until(next_poll());
     for (const ChildEvent& event : group_.poll(0ms)) handle(event);
     print_new_epochs();
@@ -200,6 +208,16 @@ void Launcher::start_due_agents() {
   std::vector<std::string> arguments{"--robot", std::to_string(robot)};
   if (!options_.planner.empty()) arguments.insert(arguments.end(), {"--planner", options_.planner});
   start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, arguments);
+}
+
+void Launcher::send_revoked_keys() try {
+  const auto list = revoked_keys_.changed(bus_.now());
+  if (!list) return;
+  // Processes of this machine have no input: they read the file themselves.
+  for (const auto& [name, process] : processes_)
+    group_.add_input(name, file_input(key_files::kRevoked, *list));
+} catch (const std::runtime_error& error) {
+  print(error.what(), LogLevel::kWarning);
 }
 
 void Launcher::handle(const ChildEvent& event) {

@@ -310,6 +310,7 @@ int monitor_recording(const MonitorOptions& options) {
 void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<MonitorOptions>();
   options->dds.participant = "sidestep-monitor";
+  options->dds.keeps_all = true;
   const CliCommand command =
       root.add_subcommand("monitor", "Shows a running system or a recording in the browser");
   command.add_option("FILE", options->file,

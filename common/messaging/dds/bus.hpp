@@ -26,6 +26,9 @@ struct DdsSettings {
   bool insecure = false;  ///< may work without keys on networks that other machines can reach
   /// Whose keys to take from a folder with those of several.
   Identity identity{Role::kViewer};
+  /// Arrived states wait until they are read. False: a newer one replaces one that waits, as suits whoever
+  /// acts by them; true: for whoever has to see every one.
+  bool keeps_all = false;
   bool is_local_bus = false;  ///< of DdsBus::local_bus(): says nothing about its missing keys
 };
 

@@ -49,7 +49,7 @@ DdsReader::DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participan
       callback_(std::move(callback)),
       type_(new GuardedType(topic.type)),
       sample_(static_cast<GuardedType::Sample*>(guarded(type_).make_sample())),
-      reader_(participant_->create_reader(channel, type_, dds_reader_qos(topic.qos), this)) {}
+      reader_(participant_->create_reader(channel, type_, participant_->reader_qos(topic.qos), this)) {}
 
 DdsReader::~DdsReader() {
   participant_->delete_reader(reader_);
@@ -57,7 +57,8 @@ DdsReader::~DdsReader() {
 }
 
 void DdsReader::move_to(std::shared_ptr<DdsParticipant> participant) {
-  DataReader* const next = participant->create_reader(channel_, type_, dds_reader_qos(topic_.qos), this);
+  DataReader* const next =
+      participant->create_reader(channel_, type_, participant->reader_qos(topic_.qos), this);
   participant_->delete_reader(reader_);
   participant_ = std::move(participant);
   reader_ = next;

@@ -16,10 +16,7 @@ using namespace fast_dds::dds;
 /// Matches every writer of the topic.
 DataReaderQos permissive_qos(const DiscoveredEndpoint& writer) {
   constexpr int kDepth = 256;
-  DataReaderQos qos = dds_reader_qos(Qos::kState);
-  qos.history().depth = kDepth;
-  qos.resource_limits().max_samples_per_instance = kDepth;
-  qos.resource_limits().max_samples = qos.resource_limits().max_instances * kDepth;
+  DataReaderQos qos = dds_reader_qos(Qos::kState, kDepth);
   qos.ownership().kind = writer.is_exclusive ? EXCLUSIVE_OWNERSHIP_QOS : SHARED_OWNERSHIP_QOS;
   fast_dds::representation(qos).m_value = {XCDR_DATA_REPRESENTATION, XCDR2_DATA_REPRESENTATION};
   return qos;

@@ -32,6 +32,7 @@ constexpr int kMaxDomain = 99;                 ///< port numbers of higher domai
 constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
 const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less
+constexpr int kKeptStates = 64;                        ///< a second of a topic with one message per cycle
 constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle ones are dropped
 constexpr int kEventDepth = 64;
 
@@ -146,8 +147,8 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
 }
 
 template <typename EndpointQos>
-void set_common(EndpointQos& qos, Qos kind) {
-  const int depth = kind == Qos::kEvent ? kEventDepth : 1;
+void set_common(EndpointQos& qos, Qos kind, int state_depth) {
+  const int depth = kind == Qos::kEvent ? kEventDepth : state_depth;
   qos.reliability().kind = kind == Qos::kEvent ? RELIABLE_RELIABILITY_QOS : BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind = VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
@@ -180,7 +181,8 @@ std::runtime_error failure(const std::string& entity, const std::string& channel
 DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
                                std::uint32_t shared_memory_bytes)
     : own_listener_(listener == nullptr ? std::make_unique<NoListener>() : nullptr),
-      listener_(listener == nullptr ? own_listener_.get() : listener) {
+      listener_(listener == nullptr ? own_listener_.get() : listener),
+      keeps_all_(settings.keeps_all) {
   check(settings);
   if (!settings.keys.empty()) {
     keys_ = load_key_folder(own_key_folder(settings.keys, settings.identity), EventLoop::now());
@@ -263,6 +265,10 @@ DataReader* DdsParticipant::create_reader(const std::string& channel, const Type
   return reader;
 }
 
+DataReaderQos DdsParticipant::reader_qos(Qos qos) const {
+  return dds_reader_qos(qos, keeps_all_ && qos == Qos::kState ? kKeptStates : 1);
+}
+
 void DdsParticipant::delete_writer(DataWriter* writer) { publisher_->delete_datawriter(writer); }
 
 void DdsParticipant::delete_reader(DataReader* reader) { subscriber_->delete_datareader(reader); }
@@ -277,15 +283,15 @@ std::string dds_locators(const DataReader& reader) {
 
 DataWriterQos dds_writer_qos(Qos kind) {
   DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
-  set_common(qos, kind);
+  set_common(qos, kind, 1);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
   fast_dds::set_times(qos, milliseconds(50), milliseconds(1));
   return qos;
 }
 
-DataReaderQos dds_reader_qos(Qos kind) {
+DataReaderQos dds_reader_qos(Qos kind, int depth) {
   DataReaderQos qos = DATAREADER_QOS_DEFAULT;
-  set_common(qos, kind);
+  set_common(qos, kind, depth);
   fast_dds::set_times(qos, milliseconds(1));
   return qos;
 }

@@ -39,6 +39,7 @@ class DdsParticipant {
   fast_dds::dds::DataReader* create_reader(const std::string& channel, const fast_dds::dds::TypeSupport& type,
                                            const fast_dds::dds::DataReaderQos& qos,
                                            fast_dds::dds::DataReaderListener* listener);
+  fast_dds::dds::DataReaderQos reader_qos(Qos qos) const;
   void delete_writer(fast_dds::dds::DataWriter* writer);
   void delete_reader(fast_dds::dds::DataReader* reader);
   /// As DdsBus::impair().
@@ -56,6 +57,7 @@ class DdsParticipant {
   std::unique_ptr<fast_dds::DiscoveryListener> own_listener_;
   fast_dds::DiscoveryListener* listener_;
   std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
+  const bool keeps_all_;
   std::optional<KeyFolder> keys_;
   std::shared_ptr<Gate> gate_;
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
@@ -65,7 +67,8 @@ class DdsParticipant {
 };
 
 fast_dds::dds::DataWriterQos dds_writer_qos(Qos qos);
-fast_dds::dds::DataReaderQos dds_reader_qos(Qos qos);
+/// `depth`: how many states of each key wait until they are read.
+fast_dds::dds::DataReaderQos dds_reader_qos(Qos qos, int depth = 1);
 /// The addresses on which the reader listens.
 std::string dds_locators(const fast_dds::dds::DataReader& reader);
 /// The policy's name, e.g. "reliability".

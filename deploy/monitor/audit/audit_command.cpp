@@ -101,6 +101,7 @@ int audit_live(const AuditOptions& options) {
 void add_audit_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<AuditOptions>();
   options->dds.participant = "sidestep-audit";
+  options->dds.keeps_all = true;
   options->dds.identity = {Role::kJudge};
   const CliCommand audit = root.add_subcommand(
       "audit", "Checks a running system, or a recording, for violations of the safety rules");

@@ -44,6 +44,7 @@ int record_messages(const RecordOptions& options) {
 void add_record_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<RecordOptions>();
   options->dds.participant = "sidestep-record";
+  options->dds.keeps_all = true;
   const CliCommand command =
       root.add_subcommand("record", "Records all messages of a running system except camera images");
   command.add_option("SCENARIO", options->scenario_file, "scenario file").required();
