@@ -20,6 +20,7 @@
 #include "deploy/launch/hosts/placement.hpp"
 #include "deploy/launch/process_command.hpp"
 #include "deploy/launch/process_group.hpp"
+#include "deploy/launch/revoked_keys.hpp"
 #include "deploy/launch/run.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
@@ -71,6 +72,8 @@ class Launcher {
   ChildSpec child(const ProcessSpec& process, const HostSpec& host) const;
   void start_core();
   void start_due_agents();
+  /// Sends the list of revoked keys to processes on other hosts if it has changed.
+  void send_revoked_keys();
   Time next_poll();
   void handle(const ChildEvent& event);
   /// Starts the process that shows the run in the browser.
@@ -92,6 +95,7 @@ class Launcher {
   TemporaryFolder robot_memory_;  ///< of the robots' side, which begins anew with each run
   ProcessGroup group_;
   std::map<std::string, ProcessSpec> processes_;  ///< by name
+  RevokedKeys revoked_keys_;
   RunDirector director_;
   DdsBus bus_;
   RulesExchange rules_;

@@ -16,10 +16,10 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// The shell script on the remote host. Its stdin carries the scenario and the keys, and reaches its end when
-/// the connection ends for any reason. Descriptor 3 preserves stdin, because a shell replaces it for
-/// background processes. HUP and PIPE are ignored so that the script can clean up after the connection is
-/// lost.
+/// The shell script on the remote host. Its stdin carries files (see file_input()) and reaches its end when
+/// the connection ends for any reason: first as many as the program needs, later those that replace some of
+/// them. Descriptor 3 preserves stdin, because a shell replaces it for background processes. HUP and PIPE are
+/// ignored so that the script can clean up after the connection is lost.
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
@@ -27,14 +27,14 @@ scenario=$1 program=$2 files=$3
 shift 3
 case $program in */*) program=$(realpath -- "$program") ;; esac
 folder=$(mktemp -d) && cd "$folder" || exit 1
+receive() { read -r size name <&3 && head -c "$size" <&3 >./part && mv ./part "./$name"; }
 while [ "$files" -gt 0 ]; do
-  head -c "$1" <&3 >"$2" || exit 1
+  receive || exit 1
   files=$((files - 1))
-  shift 2
 done
 "$program" --scenario "$folder/$scenario" "$@" </dev/null 3<&- &
 child=$!
-{ cat <&3; kill "$child"; sleep 3; kill -9 "$child"; } >/dev/null 2>&1 &
+{ while receive; do :; done; kill "$child"; sleep 3; kill -9 "$child"; } >/dev/null 2>&1 &
 watchdog=$!
 wait "$child"
 status=$?
@@ -65,11 +65,7 @@ std::vector<SentFile> sent_files(const ProcessSpec& process) {
   std::vector<SentFile> files{{std::filesystem::path(process.scenario_file).filename().string(),
                                read_yaml_file(process.scenario_file, "a scenario")}};
   if (process.keys.empty()) return files;
-  for (const char* name : key_files::kAll) {
-    std::ifstream file(process.keys + "/" + name);
-    if (!file) throw std::runtime_error(fmt::format("cannot read {}/{}", process.keys, name));
-    files.push_back({name, {std::istreambuf_iterator<char>(file), {}}});
-  }
+  for (const char* name : key_files::kAll) files.push_back({name, read_key_file(process.keys, name)});
   return files;
 }
 
@@ -77,7 +73,6 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, const 
                         const Arguments& options) {
   Arguments remote{
       "sh", "-c", kRemoteScript, "sidestep", files.front().name, program, std::to_string(files.size())};
-  for (const SentFile& file : files) append(remote, {std::to_string(file.content.size()), file.name});
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
   // A hanging connection ends within seconds here, and on the remote host if its server is configured
@@ -93,6 +88,16 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, const 
 
 }  // namespace
 
+std::string file_input(const std::string& name, const std::string& content) {
+  return fmt::format("{} {}\n{}", content.size(), name, content);
+}
+
+std::string read_key_file(const std::string& folder, const char* name) {
+  std::ifstream file(folder + "/" + name);
+  if (!file) throw std::runtime_error(fmt::format("cannot read {}/{}", folder, name));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std::string& namespace_name) {
   const std::string program =
       host.programs.empty() ? sibling_program_path(process.program) : host.programs + "/" + process.program;
@@ -105,7 +110,7 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
   ChildSpec child{process.name, {}, process.restart};
   if (is_remote) {
     const std::vector<SentFile> files = sent_files(process);
-    for (const SentFile& file : files) child.input += file.content;
+    for (const SentFile& file : files) child.input += file_input(file.name, file.content);
     child.argv = ssh_arguments(host, program, files, options);
     return child;
   }

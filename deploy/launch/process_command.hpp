@@ -28,4 +28,11 @@ struct ProcessSpec {
 [[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host,
                                    const std::string& namespace_name);
 
+/// What to send to the stdin of a process over ssh, so that it gets a file in the folder of its scenario and
+/// keys, or one is replaced there.
+[[nodiscard]] std::string file_input(const std::string& name, const std::string& content);
+
+/// Throws std::runtime_error if the file cannot be read.
+[[nodiscard]] std::string read_key_file(const std::string& folder, const char* name);
+
 }  // namespace sidestep

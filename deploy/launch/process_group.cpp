@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,17 +78,11 @@ Pipe new_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// A pipe that contains the text; it stays open for its reader.
-Pipe filled_pipe(const std::string& text) {
-  if (text.empty()) return {};
-  Pipe pipe = new_pipe();
-  fcntl(pipe.write_end, F_SETFL, O_NONBLOCK);
-  fcntl(pipe.write_end, F_SETPIPE_SZ, static_cast<int>(text.size()));
-  const ssize_t written = write(pipe.write_end, text.data(), text.size());
-  if (written == static_cast<ssize_t>(text.size())) return pipe;
-  close_fd(pipe.read_end);
-  close_fd(pipe.write_end);
-  throw std::runtime_error(fmt::format("{} bytes are too many for the stdin of a child", text.size()));
+/// Sockets, because writing to a pipe whose reader has ended would end this process by a signal.
+Pipe new_input() {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot make a socket");
+  return {ends[0], ends[1]};
 }
 
 void add(const rusage& used, ProcessUse& to) {
@@ -112,6 +107,7 @@ struct ProcessGroup::Child {
   SteadyTime started{};
   SteadyTime restart_at = SteadyTime::max();
   Milliseconds backoff = kMinBackoff;
+  std::string unsent;  // of its stdin
   std::string partial;
   std::deque<std::string> lines;
 };
@@ -164,6 +160,14 @@ bool ProcessGroup::send_signal(const std::string& name, int signal) {
   return child && child->is_running && kill(child->pid, signal) == 0;
 }
 
+void ProcessGroup::add_input(const std::string& name, const std::string& more) {
+  Child* const child = find(name);
+  if (!child || child->spec.input.empty()) return;
+  child->spec.input += more;
+  child->unsent += more;
+  send_input(*child);
+}
+
 void ProcessGroup::restart(const ChildSpec& spec) {
   Child* const child = find(spec.name);
   if (!child) throw std::runtime_error("there is no process " + spec.name + " to start again");
@@ -177,7 +181,7 @@ void ProcessGroup::restart(const ChildSpec& spec) {
 }
 
 void ProcessGroup::spawn(Child& child) {
-  Pipe input = filled_pipe(child.spec.input), output = new_pipe();
+  Pipe input = child.spec.input.empty() ? Pipe{} : new_input(), output = new_pipe();
   fcntl(output.read_end, F_SETFL, O_NONBLOCK);
   std::vector<char*> argv;
   for (auto& argument : child.spec.argv) argv.push_back(argument.data());
@@ -194,6 +198,7 @@ void ProcessGroup::spawn(Child& child) {
   close_fd(input.read_end);
   close_fd(child.input);
   child.input = input.write_end;
+  child.unsent = child.spec.input;
   if (pid < 0) {
     close_fd(output.read_end);
     fail("cannot start " + child.spec.name);
@@ -205,6 +210,18 @@ void ProcessGroup::spawn(Child& child) {
   child.started = steady_clock::now();
   child.restart_at = SteadyTime::max();
   if (child.pidfd < 0) fail("cannot watch " + child.spec.name);
+  send_input(child);
+}
+
+void ProcessGroup::send_input(Child& child) {
+  while (child.input >= 0 && !child.unsent.empty()) {
+    const ssize_t sent =
+        send(child.input, child.unsent.data(), child.unsent.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && errno == EAGAIN) return;
+    // A child that does not read any more is about to end.
+    child.unsent.erase(0, sent < 0 ? child.unsent.size() : static_cast<std::size_t>(sent));
+  }
 }
 
 void ProcessGroup::wait_for_activity(Milliseconds timeout) {
@@ -213,6 +230,7 @@ void ProcessGroup::wait_for_activity(Milliseconds timeout) {
   for (const auto& child : children_) {
     if (child->pidfd >= 0) watched.push_back({child->pidfd, POLLIN, 0});
     if (child->output >= 0) watched.push_back({child->output, POLLIN, 0});
+    if (child->input >= 0 && !child->unsent.empty()) watched.push_back({child->input, POLLOUT, 0});
     until = std::min(until, child->restart_at);
   }
   const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
@@ -285,6 +303,7 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
     for (const auto& child : children_) {
       ChildEvent event;
       drain(*child);
+      send_input(*child);
       if (reap(*child, event)) events.push_back(event);
     }
     if (!is_terminating_) start_due(events);

@@ -52,6 +52,9 @@ class ProcessGroup {
   pid_t start(const ChildSpec& spec);
   /// Sends a signal to the running child of this name; false if none runs.
   [[nodiscard]] bool send_signal(const std::string& name, int signal);
+  /// Sends more to the stdin of the child of this name, and to the processes that replace it. Nothing happens
+  /// if it was started without input.
+  void add_input(const std::string& name, const std::string& more);
   /// Starts the child of this name again by a new specification, as a new process: at the next poll(), or
   /// when the running one, which is killed, has ended. Throws std::runtime_error if no such child was ever
   /// started.
@@ -77,6 +80,7 @@ class ProcessGroup {
   void spawn(Child& child);
   void wait_for_activity(Milliseconds timeout);
   void drain(Child& child);
+  void send_input(Child& child);
   bool reap(Child& child, ChildEvent& event);
   void start_due(std::vector<ChildEvent>& events);
 

@@ -43,7 +43,8 @@ inline std::vector<std::string> all_identities() {
 
 /// A run with keys whose robots stand.
 struct KeyedRun {
-  KeyedRun() : keys(all_identities()), run(kThreeWaitingRobots, {"--keys", keys.folder()}) {
+  explicit KeyedRun(const std::vector<std::string>& extra_arguments = {})
+      : keys(all_identities()), run(kThreeWaitingRobots, arguments(extra_arguments)) {
     INFO(run.output());
     REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
     // Agents that do not answer yet are asked again.
@@ -80,6 +81,12 @@ struct KeyedRun {
 
   TestKeys keys;
   LaunchedRun run;
+
+ private:
+  std::vector<std::string> arguments(std::vector<std::string> result) const {
+    result.insert(result.end(), {"--keys", keys.folder()});
+    return result;
+  }
 };
 
 /// An operator who sends the robots to and fro.

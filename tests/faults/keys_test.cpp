@@ -2,6 +2,8 @@
 // Attacks on the processes of a run with keys, by real participants.
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -222,6 +224,47 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
   REQUIRE(revoke({"agent", "2"}) == "exit code 0");
   REQUIRE(
       run.wait_until([&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
+  keyed.check_unharmed();
+}
+
+/// In place of ssh, a program that runs the remote command on this machine, as sshd would.
+class LocalSsh {
+ public:
+  LocalSsh() {
+    write_file(folder_.file("ssh"),
+               "#!/bin/sh\nwhile [ \"${1#-}\" != \"$1\" ]; do shift; done\nshift\nexec sh -c \"$*\"\n");
+    std::filesystem::permissions(folder_.file("ssh"), std::filesystem::perms::owner_all);
+    setenv("PATH", (folder_.path() + ":" + path_).c_str(), 1);
+  }
+  ~LocalSsh() { setenv("PATH", path_.c_str(), 1); }
+  LocalSsh(const LocalSsh&) = delete;
+  LocalSsh& operator=(const LocalSsh&) = delete;
+
+ private:
+  std::string path_ = std::getenv("PATH");
+  TemporaryFolder folder_;
+};
+
+TEST_CASE("keys that are revoked during a run are refused on other hosts, too") {
+  const LocalSsh ssh;
+  const TemporaryFolder folder;
+  const std::string hosts = folder.file("hosts.yaml");
+  write_file(hosts,
+             "launcher: {interface: 127.0.0.1}\nhosts:\n  - name: far\n    transport: {ssh: robot@far}\n"
+             "    interface: 127.0.0.1\n    processes: [simulator, vision, coordinator]\n"
+             "    standbys: rest\n    agents: rest\n");
+  KeyedRun keyed({"--hosts", hosts});
+  LaunchedRun& run = keyed.run;
+  INFO(run.output());
+  Attacker client(keyed.with_keys(keyed.keys.folder_of("client forklift")));
+  REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
+  REQUIRE(run.command({"keys", "revoke", "--keys", keyed.keys.folder(), "client", "forklift"}) ==
+          "exit code 0");
+  // That process has the list of another host.
+  REQUIRE(run.wait_until([&] {
+    return run.logged("coordinator: keys: refuses client forklift at 127.0.0.1, whose key is revoked");
+  }));
+  CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
   keyed.check_unharmed();
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/command.hpp"
+#include "deploy/launch/revoked_keys.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_keys.hpp"
 
@@ -116,7 +117,7 @@ TEST_CASE("over ssh the process gets its own keys, and nobody else can read them
   const Fixture fixture;
   HostSpec host = host_of(HostTransport::kSsh, "robot@far");
   host.programs = fs::relative(fixture.folder).string();  // from the folder in which ssh begins
-  const TestKeys keys({"agent", "3-4"});
+  TestKeys keys({"agent", "3-4"});
   ProcessSpec process = agent_spec(fixture);
   process.keys = keys.folder_of("agent 3");
   ProcessGroup group(fixture.path("log"));
@@ -127,6 +128,24 @@ TEST_CASE("over ssh the process gets its own keys, and nobody else can read them
   const KeyFolder copied = load_key_folder(fixture.remote_folder(), keys.now());
   CHECK(to_text(copied.identity) == "agent 3");
   for (const char* name : key_files::kAll) CHECK_FALSE(fs::is_symlink(copied.file(name)));
+
+  // Another list of revoked keys replaces the former.
+  RevokedKeys revoked(process.keys);
+  const Time now = EventLoop::now();
+  CHECK_FALSE(revoked.changed(now));
+  keys.store().revoke({Role::kAgent, 4, 4}, keys.now());
+  CHECK_FALSE(revoked.changed(now));
+  const auto list = revoked.changed(now + std::chrono::seconds(2));
+  REQUIRE(list);
+  CHECK_FALSE(revoked.changed(now + std::chrono::seconds(4)));
+  group.add_input("agent 3", file_input(key_files::kRevoked, *list));
+  const auto revoked_there = [&] {
+    return load_revoked_serials(copied.file(key_files::kRevoked), copied.authority).size();
+  };
+  const Time deadline = now + std::chrono::seconds(30);
+  while (revoked_there() == 0 && EventLoop::now() < deadline) group.poll(std::chrono::milliseconds(5));
+  CHECK(revoked_there() == 1);
+  CHECK_FALSE(fs::exists(fixture.path("end")));
   CHECK(group.terminate(std::chrono::seconds(20)).empty());
   CHECK_FALSE(fs::exists(fixture.remote_folder()));
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Notices when the list of revoked keys changes.
+class RevokedKeys {
+ public:
+  /// `folder`: the keys of an identity. Empty: the list never changes.
+  explicit RevokedKeys(const std::string& folder);
+
+  /// The list, if it has changed since the last call, or since the construction. Looks once a second. Throws
+  /// std::runtime_error, once for each change, if it cannot be read.
+  [[nodiscard]] std::optional<std::string> changed(Time now);
+
+ private:
+  std::filesystem::file_time_type time_of_file() const;
+
+  std::string folder_;
+  std::filesystem::file_time_type time_;
+  Time due_{};
+};
+
+}  // namespace sidestep
