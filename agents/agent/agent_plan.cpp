@@ -49,6 +49,8 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const bool gives_way = give_way_.place_m().has_value();
   const Vec2 target = give_way_.place_m().value_or(target_m(rest));
   const double inflation_m = inflation_from(base, start);
+  // Inflation ends only at rest. A robot that drove on with it might never fit where it has to go.
+  if (inflation_m > 0) return std::nullopt;
   const auto ends_at = [&](const Vec2& place) {
     return (rest - place).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
   };
