@@ -194,7 +194,8 @@ TEST_CASE("planning settings replace the defaults") {
   CHECK_FALSE(d.plans(1.06));
 }
 
-TEST_CASE("inflation lasts until the robot is at rest and vision agrees with its own estimate, and it waits") {
+TEST_CASE(
+    "inflation lasts until the robot is at rest and vision agrees with its own estimate, and it waits") {
   DrivenAgent d;
   Feedback displaced = resting_at({0, 0}, 1);
   displaced.executing.number = 50;
