@@ -158,9 +158,9 @@ class Agent {
   std::span<const double> extra_clearances_m() const;
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
-  /// Inflation of a version that continues `base`: the base's inflation, or 0 once the robot is at rest and
-  /// vision agrees with the robot's own position estimate.
-  double inflation_from(const Version& base, Time start) const;
+  /// Whether the robot is at rest at the end of `base`, where vision agrees with its own position estimate. A
+  /// version from there has no inflation.
+  bool may_end_inflation(const Version& base, Time start) const;
   /// Versions that start farther apart than this cannot conflict.
   double search_horizon_m() const;
   /// As search_horizon_m(), plus the distance that robots drive while a ledger page ages.

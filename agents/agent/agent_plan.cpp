@@ -48,11 +48,10 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   decide_whether_to_give_way(now);
   const bool gives_way = give_way_.place_m().has_value();
   const Vec2 target = give_way_.place_m().value_or(target_m(rest));
-  const double inflation_m = inflation_from(base, start);
   // Inflation ends only at rest. A robot that drove on with it might never fit where it has to go.
-  if (inflation_m > 0) return std::nullopt;
+  if (base.inflation_m > 0 && !may_end_inflation(base, start)) return std::nullopt;
   const auto ends_at = [&](const Vec2& place) {
-    return (rest - place).norm() < settings_.at_goal_m && inflation_m == base.inflation_m;
+    return (rest - place).norm() < settings_.at_goal_m && base.inflation_m == 0;
   };
   if (start <= base.trajectory.start()) return std::nullopt;
   if (ends_at(target) && !zones_.is_kept_out(target, required_separation_m())) {
@@ -84,7 +83,7 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
       sight_ ? follow_in_sight(intent, at_start, start, route, max_speed_mps, hidden)
              : follow(intent, at_start, route, max_speed_mps);
   if (sight_) update_occlusion(intent, at_start, hidden, now);
-  SearchQuery query{start, at_start, desired.acceleration_mps2, desired.hold, inflation_m};
+  SearchQuery query{start, at_start, desired.acceleration_mps2, desired.hold};
   if (sight_) {
     query.hidden = hidden;
   } else {
@@ -150,12 +149,12 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
                               cycle_ * negotiation_.lead());
 }
 
-double Agent::inflation_from(const Version& base, Time start) const {
+bool Agent::may_end_inflation(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();
   const bool was_observed_at_rest = last_fix_ > base.trajectory.end();
   // The robot may not have received the observation yet.
   const bool agrees = (last_fix_m_ - estimate_.position_m).norm() <= drift_bound_m_;
-  return is_at_rest && was_observed_at_rest && agrees ? 0 : base.inflation_m;
+  return is_at_rest && was_observed_at_rest && agrees;
 }
 
 std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
@@ -171,8 +170,7 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
       plan.intent.velocity_mps.norm() < settings_.waiting_speed_fraction * rules_.limits.speed_mps;
   recovery_.update(result.desired_is_clear && !is_waiting, query.at_start.velocity_mps.norm(), now);
   if (result.count == 0) return std::nullopt;
-  return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, query.inflation_m,
-                              plan.intent);
+  return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, plan.intent);
 }
 
 }  // namespace sidestep

@@ -197,7 +197,7 @@ const Version& Negotiation::base_at(Time start) const {
 }
 
 Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                              double inflation_m, const std::optional<Intent>& intent) {
+                              const std::optional<Intent>& intent) {
   contradicted_ = false;
   const bool is_again = proposal_count_ > 0 && newest_proposal().start() == candidates.front().start();
   proposals_for_start_ = is_again ? proposals_for_start_ + 1 : 1;
@@ -213,7 +213,7 @@ Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNum
   Proposal proposal{robot_, incarnation_, epoch_, Time{}, next_number_, candidates.size()};
   for (const Trajectory& trajectory : candidates) {
     Version& version = sent.candidates[sent.count];
-    version = {robot_, incarnation_, next_number_++, base, trajectory, inflation_m, intent};
+    version = {robot_, incarnation_, next_number_++, base, trajectory, 0, intent};
     proposal.candidates[sent.count++] = version;
   }
   return proposal;

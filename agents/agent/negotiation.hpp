@@ -81,9 +81,9 @@ class Negotiation {
   /// The version that the robot executed by its latest fact. Precondition: is_fenced() and not is_absent().
   const Version& executing() const { return *held_.find(executing_); }
   /// Precondition: 1 to MAX_CANDIDATES candidates with the same start, which all continue `base`; for an
-  /// absent robot, a rest version on base 0. `inflation_m` is the base's, or 0 if they begin at rest.
+  /// absent robot, a rest version on base 0. They have no inflation: if the base has one, they begin at rest.
   [[nodiscard]] Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
-                                 double inflation_m = 0, const std::optional<Intent>& intent = std::nullopt);
+                                 const std::optional<Intent>& intent = std::nullopt);
 
   /// Closes the cycle that ends now: abandons its proposals that have no verdict, and counts them as missed.
   void close_cycle(Time now);

@@ -33,7 +33,7 @@ Surroundings find_surroundings(const SearchQuery& query, const Version& base, co
                        rules.limits.speed_mps * to_seconds(query.hold_time);
   for (std::size_t i = 0; i < others.size(); ++i) {
     const Version& other = others.version(i);
-    const double full_separation = rules.min_separation_m() + query.inflation_m + other.inflation_m;
+    const double full_separation = rules.min_separation_m() + other.inflation_m;
     const double max_distance = reach + full_separation + reach_m(other.trajectory);
     if ((other.trajectory.at_start().position_m - position).squaredNorm() > max_distance * max_distance)
       continue;
@@ -44,9 +44,7 @@ Surroundings find_surroundings(const SearchQuery& query, const Version& base, co
     found.is_in_conflict = true;
     found.away += (position - other.trajectory.rest_position_m()).stableNormalized();
   }
-  FloorRules inflated = rules;
-  inflated.margin_m += query.inflation_m;
-  if (check_workspace(remaining_trajectory(base.trajectory, query.start), inflated) != Validity::kValid) {
+  if (check_workspace(remaining_trajectory(base.trajectory, query.start), rules) != Validity::kValid) {
     found.is_in_conflict = true;
     found.away -= position.stableNormalized();  // towards the centre of the field
   }
@@ -60,7 +58,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
   SearchResult result;
   const Surroundings surroundings = find_surroundings(query, base, others, rules);
   if (!surroundings.is_in_conflict) return result;
-  const double min_separation_m = rules.radius_m + rules.margin_m + query.inflation_m;
+  const double min_separation_m = rules.radius_m + rules.margin_m;
   const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
   const auto try_acceleration = [&](const Vec2& desired) {
     if (result.count == SearchResult::kMaxCandidates) return;
@@ -68,8 +66,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
                                                  query.limited(rules.limits), query.hold_time);
     const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, acceleration,
                                                        query.hold_time, rules.limits.deceleration_mps2);
-    const Version candidate{base.robot,  base.incarnation, base.number + 1,
-                            base.number, trajectory,       query.inflation_m};
+    const Version candidate{base.robot, base.incarnation, base.number + 1, base.number, trajectory};
     if (trajectory.residual_speed_mps() > 1e-6 ||
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;

@@ -78,7 +78,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   const double max_deviation_m =
       (desired.norm() + max_acceleration_mps2(limits)) * deviation_per_mps2(query, limits);
 
-  const double min_separation_m = rules_.radius_m + rules_.margin_m + query.inflation_m;
+  const double min_separation_m = rules_.radius_m + rules_.margin_m;
   SearchResult result;
   candidates_.sample_accelerations(query.at_start.velocity_mps, desired, query.hold_time, limited.speed_mps,
                                    rng);
@@ -118,7 +118,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
 void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others) {
   lanes_.restart(query.start);
   others_.clear();
-  const double separation = rules_.min_separation_m() + query.inflation_m;
+  const double separation = rules_.min_separation_m();
   // Covers the tolerance of computed clearances.
   constexpr double kRounding_m = 1e-6;
   found_indices_.clear();
@@ -130,7 +130,7 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
     others_.push_back({&version.trajectory, nullptr, separation + version.inflation_m});
   }
   edges_.clear();
-  const double clearance = rules_.radius_m + rules_.margin_m + query.inflation_m;
+  const double clearance = rules_.radius_m + rules_.margin_m;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Shape& obstacle = rules_.obstacles[i];
     const auto* circle = std::get_if<Circle>(&obstacle);
@@ -168,7 +168,7 @@ void SafetySearch::find_cells(const Circle& disc) {
 
 void SafetySearch::find_moving(const SearchQuery& query, const Circle& disc) {
   constexpr double kRounding_m = 1e-6;
-  const double separation = rules_.radius_m + rules_.margin_m + query.inflation_m + kRounding_m;
+  const double separation = rules_.radius_m + rules_.margin_m + kRounding_m;
   const Time latest_end = query.start + query.hold_time + from_seconds(max_stop_s(query, rules_.limits));
   moving_.clear();
   for (const MovingObstacle& obstacle : query.moving) {
@@ -183,7 +183,7 @@ void SafetySearch::find_hidden(const SearchQuery& query, const Circle& disc) {
   const Time latest_end = query.start + query.hold_time + from_seconds(max_stop_s(query, rules_.limits));
   const double turned_m =
       hidden.heading_error_rad * ((disc.centre_m - hidden.observed_from_m).norm() + disc.radius_m);
-  const double reach_m = disc.radius_m + rules_.radius_m + rules_.margin_m + query.inflation_m + turned_m +
+  const double reach_m = disc.radius_m + rules_.radius_m + rules_.margin_m + turned_m +
                          hidden.speed_mps * std::abs(to_seconds(latest_end - hidden.observed_at)) +
                          kTolerance_m;
   const auto find = [&](std::span<const Frontier> all, std::vector<Frontier>& near) {

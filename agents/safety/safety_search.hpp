@@ -26,7 +26,6 @@ struct SearchQuery {
   State at_start;
   Vec2 desired_mps2{0, 0};
   Duration hold_time{};                              ///< how long the acceleration is held before the stop
-  double inflation_m = 0;                            ///< added to the robot's radius
   std::span<const MovingObstacle> moving{};          ///< obstacles that the robot must be passively safe from
   std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of
   const Trajectory* stop =

@@ -32,10 +32,10 @@ TEST_CASE(
   f.n.on_feedback(fact(f.initial, 0.96));
   CHECK(f.n.executing().number == off.number);
   const Trajectory next = Trajectory::resting(at_s(1.5), {0.125, 0});
-  const auto proposal = f.n.propose({&next, 1}, f.n.base_at(at_s(1.5)).number, at_s(1.4), 0.02);
+  const auto proposal = f.n.propose({&next, 1}, f.n.base_at(at_s(1.5)).number, at_s(1.4));
   CHECK(proposal.candidates[0]->base == off.number);
   CHECK(proposal.candidates[0]->number > off.number);
-  CHECK(proposal.candidates[0]->inflation_m == 0.02);
+  CHECK(proposal.candidates[0]->inflation_m == 0);
 }
 
 TEST_CASE("an unknown version that the robot executes replaces all versions that the agent holds") {

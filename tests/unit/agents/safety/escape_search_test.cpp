@@ -18,10 +18,10 @@ FloorRules test_rules() {
   return rules;
 }
 
-Version braking(RobotId robot, Vec2 position, Vec2 velocity, double inflation_m = 0) {
+Version braking(RobotId robot, Vec2 position, Vec2 velocity) {
   Trajectory stop(kStart - kHoldTime, {position, velocity});
   append_stop(stop, 5);
-  return {robot, 1, 100, 0, stop, inflation_m};
+  return {robot, 1, 100, 0, stop};
 }
 
 double sampled_distance_m(const Trajectory& a, const Trajectory& b) {
@@ -37,7 +37,6 @@ SearchQuery query_on(const Version& base, Vec2 desired) {
   query.at_start = base.trajectory.state_at(kStart);
   query.desired_mps2 = desired;
   query.hold_time = kHoldTime;
-  query.inflation_m = base.inflation_m;
   return query;
 }
 
@@ -81,7 +80,7 @@ TEST_CASE("no escape candidate is moving when an opponent can touch the robot") 
   for (int i = 0; i < 2000; ++i) {
     CAPTURE(i);
     const auto direction = [&] { return rotated({1, 0}, rng.uniform(-3.14, 3.14)); };
-    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction(), rng.uniform(0, 0.02));
+    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction());
     const Version other = braking(2, Vec2(-0.5, -0.5) + rng.uniform(0.1, 0.18) * direction(), {0, 0});
     SearchQuery query = query_on(base, 3 * direction());
     const int without_opponent =
@@ -114,7 +113,7 @@ TEST_CASE(
   for (int i = 0; i < 2000; ++i) {
     CAPTURE(i);
     const auto direction = [&] { return rotated({1, 0}, rng.uniform(-3.14, 3.14)); };
-    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction(), rng.uniform(0, 0.02));
+    const Version base = braking(1, {-0.5, -0.5}, rng.uniform(0, 1) * direction());
     const Version other = braking(2, Vec2(-0.5, -0.5) + rng.uniform(0.1, 0.18) * direction(), {0, 0});
     SearchQuery query = query_on(base, 3 * direction());
     const SearchResult without = search_escape(query, base, index_of({&other, 1}), rules);
@@ -146,18 +145,21 @@ TEST_CASE("no escape candidate comes nearer to another robot than the base or th
       const double angle_rad = rng.uniform(0, 6.28);
       return rotated(Vec2(rng.uniform(0, max_norm), 0), angle_rad);
     };
-    const auto random_braking = [&](RobotId robot, double max_m, double inflation_m) {
+    const auto random_braking = [&](RobotId robot, double max_m) {
       const Vec2 velocity = random_vector(1.5);
-      return braking(robot, random_vector(max_m), velocity, inflation_m);
+      return braking(robot, random_vector(max_m), velocity);
     };
-    const Version base = random_braking(1, 0.5, rng.chance(0.3) ? 0.02 : 0);
+    const Version base = random_braking(1, 0.5);
     std::vector<Version> others;
-    for (RobotId robot = 2; robot < 6; ++robot) others.push_back(random_braking(robot, 0.7, 0));
+    for (RobotId robot = 2; robot < 6; ++robot) {
+      others.push_back(random_braking(robot, 0.7));
+      if (rng.chance(0.3)) others.back().inflation_m = 0.02;
+    }
     const auto result = search_escape(query_on(base, random_vector(3)), base, index_of(others), rules);
     for (std::size_t k = 0; k < result.count; ++k) {
       ++found;
       for (const Version& other : others) {
-        const double full_separation = rules.min_separation_m() + base.inflation_m + other.inflation_m;
+        const double full_separation = rules.min_separation_m() + other.inflation_m;
         const double min_distance =
             std::min(full_separation, sampled_distance_m(base.trajectory, other.trajectory));
         CAPTURE(i, k, other.robot);

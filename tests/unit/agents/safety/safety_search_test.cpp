@@ -38,8 +38,7 @@ SearchResult reference_search(const FloorRules& rules, const SearchSettings& set
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, a, query.hold_time, rules.limits.deceleration_mps2);
     const auto is_conflicting = [&](const Version& other) {
-      return !is_clear(trajectory, other.trajectory,
-                       rules.min_separation_m() + query.inflation_m + other.inflation_m);
+      return !is_clear(trajectory, other.trajectory, rules.min_separation_m() + other.inflation_m);
     };
     if (check_workspace(trajectory, rules) != Validity::kValid || std::ranges::any_of(others, is_conflicting))
       continue;
@@ -292,7 +291,6 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
     SearchQuery query{kStart, {{0, 0}, velocity}, 3 * rotated({1, 0}, direction_rad), kCycle};
     Rng again = rng;
     const std::size_t without = search.search(query, empty_index, again).count;
-    query.inflation_m = rng.chance(0.3) ? 0.02 : 0;
     query.seen = {random_vector(rng, 0.2), rng.uniform(0.1, 2), kStart - from_seconds(age_s), 1.5};
     const auto result = search.search(query, empty_index, rng);
     ++(result.count ? found : blocked);
@@ -302,7 +300,7 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
       // By dense sampling.
       for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
         const double distance = (candidate.state_at(t).position_m - query.seen.centre_m).norm();
-        REQUIRE(distance + rules.radius_m + rules.margin_m + query.inflation_m < query.seen.radius_at_m(t));
+        REQUIRE(distance + rules.radius_m + rules.margin_m < query.seen.radius_at_m(t));
       }
     }
   }
