@@ -27,7 +27,7 @@ inline std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
   const TemporaryFolder folder;
   write_file(folder.file("scenario.yaml"), scenario);
   for (const Identity& identity : identities_of(load_scenario(folder.file("scenario.yaml"))))
-    keys->issue(identity);
+    keys->issue(identity, std::chrono::hours(12));
   return keys;
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "tests/catch.hpp"
+#include "tests/faults/keyed_run.hpp"
 #include "tests/faults/process_usage.hpp"
 #include "tests/sanitized.hpp"
 
@@ -20,6 +21,7 @@ struct SoakSettings {
   Duration duration;       ///< from when the robots drive
   Duration warm_up;        ///< its samples do not count, because caches and pools are filling
   Duration sample_period;  ///< between two samples of memory
+  bool has_keys = false;
 };
 
 /// One process of the run.
@@ -76,7 +78,11 @@ Soak soak(const SoakSettings& settings) {
   // More goals than a robot reaches, because each is more than two seconds away.
   const int goals = static_cast<int>(to_seconds(settings.duration + 1min) / 2);
   const double limit_s = 2 * to_seconds(settings.duration + 1min);
-  LaunchedRun run(shuttles(goals, ""), {"--seconds", fmt::format("{}", limit_s)});
+  const std::string scenario = shuttles(goals, "");
+  const auto keys = settings.has_keys ? keys_for(scenario) : nullptr;
+  std::vector<std::string> arguments{"--seconds", fmt::format("{}", limit_s)};
+  if (keys) arguments.insert(arguments.end(), {"--keys", keys->folder()});
+  LaunchedRun run(scenario, arguments);
   const bool drives = run.wait_until([&] { return run.max_speed_mps() > 0.8; });
   INFO(run.output().substr(0, 4000));
   REQUIRE(drives);
@@ -133,14 +139,20 @@ TEST_CASE("eight agents drive to and fro for some seconds, and every process is 
   CHECK(result.coverage() > 0);
 }
 
-TEST_CASE("eight agents drive to and fro for an hour, and no process grows", "[.long]") {
-  const Soak result = soak({60min, 5min, 10s});
+void check_hour(bool has_keys) {
+  const Soak result = soak({60min, 5min, 10s, has_keys});
   CHECK(result.missed_share() <= 0.005);
   CHECK(result.coverage() >= 0.95);
   for (const auto& [name, record] : result.processes) {
     CAPTURE(name);
     CHECK(record.slope_mb_per_h() < 1);
   }
+}
+
+TEST_CASE("eight agents drive to and fro for an hour, and no process grows", "[.long]") { check_hour(false); }
+
+TEST_CASE("eight agents with keys drive to and fro for an hour, and no process grows", "[.long]") {
+  check_hour(true);
 }
 
 }  // namespace soak_test
