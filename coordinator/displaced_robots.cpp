@@ -39,12 +39,21 @@ void DisplacedRobots::observe(const RobotObservation& observation, const Ledger&
   track.observations[track.count++ % Track::kCapacity] = observation;
   const auto distance =
       ledger.distance_from_versions_m(observation.robot, observation.position_m, observation.observed_at);
-  const bool agrees = distance && *distance <= allowed_m(observation);
+  const bool agrees = distance && *distance <= allowed_m(observation) && !rests_elsewhere(track, ledger);
   track.agreeing = agrees ? track.agreeing + 1 : 0;
   const bool was_displaced = track.is_displaced;
   if (distance && !agrees) track.is_displaced = true;
   if (track.agreeing >= kObservationsUntilBack) track.is_displaced = false;
   if (track.is_displaced != was_displaced) count_ += track.is_displaced ? 1 : -1;
+}
+
+bool DisplacedRobots::rests_elsewhere(const Track& track, const Ledger& ledger) const {
+  if (track.count < kObservationsOfRest) return false;
+  const RobotObservation& last = track.back(0);
+  if (!ledger.rests_since(last.robot, track.back(kObservationsOfRest - 1).observed_at)) return false;
+  const auto distance =
+      ledger.distance_from_versions_m(last.robot, track.mean_position_m(), last.observed_at);
+  return distance && *distance > margin_m_ / 2;
 }
 
 std::optional<RobotObservation> DisplacedRobots::last_observation(RobotId robot) const {
@@ -53,6 +62,12 @@ std::optional<RobotObservation> DisplacedRobots::last_observation(RobotId robot)
   RobotObservation last = found->second.back(0);
   last.velocity_mps = found->second.mean_velocity_mps();
   return last;
+}
+
+Vec2 DisplacedRobots::Track::mean_position_m() const {
+  Vec2 sum_m(0, 0);
+  for (std::size_t age = 0; age < kObservationsOfRest; ++age) sum_m += back(age).position_m;
+  return sum_m / static_cast<double>(kObservationsOfRest);
 }
 
 Vec2 DisplacedRobots::Track::mean_velocity_mps() const {

@@ -12,9 +12,12 @@ namespace sidestep {
 /// The robots that vision sees where none of their versions can have taken them: robots without power that
 /// roll on, robots that somebody carries, and robots on the floor that count as absent. A robot is displaced
 /// from the first such observation until kObservationsUntilBack consecutive ones agree with the ledger again.
+/// Single observations are allowed an error. The mean of those of a resting robot is not, because such a
+/// robot could stay where it is for ever: it may be unable to use observations itself.
 class DisplacedRobots {
  public:
   static constexpr int kObservationsUntilBack = 3;
+  static constexpr std::size_t kObservationsOfRest = 30;  // half a second at 60 Hz
 
   /// `margin_m`: the safety margin. Half of it covers a robot's tracking error and its clock.
   explicit DisplacedRobots(double margin_m) : margin_m_(margin_m) {}
@@ -40,9 +43,13 @@ class DisplacedRobots {
       return observations[(count - 1 - age) % kCapacity];
     }
     Vec2 mean_velocity_mps() const;
+    /// Of the last kObservationsOfRest observations.
+    Vec2 mean_position_m() const;
   };
   /// Distance from the version that is allowed beyond its inflation.
   double allowed_m(const RobotObservation& observation) const;
+  /// Whether the robot should rest, and the mean of its last observations is elsewhere.
+  bool rests_elsewhere(const Track& track, const Ledger& ledger) const;
 
   double margin_m_;
   std::map<RobotId, Track> tracks_;

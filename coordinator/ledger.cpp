@@ -214,6 +214,19 @@ std::optional<double> Ledger::distance_from_versions_m(RobotId robot, const Vec2
   return least;
 }
 
+bool Ledger::rests_since(RobotId robot, Time since) const {
+  if (!has_robot(robot)) return false;
+  const Entry& entry = entries_[index_of(robot)];
+  const auto had_ended = [&](const Version& version) {
+    return version.trajectory.end() + kMaxClockDifference <= since;
+  };
+  const auto was_left_or_had_ended = [&](const FormerVersions::Entry& former) {
+    return former.left_at + kMaxClockDifference <= since || had_ended(former.version);
+  };
+  return !entry.versions().empty() && std::ranges::all_of(entry.versions(), had_ended) &&
+         std::ranges::all_of(entry.former.entries(), was_left_or_had_ended);
+}
+
 void Ledger::clear() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     entries_[i] = {};

@@ -83,6 +83,9 @@ class Ledger {
   /// overestimated while the robot's clock differs by at most kMaxClockDifference.
   std::optional<double> distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const;
   static constexpr Duration kMaxClockDifference{5'000'000};
+  /// Whether all versions that the robot may have executed since that time had ended by then, so that it
+  /// rests. False for a robot without versions.
+  bool rests_since(RobotId robot, Time since) const;
 
   void clear();
 

@@ -60,6 +60,57 @@ TEST_CASE("a displaced robot is back after three observations in a row that agre
   CHECK_FALSE(one.displaced.contains(1));
 }
 
+TEST_CASE("a robot that rests is displaced if the mean of its observations is half the margin away") {
+  const std::uint64_t seed = 5;
+  CAPTURE(seed);
+  Rng rng(seed);
+  One one;
+  double now = 1;
+  const auto see_often = [&](double x_m, int times) {
+    for (int i = 0; i < times; ++i, now += 1.0 / 60)
+      one.see({x_m + rng.uniform(-0.002, 0.002), rng.uniform(-0.002, 0.002)}, now);
+  };
+  constexpr int kEnough = DisplacedRobots::kObservationsOfRest;
+  see_often(0.006, 2 * kEnough);
+  CHECK_FALSE(one.displaced.contains(1));
+  see_often(0.009, kEnough);
+  CHECK(one.displaced.contains(1));
+  // It stays displaced, although each single observation is within the error of vision.
+  for (int i = 0; i < 100; ++i) {
+    see_often(0.009, 1);
+    REQUIRE(one.displaced.contains(1));
+  }
+  SECTION("until it is back") {
+    see_often(0.002, kEnough + DisplacedRobots::kObservationsUntilBack);
+    CHECK_FALSE(one.displaced.contains(1));
+  }
+  SECTION("until it executes a stop of its own where it is") {
+    Version stop = rest_version(1, {0.009, 0}, 1000);
+    stop.trajectory = Trajectory::resting(at_s(now), {0.009, 0});
+    REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == FactOutcome::kApplied);
+    see_often(0.009, kEnough + DisplacedRobots::kObservationsUntilBack);
+    CHECK_FALSE(one.displaced.contains(1));
+  }
+}
+
+TEST_CASE("the mean of observations says nothing of a robot that has moved meanwhile") {
+  One one;
+  const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
+  REQUIRE(one.ledger.grant(p).is_granted());
+  REQUIRE(one.ledger.on_executing(p, at_s(1.01), false) == FactOutcome::kApplied);
+  const auto behind = [&](double at) {
+    return Vec2(p.trajectory.state_at(at_s(at)).position_m - Vec2(0.012, 0));
+  };
+  const double end = to_seconds(p.trajectory.end().time_since_epoch());
+  double at = 1.05;
+  for (; at < end + 0.45; at += 1.0 / 60) {
+    one.see(behind(at), at);
+    REQUIRE_FALSE(one.displaced.contains(1));
+  }
+  for (; at < end + 0.6; at += 1.0 / 60) one.see(behind(at), at);
+  CHECK(one.displaced.contains(1));
+}
+
 TEST_CASE("the velocity of a robot is its mean over the last 15 cm, or 1.5 cm if it has not moved farther") {
   One one;
   const auto velocity = [&] { return one.displaced.last_observation(1)->velocity_mps; };
