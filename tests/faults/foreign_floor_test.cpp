@@ -66,7 +66,7 @@ class RandomTeam {
 }  // namespace
 
 TEST_CASE("robots of a foreign simulator all arrive without contact, with 5 % of packets lost too",
-          "[both-cores]") {
+          "[both-cores][slow]") {
   const auto [name, robots, loss] =
       GENERATE(table<std::string, int, std::string>({{"crossing", 8, "0"},
                                                      {"crossing", 8, "0.05"},

@@ -106,7 +106,8 @@ TEST_CASE("22 robots on three hosts with 5 % packet loss rest soon after they ar
   check_holds(*run, 0.2);
 }
 
-TEST_CASE("held robots stay although the coordinator and all agents are killed and a new agent joins") {
+TEST_CASE("held robots stay although the coordinator and all agents are killed and a new agent joins",
+          "[slow]") {
   LaunchedRun run(shuttles(20, "restart: [coordinator, agents]\n"), {"--seconds", "25"});
   OrderClient client(run.bus(), client_id("holder"));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 1; }));

@@ -80,7 +80,7 @@ TEST_CASE(
                   -2h});
 }
 
-TEST_CASE("a host's clock that is set during a healthy run changes nothing") {
+TEST_CASE("a host's clock that is set during a healthy run changes nothing", "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const Duration ahead = GENERATE(Duration(1h), Duration(-24h), Duration(-300ms));
   CAPTURE(to_seconds(ahead));
@@ -100,7 +100,8 @@ TEST_CASE("a host's clock that is set during a healthy run changes nothing") {
   CHECK(report["epochs"].size() == 1);
 }
 
-TEST_CASE("`sidestep clock` names processes whose clocks are wrong, and hosts whose clock has been set") {
+TEST_CASE("`sidestep clock` names processes whose clocks are wrong, and hosts whose clock has been set",
+          "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const LateHost host("agents: [4-7]", "processes: [simulator, vision, coordinator], agents: [0-3]", 2s);
   LaunchedRun run(shuttles(20, ""), {"--hosts", host.hosts_file(), "--seconds", "20"});

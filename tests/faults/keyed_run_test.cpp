@@ -75,7 +75,7 @@ void compare(int runs) {
   print("with keys", keyed);
 }
 
-TEST_CASE("22 robots arrive with keys, as without", "[both-cores]") { compare(1); }
+TEST_CASE("22 robots arrive with keys, as without", "[both-cores][slow]") { compare(1); }
 
 TEST_CASE("22 robots arrive with keys, as without, many times", "[.long]") { compare(7); }
 

@@ -99,7 +99,7 @@ TEST_CASE("without keys, anybody's order moves a robot") {
   CHECK(run.logged("no keys: anybody on this network can command the robots"));
 }
 
-TEST_CASE("with keys, strangers are refused by name, and move no robot") {
+TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   const TestKeys others(all_identities());
@@ -197,7 +197,7 @@ TEST_CASE("a program orders with its own keys, and not without any") {
   keyed.check_safe();
 }
 
-TEST_CASE("keys that are revoked or expire during a run are refused within seconds") {
+TEST_CASE("keys that are revoked or expire during a run are refused within seconds", "[slow]") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
@@ -268,7 +268,7 @@ TEST_CASE("keys that are revoked during a run are refused on other hosts, too") 
   keyed.check_unharmed();
 }
 
-TEST_CASE("replayed and altered datagrams do no harm to robots that drive with keys") {
+TEST_CASE("replayed and altered datagrams do no harm to robots that drive with keys", "[slow]") {
   SIDESTEP_NEEDS_ROOT();
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;

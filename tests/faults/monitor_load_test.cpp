@@ -220,7 +220,7 @@ class SlowViewer {
   std::thread thread_;
 };
 
-TEST_CASE("slow, many and hostile viewers harm neither run nor monitor", "[both-cores]") {
+TEST_CASE("slow, many and hostile viewers harm neither run nor monitor", "[both-cores][slow]") {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));

@@ -277,7 +277,7 @@ TEST_CASE("a roadmap adapts while obstacles are dragged on the page") {
   recording.end();
 }
 
-TEST_CASE("the page draws 22 robots with all layers and 1,000 robots", "[both-cores]") {
+TEST_CASE("the page draws 22 robots with all layers and 1,000 robots", "[both-cores][slow]") {
   for (const char* scenario : {"two-teams-22.yaml", "streams-1000.yaml"}) {
     ShownRecording recording(scenario, {"--seconds", "3"});
     Browser page;

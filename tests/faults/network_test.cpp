@@ -85,7 +85,8 @@ TEST_CASE("a robot that is pushed reports that it is off its reference, drives o
 }
 
 TEST_CASE(
-    "robots that slip, are blocked, rebooted, lifted and placed, or get a wrong clock, drive on and arrive") {
+    "robots that slip, are blocked, rebooted, lifted and placed, or get a wrong clock, drive on and arrive",
+    "[slow]") {
   LaunchedRun run(shuttles(5, ""));
   std::map<RobotId, msg::Feedback> facts;
   std::map<RobotId, bool> was_off;

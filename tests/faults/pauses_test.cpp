@@ -21,7 +21,8 @@ void pause(LaunchedRun& run, pid_t pid, Duration duration) {
 
 }  // namespace
 
-TEST_CASE("all robots arrive without contact although each kind of process pauses for two seconds") {
+TEST_CASE("all robots arrive without contact although each kind of process pauses for two seconds",
+          "[slow]") {
   LaunchedRun run(shuttles(7, "coordinators: 2\n"));
   for (const char* process : {"agent 2", "vision", "coordinator", "coordinator 1", "simulator"}) {
     INFO(process << "\n" << run.output());
@@ -36,7 +37,8 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
 }
 
 TEST_CASE(
-    "processes that pause until they are forgotten, also the launcher during startup, are discovered again") {
+    "processes that pause until they are forgotten, also the launcher during startup, are discovered again",
+    "[slow]") {
   LaunchedRun run(shuttles(5, ""));
   const Duration until_forgotten = kSilenceLimit + std::chrono::seconds(2);
   REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));

@@ -24,7 +24,7 @@ TEST_CASE("robots as processes cross the field over DDS and arrive without conta
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
 }
 
-TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,000 cells") {
+TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,000 cells", "[slow]") {
   const auto folder = std::filesystem::temp_directory_path() / ("sidestep-large-" + std::to_string(getpid()));
   BuildingOptions options;
   options.folder = folder.string();
@@ -112,7 +112,8 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their go
   CHECK(report["deaths"][0].dump().find("coordinator") != std::string::npos);
 }
 
-TEST_CASE("robots wait for one that is silent when an epoch begins, until an operator attests its absence") {
+TEST_CASE("robots wait for one that is silent when an epoch begins, until an operator attests its absence",
+          "[slow]") {
   LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "20"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   const auto command = [&](std::vector<std::string> arguments) {

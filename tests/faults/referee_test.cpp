@@ -97,7 +97,7 @@ class RefereedRun {
   double max_speed_mps_ = 0, min_distance_m_ = 1e9, rest_s_ = 0;
 };
 
-TEST_CASE("twenty-two robots obey the referee's packets", "[both-cores]") {
+TEST_CASE("twenty-two robots obey the referee's packets", "[both-cores][slow]") {
   RefereedRun match;
   LaunchedRun& run = match.run();
   const bool is_driving = run.wait_until([&] {

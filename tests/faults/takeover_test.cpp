@@ -49,11 +49,11 @@ std::string shuttles_with_standby() { return shuttles(100, "coordinators: 2\nres
 
 }  // namespace
 
-TEST_CASE("the standby takes over twenty times while robots move, without contact") {
+TEST_CASE("the standby takes over twenty times while robots move, without contact", "[slow]") {
   kill_active_coordinators(shuttles_with_standby(), {});
 }
 
-TEST_CASE("the standby takes over twenty times with keys") {
+TEST_CASE("the standby takes over twenty times with keys", "[slow]") {
   const auto keys = keys_for(shuttles_with_standby());
   kill_active_coordinators(shuttles_with_standby(), {"--keys", keys->folder()});
 }

@@ -75,7 +75,7 @@ msg::DetectionFrame detected(const Scenario& scenario, const StaticScene& static
   return frame;
 }
 
-TEST_CASE("robots and people close to walls and map cells are found, and nothing else") {
+TEST_CASE("robots and people close to walls and map cells are found, and nothing else", "[slow]") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Scenario scenario = floor_with_walls(seed);

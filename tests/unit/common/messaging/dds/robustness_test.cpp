@@ -274,8 +274,8 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
   }
 }
 
-TEST_CASE(
-    "a process that is stopped until it is forgotten reconnects, even if others have joined meanwhile") {
+TEST_CASE("a process that is stopped until it is forgotten reconnects, even if others have joined meanwhile",
+          "[slow]") {
   stop_and_continue(2, 3, 1);
 }
 
