@@ -116,7 +116,7 @@ TEST_CASE("a building without room for its robots is refused") {
   options.cells = 100;
   options.resolution_m = 0.02;
   options.robots = 50;
-  CHECK_THROWS_WITH(write_building(options), Catch::Contains("expected 50 m² for 50 robots"));
+  CHECK_THROWS_WITH(write_building(options), ContainsSubstring("expected 50 m² for 50 robots"));
 }
 
 }  // namespace sidestep::building_test

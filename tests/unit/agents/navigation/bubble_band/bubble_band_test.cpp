@@ -118,7 +118,7 @@ TEST_CASE("a band from a planner's path stays free and gets no longer than the p
     const Vec2 start(-3.2, 0), goal(3.2, 0);
     LazyVisibility planner;
     const DiscDomain domain(world, Field{10, 8}, 1.1 * kRadius_m, start, goal);
-    const Plan<Vec2>& plan = plan_robustly(planner, domain, start, Budget{}, rng);
+    const Plan<Vec2> plan = plan_robustly(planner, domain, start, Budget{}, rng);
     if (plan.states.empty() || plan.states.back() != goal) continue;
     const ObstaclePoints free = obstacles_of(points);
     BubbleBand band(kRadius_m);
