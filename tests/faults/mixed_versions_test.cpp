@@ -45,7 +45,9 @@ double drive_and_kill_coordinator(const std::string& hosts) {
     REQUIRE(run->command({"fault", "link", name, "--loss", "0.05"}) == "exit code 0");
   }
   TakeoverWatch watch(run->bus(), 22);
-  REQUIRE(run->wait_until([&] { return watch.is_ready() && run->max_speed_mps() > 1; }));
+  const bool drives = run->wait_until([&] { return watch.is_ready() && run->max_speed_mps() > 1; });
+  INFO(run->output());
+  REQUIRE(drives);
   const std::string active =
       watch.active() == 0 ? "coordinator" : "coordinator " + std::to_string(watch.active());
   watch.on_kill();
@@ -53,7 +55,6 @@ double drive_and_kill_coordinator(const std::string& hosts) {
   REQUIRE(kill(run->pid_of(active), SIGKILL) == 0);
   const bool has_taken_over = run->wait_until([&] { return watch.moving(1).has_value(); });
   const std::string ended = run->wait_for_end();
-  INFO(run->output());
   CHECK(ended == "exit code 0");
   REQUIRE(has_taken_over);
   require_no_violations(run->report());
