@@ -18,6 +18,8 @@ class RateLimit {
     due_ = due + period_;
     return true;
   }
+  /// An event that was admitted does not count after all.
+  constexpr void give_back() { due_ -= period_; }
 
  private:
   Duration period_, tolerance_;

@@ -80,12 +80,12 @@ Admission::Decision Admission::on_announcement(const ParticipantId& id,
   const auto parsed = parse(announced);
   if (!parsed) return {Refusal::kNoCredentials};
   Refusal refusal = Refusal::kNone;
-  const Known* const known = find_known(parsed->certificate, now, refusal);
+  Known* const known = find_known(parsed->certificate, now, refusal);
   if (!known) return {refusal};
   return {admit(id, *known, parsed->version, now), to_text(known->identity)};
 }
 
-Admission::Refusal Admission::admit(const ParticipantId& id, const Known& known, const std::string& version,
+Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const std::string& version,
                                     Time now) {
   if (!has_prefix(id, known.prefix)) return Refusal::kOtherPrefix;
   if (const Refusal refusal = check_now(known, now); refusal != Refusal::kNone) return refusal;
@@ -99,6 +99,7 @@ Admission::Refusal Admission::admit(const ParticipantId& id, const Known& known,
       std::ranges::count_if(participants_, [&](const auto& p) { return p.second.known == &known; });
   if (static_cast<std::size_t>(same) >= kMaxPerCertificate || participants_.size() >= kMaxParticipants)
     return Refusal::kTooMany;
+  if (!known.unproven.admit(now)) return Refusal::kTooMany;
   participants_[id] = {&known, now, now};
   return Refusal::kNone;
 }
@@ -116,8 +117,11 @@ const Identity* Admission::identity_of(const ParticipantId& id) const {
 }
 
 void Admission::on_authenticated(const ParticipantId& id) {
-  if (const auto found = participants_.find(id); found != participants_.end())
-    found->second.unproven_since.reset();
+  const auto found = participants_.find(id);
+  if (found == participants_.end() || found->second.is_proven) return;
+  found->second.is_proven = true;
+  found->second.unproven_since.reset();
+  found->second.known->unproven.give_back();
 }
 
 std::vector<Identity> Admission::newly_unproven(Time now) {
@@ -142,10 +146,10 @@ std::vector<ParticipantId> Admission::newly_refused(Time now) {
   return result;
 }
 
-const Admission::Known* Admission::find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal) {
+Admission::Known* Admission::find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal) {
   std::string bytes(der.begin(), der.end());
   if (const auto found = known_.find(bytes); found != known_.end()) return &found->second;
-  const auto refuse = [&refusal](Refusal why) {
+  const auto refuse = [&refusal](Refusal why) -> Known* {
     refusal = why;
     return nullptr;
   };

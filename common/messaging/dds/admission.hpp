@@ -27,13 +27,16 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const std:
 /// and reads the list of revoked keys only at its start. Participants therefore announce their certificate.
 /// The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the owner of the
 /// GUID has the certificate's private key. What is decided here is therefore true of all that Fast DDS
-/// accepts. An attacker can repeat the announcement of another, and then gets no further than authentication,
-/// so the participants with one certificate are limited. Participants that exchange no messages, as agents
-/// among each other, are not admitted either: among many robots, most of the time at the start would go into
-/// their handshakes.
+/// accepts. An attacker can repeat the announcement of another, and then gets no further than authentication.
+/// So the participants with one certificate are limited, and new ones are admitted at a low rate while they
+/// do not prove to be genuine: Fast DDS keeps about a hundred bytes of each, for as long as the process
+/// lives. Participants that exchange no messages, as agents among each other, are not admitted either: among
+/// many robots, most of the time at the start would go into their handshakes.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
+  /// Between two that did not prove to be genuine, beyond the first kMaxPerCertificate.
+  static constexpr Duration kUnprovenPeriod{5'000'000'000};
   static constexpr std::size_t kMaxParticipants = 1024;
   /// Announcements come once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
@@ -95,16 +98,18 @@ class Admission {
     CertifiedPrefix prefix;
     bool is_needed;
     Time not_before, not_after;
+    RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
   };
   struct Participant {
-    const Known* known = nullptr;
+    Known* known = nullptr;
     Time last_heard;
     std::optional<Time> unproven_since;  ///< nullopt: proven, or reported
+    bool is_proven = false;
   };
 
   /// The certificate, if the authority has issued it; otherwise says why not.
-  const Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
-  Refusal admit(const ParticipantId& id, const Known& known, const std::string& version, Time now);
+  Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
+  Refusal admit(const ParticipantId& id, Known& known, const std::string& version, Time now);
   Refusal check_now(const Known& known, Time now) const;
 
   const Identity self_;

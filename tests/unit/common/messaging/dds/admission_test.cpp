@@ -153,6 +153,25 @@ TEST_CASE("one certificate cannot take the places of all others") {
   CHECK(f.announce(id_with(other), other) == Refusal::kNone);
 }
 
+TEST_CASE("participants that prove nothing are admitted at a low rate, and genuine ones at any") {
+  Fixture f;
+  const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
+  std::uint16_t strangers = 0, admitted = 0, genuine = 0;
+  constexpr int kMinutes = 10;
+  for (int second = 0; second < 60 * kMinutes; ++second) {
+    f.now += 1s;
+    for (int i = 0; i < 10; ++i) admitted += f.announce(id_with(thief, strangers++), thief) == Refusal::kNone;
+    // Commands of an operator, say, each of which is gone again soon.
+    const ParticipantId command = id_with(other, genuine++);
+    REQUIRE(f.announce(command, other) == Refusal::kNone);
+    f.admission.on_authenticated(command);
+    f.admission.on_authenticated(command);
+    (void)f.admission.newly_refused(f.now);
+  }
+  CHECK(admitted > 100);
+  CHECK(admitted <= Admission::kMaxPerCertificate + 60 * kMinutes / 5 + 1);
+}
+
 TEST_CASE("checks of signatures are limited, and known certificates need none") {
   Fixture f;
   const Certificate known = f.issue("agent 3");
