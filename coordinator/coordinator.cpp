@@ -17,9 +17,11 @@ bool is_malformed(const Registration& registration) {
 
 }  // namespace
 
-Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch)
-    : ledger_(rules, std::move(roster)),
+Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
+                         Duration max_clock_difference)
+    : ledger_(rules, std::move(roster), max_clock_difference),
       displaced_(rules.margin_m),
+      max_clock_difference_(max_clock_difference),
       epoch_(epoch),
       unregistered_count_(ledger_.roster().size()),
       records_(kMaxRobots),
@@ -122,24 +124,35 @@ bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
   return false;
 }
 
-void Coordinator::on_world(std::span<const RobotObservation> robots, Time valid_at, Time now) {
+void Coordinator::on_world(std::span<const RobotObservation> robots, Time now, bool is_whole) {
   if (!is_active()) return;
   find_silent(now);
-  watched_until_ = std::max(watched_until_, valid_at);
+  Time latest{};
   for (const RobotObservation& robot : robots) {
     if (!ledger_.has_robot(robot.robot)) continue;
+    if (robot.observed_at > now + max_clock_difference_) {
+      drops_.count(DropReason::kFutureObservation, robot.robot);
+      is_whole = false;
+      continue;
+    }
+    latest = std::max(latest, robot.observed_at);
     const Record& record = record_of(robot.robot);
-    if (record.registered || record.attested) displaced_.observe(robot, ledger_);
+    if (!record.registered && !record.attested) continue;
+    // Others keep clear of a silent robot anyway.
+    if (!displaced_.observe(robot, ledger_) && !record.silent) is_whole = false;
   }
+  if (is_whole) watched_until_ = std::max(watched_until_, std::min(latest, now));
 }
 
 void Coordinator::find_silent(Time now) {
   silent_count_ = 0;
   for (const RobotId robot : ledger_.roster()) {
     Record& record = record_of(robot);
-    const auto moves = [=](const Version& version) { return version.trajectory.end() > now; };
-    const auto is_later = [=](const Version& version) {
-      return version.trajectory.start() > now + kMaxSilence;
+    const auto moves = [=, this](const Version& version) {
+      return version.trajectory.end() + max_clock_difference_ > now;
+    };
+    const auto is_later = [=, this](const Version& version) {
+      return version.trajectory.start() > now + kMaxSilence + max_clock_difference_;
     };
     const auto versions = ledger_.versions(robot);
     const bool has_fallen_silent = record.heard_at &&

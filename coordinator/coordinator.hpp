@@ -18,8 +18,10 @@ namespace sidestep {
 /// repeated or wrong; an invalid one changes nothing.
 class Coordinator {
  public:
-  /// In epoch 0 the coordinator stands by and answers no messages.
-  Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch);
+  /// In epoch 0 the coordinator stands by and answers no messages. `max_clock_difference`: of two of the
+  /// clocks of robots, cameras and this coordinator.
+  Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
+              Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s));
 
   /// Clears all state and begins an epoch, or stands by if `epoch` is 0.
   void begin_epoch(Epoch epoch);
@@ -32,8 +34,9 @@ class Coordinator {
   /// A fact from a robot. False if it contradicts the ledger, so that the robot is quarantined: until it is
   /// lifted or a new agent registers it, nothing is granted to it.
   bool on_feedback(const Feedback& feedback, Time now);
-  /// Where vision sees the robots in the world state of this time. Nothing is granted to displaced robots.
-  void on_world(std::span<const RobotObservation> robots, Time valid_at, Time now);
+  /// Where vision sees the robots. Nothing is granted to displaced robots. `is_whole`: no observation of the
+  /// world state was dropped. One of which any is dropped or cannot be compared does not count as watching.
+  void on_world(std::span<const RobotObservation> robots, Time now, bool is_whole = true);
   /// The operator attests that a robot is not on the floor, for this epoch. False unless the coordinator
   /// awaits the robot's registration.
   bool on_attestation(RobotId robot);
@@ -90,7 +93,8 @@ class Coordinator {
 
   Ledger ledger_;
   DisplacedRobots displaced_;
-  Time watched_until_{};  // time of the latest world state
+  Duration max_clock_difference_;
+  Time watched_until_{};  // time of the latest observation of a world state that was compared as a whole
   Epoch epoch_;
   std::size_t unregistered_count_, silent_count_ = 0;
   std::vector<Record> records_;  // by robot

@@ -21,9 +21,6 @@ constexpr Duration kSilence{1'000'000'000};
 constexpr Duration kOrderPeriod{1'000'000'000};
 // A new agent is told the orders at once, but not more often than this.
 constexpr Duration kMinOrderPeriod{50'000'000};
-// A world state that is valid later by this coordinator's clock is refused: it would make all others
-// outdated.
-constexpr Duration kMaxVisionAhead{100'000'000};
 
 }  // namespace
 
@@ -32,8 +29,9 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
     : bus_(bus),
       self_(self),
       cycle_(scenario.cycle),
+      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
       failover_(self, is_standby, bus.now()),
-      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch()),
+      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_),
       orders_(scenario, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number),
       counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
@@ -166,22 +164,23 @@ void CoordinatorNode::handle(const Feedback& feedback) {
 void CoordinatorNode::on_world(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
   const bool is_from_vision = message.header().sender() == static_cast<std::uint32_t>(Sender::kVision);
-  if (!is_from_vision || valid_at > bus_.now() + kMaxVisionAhead) {
+  // The farther ahead it is, the less certain are the places in it.
+  if (!is_from_vision || valid_at > bus_.now() + max_vision_lead(max_clock_difference_)) {
     drops_.count(is_from_vision ? DropReason::kFutureWorld : DropReason::kMalformedWorld);
     return;
   }
   observations_.clear();
+  bool is_whole = true;
   for (const msg::TrackedRobot& robot : message.robots()) {
-    const auto observation = decode(robot, bus_.now());
-    if (!observation)
-      drops_.count(DropReason::kMalformedObservation);
-    else if (observation->observed_at > bus_.now() + Ledger::kMaxClockDifference)
-      drops_.count(DropReason::kFutureObservation);
-    else
+    if (const auto observation = decode(robot, bus_.now())) {
       observations_.push_back(*observation);
+    } else {
+      drops_.count(DropReason::kMalformedObservation);
+      is_whole = false;
+    }
   }
   const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
-  coordinator_.on_world(observations_, valid_at, bus_.now());
+  coordinator_.on_world(observations_, bus_.now(), is_whole);
   // Agents need the latest places at once.
   if (was_uncontrolled || coordinator_.has_uncontrolled_robots()) publish_state();
 }

@@ -75,6 +75,7 @@ class CoordinatorNode {
   Bus& bus_;
   const CoordinatorIdentity self_;
   Duration cycle_;
+  Duration max_clock_difference_;
   Failover failover_;
   Coordinator coordinator_;
   OrderKeeper orders_;

@@ -33,18 +33,20 @@ void DisplacedRobots::clear() {
   count_ = 0;
 }
 
-void DisplacedRobots::observe(const RobotObservation& observation, const Ledger& ledger) {
+bool DisplacedRobots::observe(const RobotObservation& observation, const Ledger& ledger) {
   Track& track = tracks_[observation.robot];
-  if (track.count > 0 && observation.observed_at <= track.back(0).observed_at) return;
+  if (track.count > 0 && observation.observed_at <= track.back(0).observed_at) return track.is_compared;
   track.observations[track.count++ % Track::kCapacity] = observation;
   const auto distance =
       ledger.distance_from_versions_m(observation.robot, observation.position_m, observation.observed_at);
+  track.is_compared = distance.has_value();
   const bool agrees = distance && *distance <= allowed_m(observation) && !rests_elsewhere(track, ledger);
   track.agreeing = agrees ? track.agreeing + 1 : 0;
   const bool was_displaced = track.is_displaced;
   if (distance && !agrees) track.is_displaced = true;
   if (track.agreeing >= kObservationsUntilBack) track.is_displaced = false;
   if (track.is_displaced != was_displaced) count_ += track.is_displaced ? 1 : -1;
+  return track.is_compared;
 }
 
 bool DisplacedRobots::rests_elsewhere(const Track& track, const Ledger& ledger) const {

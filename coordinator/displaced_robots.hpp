@@ -23,7 +23,9 @@ class DisplacedRobots {
   explicit DisplacedRobots(double margin_m) : margin_m_(margin_m) {}
 
   /// Compares an observation with the ledger. Older observations than the robot's last one change nothing.
-  void observe(const RobotObservation& observation, const Ledger& ledger);
+  /// Returns whether the robot's last observation was compared: false if the ledger does not reach back so
+  /// far.
+  bool observe(const RobotObservation& observation, const Ledger& ledger);
   bool contains(RobotId robot) const;
   bool any() const { return count_ > 0; }
   /// The last observation of a robot, displaced or not; nullopt: none yet. Its velocity is the mean one over
@@ -36,6 +38,7 @@ class DisplacedRobots {
     static constexpr std::size_t kCapacity = 40;  // 0.7 s at 60 Hz
     std::array<RobotObservation, kCapacity> observations;
     std::size_t count = 0;
+    bool is_compared = false;  // the last one
     bool is_displaced = false;
     int agreeing = 0;  // consecutive observations that agree with the ledger
 

@@ -55,8 +55,9 @@ msg::Reason reason_of(Validity validity) {
 
 }  // namespace
 
-Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster)
+Ledger::Ledger(const FloorRules& rules, std::vector<RobotId> roster, Duration max_clock_difference)
     : rules_(rules),
+      max_clock_difference_(max_clock_difference),
       roster_(std::move(roster)),
       index_(kMaxRobots, roster_.size()),
       entries_(roster_.size()),
@@ -200,16 +201,16 @@ std::optional<double> Ledger::distance_from_versions_m(RobotId robot, const Vec2
   const Entry& entry = entries_[index_of(robot)];
   std::optional<double> least;
   const auto compare = [&](const Version& version) {
-    if (version.trajectory.start() > at + kMaxClockDifference) return;
+    if (version.trajectory.start() > at + max_clock_difference_) return;
     const Vec2 reference_m = version.trajectory.state_at(at).position_m;
     const double distance = (position_m - reference_m).norm() - version.inflation_m;
     least = std::min(least.value_or(distance), distance);
   };
   for (const Version& version : entry.versions()) compare(version);
   for (const FormerVersions::Entry& former : entry.former.entries()) {
-    if (former.left_at >= at - kMaxClockDifference) compare(former.version);
+    if (former.left_at >= at - max_clock_difference_) compare(former.version);
   }
-  if (!least && entry.versions().empty() && at > entry.lifted_at + kMaxClockDifference)
+  if (!least && entry.versions().empty() && at > entry.lifted_at + max_clock_difference_)
     return std::numeric_limits<double>::infinity();
   return least;
 }
@@ -218,10 +219,10 @@ bool Ledger::rests_since(RobotId robot, Time since) const {
   if (!has_robot(robot)) return false;
   const Entry& entry = entries_[index_of(robot)];
   const auto had_ended = [&](const Version& version) {
-    return version.trajectory.end() + kMaxClockDifference <= since;
+    return version.trajectory.end() + max_clock_difference_ <= since;
   };
   const auto was_left_or_had_ended = [&](const FormerVersions::Entry& former) {
-    return former.left_at + kMaxClockDifference <= since || had_ended(former.version);
+    return former.left_at + max_clock_difference_ <= since || had_ended(former.version);
   };
   return !entry.versions().empty() && std::ranges::all_of(entry.versions(), had_ended) &&
          std::ranges::all_of(entry.former.entries(), was_left_or_had_ended);

@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/motion/safety_budget.hpp"
 #include "common/motion/validity.hpp"
 #include "common/motion/version_set.hpp"
+#include "common/time/clock_bounds.hpp"
 #include "coordinator/disc_grid.hpp"
 #include "coordinator/former_versions.hpp"
 #include "idl/negotiation.hpp"
@@ -44,8 +46,10 @@ class Ledger {
   /// About a second at 60 Hz.
   static constexpr int kFactsUntilReleased = 60;
 
-  /// `roster`: the robots that the ledger covers.
-  Ledger(const FloorRules& rules, std::vector<RobotId> roster);
+  /// `roster`: the robots that the ledger covers. `max_clock_difference`: between the cameras' clock and a
+  /// robot's.
+  Ledger(const FloorRules& rules, std::vector<RobotId> roster,
+         Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s));
 
   bool has_robot(RobotId robot) const { return index_of(robot) < roster_.size(); }
   std::span<const RobotId> roster() const { return roster_; }
@@ -80,9 +84,8 @@ class Ledger {
   /// Distance of a position from the nearest place to which the robot's versions, also the former ones, may
   /// have taken it at a time by the robot's clock, less that version's inflation. Infinite for a robot that
   /// was not on the floor then, nullopt if the ledger does not reach back so far. Conservative: never
-  /// overestimated while the robot's clock differs by at most kMaxClockDifference.
+  /// overestimated while the robot's clock differs by at most `max_clock_difference`.
   std::optional<double> distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const;
-  static constexpr Duration kMaxClockDifference{5'000'000};
   /// Whether all versions that the robot may have executed since that time had ended by then, so that it
   /// rests. False for a robot without versions.
   bool rests_since(RobotId robot, Time since) const;
@@ -126,6 +129,7 @@ class Ledger {
   void end_conflicts(RobotId robot);
 
   FloorRules rules_;
+  Duration max_clock_difference_;
   std::vector<RobotId> roster_;     // ascending
   std::vector<std::size_t> index_;  // by robot
   std::vector<Entry> entries_;      // parallel to roster_

@@ -6,6 +6,7 @@
 
 #include "agents/navigation/dead_reckoning.hpp"
 #include "agents/navigation/trapezoidal_profile.hpp"
+#include "common/time/clock_bounds.hpp"
 
 namespace sidestep {
 namespace {
@@ -20,7 +21,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       settings_(settings),
       scratch_(std::move(scratch)),
       rules_(scratch_->rules),
-      max_clock_difference_(from_seconds(2 * scenario.clock_bound_s)),
+      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
       cycle_(scenario.cycle),
       drift_bound_m_(drift_bound_m(scenario.tracking_bound_m)),
       goal_tolerance_m_(scenario.goal_tolerance_m),
@@ -113,8 +114,7 @@ Registration Agent::registration() {
 }
 
 void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
-  obstacles_.on_world(world);
-  if (!world.self || world.self->captured_at <= last_fix_) return;
+  if (!world.self) return;
   const Time captured_at = world.self->captured_at;
   const bool is_ahead =
       is_robot_clock_known ? captured_at > now + max_clock_difference_ : !is_plausible(captured_at, now);
@@ -125,6 +125,8 @@ void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clo
   fix_ = world.self;
   if (!is_robot_clock_known) return;
   last_fix_ = fix_->captured_at;
+  obstacles_.on_world(world);
+  if (captured_at <= last_fix_) return;
   last_fix_m_ = fix_->position_m;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/protocol/obstacle_bounds.hpp"
+#include "common/time/clock_bounds.hpp"
 
 namespace sidestep {
 namespace {
@@ -25,7 +26,7 @@ ObservedObstacles::ObservedObstacles(double max_speed_mps, Duration max_clock_di
 }
 
 void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now) {
-  if (list.valid_at > now + kMaxListLead) {
+  if (list.valid_at > now + max_vision_lead(max_clock_difference_)) {
     ++invalid_;
     return;
   }

@@ -20,8 +20,6 @@ class ObservedObstacles {
  public:
   static constexpr std::size_t kCapacity = std::size_t{2} * msg::MAX_OBSTACLES;
   static constexpr Duration kMaxObservationAge{1'000'000'000};
-  /// A list's time is a reading of vision's clock, which may be ahead of the cameras' by this much.
-  static constexpr Duration kMaxListLead{100'000'000};
 
   /// `max_speed_mps`: upper bound of every obstacle's speed. `max_clock_difference`: upper bound of the
   /// difference between the cameras' clock and the robot's.

@@ -6,8 +6,9 @@
 
 namespace sidestep {
 
-HostClockWatch::HostClockWatch(Bus& bus, ClockReference reference, Callbacks callbacks)
-    : bus_(bus), reference_(reference), callbacks_(std::move(callbacks)) {
+HostClockWatch::HostClockWatch(Bus& bus, ClockReference reference, Duration max_clock_difference,
+                               Callbacks callbacks)
+    : bus_(bus), reference_(reference), callbacks_(std::move(callbacks)), recovery_(max_clock_difference) {
   bus_.at(bus_.now() + kPeriod, [this] { check(); });
 }
 

@@ -27,8 +27,8 @@ class HostClockWatch {
     std::function<void(Duration)> on_step;  ///< the host's clock has been set: it is this far ahead
   };
 
-  /// The bus makes no callbacks after this object's destruction.
-  HostClockWatch(Bus& bus, ClockReference reference, Callbacks callbacks);
+  /// The bus makes no callbacks after this object's destruction. `max_clock_difference`: see ClockRecovery.
+  HostClockWatch(Bus& bus, ClockReference reference, Duration max_clock_difference, Callbacks callbacks);
   HostClockWatch(const HostClockWatch&) = delete;
   HostClockWatch& operator=(const HostClockWatch&) = delete;
 

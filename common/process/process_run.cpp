@@ -10,6 +10,7 @@
 #include "common/process/host_name.hpp"
 #include "common/process/network_faults.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/time/clock_bounds.hpp"
 
 namespace sidestep {
 namespace {
@@ -64,7 +65,7 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
     bus.stop();
   };
   const auto is_in_use = [&] { return running.uses_clock && running.uses_clock(); };
-  const HostClockWatch watch(bus, program.clock_reference,
+  const HostClockWatch watch(bus, program.clock_reference, max_clock_difference(scenario.clock_bound_s),
                              {DdsBus::host_clock_ahead, is_in_use, adopt, log_step});
   if (dds.faults) apply_network_faults(bus, process);
   log(LogLevel::kInfo,

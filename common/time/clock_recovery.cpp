@@ -6,8 +6,6 @@
 namespace sidestep {
 namespace {
 
-bool is_delay(Duration age) { return age >= -ClockRecovery::kTolerance && age <= ClockRecovery::kMaxDelay; }
-
 Duration magnitude(Duration d) { return d < Duration{0} ? -d : d; }
 
 }  // namespace

@@ -17,7 +17,7 @@ class ClockRecovery {
  public:
   /// A smaller difference between the two clocks is ignored.
   static constexpr Duration kMinStep{10'000'000};
-  /// Clocks agree up to this difference, beside the network's delay.
+  /// Clocks agree up to this difference, beside the network's delay and the clock bound.
   static constexpr Duration kTolerance{2'000'000};
   /// A message that seems to be older was sent by another clock, and is not merely late.
   static constexpr Duration kMaxDelay{250'000'000};
@@ -27,6 +27,10 @@ class ClockRecovery {
   static constexpr int kMinMessages = 3;
   /// References beyond this number are ignored: a hostile sender may invent any number.
   static constexpr std::size_t kMaxReferences = 2048;
+
+  /// `max_clock_difference`: of two clocks that keep the clock bound.
+  explicit ClockRecovery(Duration max_clock_difference = Duration{0})
+      : tolerance_(kTolerance + max_clock_difference) {}
 
   /// A message of a reference. `stamp_ns` is its sender's clock and may be any number; `now` is the
   /// process's.
@@ -41,7 +45,9 @@ class ClockRecovery {
     int messages = 0;
   };
   bool is_evident(Duration host_ahead) const;
+  bool is_delay(Duration age) const { return age >= -tolerance_ && age <= kMaxDelay; }
 
+  Duration tolerance_;
   std::map<std::uint32_t, Reference> references_;  ///< of this period
   Duration last_host_ahead_{0};
   int evident_periods_ = 0;

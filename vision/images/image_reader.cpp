@@ -45,14 +45,17 @@ std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraMo
 
 ImageReader::ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras,
                          const ColourThresholds& colours, const MarkerLayout& layout)
-    : cameras_(std::move(cameras)), format_(colours.format) {
+    : cameras_(std::move(cameras)),
+      format_(colours.format),
+      max_lead_(max_vision_lead(max_clock_difference(scenario.clock_bound_s))) {
   const DetectorSettings settings = detector_settings(scenario, colours.boxes, layout);
   for (const CameraModel& camera : cameras_) detectors_.emplace_back(camera, settings);
 }
 
 bool ImageReader::read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
                        msg::DetectionFrame& frame) {
-  if (message.camera() >= cameras_.size() || !is_timely(message.captured_at_ns(), now)) return false;
+  if (message.camera() >= cameras_.size() || !is_timely(message.captured_at_ns(), now, max_lead_))
+    return false;
   const auto view = view_of(message, cameras_[message.camera()]);
   if (!view || view->format != format_) return false;
   const Time captured_at = time_from_ns(message.captured_at_ns());

@@ -39,6 +39,7 @@ class ImageReader {
  private:
   std::vector<CameraModel> cameras_;
   PixelFormat format_;
+  Duration max_lead_;
   std::vector<Detector> detectors_;
   std::vector<ExpectedRobot> expected_;
 };

@@ -13,7 +13,6 @@ constexpr double kMaxPosition_m = 100;
 constexpr double kMaxObstacle_m = 10;
 constexpr double kMaxHeading_rad = 7;  // a full turn either way covers every sender's range
 constexpr Duration kMaxAge{500'000'000};
-constexpr Duration kMaxAhead{100'000'000};
 
 // Comparisons with NaN are false, so both reject it.
 bool is_within(double value, double bound) { return std::abs(value) <= bound; }
@@ -37,8 +36,8 @@ bool is_valid(const msg::ObstacleDetection& d) {
 
 }  // namespace
 
-bool is_timely(std::int64_t captured_at_ns, Time now) {
-  return captured_at_ns >= to_ns(now - kMaxAge) && captured_at_ns <= to_ns(now + kMaxAhead);
+bool is_timely(std::int64_t captured_at_ns, Time now, Duration max_lead) {
+  return captured_at_ns >= to_ns(now - kMaxAge) && captured_at_ns <= to_ns(now + max_lead);
 }
 
 void Frame::clear(const msg::DetectionFrame& message) {
@@ -50,9 +49,9 @@ void Frame::clear(const msg::DetectionFrame& message) {
   rejected_ = 0;
 }
 
-void Frame::assign(const msg::DetectionFrame& message, Time now) {
+void Frame::assign(const msg::DetectionFrame& message, Time now, Duration max_lead) {
   clear(message);
-  if (!is_timely(message.captured_at_ns(), now))
+  if (!is_timely(message.captured_at_ns(), now, max_lead))
     problem_ = FrameProblem::kTime;
   else if (message.ball_count() > msg::MAX_DETECTED_BALLS || message.obstacle_count() > msg::MAX_OBSTACLES ||
            !is_completeness(message.obstacles_complete_within_m()) || message.robots().size() > kMaxRobots)
@@ -83,6 +82,7 @@ void Frame::assign(const msg::DetectionFrame& message, Time now) {
       obstacles_[obstacle_count_++] = {{d.x_m(), d.y_m()}, d.radius_m()};
     } else {
       ++rejected_;
+      obstacles_complete_within_m_ = 0;
     }
   }
 }

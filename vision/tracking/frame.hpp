@@ -6,8 +6,9 @@
 #include <span>
 
 #include "common/geometry/vec2.hpp"
+#include "common/motion/safety_budget.hpp"
 #include "common/motion/version.hpp"
-#include "common/time/time.hpp"
+#include "common/time/clock_bounds.hpp"
 #include "idl/vision.hpp"
 
 namespace sidestep {
@@ -23,9 +24,12 @@ struct ObstacleObservation {
   double radius_m = 0;
 };
 
-/// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most 100 ms
-/// ahead, because cameras' clocks differ.
-[[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now);
+/// How far a frame's time of capture may be ahead, by default.
+inline constexpr Duration kMaxFrameLead = max_vision_lead(max_clock_difference(SafetyBudget{}.clock_bound_s));
+
+/// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most `max_lead`
+/// ahead, because clocks differ.
+[[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now, Duration max_lead = kMaxFrameLead);
 
 /// Why a frame cannot be used.
 enum class FrameProblem : std::uint8_t {
@@ -47,13 +51,14 @@ class Frame {
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
   /// Every obstacle that the camera detected nearer than this to one of the frame's robots is in obstacles().
+  /// 0 if one was rejected, because it may be anywhere.
   double obstacles_complete_within_m() const { return obstacles_complete_within_m_; }
   /// Number of detections of the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }
 
   /// Copies the valid detections: timely frames, positions within 100 m, confidences in 0..1, robot numbers
   /// below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
-  void assign(const msg::DetectionFrame& message, Time now);
+  void assign(const msg::DetectionFrame& message, Time now, Duration max_lead = kMaxFrameLead);
 
  private:
   void clear(const msg::DetectionFrame& message);

@@ -282,6 +282,50 @@ TEST_CASE("the place of a displaced robot is published with every world state") 
   CHECK(drops_of(floor.node).total() == 1);
 }
 
+TEST_CASE("a world from the future is counted, displaces nobody and does not count as watching") {
+  Floor floor;
+  floor.register_both();
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  auto& robot = world.robots().emplace_back();
+  robot.robot(1);
+  robot.observed_x_m(0.3);
+  // It takes 0.2 to 0.6 ms to arrive. Two clocks may differ by 1 ms, and vision's may be ahead by 0.1 s.
+  const auto see_ahead = [&](std::chrono::microseconds ahead) {
+    world.valid_at_ns(to_ns(floor.network.now() + ahead));
+    robot.observed_at_ns(to_ns(floor.network.now()));
+    floor.send(topics::kWorld, world);
+  };
+  see_ahead(std::chrono::microseconds(101'700));
+  CHECK(floor.state.notices().empty());
+  CHECK(floor.state.watched_until_ns() == 0);
+  CHECK(drops_of(floor.node).total(DropReason::kFutureWorld) == 1);
+  see_ahead(std::chrono::microseconds(101'100));
+  CHECK(floor.state.notices().size() == 1);
+  CHECK(floor.state.watched_until_ns() == robot.observed_at_ns());
+  CHECK(drops_of(floor.node).total() == 1);
+}
+
+TEST_CASE("a malformed observation is counted, and its world does not count as watching") {
+  Floor floor;
+  floor.register_both();
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  world.valid_at_ns(to_ns(floor.network.now()));
+  for (const RobotId id : {1, 2}) {
+    auto& robot = world.robots().emplace_back();
+    robot.robot(id);
+    robot.observed_at_ns(to_ns(floor.network.now()));
+    robot.observed_x_m(id == 1 ? 0 : kNan);
+  }
+  floor.send(topics::kWorld, world);
+  CHECK(floor.state.watched_until_ns() == 0);
+  CHECK(drops_of(floor.node).total(DropReason::kMalformedObservation) == 1);
+  world.robots()[1].observed_x_m(1);
+  floor.send(topics::kWorld, world);
+  CHECK(floor.state.watched_until_ns() == world.robots()[0].observed_at_ns());
+}
+
 TEST_CASE("a coordinator that stands by answers nothing") {
   Floor floor(true);
   floor.send(topics::kRegistration, registration_of(floor.a, 0));

@@ -9,6 +9,7 @@
 namespace sidestep::displaced_robots_test {
 
 constexpr double kMargin_m = 0.014;
+constexpr Duration kMaxDifference{4'000'000};
 
 struct One {
   Ledger ledger{floor_for_tests(), {1}};
@@ -143,6 +144,39 @@ TEST_CASE("an observation is compared with what the robot executed then, however
   }
 }
 
+//   version a at x = 0, version p begins elsewhere, as an own stop does
+TEST_CASE("a version counts until the largest difference of two clocks after the robot has left it") {
+  const Duration max_difference = GENERATE(Duration{1'000'000}, Duration{4'000'000}, Duration{100'000'000});
+  CAPTURE(to_seconds(max_difference));
+  const Duration late = max_difference * GENERATE(1, 2, 3, 4, 5) / 4;
+  CAPTURE(to_seconds(late));
+  Ledger ledger(floor_for_tests(), {1}, max_difference);
+  const Version a = rest_version(1, {0, 0});
+  ledger.register_robot(1, {&a, 1});
+  Version stop = rest_version(1, {0.5, 0}, 1000);
+  stop.trajectory = Trajectory::resting(at_s(1), {0.5, 0});
+  REQUIRE(ledger.on_executing(stop, at_s(1), true) == FactOutcome::kApplied);
+  const auto distance_m = ledger.distance_from_versions_m(1, {0, 0}, at_s(1) + late);
+  REQUIRE(distance_m);
+  CHECK(*distance_m == Approx(late <= max_difference ? 0 : 0.5).margin(1e-12));
+}
+
+TEST_CASE("an observation from before all versions that the ledger remembers was not compared") {
+  One one;
+  CHECK(one.displaced.observe({1, at_s(1), {0, 0}, Vec2(0, 0), 0}, one.ledger));
+  Version stop = rest_version(1, {0, 0}, 1000);
+  stop.trajectory = Trajectory::resting(at_s(3), {0, 0});
+  Ledger restarted{floor_for_tests(), {1}};
+  restarted.register_robot(1, {&stop, 1});
+  const auto is_compared = [&](double at) {
+    return one.displaced.observe({1, at_s(at), {0, 0}, Vec2(0, 0), 0}, restarted);
+  };
+  CHECK_FALSE(is_compared(2));
+  CHECK_FALSE(is_compared(2));  // the same again
+  CHECK(is_compared(3.1));
+  CHECK(is_compared(3.1));
+}
+
 TEST_CASE("an absent robot that is seen on the floor is displaced") {
   One one;
   one.ledger.on_lifted(1, at_s(1));
@@ -157,7 +191,7 @@ TEST_CASE("the distance from a robot's versions is the smallest over all that it
   CAPTURE(seed);
   Rng rng(seed);
   for (int round = 0; round < 300; ++round) {
-    Ledger ledger(floor_for_tests(), {1});
+    Ledger ledger(floor_for_tests(), {1}, kMaxDifference);
     Version last = rest_version(1, {0, 0});
     ledger.register_robot(1, {&last, 1});
     std::vector<Version> all{last};
@@ -172,7 +206,7 @@ TEST_CASE("the distance from a robot's versions is the smallest over all that it
     const Vec2 seen(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3));
     double expected = std::numeric_limits<double>::infinity();
     for (const Version& version : all) {
-      if (version.trajectory.start() <= at_s(at) + Ledger::kMaxClockDifference)
+      if (version.trajectory.start() <= at_s(at) + kMaxDifference)
         expected = std::min(expected, (version.trajectory.state_at(at_s(at)).position_m - seen).norm());
     }
     const auto distance = ledger.distance_from_versions_m(1, seen, at_s(at));

@@ -10,7 +10,7 @@ TEST_CASE("a robot that should move is silent 50 ms after its last fact, until i
   floor.register_both();
   const auto silent_at = [&](double at) {
     const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at), at_s(at));
+    floor.coordinator.on_world({&observation, 1}, at_s(at));
     const auto state = floor.coordinator.state();
     return state.notices().size() == 1 && state.notices()[0].robot() == 1 && state.notices()[0].is_silent();
   };
@@ -32,7 +32,7 @@ TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead coun
   floor.register_both();
   const auto is_silent_at = [&](double at) {
     const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at), at_s(at));
+    floor.coordinator.on_world({&observation, 1}, at_s(at));
     return floor.coordinator.is_silent(1);
   };
   const double ahead_s = GENERATE(0.04, 0.06, 4.0);
@@ -49,12 +49,108 @@ TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead coun
   CHECK_FALSE(is_silent_at(1.01 + ahead_s));
 }
 
+TEST_CASE(
+    "a robot whose clock is slow within the bound is silent until its version has ended by that clock") {
+  const Duration max_difference{100'000'000};
+  Floor floor;
+  floor.coordinator = Coordinator(floor_for_tests(), {1, 2}, kEpoch, max_difference);
+  floor.register_both();
+  const auto is_silent_at = [&](double at) {
+    const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
+    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    return floor.coordinator.is_silent(1);
+  };
+  const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
+  floor.receive(fact(p, 1.01));
+  const double end_s = to_seconds(p.trajectory.end().time_since_epoch());
+  CHECK(is_silent_at(end_s + 0.09));
+  CHECK_FALSE(is_silent_at(end_s + 0.11));
+  // Nor does a clock that is ahead within the bound make a robot silent.
+  Version stop = rest_version(2, {1, 0}, 1'000'000);
+  stop.trajectory = Trajectory::resting(at_s(3.14), {1, 0});
+  auto message = fact(stop, 3.14);
+  message.is_off_reference(true);
+  floor.receive(message);
+  CHECK_FALSE(floor.coordinator.is_silent(2));
+  (void)is_silent_at(3);
+  CHECK_FALSE(floor.coordinator.is_silent(2));
+  (void)is_silent_at(2.98);
+  CHECK(floor.coordinator.is_silent(2));
+}
+
+TEST_CASE("what was dropped or not compared does not count as watching") {
+  Floor floor;
+  floor.register_both();
+  const auto see = [&](std::vector<RobotObservation> robots, double now, bool is_whole = true) {
+    floor.coordinator.on_world(robots, at_s(now), is_whole);
+  };
+  const auto seen = [](RobotId robot, double at) {
+    return RobotObservation{robot, at_s(at), {robot - 1.0, 0}, Vec2(0, 0), 1e-6};
+  };
+  const auto watched_until = [&] { return time_from_ns(floor.coordinator.state().watched_until_ns()); };
+  see({seen(1, 1), seen(2, 1.01)}, 1.02);
+  REQUIRE(watched_until() == at_s(1.01));
+  SECTION("an observation from the future") {
+    see({seen(1, 1.1), seen(2, 1.2)}, 1.11);
+    CHECK(watched_until() == at_s(1.01));
+    CHECK(floor.coordinator.drops().total(DropReason::kFutureObservation) == 1);
+  }
+  SECTION("a world of which the caller dropped an observation") {
+    see({seen(1, 1.1)}, 1.11, false);
+    CHECK(watched_until() == at_s(1.01));
+  }
+  SECTION("a world without robots, and one without a new observation") {
+    see({}, 1.5);
+    see({seen(1, 1), seen(2, 1.01)}, 1.6);
+    CHECK(watched_until() == at_s(1.01));
+  }
+  SECTION("an observation from before all versions that the ledger remembers") {
+    Version stop = rest_version(2, {1, 0}, 1'000'000);
+    stop.trajectory = Trajectory::resting(at_s(1.2), {1, 0});
+    REQUIRE(floor.coordinator.is_granting());
+    floor.coordinator.begin_epoch(kEpoch);
+    floor.receive(registration_of(floor.a, kEpoch));
+    floor.receive(registration_of(stop, kEpoch));
+    see({seen(1, 1.1), seen(2, 1.1)}, 1.19);
+    CHECK(watched_until() == Time{});
+    see({seen(1, 1.21), seen(2, 1.21)}, 1.22);
+    CHECK(watched_until() == at_s(1.21));
+  }
+  SECTION("observations a little ahead of the clock count up to now") {
+    see({seen(1, 1.1005), seen(2, 1.1005)}, 1.1);
+    CHECK(watched_until() == at_s(1.1));
+  }
+  SECTION("robots that are not on the roster do not matter") {
+    see({seen(1, 1.1), seen(7, 99)}, 1.11);
+    CHECK(watched_until() == at_s(1.1));
+  }
+}
+
+TEST_CASE("an observation is from the future if it is ahead by more than the rules' bound") {
+  const double bound_s = GENERATE(0.0005, 0.05, 0.2);
+  CAPTURE(bound_s);
+  Floor floor;
+  floor.coordinator = Coordinator(floor_for_tests(), {1, 2}, kEpoch, from_seconds(2 * bound_s));
+  floor.register_both();
+  const auto see_ahead = [&](double ahead_s) {
+    const RobotObservation observation{1, at_s(1 + ahead_s), {0.3, 0}, Vec2(0, 0), 1e-6};
+    floor.coordinator.on_world({&observation, 1}, at_s(1));
+  };
+  see_ahead(2 * bound_s + 0.0001);
+  CHECK_FALSE(floor.coordinator.displaced().contains(1));
+  CHECK(floor.coordinator.state().watched_until_ns() == 0);
+  see_ahead(2 * bound_s - 0.0001);
+  CHECK(floor.coordinator.displaced().contains(1));
+  CHECK(floor.coordinator.state().watched_until_ns() == to_ns(at_s(1)));
+}
+
 TEST_CASE("nothing is granted to a robot that vision sees away from its versions, and it is named") {
   Floor floor;
   floor.register_both();
   const auto see = [&](RobotId robot, Vec2 position, double at) {
     const RobotObservation observation{robot, at_s(at), position, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at), at_s(at));
+    floor.coordinator.on_world({&observation, 1}, at_s(at));
   };
   see(1, {0.005, 0}, 1);
   CHECK_FALSE(floor.coordinator.displaced().any());

@@ -232,6 +232,20 @@ TEST_CASE("an observation from the future is dropped and counted, and later vali
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
 }
 
+TEST_CASE("an incomplete list does not count together with an observation that was dropped") {
+  DrivenAgent d;
+  d.observe(0, 0.6, 0.61);
+  REQUIRE(d.plans(0.62));
+  WorldObservations world = observation(0, 0.9);
+  world.self->captured_at = at_s(2);  // from the future
+  d.observe_self(0, 0.89, 0.9);
+  d.agent.on_world(world, at_s(0.91));
+  d.agent.on_obstacles(empty_list(0.9, 2), at_s(0.91));
+  CHECK_FALSE(d.plans(0.92));
+  d.agent.on_world(observation(0, 0.9), at_s(0.91));
+  CHECK(d.plans(0.92));
+}
+
 TEST_CASE("before the robot's clock is known, an observation is forwarded but not used") {
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));

@@ -133,6 +133,15 @@ TEST_CASE("a list from the future is counted and dropped as a whole") {
   }
 }
 
+TEST_CASE("a list may be ahead by as much as vision's clock and the clock bound") {
+  const Duration max_difference{150'000'000};
+  ObservedObstacles obstacles(kSpeed_mps, max_difference);
+  obstacles.on_list(List(10.26), {0, 0}, at_s(10));
+  CHECK(obstacles.complete_at() == Time{});
+  obstacles.on_list(List(10.24), {0, 0}, at_s(10));
+  CHECK(obstacles.complete_at() == at_s(10.24));
+}
+
 TEST_CASE("old observations are dropped, and not counted as invalid") {
   for (const Time observed_at : {at_s(9), Time::min()}) {
     Fixture f;

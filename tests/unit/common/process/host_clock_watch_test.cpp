@@ -29,7 +29,7 @@ struct Scene {
         other(network),
         heartbeats(other.advertise(topics::kCoordinator)),
         facts(other.advertise(topics::kFeedback, 3)),
-        watch(bus, reference,
+        watch(bus, reference, Duration{0},
               {[this] { return host_ahead; }, [this] { return is_in_use; }, [this] { ++adopted; },
                [this](Duration step) { steps.push_back(step); }}) {
     if (reference == ClockReference::kRobots)

@@ -48,6 +48,15 @@ TEST_CASE("a process adopts its host's clock once that agrees with others, and i
   CHECK(scene.adopts(0s, delay, 1));
 }
 
+TEST_CASE("a process keeps its clock if that is within the clock bound of others'") {
+  Scene scene;
+  scene.recovery = ClockRecovery(100ms);
+  scene.own_ahead = -90ms;
+  CHECK_FALSE(scene.adopts(0s, 1ms, 20));
+  scene.own_ahead = -120ms;
+  CHECK(scene.adopts(0s));
+}
+
 TEST_CASE("a step of the host's clock changes nothing while another agrees with the process") {
   const Duration step =
       GENERATE(Duration(-24h), Duration(-1s), Duration(-20ms), Duration(20ms), Duration(1s), Duration(24h));

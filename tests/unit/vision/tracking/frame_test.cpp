@@ -69,7 +69,7 @@ TEST_CASE("only an invalid ball is dropped and counted") {
 TEST_CASE("a frame that is too old or from the future is rejected as a whole") {
   const std::int64_t ns = to_ns(kBegin);
   const std::int64_t captured =
-      GENERATE_COPY(ns - 500'000'001, ns + 100'000'001, std::int64_t{0},
+      GENERATE_COPY(ns - 500'000'001, ns + 101'000'001, std::int64_t{0},
                     std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
   CAPTURE(captured);
   msg::DetectionFrame message = frame_message(0, kBegin);
@@ -84,13 +84,37 @@ TEST_CASE("a frame that is too old or from the future is rejected as a whole") {
 }
 
 TEST_CASE("a frame just within the time limits is accepted") {
-  const Duration age = GENERATE(Duration{500'000'000}, Duration{-100'000'000});
+  const Duration age = GENERATE(Duration{500'000'000}, Duration{-101'000'000});
   msg::DetectionFrame message = frame_message(0, kBegin - age);
   message.robots().push_back(valid_robot());
   Frame frame;
   frame.assign(message, kBegin);
   CHECK(frame.is_usable());
   CHECK(frame.robots().size() == 1);
+}
+
+TEST_CASE("how far a frame may be ahead follows from the clock bound") {
+  const Duration max_lead{250'000'000};
+  Frame frame;
+  frame.assign(frame_message(0, kBegin + Duration{249'000'000}), kBegin, max_lead);
+  CHECK(frame.is_usable());
+  frame.assign(frame_message(0, kBegin + Duration{251'000'000}), kBegin, max_lead);
+  CHECK_FALSE(frame.is_usable());
+}
+
+TEST_CASE("a frame with an invalid obstacle does not count as complete") {
+  msg::DetectionFrame message = frame_message(0, kBegin);
+  add_obstacle(message, {1, 1});
+  add_obstacle(message, {2, 2});
+  Frame frame;
+  frame.assign(message, kBegin);
+  CHECK(frame.obstacles_complete_within_m() == kCompleteEverywhere_m);
+  SECTION("place") { message.obstacles()[0].x_m(std::nan("")); }
+  SECTION("radius") { message.obstacles()[0].radius_m(0); }
+  frame.assign(message, kBegin);
+  CHECK(frame.is_usable());
+  CHECK(frame.obstacles().size() == 1);
+  CHECK(frame.obstacles_complete_within_m() == 0);
 }
 
 TEST_CASE("a frame with counts out of range is rejected as a whole") {
