@@ -12,6 +12,11 @@ FrameSource source_of(const Scenario& scenario, const VisionOptions& options) {
   return uses_bus ? FrameSource::kBus : FrameSource::kCaller;
 }
 
+std::vector<std::uint32_t> configured_cameras(const Scenario& scenario, const VisionOptions& options) {
+  const bool are_given = options.is_league_source && !options.league_cameras.empty();
+  return are_given ? options.league_cameras : cameras_of(scenario.vision);
+}
+
 }  // namespace
 
 void add_league_options(const CliCommand& app, VisionOptions& options) {
@@ -24,6 +29,13 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
   app.add_option("--ssl-vision", options.league_vision, "ADDRESS:PORT of the multicast group of SSL-Vision")
       .needs(source)
       .show_default();
+  app.add_option("--league-cameras", options.league_cameras,
+                 "numbers of SSL-Vision's cameras that together see all of the floor, e.g. 0,1,3; robots "
+                 "drive only while all of them do")
+      .comma_separated()
+      .check(in_range(0U, league::kMaxCameras - 1))
+      .needs(source)
+      .show_default("0 .. N-1 for the scenario's N = vision.columns x vision.rows");
   app.add_optional_value("--tracked", options.tracked, league::kTrackedEndpoint,
                          "send tracked packets to this ADDRESS:PORT");
   app.add_option("--league-interface", options.league_interface,
@@ -33,7 +45,7 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
 
 VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation,
                              const VisionOptions& options)
-    : node_(bus, scenario, incarnation, source_of(scenario, options)) {
+    : node_(bus, scenario, incarnation, source_of(scenario, options), configured_cameras(scenario, options)) {
   if (options.is_league_source) {
     league_.emplace(bus, scenario, LeagueAddress{options.league_vision, options.league_interface}, node_);
   } else if (scenario.vision.images) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/process/command_line.hpp"
 #include "vision/images/image_input.hpp"
@@ -17,12 +18,13 @@ namespace sidestep {
 struct VisionOptions {
   bool is_league_source = false;  ///< detections come from the league's packets instead of the bus
   std::string league_vision = league::kVisionEndpoint;
-  std::optional<std::string> tracked;  ///< endpoint to which tracked packets are sent
+  std::vector<std::uint32_t> league_cameras;  ///< that see all of the floor; empty: those of the scenario
+  std::optional<std::string> tracked;         ///< endpoint to which tracked packets are sent
   std::string league_interface = league::kLeagueInterface;
   ImageOptions images;
 };
 
-/// Adds --source, --ssl-vision, --tracked and --league-interface.
+/// Adds --source, --ssl-vision, --league-cameras, --tracked and --league-interface.
 void add_league_options(const CliCommand& app, VisionOptions& options);
 
 /// The vision service with the sources and outputs that the options select. Precondition: the bus makes no

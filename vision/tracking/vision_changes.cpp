@@ -3,10 +3,28 @@
 
 namespace sidestep {
 
+VisionChanges::VisionChanges(const EventReporter& events, const std::vector<std::uint32_t>& cameras)
+    : events_(events) {
+  for (const std::uint32_t camera : cameras) cameras_.emplace(camera, Camera{});
+}
+
+void VisionChanges::on_unknown_camera(std::uint32_t camera) {
+  if (++unknown_ < next_unknown_report_) return;
+  next_unknown_report_ *= 10;
+  events_.report(LogLevel::kWarning, {},
+                 "{} frame(s) refused so far of cameras that are not configured; the latest of camera {}",
+                 unknown_, camera);
+}
+
+void VisionChanges::report_missing(std::uint32_t number, Camera& camera, Time now) {
+  if (camera.is_missing || now - *begin_ < kFirstFrameTimeout) return;
+  camera.is_missing = true;
+  events_.report(LogLevel::kWarning, {},
+                 "camera {} has sent no usable frame so far: obstacles may be where only it can see", number);
+}
+
 void VisionChanges::on_frame(const Frame& frame, Time now) {
-  const auto found = cameras_.find(frame.camera());
-  if (found == cameras_.end() && cameras_.size() >= kMaxCameras) return;
-  Camera& camera = cameras_[frame.camera()];
+  Camera& camera = cameras_.at(frame.camera());
   if (!frame.is_usable()) return report_refusal(frame, camera, now);
   if (camera.heard_at == Time{})
     events_.report(LogLevel::kDebug, {}, "camera {} sends frames", frame.camera());
@@ -31,7 +49,9 @@ void VisionChanges::report_refusal(const Frame& frame, Camera& camera, Time now)
 }
 
 void VisionChanges::update(const msg::WorldState& world, Time now) {
+  if (!begin_) begin_ = now;
   for (auto& [number, camera] : cameras_) {
+    if (camera.heard_at == Time{}) report_missing(number, camera, now);
     if (camera.is_lost || camera.heard_at == Time{} || now - camera.heard_at <= kCameraTimeout) continue;
     camera.is_lost = true;
     events_.report(LogLevel::kWarning, {}, "camera {} is lost: no usable frame for {:.1f} s", number,

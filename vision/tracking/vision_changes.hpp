@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include "common/log/log_event.hpp"
 #include "common/motion/version.hpp"
@@ -17,12 +19,14 @@ class VisionChanges {
  public:
   /// A camera that sends no usable frame for longer is lost.
   static constexpr Duration kCameraTimeout{500'000'000};
-  /// A hostile sender may invent any number of cameras; those beyond are not observed.
-  static constexpr std::size_t kMaxCameras = 64;
+  /// How long a camera may take to send its first frame.
+  static constexpr Duration kFirstFrameTimeout{3'000'000'000};
 
-  explicit VisionChanges(const EventReporter& events) : events_(events) {}
+  VisionChanges(const EventReporter& events, const std::vector<std::uint32_t>& cameras);
 
-  /// A frame that has arrived, usable or not.
+  /// A frame of a camera that is not among these. A hostile sender may invent any number.
+  void on_unknown_camera(std::uint32_t camera);
+  /// A frame of one of the cameras that has arrived, usable or not.
   void on_frame(const Frame& frame, Time now);
   /// The tracked world; call it once per period.
   void update(const msg::WorldState& world, Time now);
@@ -33,11 +37,15 @@ class VisionChanges {
     bool is_lost = false;
     std::uint64_t refused = 0;
     std::uint64_t next_report = 1;  // value of `refused` at which it is reported
+    bool is_missing = false;        // it was reported that it has sent nothing so far
   };
+  void report_missing(std::uint32_t number, Camera& camera, Time now);
   void report_refusal(const Frame& frame, Camera& camera, Time now);
 
   const EventReporter& events_;
   std::map<std::uint32_t, Camera> cameras_;
+  std::optional<Time> begin_;
+  std::uint64_t unknown_ = 0, next_unknown_report_ = 1;
   std::array<bool, kMaxRobots> was_tracked_{}, was_lost_{}, is_tracked_{};
 };
 

@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/vision_node.hpp"
 
+#include <numeric>
+
 #include "common/messaging/senders.hpp"
 
 namespace sidestep {
-namespace {
 
-std::uint32_t camera_count(const VisionSpec& vision) {
-  return static_cast<std::uint32_t>(vision.columns * vision.rows);
+std::vector<std::uint32_t> cameras_of(const VisionSpec& vision) {
+  std::vector<std::uint32_t> cameras(static_cast<std::size_t>(vision.columns * vision.rows));
+  std::iota(cameras.begin(), cameras.end(), 0U);
+  return cameras;
 }
 
-}  // namespace
-
-VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source)
+VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source,
+                       const std::vector<std::uint32_t>& cameras)
     : bus_(bus),
       period_(from_seconds(1 / scenario.vision.rate_hz)),
       next_(bus.now() + period_),
+      max_lead_(max_vision_lead(max_clock_difference(scenario.clock_bound_s))),
       tracker_(tracker_settings(scenario), roster_of(scenario)),
-      watch_(source == FrameSource::kBus ? camera_count(scenario.vision) : 0),
+      watch_(cameras),
       world_writer_(bus.advertise(topics::kWorld)),
       obstacle_writer_(bus.advertise(topics::kObstacles)),
+      changes_(events_, cameras),
       counters_(bus, static_cast<std::uint32_t>(Sender::kVision), incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   world_.vision(0);
@@ -37,7 +41,12 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
 }
 
 void VisionNode::add_frame(const msg::DetectionFrame& message) {
-  frame_.assign(message, bus_.now());
+  if (!watch_.has(message.camera())) {
+    ++unknown_cameras_;
+    changes_.on_unknown_camera(message.camera());
+    return;
+  }
+  frame_.assign(message, bus_.now(), max_lead_);
   changes_.on_frame(frame_, bus_.now());
   tracker_.update(frame_);
   if (frame_.is_usable()) watch_.on_frame(frame_.camera(), frame_.captured_at());
@@ -46,6 +55,7 @@ void VisionNode::add_frame(const msg::DetectionFrame& message) {
 void VisionNode::count_drops(DropCounters& drops) const {
   for (const auto& source : drop_sources_) source(drops);
   tracker_.count_drops(drops);
+  drops.count(DropReason::kMalformedFrame, std::nullopt, unknown_cameras_);
 }
 
 void VisionNode::publish() {

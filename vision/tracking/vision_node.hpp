@@ -17,13 +17,21 @@ namespace sidestep {
 /// Where a vision node gets its frames: detections on the bus, or calls of VisionNode::add_frame().
 enum class FrameSource { kBus, kCaller };
 
+/// The numbers of a scenario's cameras: 0 .. columns * rows - 1.
+[[nodiscard]] std::vector<std::uint32_t> cameras_of(const VisionSpec& vision);
+
 /// The vision service on a bus: fuses frames and publishes the world state and the list of obstacles at the
 /// cameras' rate, also when no frames arrive.
 class VisionNode {
  public:
+  /// `cameras`: the numbers of those that together see all of the floor; frames of others are refused.
   /// Precondition: the bus makes no callbacks after the node's destruction.
+  VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source,
+             const std::vector<std::uint32_t>& cameras);
+  /// With the cameras of the scenario.
   VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation,
-             FrameSource source = FrameSource::kBus);
+             FrameSource source = FrameSource::kBus)
+      : VisionNode(bus, scenario, incarnation, source, cameras_of(scenario.vision)) {}
   VisionNode(const VisionNode&) = delete;
   VisionNode& operator=(const VisionNode&) = delete;
 
@@ -51,6 +59,7 @@ class VisionNode {
   Bus& bus_;
   Duration period_;
   Time next_;
+  Duration max_lead_;  // of a frame
   Frame frame_;
   Tracker tracker_;
   CameraWatch watch_;
@@ -60,7 +69,8 @@ class VisionNode {
   Writer<msg::ObstacleList> obstacle_writer_;
   std::function<void(const msg::WorldState&)> listener_;
   EventReporter events_;
-  VisionChanges changes_{events_};
+  VisionChanges changes_;
+  std::uint64_t unknown_cameras_ = 0;  // frames of cameras that are not among the node's
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   CounterPublisher counters_;
 };

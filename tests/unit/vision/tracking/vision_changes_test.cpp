@@ -13,11 +13,11 @@ using namespace sidestep::test;
 
 /// A vision node for robot 0 that receives frames.
 struct Fixture {
-  Fixture() {
+  explicit Fixture(const std::vector<std::uint32_t>& cameras = {0}) {
     RobotSpec robot;
     robot.id = 0;
     scenario.robots.push_back(robot);
-    node.emplace(bus, scenario, 77, FrameSource::kCaller);
+    node.emplace(bus, scenario, 77, FrameSource::kCaller, cameras);
     events.emplace(*node);
   }
   /// Runs, with a frame of the camera every 20 ms; each shows the robot if `is_seen`.
@@ -40,7 +40,7 @@ struct Fixture {
 };
 
 TEST_CASE("a camera that falls silent is lost, and back with its next frame") {
-  Fixture f;
+  Fixture f({4});
   f.run(1000 * kMs, 4, false);
   f.wait(2000 * kMs);
   f.run(1000 * kMs, 4, false);
@@ -63,23 +63,28 @@ TEST_CASE("a robot that no camera sees is lost, and reported when it is seen aga
   CHECK(f.events->all().back().robot == 0);
 }
 
-TEST_CASE("refused frames are reported with the reason, ever more rarely") {
-  Fixture f;
+TEST_CASE("refused frames are reported with the reason, ever more rarely, and that there is no other") {
+  Fixture f({2, 3});
   f.run(20'000 * kMs, 2, true, 3000 * kMs);
   CAPTURE(f.events->text());
   CHECK(f.events->count("captured -3.000 s before it arrived") == 4);  // 1, 10, 100, 1000
-  CHECK(f.events->all().size() == 4);
+  CHECK(f.events->count("camera 2 has sent no usable frame so far") == 1);
+  CHECK(f.events->count("camera 3 has sent no usable frame so far") == 1);
+  CHECK(f.events->all().size() == 6);
   msg::DetectionFrame frame = frame_message(3, f.network.now());
   frame.obstacle_count(msg::MAX_OBSTACLES + 1);
   f.node->add_frame(frame);
   CHECK(f.events->count("camera 3: 1 frame(s) refused so far: malformed") == 1);
 }
 
-TEST_CASE("a sender of frames from ever new cameras is reported for a limited number of them") {
+TEST_CASE("frames of cameras that are not configured are reported, ever more rarely") {
   Fixture f;
-  for (std::uint32_t camera = 0; camera < 10'000; ++camera)
+  for (std::uint32_t camera = 1; camera <= 10'000; ++camera)
     f.node->add_frame(frame_message(camera, f.network.now()));
-  CHECK(f.events->all().size() == VisionChanges::kMaxCameras);
+  CAPTURE(f.events->text());
+  CHECK(f.events->count("frame(s) refused so far of cameras that are not configured") == 5);
+  CHECK(f.events->count("10000 frame(s) refused so far") == 1);
+  CHECK(f.events->all().size() == 5);
 }
 
 }  // namespace sidestep::vision_changes_test

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/vision_node.hpp"
 
+#include <optional>
+
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
 namespace sidestep::vision_node_test {
@@ -169,6 +172,55 @@ TEST_CASE("the node publishes a list of obstacles with every world, complete onc
   CHECK(lists.back().complete_within_m() == kCompleteEverywhere_m);
   REQUIRE(lists.back().obstacles().size() == 1);
   CHECK(lists.back().obstacles()[0].y_m() == Approx(2));
+}
+
+// As with the league's packets and with images.
+TEST_CASE("the list is complete only while every configured camera watches, and no other matters") {
+  SimNetwork net(351, kBegin, {});
+  SimBus vision_bus(net), listener_bus(net);
+  const bool are_given = GENERATE(false, true);
+  const std::vector<std::uint32_t> cameras = are_given ? std::vector{3U, 7U} : std::vector{0U, 1U};
+  CAPTURE(are_given);
+  std::optional<VisionNode> node;
+  if (are_given)
+    node.emplace(vision_bus, scenario_of(1), 1, FrameSource::kCaller, cameras);
+  else
+    node.emplace(vision_bus, scenario_of(1), 1, FrameSource::kCaller);
+  bool is_complete = false, was_complete = false, was_always_complete = true;
+  listener_bus.subscribe<msg::ObstacleList>(topics::kObstacles, [&](const msg::ObstacleList& list) {
+    is_complete = list.complete_within_m() > 0;
+    was_complete |= is_complete;
+    was_always_complete &= list.complete_within_m() == kCompleteEverywhere_m && list.obstacles().empty();
+  });
+  const auto run = [&](double seconds, std::initializer_list<std::uint32_t> sending) {
+    was_complete = false;
+    for (double s = 0; s < seconds; s += to_seconds(kFrame)) {
+      for (const std::uint32_t camera : sending) node->add_frame(frame_message(camera, net.now()));
+      net.run_until(net.now() + kFrame);
+    }
+  };
+  run(5, {cameras[0]});
+  CHECK_FALSE(was_complete);  // the other one was never heard
+  run(1, {cameras[0], cameras[1]});
+  CHECK(is_complete);
+  run(0.7, {cameras[1]});
+  run(10, {cameras[1]});
+  CHECK_FALSE(was_complete);  // dead
+  run(1, {cameras[0], cameras[1]});
+  CHECK(is_complete);
+  // Anybody may send packets with any number: neither do they stop robots, nor are they used.
+  msg::DetectionFrame forged = frame_message(20, net.now());
+  forged.obstacles_complete_within_m(0);
+  add_obstacle(forged, {1, 1});
+  for (int i = 0; i < 3; ++i) node->add_frame(forged);
+  was_always_complete = true;
+  for (int i = 0; i < 60; ++i) {
+    for (const std::uint32_t camera : cameras) node->add_frame(frame_message(camera, net.now()));
+    node->add_frame(frame_message(1000U + static_cast<std::uint32_t>(i), net.now()));
+    net.run_until(net.now() + kFrame);
+  }
+  CHECK(was_always_complete);
+  CHECK(drops_of(*node).total(DropReason::kMalformedFrame) == 63);
 }
 
 TEST_CASE("a node with frames from its caller ignores the bus and calls its listener with every world") {
