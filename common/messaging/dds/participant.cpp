@@ -19,6 +19,7 @@
 #include "common/messaging/dds/library_log.hpp"
 #include "common/messaging/dds/open_network.hpp"
 #include "common/messaging/dds/transport.hpp"
+#include "common/messaging/reliability.hpp"
 #include "fast_dds_version.hpp"
 
 namespace sidestep {
@@ -34,7 +35,6 @@ const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less
 constexpr int kKeptStates = 64;                        ///< a second of a topic with one message per cycle
 constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle ones are dropped
-constexpr int kEventDepth = 64;
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
 
@@ -148,7 +148,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
 
 template <typename EndpointQos>
 void set_common(EndpointQos& qos, Qos kind, int state_depth) {
-  const int depth = kind == Qos::kEvent ? kEventDepth : state_depth;
+  const int depth = kind == Qos::kEvent ? static_cast<int>(kEventDepth) : state_depth;
   qos.reliability().kind = kind == Qos::kEvent ? RELIABLE_RELIABILITY_QOS : BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind = VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
@@ -285,7 +285,8 @@ DataWriterQos dds_writer_qos(Qos kind) {
   DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
   set_common(qos, kind, 1);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
-  fast_dds::set_times(qos, milliseconds(50), milliseconds(1));
+  fast_dds::set_times(qos, Duration_t(0, static_cast<std::uint32_t>(kHeartbeatPeriod.count())),
+                      milliseconds(1));
   return qos;
 }
 

@@ -9,15 +9,13 @@
 #include <span>
 #include <vector>
 
+#include "common/messaging/reliability.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
 
 /// A participant's GUID prefix (RTPS 2.2, 8.2.4).
 using ParticipantId = std::array<std::uint8_t, 12>;
-
-/// A participant that has been silent for this long is forgotten, until it is heard again.
-inline constexpr Duration kSilenceLimit{6'000'000'000};
 
 /// What one participant announces to another.
 struct PresenceNotice {

@@ -4,20 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/messaging/sim/writer.hpp"
+
 namespace sidestep {
-
-class SimNetwork::Writer : public RawWriter {
- public:
-  Writer(SimNetwork& network, ProcessId from, const TopicInfo& topic, Channel& channel)
-      : network_(network), from_(from), topic_(topic), channel_(channel) {}
-  void write(const void* message) override { network_.send(from_, topic_, channel_, message); }
-
- private:
-  SimNetwork& network_;
-  ProcessId from_;
-  TopicInfo topic_;
-  Channel& channel_;
-};
 
 SimBus::SimBus(SimNetwork& network) : SimBus(network, {network.new_process()}) {}
 
@@ -56,6 +45,7 @@ void SimBus::hide_from_observers() { network_.hidden_.insert(instance_->process)
 void SimBus::pause(Time until, std::size_t max_queued) {
   SimProcessInstance& instance = *instance_;
   const bool is_paused = instance.paused_until > network_.now();
+  SimNetwork::reachability_of(instance, network_.now()).silence(network_.now());
   instance.paused_until = is_paused ? std::max(instance.paused_until, until) : until;
   if (!is_paused) instance.queued = 0;
   instance.max_queued = max_queued;
@@ -68,7 +58,7 @@ SimNetwork::Channel& SimBus::channel_named(const std::string& name) {
 }
 
 std::unique_ptr<RawWriter> SimBus::make_writer(const TopicInfo& topic, const std::string& channel) {
-  return std::make_unique<SimNetwork::Writer>(network_, instance_->process, topic, channel_named(channel));
+  return std::make_unique<SimNetwork::Writer>(network_, *timers_, topic, channel_named(channel));
 }
 
 void SimBus::add_drops(DropCounters& drops) const {
@@ -79,7 +69,7 @@ void SimBus::add_drops(DropCounters& drops) const {
 void SimBus::make_reader(const TopicInfo&, const std::string& channel,
                          std::function<void(const void*)> callback) {
   channel_named(channel).subscriptions.push_back(
-      &network_.subscriptions_.emplace_back(SimSubscription{instance_, std::move(callback)}));
+      &network_.subscriptions_.emplace_back(SimSubscription{instance_, std::move(callback), network_.now()}));
 }
 
 }  // namespace sidestep

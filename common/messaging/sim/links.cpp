@@ -4,8 +4,13 @@
 #include <algorithm>
 
 namespace sidestep {
+namespace {
 
-void SimLinks::set(ProcessId from, ProcessId to, const LinkQuality& quality) {
+bool is_silent(const LinkQuality& quality) { return quality.is_cut || quality.loss >= 1; }
+
+}  // namespace
+
+void SimLinks::set(ProcessId from, ProcessId to, const LinkQuality& quality, Time now) {
   const std::size_t needed = std::max(from, to) + std::size_t{1};
   if (needed > width_) {
     std::vector<Link> wider(needed * needed);
@@ -17,6 +22,8 @@ void SimLinks::set(ProcessId from, ProcessId to, const LinkQuality& quality) {
     width_ = needed;
   }
   Link& link = links_[from * width_ + to];
+  if (is_silent(link.quality) && !is_silent(quality)) link.reachability.end_silence(now);
+  if (is_silent(quality)) link.reachability.silence(now);
   link.quality = quality;
   link.is_set = true;
 }
@@ -33,6 +40,12 @@ MessageCopies SimLinks::send(ProcessId from, ProcessId to, Rng& rng) {
 
 Duration SimLinks::delay(ProcessId from, ProcessId to, Rng& rng) const {
   return sample_delay(at(from, to).quality, rng);
+}
+
+Reachability SimLinks::reachability(ProcessId a, ProcessId b) const {
+  Reachability reachability;
+  if (find(a, b)) reachability = at(a, b).reachability;
+  return find(b, a) ? both(reachability, at(b, a).reachability) : reachability;
 }
 
 }  // namespace sidestep

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/messaging/impaired_link.hpp"
+#include "common/messaging/sim/reachability.hpp"
 
 namespace sidestep {
 
@@ -17,19 +18,22 @@ class SimLinks {
  public:
   /// Whether set() was ever called.
   bool any() const { return width_ > 0; }
-  void set(ProcessId from, ProcessId to, const LinkQuality& quality);
+  void set(ProcessId from, ProcessId to, const LinkQuality& quality, Time now);
   /// Null for a link that was never set.
   const LinkQuality* find(ProcessId from, ProcessId to) const;
   /// Precondition: find(from, to).
   MessageCopies send(ProcessId from, ProcessId to, Rng& rng);
   /// Delay of a reliable message. Precondition: find(from, to).
   Duration delay(ProcessId from, ProcessId to, Rng& rng) const;
+  /// Of both directions.
+  Reachability reachability(ProcessId a, ProcessId b) const;
 
  private:
   struct Link {
     LinkQuality quality;
     bool is_set = false;
     ImpairedLink impaired;
+    Reachability reachability;
   };
   const Link& at(ProcessId from, ProcessId to) const { return links_[from * width_ + to]; }
 

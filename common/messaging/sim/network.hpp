@@ -16,6 +16,7 @@
 #include "common/messaging/sim/event_queue.hpp"
 #include "common/messaging/sim/links.hpp"
 #include "common/messaging/sim/pool.hpp"
+#include "common/messaging/sim/reliable_stream.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/random/rng.hpp"
 
@@ -27,6 +28,7 @@ struct SimProcessInstance {
   bool is_alive = true;
   bool is_observer = false;
   Time paused_until = Time::min();
+  Reachability reachability{};  ///< with all others, because of its pauses; see reachability_of()
   Time queued_until =
       Time::min();  ///< when queued events are due; earlier than the above after a second pause
   std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
@@ -38,13 +40,15 @@ struct SimProcessInstance {
 struct SimSubscription {
   SimProcessInstance* instance;
   std::function<void(const void*)> callback;
+  Time begin = Time::min();
   Time last_event{};  ///< arrival of the last kEvent message, which keeps such messages in order
 };
 
 /// Runs many processes in one thread under virtual time: an event queue ordered by (time, order of
 /// scheduling), and a network between the processes that delays, loses, duplicates and reorders messages. The
 /// same seed gives the same run, bit for bit. Channels with Qos::kEvent are reliable and in order, as over
-/// DDS; their messages are only delayed.
+/// DDS: a writer sends again what a link has lost, but only to readers that it knew when it wrote, only while
+/// its process lives, and not more than its history holds (README.md).
 class SimNetwork {
  public:
   SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network);
@@ -61,7 +65,9 @@ class SimNetwork {
   /// Allocates the id of another process.
   ProcessId new_process() { return next_process_++; }
   /// From now on, `quality` replaces the NetworkSpec for this link.
-  void set_link(ProcessId from, ProcessId to, const LinkQuality& quality) { links_.set(from, to, quality); }
+  void set_link(ProcessId from, ProcessId to, const LinkQuality& quality) {
+    links_.set(from, to, quality, now_);
+  }
 
  private:
   friend class SimBus;
@@ -87,12 +93,29 @@ class SimNetwork {
   void release(std::uint32_t sent);
   /// Postpones an event to the end of its process's pause.
   void postpone(const Event& event);
-  void send(ProcessId from, const TopicInfo& topic, Channel& channel, const void* message);
-  void send_event(ProcessId from, SimSubscription& subscription, std::uint32_t sent);
+  void send(Writer& writer, const void* message);
+  void send_event(Writer& writer, SimSubscription& subscription, std::uint32_t sent);
+  /// Appends a message that has not arrived at once, and forgets what the writer's history cannot hold.
+  void keep(Writer& writer, const std::shared_ptr<ReliableStream>& stream, std::uint32_t sent,
+            bool has_arrived);
+  /// Sends again what has not arrived, if a heartbeat arrives and its answer too.
+  void heartbeat(Writer& writer, ReliableStream& stream);
+  void schedule_heartbeat(Writer& writer, const std::shared_ptr<ReliableStream>& stream);
+  void give_arrived(ReliableStream& stream, Duration delay);
+  /// Whether writer and reader know each other. If not, what waits is lost.
+  bool is_matched(const Writer& writer, ReliableStream& stream);
+  void lose_waiting(ReliableStream& stream);
+  /// Whether one of the datagrams of reliable messages arrives.
+  bool arrives(ProcessId from, ProcessId to);
+  Duration event_delay(ProcessId from, ProcessId to, Rng& rng);
+  void deliver_event(SimSubscription& subscription, Duration delay, std::uint32_t sent);
+  static Reachability& reachability_of(SimProcessInstance& instance, Time now);
   void deliver(SimSubscription& subscription, Time when, std::uint32_t sent, bool is_droppable);
-  Duration sample_delay();
+  Duration sample_delay(Rng& rng) const;
 
   Rng rng_;
+  Rng reliable_rng_;  ///< for losses of reliable messages, so that they do not change those of others
+  const Time begin_;
   Time now_;
   NetworkSpec spec_;
   SimLinks links_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/sim/links.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
 
@@ -50,7 +53,7 @@ TEST_CASE("a link has the specified loss and mean burst length") {
   LinkQuality quality;
   quality.loss = loss;
   quality.mean_burst = mean_burst;
-  links.set(0, 1, quality);
+  links.set(0, 1, quality, kBegin);
   Rng rng(7);
   constexpr int kMessages = 400'000;
   int lost = 0, bursts = 0;
@@ -68,7 +71,7 @@ TEST_CASE("a link has the specified loss and mean burst length") {
 TEST_CASE("delays of a link are right-skewed, within their bounds, with about the specified mean") {
   SimLinks links;
   LinkQuality quality{0, 1, 0.5, 1ms, 11ms, 150ms, false};
-  links.set(2, 0, quality);
+  links.set(2, 0, quality, kBegin);
   Rng rng(3);
   double total_s = 0;
   int above_mean = 0, count = 0, messages = 100'000;
@@ -107,8 +110,8 @@ TEST_CASE("links can be set in any order and keep their qualities as more are ad
   CHECK_FALSE(links.any());
   LinkQuality slow;
   slow.delay_min = 5ms;
-  links.set(1, 0, slow);
-  links.set(9, 3, {});
+  links.set(1, 0, slow, kBegin);
+  links.set(9, 3, {}, kBegin);
   CHECK(links.any());
   REQUIRE(links.find(1, 0));
   CHECK(*links.find(1, 0) == slow);
@@ -195,6 +198,124 @@ TEST_CASE("an observer receives every message without delay on a bad network") {
   }
   network.run_until(kBegin + 1s);
   CHECK(received == 100);
+}
+
+/// Two processes that send each other numbered reliable messages.
+struct ReliablePair {
+  SimNetwork network{1, kBegin, {}};
+  ProcessId ids[2] = {network.new_process(), network.new_process()};
+  SimBus a{network, {ids[0]}}, b{network, {ids[1]}};
+  Writer<msg::AbsenceAttestation> from_a = a.advertise(topics::kAttestation),
+                                  from_b = b.advertise(topics::kAttestation);
+  std::vector<std::uint64_t> at_a, at_b;
+
+  ReliablePair() {
+    a.subscribe(topics::kAttestation, [this](const msg::AbsenceAttestation& m) {
+      if (m.robot() == 1) at_a.push_back(m.header().incarnation());
+    });
+    b.subscribe(topics::kAttestation, [this](const msg::AbsenceAttestation& m) {
+      if (m.robot() == 0) at_b.push_back(m.header().incarnation());
+    });
+  }
+  void send(std::uint64_t number) {
+    msg::AbsenceAttestation message;
+    message.header().incarnation(number);
+    from_a.publish(message, a.now());
+    message.robot(1);
+    from_b.publish(message, b.now());
+  }
+  /// From a to b.
+  void set_cut(bool is_cut) {
+    LinkQuality quality;
+    quality.is_cut = is_cut;
+    network.set_link(ids[0], ids[1], quality);
+  }
+  void run_for(Duration duration) { network.run_until(network.now() + duration); }
+};
+
+TEST_CASE("processes of which one hears the other for less than six seconds keep reliable messages") {
+  ReliablePair pair;
+  pair.set_cut(true);
+  pair.send(1);
+  pair.run_for(5900ms);
+  CHECK(pair.at_b.empty());
+  CHECK(pair.at_a == std::vector<std::uint64_t>{1});
+  pair.set_cut(false);
+  pair.run_for(1s);
+  CHECK(pair.at_b == std::vector<std::uint64_t>{1});
+}
+
+TEST_CASE("processes forget each other after a silence of six seconds in one direction") {
+  ReliablePair pair;
+  pair.set_cut(true);
+  pair.send(1);
+  pair.run_for(6100ms);
+  pair.send(2);  // b has forgotten a, so a does not get it either
+  pair.run_for(100ms);
+  pair.set_cut(false);
+  pair.send(3);  // they have not found each other again
+  pair.run_for(3s);
+  pair.send(4);
+  pair.run_for(1s);
+  CHECK(pair.at_a == std::vector<std::uint64_t>{1, 4});
+  CHECK(pair.at_b == std::vector<std::uint64_t>{4});
+}
+
+TEST_CASE("a short cut right after a start delays discovery, a later one does not") {
+  ReliablePair pair;
+  pair.run_for(10s);
+  SimBus late(pair.network, {pair.network.new_process()});
+  std::vector<std::uint64_t> received;
+  late.subscribe(topics::kAttestation, [&](const msg::AbsenceAttestation& m) {
+    if (m.robot() == 0) received.push_back(m.header().incarnation());
+  });
+  LinkQuality cut;
+  cut.is_cut = true;
+  pair.run_for(1ms);
+  pair.network.set_link(pair.ids[0], 2, cut);
+  pair.run_for(1s);
+  pair.send(1);
+  pair.network.set_link(pair.ids[0], 2, {});
+  pair.run_for(3s);
+  pair.send(2);
+  pair.network.set_link(pair.ids[0], 2, cut);
+  pair.send(3);
+  pair.run_for(1s);
+  pair.network.set_link(pair.ids[0], 2, {});
+  pair.run_for(1s);
+  CHECK(received == std::vector<std::uint64_t>{2, 3});
+}
+
+TEST_CASE("reliable messages do not change the losses and delays of others") {
+  const auto run = [](bool with_heartbeats) {
+    SimNetwork network(1, kBegin, {0.3, 0.1, 1ms, 20ms});
+    SimBus sender(network), receiver(network);
+    std::vector<std::pair<std::uint64_t, Time>> received;
+    receiver.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+      received.emplace_back(state.epoch(), network.now());
+    });
+    // Both draw one delay for each message.
+    const auto& topic = topics::kAttestation;
+    receiver.subscribe(topic, [](const msg::AbsenceAttestation&) {});
+    auto writer = sender.advertise(topics::kCoordinator);
+    auto reliable = sender.advertise(topic);
+    for (std::uint64_t n = 1; n <= 500; ++n) {
+      msg::CoordinatorState state;
+      state.epoch(n);
+      writer.publish(state, sender.now());
+      msg::AbsenceAttestation message;
+      message.robot(static_cast<std::uint32_t>(n));
+      reliable.publish(message, sender.now());
+      if (with_heartbeats) network.run_until(network.now() + 1ms);
+    }
+    network.run_until(network.now() + 10s);
+    std::vector<std::uint64_t> numbers;
+    for (const auto& [number, time] : received) numbers.push_back(number);
+    std::ranges::sort(numbers);
+    return numbers;
+  };
+  // With time in between, heartbeats and repetitions happen between the states.
+  CHECK(run(true) == run(false));
 }
 
 }  // namespace sidestep::links_test

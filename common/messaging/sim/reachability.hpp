@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "common/messaging/reliability.hpp"
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// How long two processes have been able to hear each other, as far as their discovery depends on it. They
+/// forget each other if one of them is silent for kSilenceLimit in either direction.
+struct Reachability {
+  Time heard_from = Time::min();  ///< both have been heard since this time, or until `silent_from`
+  Time silent_from = Time::max();
+  Time last_silent_from = Time::min();  ///< the beginning of the silence that ended at `heard_from`
+  Time begun_anew = Time::min();  ///< the end of the last silence after which they had forgotten each other
+
+  bool is_forgotten(Time now) const { return silent_from <= now && now - silent_from >= kSilenceLimit; }
+  void silence(Time now) { silent_from = std::min(silent_from, now); }
+  void end_silence(Time now) {
+    if (is_forgotten(now)) begun_anew = now;
+    last_silent_from = silent_from;
+    heard_from = now;
+    silent_from = Time::max();
+  }
+};
+
+/// The reachability of two processes that need all of these: the two directions of their link, and
+/// themselves.
+inline Reachability both(const Reachability& a, const Reachability& b) {
+  return {std::max(a.heard_from, b.heard_from), std::min(a.silent_from, b.silent_from),
+          std::max(a.last_silent_from, b.last_silent_from), std::max(a.begun_anew, b.begun_anew)};
+}
+
+}  // namespace sidestep

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "common/messaging/bus.hpp"
+#include "common/messaging/sim/network.hpp"
+
+namespace sidestep {
+
+/// A simulated process's writer of one channel. What its readers have not received is lost with it.
+class SimNetwork::Writer : public RawWriter {
+ public:
+  /// `timers` belongs to the process.
+  Writer(SimNetwork& network, SimSubscription& timers, const TopicInfo& topic, Channel& channel)
+      : network_(network), timers_(timers), topic_(topic), channel_(channel), begin_(network.now()) {}
+  ~Writer() override {
+    *alive_ = nullptr;
+    for (const auto& [reader, stream] : streams_) network_.lose_waiting(*stream);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void write(const void* message) override { network_.send(*this, message); }
+
+  SimProcessInstance& instance() const { return *timers_.instance; }
+  SimSubscription& timers() const { return timers_; }
+  const TopicInfo& topic() const { return topic_; }
+  Channel& channel() const { return channel_; }
+  /// Points to null when the writer is destroyed.
+  std::shared_ptr<Writer*> alive() const { return alive_; }
+
+  /// The stream to a reader. `delays` is called for a new one. Processes that exist at `network_begin` have
+  /// found each other before.
+  template <typename MakeDelays>
+  const std::shared_ptr<ReliableStream>& stream_to(SimSubscription& reader, Time network_begin,
+                                                   MakeDelays delays) {
+    auto& stream = streams_[&reader];
+    if (stream) return stream;
+    std::erase_if(streams_, [&](const auto& entry) {
+      if (entry.second == nullptr || entry.second->reader().instance->is_alive) return false;
+      network_.lose_waiting(*entry.second);
+      return true;
+    });
+    const Time begin = std::max(begin_, reader.begin);
+    stream = std::make_shared<ReliableStream>(reader, begin <= network_begin ? Time::min() : begin, delays());
+    return stream;
+  }
+
+ private:
+  SimNetwork& network_;
+  SimSubscription& timers_;
+  TopicInfo topic_;
+  Channel& channel_;
+  Time begin_;
+  std::shared_ptr<Writer*> alive_ = std::make_shared<Writer*>(this);
+  std::map<const SimSubscription*, std::shared_ptr<ReliableStream>> streams_;
+};
+
+}  // namespace sidestep
