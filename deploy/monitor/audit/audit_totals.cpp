@@ -72,6 +72,10 @@ std::string shortfall(const AuditTotals& totals) {
   if (totals.is_cut_off) add("the recording is damaged, so its end is missing");
   if (totals.unidentified_contacts > 0)
     add(fmt::format("the robots of {} contacts are unknown", totals.unidentified_contacts));
+  if (totals.undecided_contacts + totals.undecided_crashes > 0) {
+    add(fmt::format("{} contacts and crashes are undecided because of missed messages",
+                    totals.undecided_contacts + totals.undecided_crashes));
+  }
   return text;
 }
 

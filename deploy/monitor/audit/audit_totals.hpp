@@ -59,6 +59,8 @@ struct AuditTotals {
   std::uint64_t excused_contacts = 0;       ///< contacts that a disturbance of a robot excuses
   std::vector<ExcusedContacts> excused;     ///< the same by cause and pair
   std::uint64_t unidentified_contacts = 0;  ///< contacts of which the reference did not name the robots
+  std::uint64_t undecided_contacts = 0;     ///< contacts whose possible excuse was not received
+  std::uint64_t undecided_crashes = 0;      ///< crashes of moving robots, likewise
   std::uint64_t excused_displacements = 0;  ///< position errors of disturbed robots
   double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
   double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused

@@ -91,6 +91,12 @@ ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number) {
   return last_proposal(*this, [number](const ProposalRecord& record) { return record.number == number; });
 }
 
+ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number, std::int64_t stamp_ns) {
+  return last_proposal(*this, [=](const ProposalRecord& record) {
+    return record.number == number && record.stamp_ns == stamp_ns;
+  });
+}
+
 const ProposalRecord* AuditedRobot::find_proposal_of(const msg::Version& candidate) const {
   return last_proposal(*this, [&candidate](const ProposalRecord& record) {
     const msg::Version* found = record.find(candidate.version_number());
@@ -155,11 +161,14 @@ void AuditedRobot::reset() {
 
 Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {
   if (fact.is_lifted && fact.executing == 0) {
-    // Only a rest version that was granted and not yet executed remains possible for a lifted robot.
-    const bool is_rest_version = version.has_content && version.version.base() == 0 && version.number != 0 &&
-                                 version.path.reach_m() == 0 && !version.was_executed &&
-                                 version.path.start_ns() > fact.at_ns;
-    return is_rest_version ? Exclusion::kNone : Exclusion::kLifted;
+    // Only a rest version that was granted and not yet executed remains possible for a lifted robot, and what
+    // continues it after the robot has been put down.
+    const bool is_later =
+        version.has_content && !version.was_executed && version.path.start_ns() > fact.at_ns;
+    const bool is_rest_version =
+        is_later && version.version.base() == 0 && version.number != 0 && version.path.reach_m() == 0;
+    const bool continues_later = is_later && version.version.base() > fact.last_executed;
+    return is_rest_version || continues_later ? Exclusion::kNone : Exclusion::kLifted;
   }
   if (version.number < fact.executing) return Exclusion::kOlder;
   if (version.number == fact.executing || !version.has_content) return Exclusion::kNone;

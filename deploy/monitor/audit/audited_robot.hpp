@@ -36,7 +36,8 @@ class EpochMemory {
   Epoch max_evicted_ = 0;
 };
 
-/// What is known about one version. Sending times are by the auditor's clock.
+/// What is known about one version. Sending times are by the auditor's clock; those of grants are by the
+/// coordinator's clock if the auditor may miss messages.
 struct KnownVersion {
   // The members that are read for most versions come first, adjacent in memory.
   VersionNumber number = 0;
@@ -47,8 +48,13 @@ struct KnownVersion {
   Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page held it
   std::int64_t granted_by_ns = kNever;       ///< latest sending time of the verdict, or of that page
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
-  std::int64_t alive_until_ns = kAlways;     ///< lower bound of the time of the first fact that excludes it
+  /// Lower bound of the time until which the ledger held it, see Auditor::granter_time_ns.
+  std::int64_t alive_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
+  // What pages of the ledger show, by the coordinator's clock. Unused if the auditor receives every message.
+  Epoch listed_in = 0;                      ///< the latest epoch whose pages listed it
+  std::int64_t listed_from_ns = kNever;     ///< the first page that listed it
+  std::int64_t entered_after_ns = kAlways;  ///< the last page before that one without it
   AuditPath path;
   EpochMemory registered_in;
   std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that carries it
@@ -56,14 +62,19 @@ struct KnownVersion {
   bool is_granted_by_page = false;  ///< inferred from a ledger page, because the verdict was missed
   bool is_proposed = false;         ///< its proposal was received, or may have been evicted
   bool is_reported_unsent = false;  ///< so that a breach is reported once
+  bool is_content_checked = false;  ///< against its base, too
+  bool is_pair_checked = false;     ///< against the other robots' versions in the ledger
   msg::Version version;
 
   /// Whether it was granted or registered in the epoch.
   bool is_in(Epoch epoch) const;
   /// Whether a ledger has held it, as far as is known.
   bool was_in_ledger() const { return number == 0 || granted_in != 0 || !registered_in.is_empty(); }
-  /// Whether its proposal, its grant and a command with it were received.
-  bool is_traced() const { return is_proposed && granted_in != 0 && sent_ns != kNever; }
+  /// Whether its proposal, its grant and a command with it were received, and all that they are compared
+  /// with.
+  bool is_traced() const {
+    return is_proposed && granted_in != 0 && sent_ns != kNever && is_content_checked && is_pair_checked;
+  }
   /// Whether it is or may be in the epoch. A coordinator may resume after more epochs than are remembered.
   bool may_be_in(Epoch epoch) const;
 };
@@ -71,6 +82,7 @@ struct KnownVersion {
 /// A received proposal and what is known about its verdict.
 struct ProposalRecord {
   std::uint64_t number = 0;
+  std::int64_t stamp_ns = 0;  ///< by the agent's clock; its verdict repeats it
   Epoch epoch = 0;
   std::size_t count = 0;
   std::array<msg::Version, msg::MAX_CANDIDATES> candidates;
@@ -83,6 +95,7 @@ struct ProposalRecord {
 /// A final verdict that arrived before its proposal.
 struct EarlyVerdict {
   std::uint64_t proposal = 0;
+  std::int64_t request_stamp_ns = 0;
   Epoch epoch = 0;
   VersionNumber granted = 0;
 };
@@ -114,10 +127,12 @@ class AuditedRobot {
     Incarnation obeyed_incarnation = 0;
     Epoch obeyed_epoch = 0;
     std::int64_t epoch_since_ns = kNever;  ///< upper bound of the time of the first fact with this epoch
+    VersionNumber last_executed = 0;       ///< off the floor: the last version that it executed there
     bool is_off_reference = false;
     bool is_lifted = false;
   };
   std::optional<Fact> fact;
+  Time heard_at{};  ///< when it arrived
   /// All facts since then report an error beyond the drift bound, and beyond the tracking bound.
   std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
 
@@ -126,12 +141,19 @@ class AuditedRobot {
     Epoch epoch = 0;
     Incarnation incarnation = 0;
     std::int64_t earliest_ns = 0, latest_ns = 0;  ///< bounds of its sending time
+    std::int64_t stamp_ns = 0;                    ///< its sending time by the agent's clock
     std::vector<VersionNumber> versions;
     bool is_absent = false;
     bool is_reported = false;  ///< so that a breach is reported once
   };
   std::optional<Registered> registered;
   EpochMemory registered_in;
+  /// The latest page of the ledger that listed versions of the robot, by the coordinator's clock.
+  struct Listing {
+    Epoch epoch = 0;
+    std::int64_t at_ns = kAlways;
+  };
+  Listing listed;
   /// Of the robot's clock, by its last fact. Exact only if the auditor receives everything at once.
   std::int64_t clock_ahead_ns = 0;
   /// An operator has attested its absence: epochs up to this one may have begun without its registration.
@@ -161,6 +183,8 @@ class AuditedRobot {
   /// The newest proposal with this number. Those of several agents of the robot may share it: a restarted
   /// agent does not know the last numbers of the one before it.
   ProposalRecord* find_proposal(std::uint64_t number);
+  /// The one that was sent at this time by the agent's clock.
+  ProposalRecord* find_proposal(std::uint64_t number, std::int64_t stamp_ns);
   /// The newest proposal with this candidate of the same agent.
   const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
   /// Removes versions that were excluded before `before_ns`.

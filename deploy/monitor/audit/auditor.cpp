@@ -17,10 +17,10 @@ constexpr double kContactTolerance_m = 0.001;
 // For messages and a few cycles, beyond braking itself.
 constexpr Duration kReactionTime = std::chrono::milliseconds(200);
 
-DisturbanceSettings disturbance_settings(const Scenario& scenario) {
+DisturbanceSettings disturbance_settings(const Scenario& scenario, bool is_complete) {
   const double braking_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2;
   return {2 * scenario.radius_m + kContactTolerance_m, 2 * scenario.radius_m + scenario.margin_m,
-          from_seconds(braking_s) + kReactionTime};
+          from_seconds(braking_s) + kReactionTime, is_complete};
 }
 
 /// How far a robot may seem to be from its version because of errors of vision and clocks.
@@ -44,7 +44,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
       seen_displacements_(scenario.robots.size()),
       observed_(scenario.robots.size()),
       seen_contacts_(scenario),
-      disturbances_(scenario.robots.size(), disturbance_settings(scenario)),
+      disturbances_(scenario.robots.size(), disturbance_settings(scenario, input.is_complete)),
       index_(kMaxRobots, scenario.robots.size()) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
@@ -85,7 +85,13 @@ AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& header) 
 Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
   const bool is_of_agent = kind == kProposalKind || kind == kRegistrationKind || kind == kCommandKind;
   MessageTrace& messages = is_of_agent ? agent_trace_ : trace_;
-  return messages.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
+  const Reception reception = messages.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
+  if (!input_.is_complete && !is_of_agent && reception.missed > 0) disturbances_.on_missed();
+  return reception;
+}
+
+std::int64_t Auditor::granter_time_ns(const msg::Header& header, const Reception& reception) const {
+  return input_.is_complete ? reception.latest_ns : header.stamp_ns();
 }
 
 KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
@@ -94,10 +100,18 @@ KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
     return nullptr;
   }
   KnownVersion& known = robot.find_or_insert(version.version_number());
+  // A later agent, or another floor: what the auditor would have forgotten if it had received every message.
+  const bool is_another = known.has_content && (known.version.incarnation() != version.incarnation() ||
+                                                (known.number == 0 && !(known.version == version)));
+  if (!input_.is_complete && is_another) {
+    known = KnownVersion();
+    known.number = version.version_number();
+  }
   if (!known.has_content) {
     known.has_content = true;
     known.version = version;
     known.path = AuditPath(version);
+    known.is_content_checked = known.is_pair_checked = input_.is_complete;
     max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
     // An earlier fact may exclude the version.
     if (robot.fact) known.exclusion = exclusion_by(*robot.fact, known);
@@ -135,21 +149,32 @@ void Auditor::on_proposal(const msg::Proposal& proposal, Time now) {
   if (same_number && same_number->candidates.front().incarnation() == incarnation) return;
   ProposalRecord& record = robot->add_proposal();
   record.number = number;
+  record.stamp_ns = proposal.header().stamp_ns();
   record.epoch = proposal.epoch();
   record.count = proposal.candidate_count();
   for (std::size_t i = 0; i < record.count; ++i) {
     record.candidates[i] = proposal.candidates()[i];
     // The verdict may have overtaken the proposal.
-    KnownVersion* known = robot->find(record.candidates[i].version_number());
-    if (known) known->is_proposed = true;
-    if (!known || known->has_content || known->granted_in == 0) continue;
+    const VersionNumber candidate = record.candidates[i].version_number();
+    KnownVersion* known = robot->find(candidate);
+    const auto is_grant = [&](const EarlyVerdict& v) {
+      return v.granted == candidate && v.request_stamp_ns == record.stamp_ns;
+    };
+    const bool is_this = input_.is_complete ||
+                         (known && known->has_content ? known->version.incarnation() == incarnation
+                                                      : std::ranges::any_of(robot->early_verdicts, is_grant));
+    if (!known || !is_this) continue;
+    known->is_proposed = true;
+    if (known->has_content || known->granted_in == 0) continue;
     if (KnownVersion* stored = store(*robot, record.candidates[i])) {
       check_content(*robot, *stored);
       check_new_pairs(*robot, *stored);
     }
   }
   for (const EarlyVerdict& verdict : robot->early_verdicts) {
-    if (verdict.proposal == number) decide(*robot, record, verdict.epoch, verdict.granted);
+    const bool is_answer =
+        verdict.proposal == number && (input_.is_complete || verdict.request_stamp_ns == record.stamp_ns);
+    if (is_answer) decide(*robot, record, verdict.epoch, verdict.granted);
   }
 }
 
@@ -168,6 +193,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
   registered.incarnation = registration.header().incarnation();
   registered.earliest_ns = reception.earliest_ns;
   registered.latest_ns = reception.latest_ns;
+  registered.stamp_ns = registration.header().stamp_ns();
   registered.is_absent = registration.is_absent();
   for (std::size_t i = 0; i < registration.version_count(); ++i) {
     KnownVersion* known = store(*robot, registration.versions()[i]);
@@ -191,8 +217,8 @@ void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   if (known == epochs_.end() || known->second.is_reported) return;
   const std::vector<RobotId> missing = missing_robots(state);
   if (missing.empty()) return;
-  if (known->second.granter_life != state.header().incarnation() ||
-      reception.earliest_ns <= known->second.first_grant_ns)
+  const std::int64_t sent_ns = input_.is_complete ? reception.earliest_ns : state.header().stamp_ns();
+  if (known->second.granter_life != state.header().incarnation() || sent_ns <= known->second.first_grant_ns)
     return;
   known->second.is_reported = true;
   report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),

@@ -29,15 +29,18 @@ struct AuditInput {
   /// It receives every message from the start on, at the moment it is sent. Only then is a missing message
   /// evidence.
   bool is_complete = false;
-  /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete.
+  /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete. A receiver
+  /// that is overloaded exceeds it, so no violation relies on it.
   Duration min_latency_bound{5'000'000};
 };
 
 /// Checks all messages of a run against the rules of the safety protocol and reports each violation with the
 /// robots and versions involved. Shares no code with the components under audit. The auditor may join late,
-/// miss messages and receive them out of order. It then relies only on contradictions between received
-/// messages: it finds less, but never raises a false alarm, and its totals state how much it covered. Memory
-/// is bounded by the roster.
+/// miss messages and receive them late and out of order. It then relies only on contradictions between
+/// received messages that no missing message could resolve: it finds less, but never raises a false alarm,
+/// and its totals state how much it covered. Which message came first it then knows only of messages of one
+/// sender, and of messages that refer to each other. Operators' messages must not be lost. Memory is bounded
+/// by the roster.
 class Auditor {
  public:
   Auditor(const Scenario& scenario, const AuditInput& input);
@@ -73,6 +76,7 @@ class Auditor {
     Incarnation granter_life = 0;
     std::int64_t first_grant_ns = kNever;  ///< upper bound
     bool is_reported = false;
+    Incarnation page_life = 0;  ///< of the coordinator whose pages count
   };
   /// What had been proven about a version before the current message.
   struct Evidence {
@@ -90,6 +94,7 @@ class Auditor {
   struct SeenDisplacement {
     std::int64_t since_ns = kNever;  ///< in all observations since then the robot is out of place
     bool is_reported = false;        ///< so that it is reported once
+    bool was_in_place = false;       ///< before that
   };
 
   void report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch, std::string detail);
@@ -111,6 +116,9 @@ class Auditor {
     kWorldKind
   };
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
+  /// An upper bound of the time at which a coordinator sent a message: of the auditor's clock if it receives
+  /// every message, otherwise of the coordinator's, which compares its messages exactly.
+  std::int64_t granter_time_ns(const msg::Header& header, const Reception& reception) const;
   /// Stores the version's content and returns its record; nullptr if the content is invalid.
   KnownVersion* store(AuditedRobot& robot, const msg::Version& version);
   EpochRecord& epoch_record(Epoch epoch);
@@ -129,7 +137,12 @@ class Auditor {
   // Grants.
   void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
   void check_grant(AuditedRobot& robot, KnownVersion& known, const msg::Verdict& verdict);
-  void check_content(const AuditedRobot& robot, const KnownVersion& known);
+  /// The content of a version's base; nullptr if it was not received. An agent that restarts may use numbers
+  /// that its predecessor used in vain.
+  const KnownVersion* base_of(const AuditedRobot& robot, const KnownVersion& known) const;
+  void check_content(const AuditedRobot& robot, KnownVersion& known);
+  /// The checks that depend on the version's base.
+  void check_against_base(const AuditedRobot& robot, KnownVersion& known);
   void check_limits(const AuditedRobot& robot, const KnownVersion& known);
   void check_field(const AuditedRobot& robot, const KnownVersion& known);
   void check_obstacles(const AuditedRobot& robot, const KnownVersion& known);
@@ -146,9 +159,13 @@ class Auditor {
                             const msg::Verdict& verdict);
   void check_forwarded(AuditedRobot& robot, VersionNumber number);
   void check_ledger_page(const msg::LedgerPage& page);
+  /// Which versions the ledger held at the time of the page.
+  void use_ledger_page(const msg::LedgerPage& page);
+  /// The proposal that a verdict answers; nullptr: it was not received.
+  ProposalRecord* answered_proposal(AuditedRobot& robot, const msg::Verdict& verdict) const;
 
   // Facts.
-  void check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback);
+  void check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
   void check_switch(const AuditedRobot& robot, const KnownVersion& to, const msg::Feedback& feedback);
   void check_sent(AuditedRobot& robot, KnownVersion& executing);
   void check_tracking(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
@@ -156,9 +173,13 @@ class Auditor {
   void check_own_stop(const AuditedRobot& robot, const KnownVersion& own_stop, std::int64_t lead_ns);
   void check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                            const Reception& reception);
+  void check_registration(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback);
+  /// Whether the robot certainly sent the fact after its agent had sent the latest registration.
+  bool is_after_registration(const AuditedRobot& robot, const msg::Feedback& feedback,
+                             const Reception& reception) const;
   bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
-  static void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Reception& reception,
-                      std::int64_t now_ns);
+  void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Reception& reception,
+               std::int64_t now_ns);
 
   // Positions and contacts.
   void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
@@ -166,10 +187,13 @@ class Auditor {
                            std::int64_t at_ns);
   void check_seen_position(const AuditedRobot& robot, const KnownVersion& executed, double error_m,
                            std::int64_t at_ns);
-  /// `reported`: number of contacts in the previous ground truth.
-  void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported);
+  /// `reported`: number of contacts in the previous ground truth, in which the auditor joins the run if
+  /// `is_joining`.
+  void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
   /// `reported`: number of crashes of moving robots in the previous ground truth.
-  void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported);
+  void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
+  /// Whether everything that may excuse a contact of this robot was received.
+  bool are_excuses_known(std::optional<std::size_t> robot) const;
   /// Whether a contact is excused; it is then counted. nullopt: an obstacle.
   bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at);
   void record_positions(const msg::GroundTruth& truth);
@@ -192,11 +216,15 @@ class Auditor {
   // Pairs.
   /// `before`: the evidence for the robot's recent versions before the current fact.
   void check_pairs(const AuditedRobot& robot, const std::vector<Evidence>& before);
-  void check_new_pairs(AuditedRobot& robot, const KnownVersion& known);
+  void check_new_pairs(AuditedRobot& robot, KnownVersion& known);
   /// The epoch whose ledger provably held both versions at one time; 0 if both were provably executed at one
   /// time; nullopt if neither is proven.
   std::optional<Epoch> common_epoch(const KnownVersion& a, const Evidence& a_evidence, const KnownVersion& b,
                                     const Evidence& b_evidence) const;
+  /// Whether `granted` was checked against `other` when it was granted, if the ledger held both at one time.
+  bool was_checked_against(const KnownVersion& granted, const KnownVersion& other) const;
+  /// Whether the robots' times can be compared.
+  bool are_clocks_comparable(std::size_t a, std::size_t b) const;
   void check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
                   const KnownVersion& b, Epoch epoch);
   /// nullopt: the version's base was not received.
@@ -232,6 +260,7 @@ class Auditor {
   std::vector<std::optional<ObservedRobot>> observed_;  ///< on the floor at last, parallel to robots_
   SeenContacts seen_contacts_;
   std::vector<RobotId> named_displaced_;  // by the coordinator that grants
+  bool are_contacts_unknown_ = false;     // which robots pushed which
   Disturbances disturbances_;
   /// Number of excused contacts by cause and robots.
   std::map<std::tuple<std::string_view, RobotId, std::optional<RobotId>>, std::uint64_t> excused_;

@@ -26,11 +26,28 @@ double effort(const AuditPath::Node& n, const MotionLimits& limits) {
 
 }  // namespace
 
-void Auditor::check_content(const AuditedRobot& robot, const KnownVersion& known) {
+void Auditor::check_content(const AuditedRobot& robot, KnownVersion& known) {
   check_limits(robot, known);
+  check_against_base(robot, known);
+}
+
+void Auditor::check_against_base(const AuditedRobot& robot, KnownVersion& known) {
+  // A robot may leave the field, or come near obstacles, as far as its base does. A rest version on base 0
+  // has no base if the robot was lifted, which may have been missed.
+  const bool may_rest = known.version.base() == 0 && known.path.reach_m() == 0;
+  if (!input_.is_complete && (may_rest || !base_of(robot, known))) return;
+  known.is_content_checked = true;
   check_field(robot, known);
   check_obstacles(robot, known);
   check_base(robot, known);
+}
+
+const KnownVersion* Auditor::base_of(const AuditedRobot& robot, const KnownVersion& known) const {
+  const KnownVersion* base = robot.find(known.version.base());
+  if (!base || !base->has_content) return nullptr;
+  const bool is_certain =
+      input_.is_complete || base->was_executed || base->version.incarnation() == known.version.incarnation();
+  return is_certain ? base : nullptr;
 }
 
 void Auditor::check_limits(const AuditedRobot& robot, const KnownVersion& known) {
@@ -72,9 +89,8 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
     return most;
   };
   // A robot that was pushed out of the field may return in several steps.
-  const KnownVersion* base = robot.find(known.version.base());
-  const double allowed =
-      base && base->has_content ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
+  const KnownVersion* base = base_of(robot, known);
+  const double allowed = base ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
   if (const double most = distance_outside_m(known.path); most > allowed) {
     report(AuditRule::kField, robot.id, &known, known.granted_in,
            fmt::format("{:.6f} m outside the field", most));
@@ -110,14 +126,14 @@ double Auditor::distance_of_base_m(const KnownVersion& base, const AuditShape& o
 
 void Auditor::check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
                              const Shape& shape, bool is_map) {
-  const KnownVersion* base = robot.find(known.version.base());
+  const KnownVersion* base = base_of(robot, known);
   const double required_m = required_separation_m(known);
   if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
     return;
   const ClosestApproach near = closest_approach(known.path, obstacle, required_m);
   if (near.distance_m >= required_m - kLengthTolerance_m - known.version.inflation_m()) return;
-  const bool was_near = base && base->has_content &&
-                        distance_of_base_m(*base, obstacle, is_map, required_m) <= near.distance_m + 1e-6;
+  const bool was_near =
+      base && distance_of_base_m(*base, obstacle, is_map, required_m) <= near.distance_m + 1e-6;
   if (was_near) return;
   report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
          fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,

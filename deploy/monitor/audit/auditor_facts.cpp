@@ -47,7 +47,10 @@ const char* reason_of(Exclusion exclusion) {
 }  // namespace
 
 bool Auditor::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
-  // A fact is stamped with the robot's own time of sending.
+  // A fact is dated by the robot's own clock, and stamped by that of the process that sends it.
+  const bool is_dated_as_sent =
+      std::abs(feedback.valid_at_ns() - feedback.header().stamp_ns()) <= clock_bound_ns_ + 1000;
+  if (!input_.is_complete && !is_dated_as_sent) return false;
   return feedback.valid_at_ns() - reception.latest_ns <= clock_bound_ns_ + 1000 &&
          reception.latest_ns - feedback.valid_at_ns() <=
              clock_bound_ns_ + 1000 + (input_.is_complete ? 0 : input_.min_latency_bound.count());
@@ -89,7 +92,8 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
   fact.epoch_since_ns = is_same_epoch ? robot->fact->epoch_since_ns : reception.latest_ns;
   fact.is_off_reference = feedback.is_off_reference();
   fact.is_lifted = feedback.is_lifted();
-  check_fact_order(*robot, feedback);
+  if (executes_nothing) fact.last_executed = feedback.executing().base();
+  check_fact_order(*robot, feedback, reception);
 
   robot->advance_recent(to_ns(now_) - kRecentWindow_ns -
                         (input_.is_complete ? 0 : 20 * input_.min_latency_bound.count()));
@@ -112,6 +116,9 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
       executing.executed_until_ns = std::max(executing.executed_until_ns, feedback.valid_at_ns());
     }
     executing.was_executed = true;
+    // Its base may have been received since its grant.
+    if (executing.granted_in != 0 && !executing.is_own_stop && !executing.is_content_checked)
+      check_against_base(*robot, executing);
   }
   exclude(*robot, fact, reception, to_ns(now_));
   has_sound_clock_[index_of(*robot)] = is_clock_sound(feedback, reception);
@@ -119,12 +126,14 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
 
   if (!robot->fact) robot->traceable_from_ns = fact.at_ns + kMaxLead_ns;
   robot->fact = fact;
+  robot->heard_at = now_;
 
   check_pairs(*robot, earlier_evidence_);
   robot->forget(to_ns(now_) - kRetention_ns);
 }
 
-void Auditor::check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback) {
+void Auditor::check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback,
+                               const Reception& reception) {
   if (!robot.fact) return;
   const AuditedRobot::Fact& last = *robot.fact;
   const VersionNumber number = feedback.executing().version_number();
@@ -132,7 +141,8 @@ void Auditor::check_fact_order(const AuditedRobot& robot, const msg::Feedback& f
     report(AuditRule::kFacts, robot.id, robot.find(number), feedback.obeyed_epoch(), detail);
   };
   // A clock that was out of bound may be set back.
-  if (feedback.valid_at_ns() < last.at_ns && has_sound_clock_[index_of(robot)])
+  const bool was_clock_sound = has_sound_clock_[index_of(robot)] && (input_.is_complete || reception.is_next);
+  if (feedback.valid_at_ns() < last.at_ns && was_clock_sound)
     fail(
         fmt::format("is stamped {} ns and follows a fact stamped {} ns", feedback.valid_at_ns(), last.at_ns));
   if (feedback.obeyed_incarnation() < last.obeyed_incarnation)
@@ -159,9 +169,12 @@ void Auditor::check_switch(const AuditedRobot& robot, const KnownVersion& to, co
   // The robot may have executed several versions between two facts.
   const VersionNumber from = robot.fact->executing;
   const KnownVersion* step = &to;
-  while (step && step->has_content && step->version.base() > from && step->version.base() < step->number)
-    step = robot.find(step->version.base());
-  if (!step || !step->has_content || step->version.base() == from) return;
+  while (step && step->version.base() > from && step->version.base() < step->number)
+    step = base_of(robot, *step);
+  if (!step || step->version.base() == from) return;
+  // It may have been lifted and put down in between.
+  const bool may_follow_lift = step->version.base() == 0 && step->path.reach_m() == 0;
+  if (!input_.is_complete && may_follow_lift) return;
   report(AuditRule::kSwitch, robot.id, &to, 0,
          fmt::format("continues version {}, but version {} was executed", step->version.base(), from));
 }
@@ -229,7 +242,17 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
     report(AuditRule::kStaleEpoch, robot.id, &executing, executing.sent_epoch,
            fmt::format("was sent after the robot had obeyed epoch {}", robot.fact->obeyed_epoch));
   }
+  // A robot that executes a version of an epoch obeys that epoch, and its agent has registered in it.
+  if (!input_.is_complete && executing.granted_in > feedback.obeyed_epoch() && executing.is_proposed &&
+      !executing.is_own_stop && !epoch_record(executing.granted_in).is_reported) {
+    epoch_record(executing.granted_in).is_reported = true;
+    report(AuditRule::kAllRegistered, robot.id, &executing, executing.granted_in,
+           fmt::format("still obeys epoch {}, so it cannot have registered before the grant",
+                       feedback.obeyed_epoch()));
+  }
+  // Without every message the order of facts and grants is not known, nor who was attested to be absent.
   for (auto& [epoch, record] : epochs_) {
+    if (!input_.is_complete) break;
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
     if (record.first_grant_ns >= reception.earliest_ns || epoch <= robot.attested_until) continue;
     record.is_reported = true;
@@ -237,9 +260,21 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
            fmt::format("still obeys epoch {}, so it cannot have registered before the first grant",
                        feedback.obeyed_epoch()));
   }
-  if (!robot.registered || robot.registered->is_reported ||
-      robot.registered->latest_ns >= reception.earliest_ns)
-    return;
+  if (robot.registered && !robot.registered->is_reported && is_after_registration(robot, feedback, reception))
+    check_registration(robot, executing, feedback);
+}
+
+bool Auditor::is_after_registration(const AuditedRobot& robot, const msg::Feedback& feedback,
+                                    const Reception& reception) const {
+  const AuditedRobot::Registered& registered = *robot.registered;
+  if (input_.is_complete) return registered.latest_ns < reception.earliest_ns;
+  // The robot repeats the time of a command that the agent sent after the registration.
+  return feedback.obeyed_incarnation() == registered.incarnation &&
+         feedback.command_stamp_ns() > registered.stamp_ns;
+}
+
+void Auditor::check_registration(AuditedRobot& robot, const KnownVersion& executing,
+                                 const msg::Feedback& feedback) {
   AuditedRobot::Registered& registered = *robot.registered;
   if (feedback.obeyed_epoch() < registered.epoch || feedback.obeyed_incarnation() < registered.incarnation) {
     registered.is_reported = true;
@@ -266,7 +301,8 @@ void Auditor::exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const
     if (known.exclusion != Exclusion::kNone) continue;
     known.exclusion = exclusion_by(fact, known);
     if (known.exclusion != Exclusion::kNone) known.excluded_ns = now_ns;
-    if (!known.has_content) continue;
+    // Without every message it is not known how late a fact arrives: only pages tell what the ledger holds.
+    if (!known.has_content || !input_.is_complete) continue;
     // If no fact was missed, this is the first one that excludes the version, and no component could know
     // earlier.
     if (known.exclusion == Exclusion::kNone || reception.is_next)

@@ -2,6 +2,7 @@
 // Checks of what the coordinator grants and of the contents of its ledger.
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 #include "deploy/monitor/audit/auditor.hpp"
 
@@ -35,10 +36,10 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   AuditedRobot& robot = robots_[index_[verdict.robot()]];
   const Reception reception = trace(kVerdictKind, robot.id, verdict.header());
   if (verdict.proposal_number() == 0) return;
-  ProposalRecord* proposal = robot.find_proposal(verdict.proposal_number());
+  ProposalRecord* proposal = answered_proposal(robot, verdict);
   if (!proposal && is_final(verdict)) {
     robot.early_verdicts[robot.early_verdict_count++ % robot.early_verdicts.size()] = {
-        verdict.proposal_number(), verdict.epoch(), verdict.granted_version()};
+        verdict.proposal_number(), verdict.request_stamp_ns(), verdict.epoch(), verdict.granted_version()};
   } else if (is_final(verdict)) {
     decide(robot, *proposal, verdict.epoch(), verdict.granted_version());
   }
@@ -48,17 +49,23 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   // A delayed coordinator may repeat its verdict on an old proposal, whose version may have been evicted
   // here.
   if (robot.was_evicted(verdict.granted_version())) return;
+  const std::int64_t granted_by_ns = granter_time_ns(verdict.header(), reception);
   if (before && before->granted_in == verdict.epoch()) {
-    robot.find(verdict.granted_version())->granted_by_ns =
-        std::min(before->granted_by_ns, reception.latest_ns);
+    robot.find(verdict.granted_version())->granted_by_ns = std::min(before->granted_by_ns, granted_by_ns);
     return;
   }
-  if (before && before->granted_in != 0 && !before->is_own_stop && !before->is_granted_by_page) {
+  // Another agent's version may have the same number.
+  const msg::Version* candidate = proposal ? proposal->find(verdict.granted_version()) : nullptr;
+  const bool is_same_version =
+      input_.is_complete || (candidate && before && before->has_content &&
+                             before->version.incarnation() == candidate->incarnation());
+  const bool was_granted =
+      before && before->granted_in != 0 && !before->is_own_stop && !before->is_granted_by_page;
+  if (was_granted && is_same_version) {
     report(AuditRule::kVersionOrder, robot.id, before, verdict.epoch(),
            fmt::format("had already been granted in epoch {}", before->granted_in));
     return;
   }
-  const msg::Version* candidate = proposal ? proposal->find(verdict.granted_version()) : nullptr;
   const bool was_never_proposed =
       input_.is_complete && !proposal && verdict.proposal_number() > robot.max_evicted_proposal;
   const bool is_wrong_epoch = candidate && proposal->epoch != verdict.epoch();
@@ -72,10 +79,16 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
       candidate ? store(robot, *candidate) : &robot.find_or_insert(verdict.granted_version());
   if (!known) return;
   known->granted_in = verdict.epoch();
-  known->granted_by_ns = reception.latest_ns;
+  known->granted_by_ns = granted_by_ns;
   known->is_granted_by_page = false;
   if (candidate || verdict.proposal_number() <= robot.max_evicted_proposal) known->is_proposed = true;
   check_grant(robot, *known, verdict);
+}
+
+ProposalRecord* Auditor::answered_proposal(AuditedRobot& robot, const msg::Verdict& verdict) const {
+  const std::uint64_t number = verdict.proposal_number();
+  return input_.is_complete ? robot.find_proposal(number)
+                            : robot.find_proposal(number, verdict.request_stamp_ns());
 }
 
 void Auditor::decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted) {
@@ -156,20 +169,65 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     }
     KnownVersion* stored = store(robot, version);
     if (!stored || stored->is_in(page.epoch()) || stored->granted_in != 0) continue;
-    // A version that an agent proposed or sent is not the robot's own stop, so its verdict was missed.
-    const bool was_proposed = robot.find_proposal_of(stored->version) != nullptr;
-    const bool was_granted = !input_.is_complete && (stored->sent_ns != kNever || was_proposed);
+    // A version that was proposed in this epoch was not registered, so its verdict was missed.
+    const ProposalRecord* proposal = robot.find_proposal_of(stored->version);
+    const bool was_granted = !input_.is_complete && proposal && proposal->epoch == page.epoch();
     if (!stored->is_own_stop && !was_granted) continue;
-    if (was_proposed) stored->is_proposed = true;
+    if (proposal) stored->is_proposed = true;
     stored->granted_in = page.epoch();
-    stored->granted_by_ns = reception.latest_ns;
+    stored->granted_by_ns = granter_time_ns(page.header(), reception);
     stored->is_granted_by_page = true;
     if (!stored->is_own_stop) {
       check_content(robot, *stored);
       check_new_pairs(robot, *stored);
     }
   }
-  if (is_of_epoch && input_.is_complete) check_ledger_page(page);
+  if (!input_.is_complete)
+    use_ledger_page(page);
+  else if (is_of_epoch)
+    check_ledger_page(page);
+}
+
+// The ledger never takes back a version that it has forgotten, so it held one from the first page that listed
+// it to the last. All versions of a robot are on one page.
+void Auditor::use_ledger_page(const msg::LedgerPage& page) {
+  EpochRecord& record = epoch_record(page.epoch());
+  if (record.page_life == 0) record.page_life = page.header().incarnation();
+  const bool is_of_granter =
+      record.first_grant_ns == kNever || record.granter_life == page.header().incarnation();
+  if (record.page_life != page.header().incarnation() || !is_of_granter) return;
+  const auto& versions = page.versions();
+  const std::int64_t at_ns = page.header().stamp_ns();
+  std::size_t begin = 0;
+  while (begin < versions.size()) {
+    const auto index = roster_index(versions[begin].robot());
+    std::size_t end = begin + 1;
+    while (end < versions.size() && versions[end].robot() == versions[begin].robot()) ++end;
+    const std::size_t first = std::exchange(begin, end);
+    if (!index) continue;
+    AuditedRobot& robot = robots_[*index];
+    earlier_evidence_.clear();
+    for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i)
+      earlier_evidence_.push_back(evidence_of(robot.versions[i]));
+    const bool is_next_page = robot.listed.epoch == page.epoch() && robot.listed.at_ns < at_ns;
+    for (std::size_t i = first; i < end; ++i) {
+      KnownVersion* known = robot.find(versions[i].version_number());
+      if (!known || !(known->version == versions[i]) || known->listed_in > page.epoch()) continue;
+      if (known->listed_in < page.epoch()) {
+        known->listed_in = page.epoch();
+        known->listed_from_ns = at_ns;
+        known->alive_until_ns = at_ns;
+        const bool was_unlisted = is_next_page && known->number > robot.max_evicted_version;
+        known->entered_after_ns = was_unlisted ? robot.listed.at_ns : kAlways;
+      }
+      known->listed_from_ns = std::min(known->listed_from_ns, at_ns);
+      known->alive_until_ns = std::max(known->alive_until_ns, at_ns);
+      if (known->granted_in == page.epoch() && known->alive_until_ns >= known->granted_by_ns)
+        known->is_pair_checked = true;
+    }
+    if (is_next_page || robot.listed.epoch < page.epoch()) robot.listed = {page.epoch(), at_ns};
+    check_pairs(robot, earlier_evidence_);
+  }
 }
 
 void Auditor::check_ledger_page(const msg::LedgerPage& page) {

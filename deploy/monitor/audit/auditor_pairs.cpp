@@ -29,11 +29,7 @@ std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence
   // of them.
   for (const KnownVersion* granted : {&a, &b}) {
     const Epoch epoch = granted->granted_in;
-    if (epoch == 0 || granted->is_own_stop || !a.is_in(epoch) || !b.is_in(epoch)) continue;
-    const KnownVersion& other = granted == &a ? b : a;
-    // An own stop enters the ledger unchecked. It constrains only versions granted after a page contained it.
-    if (other.is_own_stop && !(input_.is_complete && other.granted_by_ns < granted->granted_by_ns)) continue;
-    if (other.granted_in != epoch && !other.was_executed) continue;
+    if (epoch == 0 || granted->is_own_stop || !was_checked_against(*granted, granted == &a ? b : a)) continue;
     const std::int64_t both_ns = std::max(entry_ns(a, epoch), entry_ns(b, epoch));
     if (std::min(a_state.alive_until_ns, b_state.alive_until_ns) >= both_ns) return epoch;
   }
@@ -43,6 +39,28 @@ std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence
   const std::int64_t to_ns = std::min(a_state.executed_until_ns, b_state.executed_until_ns);
   if (to_ns <= from_ns || to_ns - from_ns <= 2 * clock_bound_ns_ + 1000) return std::nullopt;
   return 0;
+}
+
+bool Auditor::was_checked_against(const KnownVersion& granted, const KnownVersion& other) const {
+  const Epoch epoch = granted.granted_in;
+  if (!input_.is_complete) {
+    // Pages show that the ledger held both. Two granted versions were checked, in whichever order. Others
+    // enter the ledger unchecked: own stops, and versions of robots that register late.
+    const bool are_listed = granted.listed_in == epoch && other.listed_in == epoch;
+    const bool was_granted = other.granted_in == epoch && !other.is_own_stop;
+    return are_listed && (was_granted || other.listed_from_ns <= granted.entered_after_ns);
+  }
+  if (!granted.is_in(epoch) || !other.is_in(epoch)) return false;
+  // An own stop enters the ledger unchecked. It constrains only versions granted after a page contained it.
+  if (other.is_own_stop && other.granted_by_ns >= granted.granted_by_ns) return false;
+  return other.granted_in == epoch || other.was_executed;
+}
+
+// Clocks of robots of one process are compared by the times at which it sent their facts.
+bool Auditor::are_clocks_comparable(std::size_t a, std::size_t b) const {
+  if (!has_sound_clock_[a] || !has_sound_clock_[b]) return false;
+  return input_.is_complete ||
+         (robots_[a].fact && robots_[b].fact && robots_[a].fact->life == robots_[b].fact->life);
 }
 
 bool Auditor::may_conflict(const LiveVersion& mine, const Evidence& before, const LiveVersion& theirs) const {
@@ -75,7 +93,7 @@ void Auditor::check_pairs(const AuditedRobot& robot, const std::vector<Evidence>
     const double max_distance_m = mine.reach_m + other.reach_m + separation_m;
     const double dx = other.x - mine.x, dy = other.y - mine.y;
     if (i == self || other.reach_m < 0 || dx * dx + dy * dy > max_distance_m * max_distance_m) continue;
-    const bool clocks_are_sound = has_sound_clock_[self] && has_sound_clock_[i];
+    const bool clocks_are_sound = are_clocks_comparable(self, i);
     for (const LiveVersion& own : changed_) {
       for (const LiveVersion& live : live_versions_[i]) {
         if (!may_conflict(own, before[own.index - robot.first_recent], live)) continue;
@@ -93,8 +111,9 @@ void Auditor::check_pairs(const AuditedRobot& robot, const std::vector<Evidence>
   }
 }
 
-void Auditor::check_new_pairs(AuditedRobot& robot, const KnownVersion& known) {
-  if (known.alive_until_ns < known.granted_by_ns) return;  // later facts will trigger the comparison
+void Auditor::check_new_pairs(AuditedRobot& robot, KnownVersion& known) {
+  if (known.alive_until_ns < known.granted_by_ns) return;  // later facts or pages will trigger the comparison
+  known.is_pair_checked = true;
   for (const AuditedRobot& other : robots_) {
     if (&other == &robot) continue;
     for (std::size_t l = other.first_recent; l < other.versions.size(); ++l) {
@@ -136,8 +155,8 @@ void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const Au
 std::optional<bool> Auditor::is_excused(const AuditedRobot& robot, const KnownVersion& later,
                                         const KnownVersion& other, double distance_m) const {
   if (later.is_own_stop || later.number == 0) return false;
-  const KnownVersion* base = robot.find(later.version.base());
-  if (!base || !base->has_content) return std::nullopt;
+  const KnownVersion* base = base_of(robot, later);
+  if (!base) return std::nullopt;
   const double required_m = min_separation_m(later, other);
   const ClosestApproach before = closest_approach(base->path, other.path, required_m, later.path.start_ns());
   return before.distance_m < required_m && distance_m >= before.distance_m - kLengthTolerance_m;

@@ -33,11 +33,18 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
   const std::int64_t at_ns = pending.at_ns + (is_vision ? 0 : ahead_ns);
   if (feedback.valid_at_ns() < at_ns) return;
   const Observation observation = std::exchange(pending, Observation());
+  if (!input_.is_complete && !reception.is_next) {
+    // What the robot did meanwhile is not known.
+    seen_displacements_[index] = {};
+    return;
+  }
   const bool is_off = feedback.is_off_reference() || feedback.is_lifted() || !robot.fact ||
                       robot.fact->is_off_reference || robot.fact->is_lifted ||
                       (is_vision && !has_sound_clock_[index]);
   const KnownVersion* executed = executed_at(robot, feedback.executing().version_number(), at_ns);
-  if (is_off || !executed) {
+  // An own stop may have been made, and left, between the two facts.
+  const bool may_be_off = !input_.is_complete && executed && executed->is_own_stop;
+  if (is_off || !executed || may_be_off) {
     seen_displacements_[index] = {};
     return;
   }
@@ -48,8 +55,9 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     const AuditPath::Node reference = executed->path.at_ns(at_ns);
     error_m = std::hypot(observation.x - reference.x, observation.y - reference.y);
   } else {
+    // Ground truth that arrives late may be older than both facts.
+    if (robot.fact->at_ns > at_ns) return;
     // The times of live messages are not exact enough to say which of the two versions was executed.
-    if (!reception.is_next) return;
     const KnownVersion* const before = robot.find(robot.fact->executing);
     if (before) inflation_m = std::max(inflation_m, before->version.inflation_m());
   }
@@ -63,6 +71,8 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
 // A robot that cannot use observations, because its clock is off, never learns that it was displaced. Others
 // keep clear of it for as long as the coordinator names it.
 bool Auditor::is_known_to_be_displaced(const AuditedRobot& robot) const {
+  // The coordinator's messages may have been missed.
+  if (!input_.is_complete && disturbances_.was_disturbed(index_of(robot))) return true;
   return disturbances_.is_displaced(index_of(robot)) || disturbances_.rests_where_left(index_of(robot)) ||
          (disturbances_.was_disturbed(index_of(robot)) && std::ranges::count(named_displaced_, robot.id) > 0);
 }
@@ -88,23 +98,42 @@ const KnownVersion* Auditor::executed_at(const AuditedRobot& robot, VersionNumbe
 }
 
 bool Auditor::is_excused_contact(RobotId first, std::optional<RobotId> second, Time at) {
-  const auto cause =
-      disturbances_.on_contact(roster_index(first), second ? roster_index(*second) : std::nullopt, at);
-  if (!cause) return false;
+  const auto first_index = roster_index(first),
+             second_index = second ? roster_index(*second) : std::optional<std::size_t>();
+  const auto cause = disturbances_.on_contact(first_index, second_index, at);
+  if (!cause) {
+    if (are_excuses_known(first_index) && (!second || are_excuses_known(second_index))) return false;
+    ++totals_.undecided_contacts;
+    return true;
+  }
   ++totals_.excused_contacts;
   ++excused_[{*cause, first, second}];
   return true;
 }
 
-void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t reported) {
+bool Auditor::are_excuses_known(std::optional<std::size_t> robot) const {
+  if (input_.is_complete) return true;
+  // A robot that is not seen now may have been disturbed since it was last seen. Vision shows whether it was
+  // in place before.
+  const bool is_vision = totals_.reference == AuditReference::kVision;
+  return robot && observed_[*robot] && !are_contacts_unknown_ && !disturbances_.is_uncertain(*robot) &&
+         (!is_vision || seen_displacements_[*robot].was_in_place);
+}
+
+void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining) {
   const std::uint64_t added = truth.contacts() - reported,
                       listed = std::min<std::uint64_t>(added, msg::MAX_CONTACTS);
   totals_.unidentified_contacts += added - listed;
+  if (added > listed) are_contacts_unknown_ = true;
   for (std::uint64_t k = truth.contacts() - listed; k < truth.contacts(); ++k) {
     const msg::ContactPair& contact = truth.recent_contacts()[k % msg::MAX_CONTACTS];
     const std::optional<RobotId> second =
         contact.second() == msg::NO_ROBOT ? std::nullopt : std::optional<RobotId>(contact.second());
     if (is_excused_contact(contact.first(), second, time_from_ns(truth.valid_at_ns()))) continue;
+    if (is_joining) {
+      ++totals_.undecided_contacts;
+      continue;
+    }
     const std::string touched = second ? fmt::format("robot {}", *second) : "an obstacle";
     report(
         AuditRule::kContact, contact.first(), nullptr, 0,
@@ -113,13 +142,17 @@ void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t report
   }
 }
 
-void Auditor::check_crashes(const msg::GroundTruth& truth, std::uint64_t reported) {
+void Auditor::check_crashes(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining) {
   for (std::uint64_t k = reported; k < truth.crashes_while_moving(); ++k) {
     const bool is_listed = truth.crashes_while_moving() - k <= msg::MAX_CONTACTS;
     const RobotId robot = truth.recent_moving_crashes()[k % msg::MAX_CONTACTS];
     const auto index = is_listed ? roster_index(robot) : std::nullopt;
     if (index && disturbances_.on_contact(index, std::nullopt, time_from_ns(truth.valid_at_ns()))) {
       ++totals_.excused_crashes;
+      continue;
+    }
+    if (is_joining || !(are_excuses_known(index) || (input_.is_complete && !index))) {
+      ++totals_.undecided_crashes;
       continue;
     }
     report(AuditRule::kCrash, index || robots_.empty() ? robot : robots_.front().id, nullptr, 0,
@@ -149,15 +182,18 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   if (truths_.size() >= kMaxSimulatorLives && !truths_.contains(truth.header().incarnation()))
     truths_.erase(truths_.begin());
   record_positions(truth);
+  if (!input_.is_complete && reception.missed > 0) disturbances_.on_reference_missed();
+  const bool is_joining =
+      !input_.is_complete && reception.missed > 0 && !truths_.contains(truth.header().incarnation());
   msg::GroundTruth& last = truths_[truth.header().incarnation()];
   const RobotId any_robot = robots_.empty() ? 0 : robots_.front().id;
-  if (truth.contacts() > last.contacts()) check_contacts(truth, last.contacts());
+  if (truth.contacts() > last.contacts()) check_contacts(truth, last.contacts(), is_joining);
   disturbances_.update(time_from_ns(truth.valid_at_ns()), observed_);
   if (truth.firmware_violations() > last.firmware_violations())
     report(AuditRule::kFirmwareMonitor, any_robot, nullptr, 0,
            fmt::format("{} violations so far", truth.firmware_violations()));
   if (truth.crashes_while_moving() > last.crashes_while_moving())
-    check_crashes(truth, last.crashes_while_moving());
+    check_crashes(truth, last.crashes_while_moving(), is_joining);
   last.contacts(truth.contacts());
   last.firmware_violations(truth.firmware_violations());
   last.crashes_while_moving(truth.crashes_while_moving());
@@ -191,8 +227,10 @@ ObservedRobot Auditor::observed_robot(std::size_t index, const Vec2& position_m,
   const KnownVersion* const version = is_executing ? robot.find(robot.fact->executing) : nullptr;
   if (!version || !version->has_content) return observed;
   observed.inflation_m = version->version.inflation_m();
-  observed.is_in_place =
-      version->was_in_ledger() && error_m <= tracking_bound_m_ + observed.inflation_m + allowance_m;
+  // By now it may execute another version.
+  const bool is_recent = input_.is_complete || now_ - robot.heard_at <= 2 * scenario_.cycle;
+  observed.is_in_place = is_recent && version->was_in_ledger() &&
+                         error_m <= tracking_bound_m_ + observed.inflation_m + allowance_m;
   return observed;
 }
 

@@ -55,6 +55,10 @@ void Auditor::on_world(const msg::WorldState& world, Time now) {
     return;
   }
   if (!reception.is_newest) return;
+  if (!input_.is_complete && reception.missed > 0) {
+    disturbances_.on_reference_missed();
+    seen_contacts_.on_missed();
+  }
   record_sights(world);
   if (!is_vision_needed()) return;
   const Time at = time_from_ns(world.valid_at_ns());
@@ -133,8 +137,11 @@ void Auditor::check_seen_position(const AuditedRobot& robot, const KnownVersion&
   const double bound_m = tracking_bound_m_ + executed.version.inflation_m() + sight_allowance_m_;
   if (error_m <= bound_m) {
     displacement = {};
+    displacement.was_in_place = true;
     return;
   }
+  // Who joins a run does not know what has displaced a robot before.
+  if (!input_.is_complete && !displacement.was_in_place) return;
   if (is_known_to_be_displaced(robot)) {
     ++totals_.excused_displacements;
     return;

@@ -55,6 +55,16 @@ std::optional<std::string_view> cause_of(msg::DisturbanceKind kind) {
 Disturbances::Disturbances(std::size_t robots, const DisturbanceSettings& settings)
     : settings_(settings), robots_(robots), states_(robots) {}
 
+void Disturbances::on_missed() {
+  for (State& state : states_) state.is_uncertain |= state.displacement.has_value();
+}
+
+void Disturbances::on_reference_missed() {
+  on_missed();
+  // The robots may have moved in between.
+  for (State& state : states_) state.rests_since.reset();
+}
+
 bool Disturbances::is_displaced(std::size_t robot) const {
   const auto& displacement = states_[robot].displacement;
   return displacement && !displacement->back_at;
@@ -152,7 +162,9 @@ void Disturbances::update_displacement(std::size_t robot) {
   if (elapsed < Duration{0}) return;
   if (!displacement->back_at) {
     // A robot whose clock has jumped is in place by its own clock, but not where others expect it.
-    const bool may_drive = displacement->cause != kClockCause && elapsed >= kSettlingTime;
+    const bool may_be_clock = displacement->cause == kClockCause ||
+                              (displacement->cause == kUnknownCause && !settings_.knows_causes);
+    const bool may_drive = !may_be_clock && elapsed >= kSettlingTime;
     const bool is_settled = has_rested(robot, displacement->end) || may_drive;
     const bool is_back = is_settled && robots_[robot] && robots_[robot]->is_in_place;
     if (!is_back && elapsed < kMaxDisplacement) return;

@@ -25,6 +25,7 @@ struct DisturbanceSettings {
   double separation_m = 0;        ///< robots without inflation that are nearer are in conflict
   /// Motion that was granted before a disturbance became known ends within this time.
   Duration braking_time{0};
+  bool knows_causes = true;  ///< every announcement of a cause is received
 };
 
 /// Decides which contacts disturbances of robots excuse. A contact of two robots is excused only if one of
@@ -50,6 +51,12 @@ class Disturbances {
   /// The robots on the floor at this time.
   void update(Time now, const std::vector<std::optional<ObservedRobot>>& robots);
 
+  /// Messages were missed: from now on it is not known when a robot that is disturbed now will be back.
+  void on_missed();
+  /// The same of messages that show positions.
+  void on_reference_missed();
+  /// Whether the robot may be disturbed although nothing that was received says so.
+  bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }
   /// Whether the robot was disturbed and is not back in place.
   bool is_displaced(std::size_t robot) const;
   /// Whether the robot rests, out of place, where a disturbance has left it. Without observations that it can
@@ -74,6 +81,7 @@ class Disturbances {
     std::optional<std::string_view> announced;
     std::optional<Time> rests_since;
     bool rests_where_left = false;
+    bool is_uncertain = false;
     std::optional<Displacement> displacement;
   };
   struct Push {

@@ -56,6 +56,10 @@ bool SeenContacts::observe(const Pair& pair, double distance_m, double contact_d
   return ++observations_[pair] == kMinObservations;
 }
 
+void SeenContacts::on_missed() {
+  std::erase_if(observations_, [](const auto& entry) { return entry.second < kMinObservations; });
+}
+
 std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) {
   std::vector<SeenContact> began;
   for (std::size_t i = 0; i < sights.size(); ++i) {

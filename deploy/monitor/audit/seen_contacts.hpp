@@ -39,6 +39,8 @@ class SeenContacts {
 
   /// The robots in a new world state. Returns the contacts that began, each once it has been observed twice.
   [[nodiscard]] std::vector<SeenContact> update(const std::vector<Sight>& sights);
+  /// World states were missed: an observation before does not confirm one after.
+  void on_missed();
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle;

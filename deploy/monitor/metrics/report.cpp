@@ -74,6 +74,8 @@ Json audit_json(const AuditTotals& audit) {
   json["excused_time_share"] = rounded(audit.excused_time_share());
   json["excused_displacements"] = audit.excused_displacements;
   json["unidentified_contacts"] = audit.unidentified_contacts;
+  json["undecided_contacts"] = audit.undecided_contacts;
+  json["undecided_crashes"] = audit.undecided_crashes;
   json["compared_pairs"] = audit.compared_pairs;
   json["undecided_pairs"] = audit.undecided_pairs;
   json["max_position_error_m"] = rounded(audit.max_position_error_m);
@@ -139,13 +141,14 @@ std::string epochs_text(const std::vector<EpochRecord>& epochs) {
 }  // namespace
 
 std::uint64_t Report::unexcused_contacts() const {
-  const std::uint64_t excluded = audit ? audit->excused_contacts + audit->unidentified_contacts : 0;
+  const std::uint64_t excluded =
+      audit ? audit->excused_contacts + audit->unidentified_contacts + audit->undecided_contacts : 0;
   return contacts > excluded ? contacts - excluded : 0;
 }
 
 std::uint64_t Report::unexcused_crashes() const {
-  const std::uint64_t excused = audit ? audit->excused_crashes : 0;
-  return crashes_while_moving > excused ? crashes_while_moving - excused : 0;
+  const std::uint64_t excluded = audit ? audit->excused_crashes + audit->undecided_crashes : 0;
+  return crashes_while_moving > excluded ? crashes_while_moving - excluded : 0;
 }
 
 AuditVerdict Report::verdict() const {

@@ -39,6 +39,17 @@ TEST_CASE("an audit that covers enough and finds nothing passes") {
   CHECK(totals.verdict() == AuditVerdict::kPassed);
 }
 
+TEST_CASE("an audit that covers 95 % judges, one that covers 94.9 % does not") {
+  for (double Coverage::*part :
+       {&Coverage::messages, &Coverage::versions, &Coverage::pairs, &Coverage::time, &Coverage::reference}) {
+    AuditTotals totals = covered();
+    totals.coverage.*part = 0.95;
+    CHECK(totals.verdict() == AuditVerdict::kPassed);
+    totals.coverage.*part = 0.949;
+    CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+  }
+}
+
 TEST_CASE("every part below the minimum leaves a run not judged, with its reason") {
   AuditTotals totals = covered();
   std::string reason;
@@ -70,6 +81,11 @@ TEST_CASE("every part below the minimum leaves a run not judged, with its reason
   SECTION("contacts of unknown robots") {
     totals.unidentified_contacts = 3;
     reason = "the robots of 3 contacts are unknown";
+  }
+  SECTION("contacts that a disturbance may excuse") {
+    totals.undecided_contacts = 2;
+    totals.undecided_crashes = 1;
+    reason = "3 contacts and crashes are undecided because of missed messages";
   }
   SECTION("a recording without its end") {
     totals.is_cut_off = true;

@@ -75,7 +75,7 @@ TEST_CASE("what a robot executed between two versions is known if every base is"
 TEST_CASE("executed versions are counted with what was received of them, also after they are forgotten") {
   AuditedRobot robot;
   robot.traceable_from_ns = 100;
-  for (VersionNumber number = 1; number <= 8; ++number) {
+  for (VersionNumber number = 1; number <= 10; ++number) {
     add_content(robot, number, number - 1, number == 1 ? 100 : 101);
     KnownVersion& known = robot.find_or_insert(number);
     known.was_executed = number != 2;
@@ -83,10 +83,12 @@ TEST_CASE("executed versions are counted with what was received of them, also af
     known.is_proposed = number != 4;
     known.granted_in = number == 5 ? 0 : 7;
     known.sent_ns = number == 6 ? kNever : 50;
+    known.is_content_checked = number != 9;
+    known.is_pair_checked = number != 10;
     known.excluded_ns = 10;
   }
   const auto check = [&] {
-    CHECK(robot.executed_versions().all == 5);     // 4 to 8
+    CHECK(robot.executed_versions().all == 7);     // 4 to 10
     CHECK(robot.executed_versions().traced == 2);  // 7 and 8
   };
   check();

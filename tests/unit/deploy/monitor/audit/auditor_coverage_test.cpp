@@ -88,6 +88,23 @@ TEST_CASE("an audit that ceases to hear one kind of message does not pass, altho
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
+TEST_CASE("pairs whose possible excuse is not known lower the coverage") {
+  History history = crossing();
+  // As if all versions had been granted with 5 cm too little margin, on bases that nobody has heard of.
+  history.scenario.margin_m += 0.05;
+  history.each_version([](msg::Version& version) {
+    if (version.version_number() != 0) version.base(version.version_number() - 1);
+  });
+  std::erase_if(history.messages, [](const ReceivedMessage& received) {
+    return std::holds_alternative<msg::Proposal>(received.message);
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals));
+  REQUIRE(totals.undecided_pairs > 20);
+  CHECK(totals.coverage.pairs ==
+        Approx(1 - static_cast<double>(totals.undecided_pairs) / static_cast<double>(totals.compared_pairs)));
+}
+
 TEST_CASE("an audit that hears no coordinator does not pass") {
   History history = crossing();
   std::erase_if(history.messages, [](const ReceivedMessage& received) {

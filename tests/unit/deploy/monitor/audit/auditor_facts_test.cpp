@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Feedback and ground truth with one modified detail at a time.
 #include <algorithm>
+#include <cmath>
 
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/monitor/audit/tampering.hpp"
@@ -85,6 +86,33 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
+}
+
+TEST_CASE("an own stop that takes longer than braking needs is reported") {
+  const auto [factor, is_reported] =
+      GENERATE(table<double, bool>({{1.0, false}, {1.005, false}, {1.2, true}}));
+  CAPTURE(factor);
+  const AuditTotals totals = audit_of_tampered([longer = factor](History& h) {
+    const Switch s = example_switch(h);
+    const double speed_mps = 1, braking_s = speed_mps / h.scenario.limits.deceleration_mps2;
+    bool is_done = false;
+    h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
+      if (is_done || f.robot() != s.robot || to_ns(at) < s.start_ns) return;
+      is_done = true;
+      f.is_off_reference(true);
+      msg::Version& stop = f.executing();
+      stop.version_number(s.number + 1'000'000);
+      stop.vx_mps(speed_mps);
+      stop.vy_mps(0);
+      stop.phase_count(1);
+      msg::MotionPhase& phase = stop.phases()[0];
+      phase.duration_ns(std::llround(longer * braking_s * 1e9));
+      phase.ax_mps2(-speed_mps / (static_cast<double>(phase.duration_ns()) * 1e-9));
+      phase.ay_mps2(0);
+    });
+  });
+  INFO(lines(totals));
+  CHECK((count(totals, AuditRule::kOffReference) > 0) == is_reported);
 }
 
 TEST_CASE("a robot that reports a distance from its reference beyond the budget is reported") {

@@ -51,6 +51,28 @@ TEST_CASE("versions too close to each other are found, also from an incomplete h
   CHECK(count(totals, AuditRule::kClearance) > 0);
 }
 
+TEST_CASE("the inflations of both robots add to the distance that versions must keep") {
+  const auto is_too_close = [](double more_m, double inflation_m) {
+    History history = crossing();
+    history.scenario.margin_m += more_m;
+    history.each_version([&](msg::Version& version) { version.inflation_m(inflation_m); });
+    return count(audit_of(history, kComplete), AuditRule::kClearance) > 0;
+  };
+  // The distance that the closest versions keep beyond the margin.
+  double slack_m = 0, too_much_m = 0.05;
+  REQUIRE_FALSE(is_too_close(slack_m, 0));
+  REQUIRE(is_too_close(too_much_m, 0));
+  while (too_much_m - slack_m > 1e-6) {
+    const double middle_m = (slack_m + too_much_m) / 2;
+    (is_too_close(middle_m, 0) ? too_much_m : slack_m) = middle_m;
+  }
+  CAPTURE(slack_m);
+  // Together they exceed the slack of 1 mm, each alone does not.
+  const double more_m = slack_m - 0.001;
+  CHECK_FALSE(is_too_close(more_m, 0.00045));
+  CHECK(is_too_close(more_m, 0.00055));
+}
+
 TEST_CASE("every wrong grant is reported under its rule") {
   SECTION("one version number with two trajectories") {
     require_violation(AuditRule::kUniqueVersion, [](History& h) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "deploy/simulate/system/sim_system.hpp"
+#include "common/config/shared_rules.hpp"
 
 namespace sidestep {
 
@@ -54,14 +54,12 @@ void History::each_mention(RobotId robot, VersionNumber number,
   });
 }
 
-History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration) {
-  History history{scenario, {}};
-  SimSystem system(scenario, seed);
-  SimBus bus(system.network());
-  bus.become_observer();
-  const auto collect = [&]<typename Message>(const Topic<Message>& topic, RobotId robot) {
-    bus.subscribe<Message>(topic, robot, [&](const Message& message) {
-      history.messages.push_back({bus.now(), message});
+HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(system.network()) {
+  bus_.become_observer();
+  bus_.use_rules(SharedRules(history.scenario).fingerprint(), [](const TopicInfo&, const msg::Header&) {});
+  const auto collect = [this, &history]<typename Message>(const Topic<Message>& topic, RobotId robot) {
+    bus_.subscribe<Message>(topic, robot, [this, &history](const Message& message) {
+      history.messages.push_back({bus_.now(), message});
     });
   };
   collect(topics::kProposal, 0);
@@ -70,34 +68,54 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
   collect(topics::kLedger, 0);
   collect(topics::kTruth, 0);
   collect(topics::kWorld, 0);
-  for (const RobotSpec& robot : scenario.robots) {
+  collect(topics::kDisturbance, 0);
+  collect(topics::kAttestation, 0);
+  for (const RobotSpec& robot : history.scenario.robots) {
     collect(topics::kVerdict, robot.id);
     collect(topics::kCommand, robot.id);
     collect(topics::kFeedback, robot.id);
   }
+}
+
+History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration) {
+  History history{scenario, {}};
+  SimSystem system(scenario, seed);
+  const HistoryRecorder recorder(system, history);
   system.run_for(duration);
   return history;
 }
 
+namespace {
+
+struct Deliver {
+  Auditor& auditor;
+  Time at;
+  void operator()(const msg::Proposal& m) const { auditor.on_proposal(m, at); }
+  void operator()(const msg::Verdict& m) const { auditor.on_verdict(m, at); }
+  void operator()(const msg::Registration& m) const { auditor.on_registration(m, at); }
+  void operator()(const msg::CoordinatorState& m) const { auditor.on_coordinator(m, at); }
+  void operator()(const msg::LedgerPage& m) const { auditor.on_ledger(m, at); }
+  void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
+  void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
+  void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
+  void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
+  void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
+  void operator()(const msg::AbsenceAttestation& m) const { auditor.on_attestation(m, at); }
+};
+
+}  // namespace
+
 AuditTotals audit_of(const History& history, const AuditInput& input) {
   Auditor auditor(history.scenario, input);
-  struct Deliver {
-    Auditor& auditor;
-    Time at;
-    void operator()(const msg::Proposal& m) const { auditor.on_proposal(m, at); }
-    void operator()(const msg::Verdict& m) const { auditor.on_verdict(m, at); }
-    void operator()(const msg::Registration& m) const { auditor.on_registration(m, at); }
-    void operator()(const msg::CoordinatorState& m) const { auditor.on_coordinator(m, at); }
-    void operator()(const msg::LedgerPage& m) const { auditor.on_ledger(m, at); }
-    void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
-    void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
-    void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
-    void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
-    void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
-    void operator()(const msg::AbsenceAttestation& m) const { auditor.on_attestation(m, at); }
-  };
   for (const ReceivedMessage& received : history.messages)
     std::visit(Deliver{auditor, received.at}, received.message);
+  return auditor.totals();
+}
+
+AuditTotals audit_of(const Scenario& scenario, const std::vector<Delivery>& deliveries,
+                     const AuditInput& input) {
+  Auditor auditor(scenario, input);
+  for (const Delivery& delivery : deliveries) std::visit(Deliver{auditor, delivery.at}, *delivery.message);
   return auditor.totals();
 }
 

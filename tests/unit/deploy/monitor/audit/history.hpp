@@ -6,7 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "common/messaging/sim/bus.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
 
@@ -48,10 +50,28 @@ struct History {
   void each_version(const std::function<void(msg::Version&)>& use);
 };
 
+/// Collects all messages that an auditor hears in a system, in memory, until the system ends.
+class HistoryRecorder {
+ public:
+  /// `history` must outlive the recorder, and the recorder must not outlive the system.
+  HistoryRecorder(SimSystem& system, History& history);
+
+ private:
+  SimBus bus_;
+};
+
 /// The messages of a simulated run of this duration; the same seed gives the same history.
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);
+
+/// One message of a history, and when it reaches the auditor.
+struct Delivery {
+  Time at;
+  const AuditedMessage* message = nullptr;
+};
+AuditTotals audit_of(const Scenario& scenario, const std::vector<Delivery>& deliveries,
+                     const AuditInput& input);
 
 /// The history as received by a late joiner over a network that loses, duplicates and delays messages by up
 /// to 20 ms.
