@@ -156,7 +156,7 @@ TEST_CASE("a flood of strangers on every port costs time, and neither safety nor
   check_flood(seconds(15));
 }
 
-TEST_CASE("a flood of strangers on every port for five minutes fills no memory", "[.long]") {
+TEST_CASE("a flood of strangers on every port for five minutes fills no memory", "[.long][slow]") {
   check_flood(std::chrono::minutes(5));
 }
 

@@ -67,7 +67,7 @@ double drive_and_kill_coordinator(const std::string& hosts) {
 }  // namespace
 
 TEST_CASE("a fleet of two versions of Fast DDS survives packet loss and the coordinator's death",
-          "[.mixed]") {
+          "[.mixed][slow]") {
   const char* other = std::getenv("SIDESTEP_OTHER_PROGRAMS");
   REQUIRE(other);
   constexpr int kRuns = 5;
@@ -89,7 +89,7 @@ TEST_CASE("a fleet of two versions of Fast DDS survives packet loss and the coor
   CHECK(median(takeovers_ms) <= kMaxMedian_ms);
 }
 
-TEST_CASE("a fleet of two versions of Fast DDS with keys does not start, and says why", "[.mixed]") {
+TEST_CASE("a fleet of two versions of Fast DDS with keys does not start, and says why", "[.mixed][slow]") {
   const char* other = std::getenv("SIDESTEP_OTHER_PROGRAMS");
   REQUIRE(other);
   const auto file =

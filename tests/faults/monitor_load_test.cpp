@@ -71,7 +71,7 @@ void seek_back(double back_s) {
 
 TEST_CASE("a viewer seeks back while the run goes on", "[both-cores]") { seek_back(5); }
 
-TEST_CASE("a viewer seeks 60 seconds back while the run goes on", "[.][figures]") { seek_back(60); }
+TEST_CASE("a viewer seeks 60 seconds back while the run goes on", "[.figures][slow]") { seek_back(60); }
 
 /// The scenario two-teams-22, whose teams change sides again and again.
 std::string two_teams_for(int changes) {
@@ -177,7 +177,7 @@ TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-core
   watch_three_times(5s);
 }
 
-TEST_CASE("a monitor with three viewers costs little more than a subscriber", "[.][figures]") {
+TEST_CASE("a monitor with three viewers costs little more than a subscriber", "[.figures][slow]") {
   watch_three_times(30s);
 }
 

@@ -348,6 +348,6 @@ void send_events(std::size_t events) {
 
 TEST_CASE("events reach the page soon", "[both-cores]") { send_events(100); }
 
-TEST_CASE("a thousand events reach the page soon", "[.][figures]") { send_events(1000); }
+TEST_CASE("a thousand events reach the page soon", "[.figures][slow]") { send_events(1000); }
 
 }  // namespace sidestep::monitor_page_test

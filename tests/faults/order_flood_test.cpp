@@ -105,7 +105,7 @@ TEST_CASE("ten thousand orders a second over DDS are answered, and fill no memor
   check_flood(seconds(8));
 }
 
-TEST_CASE("ten thousand orders a second over DDS for two minutes fill no memory", "[.long]") {
+TEST_CASE("ten thousand orders a second over DDS for two minutes fill no memory", "[.long][slow]") {
   check_flood(std::chrono::minutes(2));
 }
 

@@ -105,7 +105,7 @@ TEST_CASE("a client learns the end of every order while agents and coordinators 
   check_random_goals(seconds(12));
 }
 
-TEST_CASE("a client learns the end of every order in ten minutes", "[.long]") {
+TEST_CASE("in ten minutes a client learns the end of every order", "[.long][slow]") {
   check_random_goals(minutes(10));
 }
 

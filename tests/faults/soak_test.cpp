@@ -149,9 +149,11 @@ void check_hour(bool has_keys) {
   }
 }
 
-TEST_CASE("eight agents drive to and fro for an hour, and no process grows", "[.long]") { check_hour(false); }
+TEST_CASE("eight agents drive to and fro for an hour, and no process grows", "[.long][slow]") {
+  check_hour(false);
+}
 
-TEST_CASE("eight agents with keys drive to and fro for an hour, and no process grows", "[.long]") {
+TEST_CASE("eight agents with keys drive to and fro for an hour, and no process grows", "[.long][slow]") {
   check_hour(true);
 }
 

@@ -103,7 +103,7 @@ TEST_CASE("among thirty-two people no robot is moving when it is touched, over t
 }
 
 TEST_CASE("among thirty-two people no robot is moving when it is touched, over two thousand scenes",
-          "[.long]") {
+          "[.long][slow]") {
   drive_through_crowds(2000);
 }
 

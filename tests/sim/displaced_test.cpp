@@ -297,7 +297,7 @@ TEST_CASE("robots stay clear of those that roll on without power or are carried,
 }
 
 // What agents do about such robots was tuned on seeds 1 to 1000.
-TEST_CASE("a thousand coasting and carried robots are named and not driven into", "[.long]") {
+TEST_CASE("a thousand coasting and carried robots are named and not driven into", "[.long][slow]") {
   check(run_cases(1001, 1000));
 }
 

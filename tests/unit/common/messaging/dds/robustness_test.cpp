@@ -279,7 +279,7 @@ TEST_CASE("a process that is stopped until it is forgotten reconnects, even if o
   stop_and_continue(2, 3, 1);
 }
 
-TEST_CASE("the same for two hundred pauses", "[.long]") { stop_and_continue(10, 20, 2); }
+TEST_CASE("the same for two hundred pauses", "[.long][slow]") { stop_and_continue(10, 20, 2); }
 
 /// Starts neighbours one after another and ends each after a random time, half of them by kill -9; requires
 /// that nobody else aborts or loses contact.
@@ -324,7 +324,7 @@ void let_neighbours_leave(int times, std::uint64_t seed) {
 
 TEST_CASE("neighbours that leave at any moment disturb nobody") { let_neighbours_leave(10, 3); }
 
-TEST_CASE("the same for two hundred neighbours", "[.long]") { let_neighbours_leave(200, 4); }
+TEST_CASE("the same for two hundred neighbours", "[.long][slow]") { let_neighbours_leave(200, 4); }
 
 TEST_CASE("a process is known while it is alive, and forgotten some seconds after it is killed") {
   DdsListener listener(test_settings("listener"));
