@@ -33,10 +33,10 @@ void check(const league::DetectedRobot& robot) {
   SIDESTEP_REQUIRE(!robot.heading_rad || std::abs(*robot.heading_rad) <= 3.1416);
 }
 
-void try_vision(std::span<const std::byte> bytes) {
+bool try_vision(std::span<const std::byte> bytes) {
   const auto decoded = league::decode_vision(bytes);
   SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
-  if (!decoded.packet) return;
+  if (!decoded.packet) return false;
   const league::VisionPacket& packet = *decoded.packet;
   SIDESTEP_REQUIRE(packet.detection || packet.geometry);
   if (packet.detection) {
@@ -51,7 +51,7 @@ void try_vision(std::span<const std::byte> bytes) {
   // An accepted packet is accepted again after encoding, except for times at the end of their range.
   const auto again = league::decode_vision(encode(packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
-  if (!again.packet) return;
+  if (!again.packet) return true;
   SIDESTEP_REQUIRE(again.packet->detection.has_value() == packet.detection.has_value());
   SIDESTEP_REQUIRE(again.packet->geometry.has_value() == packet.geometry.has_value());
   if (packet.detection)
@@ -59,12 +59,13 @@ void try_vision(std::span<const std::byte> bytes) {
   if (packet.geometry) {
     SIDESTEP_REQUIRE(again.packet->geometry->cameras.size() == packet.geometry->cameras.size());
   }
+  return true;
 }
 
-void try_tracked(std::span<const std::byte> bytes) {
+bool try_tracked(std::span<const std::byte> bytes) {
   const auto decoded = league::decode_tracked(bytes);
   SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
-  if (!decoded.packet) return;
+  if (!decoded.packet) return false;
   if (decoded.packet->frame) {
     for (const auto& robot : decoded.packet->frame->robots) {
       SIDESTEP_REQUIRE(is_within(robot.position_m, 100));
@@ -74,12 +75,13 @@ void try_tracked(std::span<const std::byte> bytes) {
   }
   const auto again = league::decode_tracked(encode(*decoded.packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
+  return true;
 }
 
-void try_referee(std::span<const std::byte> bytes) {
+bool try_referee(std::span<const std::byte> bytes) {
   const auto decoded = league::decode_referee(bytes);
   SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
-  if (!decoded.packet) return;
+  if (!decoded.packet) return false;
   const league::RefereePacket& packet = *decoded.packet;
   SIDESTEP_REQUIRE(packet.sent >= Duration{0} && packet.commanded >= Duration{0});
   SIDESTEP_REQUIRE(!name_of(packet.command).empty());
@@ -87,32 +89,35 @@ void try_referee(std::span<const std::byte> bytes) {
   const auto again = league::decode_referee(encode(packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kNumber);
   SIDESTEP_REQUIRE(!again.packet || again.packet->command == packet.command);
+  return true;
 }
 
-void try_commands(std::span<const std::byte> bytes) {
+bool try_commands(std::span<const std::byte> bytes) {
   const auto response = league::decode_team_response(bytes);
   SIDESTEP_REQUIRE(response.packet.has_value() == (response.error == league::DecodeError::kNone));
   const auto decoded = league::decode_team_commands(bytes);
   SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
-  if (!decoded.packet) return;
+  if (!decoded.packet) return response.packet.has_value();
   for (const league::RobotCommand& robot : decoded.packet->robots) {
     SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
     SIDESTEP_REQUIRE(!robot.move || is_within(robot.move->linear_mps, 100));
     SIDESTEP_REQUIRE(robot.kick_mps >= 0 && robot.kick_mps <= 100);
   }
+  return true;
 }
 
-void try_control(std::span<const std::byte> bytes) {
+bool try_control(std::span<const std::byte> bytes) {
   const auto response = league::decode_simulator_response(bytes);
   SIDESTEP_REQUIRE(response.packet.has_value() == (response.error == league::DecodeError::kNone));
   const auto decoded = league::decode_simulator_command(bytes);
   SIDESTEP_REQUIRE(decoded.packet.has_value() == (decoded.error == league::DecodeError::kNone));
-  if (!decoded.packet) return;
+  if (!decoded.packet) return response.packet.has_value();
   for (const league::RobotTeleport& robot : decoded.packet->robots) {
     SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
     SIDESTEP_REQUIRE(std::abs(robot.x_m.value_or(0)) <= 100 &&
                      std::abs(robot.heading_rad.value_or(0)) <= 3.1416);
   }
+  return true;
 }
 
 std::size_t read_to_end(league::LogReader& reader) {
@@ -128,7 +133,7 @@ std::size_t read_to_end(league::LogReader& reader) {
   return bytes;
 }
 
-void try_log(std::span<const std::byte> bytes) {
+bool try_log(std::span<const std::byte> bytes) {
   std::string text(bytes.size(), '\0');
   if (!bytes.empty()) std::memcpy(text.data(), bytes.data(), bytes.size());
   try {
@@ -139,15 +144,17 @@ void try_log(std::span<const std::byte> bytes) {
     league::LogRecord record;
     SIDESTEP_REQUIRE(reader.next(record) == has_record);
     SIDESTEP_REQUIRE(read_to_end(reader) <= all);
+    return all > 0;
   } catch (const std::runtime_error&) {
-    // Inputs that are no log are reported by exception.
+    return false;  // inputs that are no log are reported by exception
   }
 }
 
 /// Takes capture times, sending times and the waits between frames from the input.
-void try_clock(std::span<const std::byte> bytes) {
+bool try_clock(std::span<const std::byte> bytes) {
   constexpr std::uint64_t kMaxCapture_ns = 8'589'934'592'000'000'000;
   SenderClock clock;
+  bool is_dated = false;
   Time now = time_from_ns(1'700'000'000'000'000'000);
   struct Step {
     std::uint64_t captured_ns, sent_after_ns;
@@ -162,15 +169,17 @@ void try_clock(std::span<const std::byte> bytes) {
     now += std::chrono::microseconds(step.wait_us);
     const auto dated = clock.add(captured, sent, now);
     if (!dated) continue;
+    is_dated = true;
     SIDESTEP_REQUIRE(*dated <= now + SenderClock::kMaxAhead);
     SIDESTEP_REQUIRE(*dated >= now - 3 * SenderClock::kMaxDelay);
   }
+  return is_dated;
 }
 
 }  // namespace
 
-void try_league_input(std::span<const std::byte> input) {
-  if (input.empty()) return;
+bool try_league_input(std::span<const std::byte> input) {
+  if (input.empty()) return false;
   const std::span<const std::byte> rest = input.subspan(1);
   switch (std::to_integer<unsigned>(input[0]) % kReaders) {
     case kVision:
