@@ -7,6 +7,7 @@ namespace sidestep::batch {
 namespace {
 
 void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t blocks) {
+  constexpr double kAtRest_mps = 1e-6;  // as in common/motion/robot_model.cpp
   const Vector one = broadcast(1), zero = broadcast(0);
   for (std::size_t block = 0; block < blocks; ++block) {
     AccelerationBlock& a = accelerations[block];
@@ -26,7 +27,16 @@ void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t
           along * along * s.inverse_deceleration2 + across * across * s.inverse_acceleration2;
       const Vector effective_along = s.is_at_rest ? zero : along;
       const Vector effort2 = effective_along < zero ? backward_effort2 : forward_effort2;
-      const Vector scale = effort2 > one ? one / square_root(effort2) : one;
+      const Vector end_x = s.vx_mps + s.seconds * x, end_y = s.vy_mps + s.seconds * y;
+      const Vector end_speed2 = end_x * end_x + end_y * end_y;
+      const Vector end_ahead = x * end_x + y * end_y, end_across = end_x * y - end_y * x;
+      const Vector per_end_speed2 = one / end_speed2;
+      const Vector braking_effort2 = end_ahead * end_ahead * per_end_speed2 * s.inverse_deceleration2 +
+                                     end_across * end_across * per_end_speed2 * s.inverse_acceleration2;
+      const Vector moving_effort2 = end_ahead < zero ? braking_effort2 : forward_effort2;
+      const Vector end_effort2 = end_speed2 < broadcast(kAtRest_mps * kAtRest_mps) ? zero : moving_effort2;
+      const Vector largest_effort2 = end_effort2 > effort2 ? end_effort2 : effort2;
+      const Vector scale = largest_effort2 > one ? one / square_root(largest_effort2) : one;
       x = x * scale;
       y = y * scale;
       store(a.x, at, x);

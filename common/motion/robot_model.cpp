@@ -26,9 +26,25 @@ double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
          across * across * (1 / squared(limits.acceleration_mps2));
 }
 
-/// The acceleration in A(v) with the same direction that is closest to the requested one.
-Vec2 scaled_to_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits) {
-  const double e2 = effort2(acceleration, velocity, limits);
+// The same at the end of a phase with this velocity. A phase that ends at rest has braked until then. The
+// batch kernels compute the same.
+double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
+  const double speed2 = v.x() * v.x() + v.y() * v.y();
+  const double ahead = a.x() * v.x() + a.y() * v.y(), across = v.x() * a.y() - v.y() * a.x();
+  if (speed2 < squared(kAtRest_mps)) return 0;
+  if (ahead >= 0) return (a.x() * a.x() + a.y() * a.y()) * (1 / squared(limits.acceleration_mps2));
+  const double per_speed2 = 1 / speed2;
+  return ahead * ahead * per_speed2 * (1 / squared(limits.deceleration_mps2)) +
+         across * across * per_speed2 * (1 / squared(limits.acceleration_mps2));
+}
+
+/// The longest acceleration in the same direction, up to the requested one, that may be held so long. If it
+/// is in A(v) at the end of a longer one, it is in A(v) at its own.
+Vec2 scaled_to_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
+                          double seconds) {
+  const double at_start2 = effort2(acceleration, velocity, limits);
+  const double at_end2 = effort2_at_end(acceleration, velocity + seconds * acceleration, limits);
+  const double e2 = at_end2 > at_start2 ? at_end2 : at_start2;
   return e2 > 1 ? Vec2(acceleration * (1 / std::sqrt(e2))) : acceleration;
 }
 
@@ -38,16 +54,26 @@ bool is_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionL
   return effort2(acceleration, velocity, limits) <= squared(1 + 1e-6);
 }
 
+// While the velocity changes, the angle between it and the acceleration only decreases. So does what is
+// allowed of the acceleration, if D is at least F, and otherwise it increases until the velocity's turn.
+bool may_be_held(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
+                 Duration duration) {
+  const Vec2 end = velocity + to_seconds(duration) * acceleration;
+  return is_admissible(acceleration, velocity, limits) &&
+         effort2_at_end(acceleration, end, limits) <= squared(1 + 1e-6);
+}
+
 Vec2 limit_acceleration(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
                         Duration duration) {
   const double seconds = to_seconds(duration);
   const Vec2 after = velocity + seconds * acceleration;
   const double speed2 = after.x() * after.x() + after.y() * after.y();
-  if (speed2 <= squared(limits.speed_mps)) return scaled_to_admissible(acceleration, velocity, limits);
+  if (speed2 <= squared(limits.speed_mps))
+    return scaled_to_admissible(acceleration, velocity, limits, seconds);
   // Scaling this acceleration towards zero keeps the speed limit, because the speeds that result from it and
   // from zero acceleration are both within the limit.
   const Vec2 slowed = (after * (limits.speed_mps / std::sqrt(speed2)) - velocity) * (1 / seconds);
-  return scaled_to_admissible(slowed, velocity, limits);
+  return scaled_to_admissible(slowed, velocity, limits, seconds);
 }
 
 Vec2 sample_acceleration(const Vec2& velocity, const MotionLimits& limits, Rng& rng) {

@@ -16,6 +16,11 @@ namespace sidestep {
 [[nodiscard]] bool is_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
                                  const MotionLimits& limits);
 
+/// Whether it lies in A(v) for every velocity v while it is held for `duration`. A robot that brakes at D
+/// beyond the reversal of its velocity would accelerate at D.
+[[nodiscard]] bool may_be_held(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
+                               const MotionLimits& limits, Duration duration);
+
 /// An acceleration that may be held for `duration`: the requested one, reduced to the speed limit and scaled
 /// into A(v). Precondition: the initial speed is within the limit.
 Vec2 limit_acceleration(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits,

@@ -30,17 +30,18 @@ double max_excursion(double x, double v, double a, double seconds) {
 
 Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits) {
   State state = trajectory.at_start();
-  if (state.velocity_mps.norm() > limits.speed_mps + kSpeedTolerance_mps) return Validity::kBeyondLimits;
+  const double max_speed_mps = limits.speed_mps + kSpeedTolerance_mps;
+  if (!(state.velocity_mps.norm() <= max_speed_mps)) return Validity::kBeyondLimits;
   for (const MotionPhase& phase : trajectory.phases()) {
     const Vec2& a = phase.acceleration_mps2;
     const double max_mps2 = std::max(limits.acceleration_mps2, limits.deceleration_mps2);
-    if (a.norm() > max_mps2 + kAccelerationTolerance_mps2) return Validity::kBeyondLimits;
-    if (phase.duration > Duration::zero() && !is_admissible(a, state.velocity_mps, limits)) {
+    if (!(a.norm() <= max_mps2 + kAccelerationTolerance_mps2)) return Validity::kBeyondLimits;
+    if (phase.duration > Duration::zero() && !may_be_held(a, state.velocity_mps, limits, phase.duration)) {
       return Validity::kBeyondLimits;
     }
     state = state_after(state, a, to_seconds(phase.duration));
     // The speed is convex over a phase, so its maximum is at one of the ends.
-    if (state.velocity_mps.norm() > limits.speed_mps + kSpeedTolerance_mps) return Validity::kBeyondLimits;
+    if (!(state.velocity_mps.norm() <= max_speed_mps)) return Validity::kBeyondLimits;
   }
   return state.velocity_mps.norm() <= kSpeedTolerance_mps ? Validity::kValid : Validity::kNotAtRest;
 }
@@ -59,12 +60,12 @@ Validity check_workspace(const Trajectory& trajectory, const FloorRules& rules) 
 bool stays_on(const Field& field, double radius_m, const Trajectory& trajectory) {
   const double max_x = field.length_m / 2 - radius_m, max_y = field.width_m / 2 - radius_m;
   State state = trajectory.at_start();
-  if (std::abs(state.position_m.x()) > max_x || std::abs(state.position_m.y()) > max_y) return false;
+  if (!(std::abs(state.position_m.x()) <= max_x && std::abs(state.position_m.y()) <= max_y)) return false;
   for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
     const Vec2 &p = state.position_m, &v = state.velocity_mps, &a = phase.acceleration_mps2;
-    if (max_excursion(p.x(), v.x(), a.x(), seconds) > max_x) return false;
-    if (max_excursion(p.y(), v.y(), a.y(), seconds) > max_y) return false;
+    if (!(max_excursion(p.x(), v.x(), a.x(), seconds) <= max_x)) return false;
+    if (!(max_excursion(p.y(), v.y(), a.y(), seconds) <= max_y)) return false;
     state = state_after(state, a, seconds);
   }
   return true;

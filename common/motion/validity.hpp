@@ -17,8 +17,8 @@ enum class Validity {
   kObstacle
 };
 
-/// Checks the motion limits over the whole trajectory: the speed, A(v) at the start of each phase, the
-/// magnitude of the acceleration within it, and rest at the end. Returns kValid, kBeyondLimits or kNotAtRest.
+/// Checks the motion limits over the whole trajectory: the speed, A(v) throughout each phase, and rest at the
+/// end. Returns kValid, kBeyondLimits or kNotAtRest.
 [[nodiscard]] Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits);
 
 /// Checks that a robot stays on the field and clear of the static obstacles. Returns kValid, kOutsideField or

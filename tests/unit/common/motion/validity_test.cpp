@@ -36,6 +36,31 @@ TEST_CASE("violations of limits, rest and workspace are detected") {
   CHECK(check_workspace(stop_from({0, 1.3}, {0, 1}, {0, -3}, 0.66), rules) == Validity::kOutsideField);
 }
 
+TEST_CASE("a phase that brakes at D may not go on at D after the velocity has reversed") {
+  const Time t = time_from_ns(1'000'000'000);
+  const auto held_for = [&](Vec2 velocity, Vec2 acceleration, double seconds) {
+    Trajectory trajectory(t, {{0, 0}, velocity});
+    trajectory.append(from_seconds(seconds), acceleration);
+    append_stop(trajectory, kLimits.deceleration_mps2);
+    return check_limits(trajectory, kLimits);
+  };
+  CHECK(held_for({1, 0}, {-5, 0}, 0.19) == Validity::kValid);
+  CHECK(held_for({1, 0}, {-5, 0}, 0.2) == Validity::kValid);
+  CHECK(held_for({1, 0}, {-5, 0}, 0.201) == Validity::kBeyondLimits);
+  CHECK(held_for({1, 0}, {-5, 0}, 0.4) == Validity::kBeyondLimits);
+  CHECK(held_for({1, 0}, {-3, 0}, 0.4) == Validity::kValid);
+  // Across the velocity at the end, though braking at the start.
+  CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.05) == Validity::kValid);
+  CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.11) == Validity::kBeyondLimits);
+  CHECK(held_for({0, 1}, {0, -4.9}, 0.21) == Validity::kBeyondLimits);
+  // In a later phase.
+  Trajectory later(t, {{0, 0}, {0.5, 0}});
+  later.append(from_seconds(0.1), {3, 0});
+  later.append(from_seconds(0.2), {-5, 0});
+  append_stop(later, kLimits.deceleration_mps2);
+  CHECK(check_limits(later, kLimits) == Validity::kBeyondLimits);
+}
+
 TEST_CASE("a continuation starts with the position and velocity of its base") {
   Rng rng(4);
   for (int i = 0; i < 1000; ++i) {

@@ -107,6 +107,28 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
+  SECTION("acceleration at D once the velocity has reversed") {
+    require_violation(AuditRule::kLimits, [](History& h) {
+      const Switch s = example_switch(h);
+      h.each_mention(s.robot, s.number, [](msg::Version& v) {
+        const Vec2 velocity(v.vx_mps(), v.vy_mps());
+        const double d_mps2 = 4.9, braking_s = velocity.norm() / d_mps2;
+        REQUIRE(braking_s > 0.02);
+        const Vec2 braking = -velocity / braking_s;
+        const auto ns = static_cast<std::int64_t>(braking_s * 1e9);
+        msg::MotionPhase phase;
+        phase.duration_ns(2 * ns);
+        phase.ax_mps2(braking.x());
+        phase.ay_mps2(braking.y());
+        v.phases()[0] = phase;
+        phase.duration_ns(ns);
+        phase.ax_mps2(-braking.x());
+        phase.ay_mps2(-braking.y());
+        v.phases()[1] = phase;
+        v.phase_count(2);
+      });
+    });
+  }
   SECTION("no braking at the end") {
     require_violation(AuditRule::kRest, [](History& h) {
       const Switch s = example_switch(h);
