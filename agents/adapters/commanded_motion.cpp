@@ -11,6 +11,16 @@ void CommandedMotion::add(Time at, const BodyVelocity& velocity) {
 
 BodyVelocity CommandedMotion::latest() const { return count_ == 0 ? BodyVelocity{} : back(0).velocity; }
 
+Time CommandedMotion::next_change(Time time, Time latest) const {
+  Time next = latest;
+  for (std::size_t age = 0; age < std::min(count_, kRemembered); ++age) {
+    const Time obeyed = back(age).at + latency_;
+    if (obeyed <= time) break;
+    next = std::min(next, obeyed);
+  }
+  return next;
+}
+
 BodyVelocity CommandedMotion::mean(Time from, Time to) const {
   const Time begin = from - latency_, end = to - latency_;
   BodyVelocity mean;

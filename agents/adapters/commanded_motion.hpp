@@ -19,18 +19,21 @@ class CommandedMotion {
   /// The mean velocity that the base has from `from` to `to`, both later than the oldest command remembered;
   /// at rest before the first command.
   BodyVelocity mean(Time from, Time to) const;
+  /// The earliest time after `time` at which the base obeys another command of those sent; `latest` if that
+  /// would be later. Precondition: as for mean().
+  Time next_change(Time time, Time latest) const;
   /// The velocity once all commands are obeyed.
   BodyVelocity latest() const;
   Duration latency() const { return latency_; }
 
   static constexpr Duration kMaxLatency = std::chrono::milliseconds(300);
+  static constexpr std::size_t kRemembered = 256;
 
  private:
   struct Sent {
     Time at{};
     BodyVelocity velocity;
   };
-  static constexpr std::size_t kRemembered = 256;
   const Sent& back(std::size_t age) const { return sent_[(count_ - 1 - age) % kRemembered]; }
 
   Duration latency_;

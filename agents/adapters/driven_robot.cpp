@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "agents/adapters/motion_under_way.hpp"
 #include "common/robot/conversion.hpp"
 
 namespace sidestep {
@@ -19,8 +21,6 @@ constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
 constexpr Duration kMaxPause = milliseconds(200);
 // Odometry that is older than this is no longer used.
 constexpr Duration kOdometryTimeout = milliseconds(150);
-// Of odometry, per axis and period.
-constexpr double kOdometryNoise_mps = 0.01;
 // A base at rest within this distance of its reference is left there.
 constexpr double kRestTolerance_m = 0.001;
 
@@ -36,17 +36,27 @@ robot::Settings<float> side_settings(const DriveSettings& settings) {
 EstimatorSettings estimator_settings(const DriveSettings& settings) {
   EstimatorSettings estimator;
   estimator.period = DrivenRobot::kPeriod;
-  estimator.velocity_noise_mps = settings.velocity_noise_mps;
+  estimator.velocity_noise_mps = settings.odometry_noise_mps;
+  estimator.commanded_noise_mps = settings.velocity_noise_mps;
   estimator.scale_error = settings.scale_error;
   estimator.fix_noise_m = settings.fix_noise_m;
   estimator.velocity_gain = 1;
   return estimator;
 }
 
+/// By which odometry may be dated wrongly: at the speed limit that displaces the estimate by the drift bound.
+Duration max_date_error(const DriveSettings& settings) {
+  return from_seconds(drift_bound_m(settings.tracking_bound_m) / settings.limits.speed_mps);
+}
+
 template <typename Vector>
 Vector limited(const Vector& vector, double max_norm) {
   const double norm = vector.norm();
-  return norm > max_norm ? Vector(vector * (max_norm / norm)) : vector;
+  return norm <= max_norm ? vector : Vector(vector * (max_norm / norm));
+}
+
+bool is_finite(const BodyVelocity& velocity) {
+  return velocity.linear_mps.allFinite() && std::isfinite(velocity.turn_radps);
 }
 
 robot::Vec<float> to_single(const Vec2& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
@@ -54,14 +64,13 @@ Vec2 to_double(const robot::Vec<float>& v) { return {v.x, v.y}; }
 
 }  // namespace
 
-DriveSettings drive_settings(const Scenario& scenario, Duration latency, bool has_odometry) {
+DriveSettings drive_settings(const Scenario& scenario, Duration latency) {
   DriveSettings settings;
   settings.latency = latency;
   settings.tracking_bound_m = scenario.tracking_bound_m;
   settings.limits = scenario.limits;
   settings.fix_noise_m = scenario.vision.position_noise_m;
   settings.scale_error = scenario.odometry.scale_error;
-  if (has_odometry) settings.velocity_noise_mps = kOdometryNoise_mps;
   return settings;
 }
 
@@ -71,6 +80,7 @@ DrivenRobot::DrivenRobot(RobotId robot, const DriveSettings& settings, const rob
       settings_(settings),
       side_(side_settings(settings), remembered),
       commands_(settings.latency),
+      odometry_dates_(max_date_error(settings)),
       estimator_({0, 0}, 0, now, estimator_settings(settings)),
       moved_at_(now + kStoppingTime) {}
 
@@ -81,10 +91,24 @@ void DrivenRobot::on_command(const Command& command, Time now, robot::StableMemo
   if (!side_.on_command(plain, to_ns(now), memory)) return;
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
   if (!command.fix) return;
-  if (side_.has_pose())
-    estimator_.correct(command.fix->captured_at, command.fix->position_m, command.fix->heading_rad);
-  else
+  if (!side_.has_pose())
     add_first_fix(*command.fix, now);
+  else if (command.fix->captured_at <= now)
+    use_fix(*command.fix);
+}
+
+void DrivenRobot::use_fix(const PoseFix& fix) {
+  if (fix.captured_at <= estimator_.time())
+    estimator_.correct(fix.captured_at, fix.position_m, fix.heading_rad);
+  else if (!waiting_fix_)
+    waiting_fix_ = fix;
+}
+
+void DrivenRobot::on_odometry(const OdometryReport& report, Time now) {
+  if (odometry_dates_.is_believed(report.measured_at, now))
+    measured_.add(report);
+  else
+    ++misdated_;
 }
 
 void DrivenRobot::on_malformed_command(Time now) { side_.on_malformed_command(to_ns(now)); }
@@ -116,26 +140,31 @@ Odometry DrivenRobot::commanded(Time from, Time to, double heading_rad) const {
   return {rotated(body.linear_mps, middle_rad), body.turn_radps};
 }
 
+void DrivenRobot::forget_pose(Time now) {
+  if (!side_.is_lifted()) side_.lose_pose();
+  first_fix_count_ = 0;
+  moved_at_ = now + kStoppingTime;
+  estimator_ = PoseEstimator({0, 0}, 0, now, estimator_settings(settings_));
+  measured_ = {};
+  waiting_fix_.reset();
+}
+
 void DrivenRobot::advance(Time now) {
-  if (now - estimator_.time() > kMaxPause) {
-    if (!side_.is_lifted()) side_.lose_pose();
-    first_fix_count_ = 0;
-    moved_at_ = now + kStoppingTime;
-    estimator_ =
-        PoseEstimator(estimator_.position_m(), estimator_.heading_rad(), now, estimator_settings(settings_));
-    return;
-  }
+  if (now - estimator_.time() > kMaxPause) return forget_pose(now);
   // The base's own measurement is better than what it was commanded, but comes later.
   const bool is_measured = now - measured_.until() <= kOdometryTimeout;
   const Time until = is_measured ? std::min(now, measured_.until()) : now;
   while (estimator_.time() + kPeriod <= until) {
     const Time from = estimator_.time();
     Odometry motion = commanded(from, from + kPeriod, estimator_.heading_rad());
-    if (const auto body = measured_.at(from + kPeriod / 2)) {
+    const auto body = measured_.at(from + kPeriod / 2);
+    if (body) {
       const double middle_rad = estimator_.heading_rad() + 0.5 * body->turn_radps * to_seconds(kPeriod);
       motion = {rotated(body->linear_mps, middle_rad), body->turn_radps};
     }
-    estimator_.advance(from + kPeriod, motion, {0, 0}, 0);
+    estimator_.advance(from + kPeriod, motion, {0, 0}, 0, body.has_value());
+    if (waiting_fix_ && waiting_fix_->captured_at <= estimator_.time())
+      use_fix(*std::exchange(waiting_fix_, std::nullopt));
   }
 }
 
@@ -159,10 +188,28 @@ robot::Estimate<float> DrivenRobot::estimate(Time now) const {
   estimate.jump_m = static_cast<float>(estimator_.jump_m());
   if (side_.needs_uncertainty(to_ns(now), estimate.position_m))
     estimate.position_error_rms_m = static_cast<float>(estimator_.position_error_rms_m());
-  const Pose coming = predicted(now + settings_.latency);
-  estimate.coming_velocity_mps =
-      to_single(obeyed * rotated(commands_.latest().linear_mps, coming.heading_rad));
+  if (side_.is_stop_due(to_ns(now), estimate)) estimate.under_way = under_way(now, pose);
   return estimate;
+}
+
+robot::MotionUnderWay<float> DrivenRobot::under_way(Time now, const Pose& pose) const {
+  std::array<PathPoint, CommandedMotion::kRemembered + 2> path;
+  std::size_t count = 0;
+  path[count++] = {Duration{0}, pose.position_m};
+  const double obeyed = 1 - estimator_.scale_error();
+  double heading_rad = pose.heading_rad;
+  const Time end = now + settings_.latency;
+  for (Time from = now; from < end;) {
+    const Time to = commands_.next_change(from, end);
+    const Odometry motion = commanded(from, to, heading_rad);
+    const double seconds = to_seconds(to - from);
+    path[count] = {to - now, path[count - 1].position_m + obeyed * seconds * motion.velocity_mps};
+    ++count;
+    heading_rad += seconds * motion.angular_radps;
+    from = to;
+  }
+  const Vec2 last_mps = obeyed * rotated(commands_.latest().linear_mps, heading_rad);
+  return fit_motion_under_way({path.data(), count}, last_mps);
 }
 
 BodyVelocity DrivenRobot::track(Time now) const {
@@ -189,8 +236,15 @@ BodyVelocity DrivenRobot::tick(Time now, robot::StableMemory& memory) {
   while (side_.switch_next(to_ns(now))) {
   }
   advance(now);
+  const bool had_pose = side_.has_pose();
   side_.check_reference(to_ns(now), estimate(now), memory);
-  const BodyVelocity command = side_.has_pose() && !side_.is_lifted() ? track(now) : BodyVelocity{};
+  if (had_pose && !side_.has_pose()) forget_pose(now);
+  BodyVelocity command;
+  if (side_.has_pose() && !side_.is_lifted()) command = track(now);
+  if (!is_finite(command)) {
+    forget_pose(now);
+    command = {};
+  }
   commands_.add(now, command);
   return command;
 }

@@ -42,7 +42,8 @@ class Driver {
   /// Sends the commands of all robots, once per control period.
   virtual void send(std::span<const BaseCommand> commands) = 0;
   /// Sets the callback for odometry. A driver without odometry never calls it. Everything in a report is
-  /// checked: it is finite and of a robot of this driver, and its time is by the process's clock.
+  /// checked: it is finite and of a robot of this driver. Its time is what the base says, by the process's
+  /// clock; DrivenRobot checks whether that can be true.
   virtual void on_odometry(std::function<void(const OdometryReport&)> /*callback*/) {}
   /// Adds what the driver has dropped.
   virtual void count_drops(DropCounters& drops) const { (void)drops; }

@@ -63,7 +63,7 @@ struct Nodes {
         bases(options.driver == "velocity" ? bases_bus(bus, options.bases) : nullptr),
         driver(make_driver(bus, bases.get(), scenario, robots, options)),
         node(bus, scenario, robots, incarnation,
-             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3), bases != nullptr), *driver,
+             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3)), *driver,
              options.memory_folder) {}
   std::vector<RobotId> robots;
   std::shared_ptr<Bus> bases;

@@ -43,7 +43,7 @@ RobotsNode::RobotsNode(Bus& bus, const Scenario& scenario, const std::vector<Rob
   }
   driver.on_odometry([this](const OdometryReport& report) {
     const auto found = index_of_.find(report.robot);
-    if (found != index_of_.end()) robots_[found->second].robot->on_odometry(report);
+    if (found != index_of_.end()) robots_[found->second].robot->on_odometry(report, clock());
   });
   bus.at(begin, [this] { tick(); });
 }
@@ -85,7 +85,7 @@ void RobotsNode::watch_start(Entry& entry, Time now) {
 
 void RobotsNode::publish_if_changed(Entry& entry, Time now) {
   const auto& side = entry.robot->side();
-  if (side.executing().number != entry.executing || side.obeyed_incarnation() != entry.incarnation ||
+  if (side.executing().number != entry.executing || side.acknowledged_incarnation() != entry.incarnation ||
       side.obeyed_epoch() != entry.epoch || entry.robot->may_report() != entry.is_known)
     publish(entry, now);
 }
@@ -111,7 +111,7 @@ void RobotsNode::report_changes(Entry& entry) {
   const auto& side = entry.robot->side();
   const bool is_new = side.executing().number != entry.executing;
   entry.executing = side.executing().number;
-  entry.incarnation = side.obeyed_incarnation();
+  entry.incarnation = side.acknowledged_incarnation();
   entry.epoch = side.obeyed_epoch();
   if (is_new && side.is_off_reference())
     events_.report(
@@ -134,6 +134,7 @@ void RobotsNode::count_drops(DropCounters& drops) const {
     drops.count(DropReason::kLateVersion, id, counts.refused_late);
     drops.count(DropReason::kWrongBase, id, counts.refused_base);
     drops.count(DropReason::kUnstoredCommand, id, counts.refused_unstored);
+    drops.count(DropReason::kMisdatedOdometry, id, entry.robot->misdated_odometry());
   }
   driver_.count_drops(drops);
 }

@@ -78,6 +78,7 @@ enum class DropReason : std::uint16_t {
   // Processes that drive robots of others.
   kUnstoredCommand,
   kMalformedOdometry,
+  kMisdatedOdometry,
   kRejectedByBase,
   // Monitors.
   kUnusedByMonitor,
@@ -185,6 +186,8 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kUnstoredCommand, "unstored_command",
      "commands that a robot refused because its memory failed", true},
     {DropReason::kMalformedOdometry, "malformed_odometry", "odometry of bases", true},
+    {DropReason::kMisdatedOdometry, "misdated_odometry",
+     "odometry whose date is later than its arrival, or cannot be believed", true},
     {DropReason::kRejectedByBase, "rejected_by_base", "errors that bases or their simulator answered", true},
     {DropReason::kUnusedByMonitor, "unused_by_monitor",
      "invalid or overtaken states that the run's metrics did not use", false},

@@ -17,6 +17,12 @@ constexpr Number smaller(Number a, Number b) {
   return b < a ? b : a;
 }
 
+template <typename Real>
+bool is_finite(const Vec<Real>& v) {
+  // Neither infinities nor NaN differ from themselves by 0.
+  return v.x - v.x == 0 && v.y - v.y == 0;
+}
+
 bool is_later(const Version& a, const Version& b) {
   return a.start_ns != b.start_ns ? a.start_ns > b.start_ns : a.number > b.number;
 }
@@ -106,7 +112,8 @@ bool RobotSide<Real>::on_command(const Command& command, std::int64_t now_ns, St
     ++counts_.refused_unstored;
     return false;
   }
-  discard_fenced();
+  discard_fenced(now_ns);
+  acknowledge();
   has_command_ = true;
   command_sent_at_ns_ = command.sent_at_ns;
   command_received_at_ns_ = now_ns;
@@ -124,14 +131,33 @@ void RobotSide<Real>::on_malformed_command(std::int64_t now_ns) {
   ++counts_.refused_malformed;
 }
 
+// Of the versions of earlier agents, those remain that the motors have been sent: they start within the lead,
+// and each continues the one before it. Versions of the new agent start later.
 template <typename Real>
-void RobotSide<Real>::discard_fenced() {
-  for (int i = pending_count_ - 1; i >= 0; --i) {
-    if (pending_[i].incarnation < durable_.incarnation) {
-      remove_pending(i);
+void RobotSide<Real>::discard_fenced(std::int64_t now_ns) {
+  std::uint64_t planned = executing_.number, highest = highest_executed_;
+  int kept = 0;
+  for (int i = 0; i < pending_count_; ++i) {
+    const Version& version = pending_[i];
+    const bool is_planned = version.base == planned && version.number > highest;
+    const bool is_fenced = version.incarnation < durable_.incarnation;
+    if (is_fenced && !(is_planned && is_irrevocable(version, now_ns))) {
       ++counts_.refused_fenced;
+      continue;
     }
+    if (is_planned) planned = highest = version.number;
+    if (kept != i) pending_[kept] = version;
+    ++kept;
   }
+  pending_count_ = kept;
+}
+
+template <typename Real>
+void RobotSide<Real>::acknowledge() {
+  for (int i = 0; i < pending_count_; ++i) {
+    if (pending_[i].incarnation < durable_.incarnation) return;
+  }
+  acknowledged_incarnation_ = durable_.incarnation;
 }
 
 template <typename Real>
@@ -139,9 +165,10 @@ void RobotSide<Real>::take(const Version& version, std::int64_t now_ns, StableMe
   if (holds(version.number)) return;
   DurableState moved = durable_;
   moved.has_moved = true;
-  if (version.incarnation < durable_.incarnation) {
+  const bool is_acknowledged = acknowledged_incarnation_ == durable_.incarnation;
+  if (version.incarnation < durable_.incarnation || !is_acknowledged) {
     ++counts_.refused_fenced;
-  } else if (version.start_ns - settings_.actuation_lead_ns <= now_ns) {
+  } else if (is_irrevocable(version, now_ns)) {
     ++counts_.refused_late;
   } else if (!may_take(version)) {
     ++counts_.refused_base;  // its base is older than the version being executed
@@ -207,20 +234,75 @@ bool RobotSide<Real>::switch_next(std::int64_t now_ns) {
 template <typename Real>
 const Version& RobotSide<Real>::planned(std::int64_t t_ns) const {
   const Version* planned = &executing_;
+  std::uint64_t highest = highest_executed_;
   for (int i = 0; i < pending_count_; ++i) {
     if (pending_[i].start_ns > t_ns) break;
-    if (pending_[i].base == planned->number) planned = &pending_[i];
+    if (pending_[i].base != planned->number || pending_[i].number <= highest) continue;
+    planned = &pending_[i];
+    highest = planned->number;
   }
   return *planned;
 }
 
+// All comparisons of numbers below are true for what is known to be within a bound, so that a NaN is not.
+template <typename Real>
+Real RobotSide<Real>::error_m(std::int64_t now_ns, const Vec<Real>& position_m) const {
+  const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
+  return norm(Vec<Real>{position_m.x - reference_m.x, position_m.y - reference_m.y});
+}
+
 template <typename Real>
 bool RobotSide<Real>::needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const {
-  if (is_rebooting_) return true;
-  const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
-  const Vec<Real> error_m{position_m.x - reference_m.x, position_m.y - reference_m.y};
-  const Real half_m = Real(0.5) * settings_.drift_bound_m;
-  return !(squared_norm(error_m) < half_m * half_m);
+  return is_rebooting_ || !(error_m(now_ns, position_m) < Real(0.5) * settings_.drift_bound_m);
+}
+
+// The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
+// because no camera sees it.
+template <typename Real>
+bool RobotSide<Real>::is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const {
+  const Real half_m = Real(0.5) * bound_m, uncertainty_m = 2 * estimate.position_error_rms_m;
+  if (error_m < half_m) return true;
+  return error_m + (uncertainty_m <= half_m ? uncertainty_m : half_m) <=
+         bound_m + static_cast<Real>(executing_.inflation_m);
+}
+
+template <typename Real>
+std::int64_t RobotSide<Real>::drifted_since_ns(std::int64_t now_ns, const Estimate<Real>& estimate) const {
+  const bool is_near = is_within(settings_.drift_bound_m, error_m(now_ns, estimate.position_m), estimate);
+  return is_near ? kNever_ns : smaller(drifted_since_ns_, now_ns);
+}
+
+// A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
+// the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
+// control cannot correct in time, or that the margin does not cover.
+template <typename Real>
+bool RobotSide<Real>::must_stop(std::int64_t now_ns, const Estimate<Real>& estimate,
+                                OwnStopReason& reason) const {
+  const Real error = error_m(now_ns, estimate.position_m);
+  const bool has_jumped = !(estimate.jump_m <= 0);
+  // Inflation covers where the robot may be, not the way back to its reference.
+  if (has_jumped && !(error <= settings_.drift_bound_m)) {
+    reason = OwnStopReason::kDisplaced;
+    return true;
+  }
+  const std::int64_t since_ns = drifted_since_ns(now_ns, estimate);
+  if (since_ns == kNever_ns) return false;
+  if (!is_within(settings_.tracking_bound_m, error, estimate)) {
+    reason = OwnStopReason::kOffReference;
+    return true;
+  }
+  if (has_jumped) {
+    reason = OwnStopReason::kDisplaced;
+    return true;
+  }
+  reason = OwnStopReason::kDrifted;
+  return now_ns - since_ns >= kMaxRecovery_ns;
+}
+
+template <typename Real>
+bool RobotSide<Real>::is_stop_due(std::int64_t now_ns, const Estimate<Real>& estimate) const {
+  OwnStopReason reason{};
+  return may_stop(now_ns) && (is_rebooting_ || must_stop(now_ns, estimate, reason));
 }
 
 template <typename Real>
@@ -229,85 +311,30 @@ void RobotSide<Real>::check_reference(std::int64_t now_ns, const Estimate<Real>&
   while (switch_next(now_ns)) {
   }
   if (is_lifted_ || !has_pose_) return;
-  const bool may_stop = now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
-  if (is_rebooting_ && may_stop) {
+  if (!is_finite(estimate.position_m) || !is_finite(estimate.velocity_mps)) return lose_pose();
+  if (is_rebooting_ && may_stop(now_ns)) {
     restart();
-    start_own_stop(OwnStopReason::kRestart, estimate, now_ns, memory);
+    return start_own_stop(OwnStopReason::kRestart, estimate, now_ns, memory);
   }
-  const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
-  const Vec<Real> error_m{estimate.position_m.x - reference_m.x, estimate.position_m.y - reference_m.y};
   OwnStopReason reason{};
-  if (must_stop(error_m, estimate, now_ns, reason) && may_stop)
-    start_own_stop(reason, estimate, now_ns, memory);
-}
-
-// The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
-// because no camera sees it.
-template <typename Real>
-bool RobotSide<Real>::is_beyond(Real bound_m, Real error_m, const Estimate<Real>& estimate) const {
-  const Real half_m = Real(0.5) * bound_m;
-  if (error_m < half_m) return false;
-  return error_m + smaller(2 * estimate.position_error_rms_m, half_m) >
-         bound_m + static_cast<Real>(executing_.inflation_m);
-}
-
-// A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
-// the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
-// control cannot correct in time, or that the margin does not cover.
-template <typename Real>
-bool RobotSide<Real>::must_stop(const Vec<Real>& error_vector_m, const Estimate<Real>& estimate,
-                                std::int64_t now_ns, OwnStopReason& reason) {
-  const Real drift_m = settings_.drift_bound_m, error_m = norm(error_vector_m);
-  // Inflation covers where the robot may be, not the way back to its reference.
-  if (estimate.jump_m > 0 && error_m > drift_m) {
-    reason = OwnStopReason::kDisplaced;
-    return true;
-  }
-  if (!is_beyond(drift_m, error_m, estimate)) {
-    drifted_since_ns_ = kNever_ns;
-    return false;
-  }
-  drifted_since_ns_ = smaller(drifted_since_ns_, now_ns);
-  if (is_beyond(settings_.tracking_bound_m, error_m, estimate)) {
-    reason = OwnStopReason::kOffReference;
-    return true;
-  }
-  if (estimate.jump_m > 0) {
-    reason = OwnStopReason::kDisplaced;
-    return true;
-  }
-  reason = OwnStopReason::kDrifted;
-  return now_ns - drifted_since_ns_ >= kMaxRecovery_ns;
+  const bool must = must_stop(now_ns, estimate, reason);
+  drifted_since_ns_ = drifted_since_ns(now_ns, estimate);
+  if (must && may_stop(now_ns)) start_own_stop(reason, estimate, now_ns, memory);
 }
 
 template <typename Real>
 void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate,
                                      std::int64_t now_ns, StableMemory& memory) {
+  Version stop;
+  if (!begin_with_motion_under_way(stop, estimate)) return lose_pose();
   own_stop_reason_ = reason;
   has_found_pose_ = false;
   drifted_since_ns_ = kNever_ns;
-  Version stop;
   stop.incarnation = durable_.incarnation;
   highest_seen_ = larger(highest_seen_, highest_executed_) + kOwnNumberGap;
   stop.number = highest_seen_;
   stop.base = executing_.number;
   stop.start_ns = now_ns;
-  const Vec<Real>&p = estimate.position_m, &v = estimate.velocity_mps;
-  stop.x_m = static_cast<double>(p.x);
-  stop.y_m = static_cast<double>(p.y);
-  stop.vx_mps = static_cast<double>(v.x);
-  stop.vy_mps = static_cast<double>(v.y);
-  Vec<Real> braked_mps = v;
-  if (settings_.actuation_lead_ns > 0) {
-    braked_mps = estimate.coming_velocity_mps;
-    const double lead_s = seconds_of(settings_.actuation_lead_ns);
-    append_phase(stop, settings_.actuation_lead_ns, static_cast<double>(braked_mps.x - v.x) / lead_s,
-                 static_cast<double>(braked_mps.y - v.y) / lead_s);
-  }
-  append_braking(stop, braked_mps, settings_.deceleration_mps2);
-  // Includes the last displacement, because its cause may act again before the next fix.
-  stop.inflation_m =
-      smaller(static_cast<double>(2 * estimate.position_error_rms_m + estimate.jump_m), kMaxInflation_m);
   executing_ = stop;
   highest_executed_ = stop.number;
   is_off_reference_ = true;
@@ -318,6 +345,32 @@ void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>&
   next.number_bound = highest_seen_ + kStoredAhead;
   // The stop must not wait for the memory. Without it the robot stops too, but reports nothing.
   is_memory_broken_ = !store(next, memory);
+}
+
+// The place, the motion and the inflation of a stop from the estimate. False if they cannot be told.
+template <typename Real>
+bool RobotSide<Real>::begin_with_motion_under_way(Version& stop, const Estimate<Real>& estimate) const {
+  const MotionUnderWay<Real>& under_way = estimate.under_way;
+  const bool is_late = settings_.actuation_lead_ns > 0;
+  Vec<Real> velocity_mps = is_late ? under_way.from_mps : estimate.velocity_mps;
+  stop.x_m = static_cast<double>(estimate.position_m.x);
+  stop.y_m = static_cast<double>(estimate.position_m.y);
+  stop.vx_mps = static_cast<double>(velocity_mps.x);
+  stop.vy_mps = static_cast<double>(velocity_mps.y);
+  for (int i = 0; is_late && i < under_way.part_count; ++i) {
+    const auto& [duration_ns, end_mps] = under_way.parts[i];
+    const double seconds = seconds_of(duration_ns);
+    append_phase(stop, duration_ns, static_cast<double>(end_mps.x - velocity_mps.x) / seconds,
+                 static_cast<double>(end_mps.y - velocity_mps.y) / seconds);
+    velocity_mps = end_mps;
+  }
+  if (!is_finite(velocity_mps) || !is_finite(motion_at<Real>(stop, stop.end_ns()).position_m)) return false;
+  append_braking(stop, velocity_mps, settings_.deceleration_mps2);
+  // Includes the last displacement, because its cause may act again before the next fix.
+  const Real error_m = is_late ? under_way.error_m : Real(0);
+  const auto inflation_m = static_cast<double>(2 * estimate.position_error_rms_m + estimate.jump_m + error_m);
+  stop.inflation_m = inflation_m <= kMaxInflation_m ? inflation_m : kMaxInflation_m;
+  return true;
 }
 
 template <typename Real>
@@ -344,6 +397,7 @@ void RobotSide<Real>::restart() {
   has_command_ = false;
   drifted_since_ns_ = kNever_ns;
   pending_count_ = 0;
+  acknowledged_incarnation_ = durable_.incarnation;
   counts_.activated = 0;
   own_stops_ = 0;
 }
@@ -352,16 +406,18 @@ template <typename Real>
 Facts RobotSide<Real>::facts(std::int64_t now_ns) {
   while (switch_next(now_ns)) {
   }
+  acknowledge();
   last_fact_ns_ = larger(last_fact_ns_, now_ns);
   Facts facts;
-  facts.obeyed_incarnation = durable_.incarnation;
+  facts.obeyed_incarnation = acknowledged_incarnation_;
   facts.obeyed_epoch = durable_.epoch;
   facts.valid_at_ns = now_ns;
   facts.executing = &executing_;
   facts.is_off_reference = is_off_reference_;
   facts.is_lifted = is_lifted_;
   facts.has_moved = has_moved_;
-  facts.has_command = has_command_;
+  // The agent that is acknowledged would take another one's command for its own.
+  facts.has_command = has_command_ && acknowledged_incarnation_ == durable_.incarnation;
   facts.command_sent_at_ns = command_sent_at_ns_;
   facts.command_received_at_ns = command_received_at_ns_;
   facts.activated = counts_.activated;

@@ -43,20 +43,34 @@ struct Command {
   const Version* version = nullptr;
 };
 
-/// The robot's own estimate of its state.
+/// What the motors will make the robot do during Settings::actuation_lead_ns, because they have been sent the
+/// commands already: from the velocity `from_mps` on, a few parts in which the velocity changes evenly.
+template <typename Real>
+struct MotionUnderWay {
+  static constexpr int kMaxParts = Version::kMaxPhases - 1;
+  struct Part {
+    std::int64_t duration_ns = 0;
+    Vec<Real> end_velocity_mps;
+  };
+  Vec<Real> from_mps;
+  int part_count = 0;
+  Part parts[kMaxParts];
+  Real error_m = 0;  ///< the commands lead at most so far away from these parts, at any time
+};
+
+/// The robot's own estimate of its state. A robot whose estimate is not finite has no pose.
 template <typename Real>
 struct Estimate {
   Vec<Real> position_m, velocity_mps;
-  Real position_error_rms_m = 0;  ///< only read if needs_uncertainty()
-  Real jump_m = 0;                ///< displacement that the last fix showed and the wheels did not measure
-  /// The velocity after Settings::actuation_lead_ns, if the motors get no further command but those under
-  /// way. Only read if there is a lead.
-  Vec<Real> coming_velocity_mps{};
+  Real position_error_rms_m = 0;   ///< only read if needs_uncertainty()
+  Real jump_m = 0;                 ///< displacement that the last fix showed and the wheels did not measure
+  MotionUnderWay<Real> under_way;  ///< only read if there is a lead and is_stop_due()
 };
 
 /// The protocol's part of a fact (Feedback in idl/robot.idl).
 struct Facts {
-  std::uint64_t obeyed_incarnation = 0, obeyed_epoch = 0;
+  std::uint64_t obeyed_incarnation = 0;  ///< acknowledged: no version of an earlier agent is still to start
+  std::uint64_t obeyed_epoch = 0;
   std::int64_t valid_at_ns = 0;
   const Version* executing = nullptr;  ///< valid until the next call
   bool is_off_reference = false, is_lifted = false, has_moved = false;
@@ -71,6 +85,12 @@ struct Facts {
 /// and estimation. It executes one whole version and holds a few pending ones. It switches to a version only
 /// at that version's start time, and only from its base. Without commands it executes its version to the end
 /// and rests. What it acknowledges it has stored.
+///
+/// From a new agent on it refuses the versions of earlier ones, and discards those that it holds and has not
+/// begun. But motors that obey late have been sent the beginning of a version whose start is less than the
+/// lead away. The robot executes such a version. It acknowledges the new agent, and takes versions of it,
+/// when no such version is still to start. So the fact that acknowledges an agent states all that the robot
+/// executes of earlier ones.
 ///
 /// It makes a stop of its own if the robot may be farther from its reference than the tracking bound, or than
 /// the drift bound and either does not return within kMaxRecovery_ns or was displaced without its wheels
@@ -121,8 +141,11 @@ class RobotSide {
 
   /// Whether check_reference() would read the estimate's position error, which is costly to compute.
   bool needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const;
-  /// Once per control period: makes a stop of its own if the estimate demands it. No effect on a robot
-  /// that is lifted or has no pose.
+  /// Whether check_reference() would make a stop of its own, and read the estimate's motion under way, which
+  /// is costly to compute. Precondition: all switches due by then are made.
+  bool is_stop_due(std::int64_t now_ns, const Estimate<Real>& estimate) const;
+  /// Once per control period: makes a stop of its own if the estimate demands it. If the estimate is not
+  /// finite, the robot has no pose from then on. No effect on a robot that is lifted or has no pose.
   void check_reference(std::int64_t now_ns, const Estimate<Real>& estimate, StableMemory& memory);
 
   /// Off the floor: discards the executed version and all pending ones. Facts name the last version as the
@@ -146,7 +169,10 @@ class RobotSide {
   OwnStopReason own_stop_reason() const { return own_stop_reason_; }
   bool is_lifted() const { return is_lifted_; }
   bool has_pose() const { return has_pose_; }
+  /// Of the agent whose versions it takes.
   std::uint64_t obeyed_incarnation() const { return durable_.incarnation; }
+  /// Of the agent that its facts acknowledge.
+  std::uint64_t acknowledged_incarnation() const { return acknowledged_incarnation_; }
   std::uint64_t obeyed_epoch() const { return durable_.epoch; }
   const Counts& counts() const { return counts_; }
   /// Number of stops of its own since the last restart.
@@ -156,18 +182,27 @@ class RobotSide {
   std::int64_t next_start_ns() const { return pending_[0].start_ns; }
 
  private:
-  void discard_fenced();
+  void discard_fenced(std::int64_t now_ns);
+  void acknowledge();
+  bool is_irrevocable(const Version& version, std::int64_t now_ns) const {
+    return version.start_ns - settings_.actuation_lead_ns <= now_ns;
+  }
   void take(const Version& version, std::int64_t now_ns, StableMemory& memory);
   bool holds(std::uint64_t number) const;
   bool may_take(const Version& version) const;
   void insert(const Version& version);
   void remove_pending(int index);
   bool store(const DurableState& next, StableMemory& memory);
-  bool is_beyond(Real bound_m, Real error_m, const Estimate<Real>& estimate) const;
-  bool must_stop(const Vec<Real>& error_m, const Estimate<Real>& estimate, std::int64_t now_ns,
-                 OwnStopReason& reason);
+  bool is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const;
+  Real error_m(std::int64_t now_ns, const Vec<Real>& position_m) const;
+  bool may_stop(std::int64_t now_ns) const {
+    return !is_lifted_ && has_pose_ && now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
+  }
+  std::int64_t drifted_since_ns(std::int64_t now_ns, const Estimate<Real>& estimate) const;
+  bool must_stop(std::int64_t now_ns, const Estimate<Real>& estimate, OwnStopReason& reason) const;
   void start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate, std::int64_t now_ns,
                       StableMemory& memory);
+  bool begin_with_motion_under_way(Version& stop, const Estimate<Real>& estimate) const;
   void restart();
 
   static constexpr std::int64_t kNever_ns = INT64_MAX;
@@ -176,6 +211,7 @@ class RobotSide {
   DurableState durable_;            ///< as stored
   std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
   std::uint64_t highest_executed_ = 0;
+  std::uint64_t acknowledged_incarnation_ = 0;
   Version executing_;
   bool has_moved_ = false;
   bool is_off_reference_ = false;

@@ -39,10 +39,11 @@ PoseEstimator::PoseEstimator(const Vec2& position_m, double heading_rad, Time no
 }
 
 void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
-                            double angular_acceleration_radps2) {
+                            double angular_acceleration_radps2, bool is_measured) {
   const double dt = to_seconds(settings_.period);
   if (std::chrono::abs(now - time_ - settings_.period) > settings_.period / kMaxPeriodErrorPart) count_ = 0;
   time_ = now;
+  if (!is_measured) commanded_at_ = now;
   odometry_m_ += odometry.velocity_mps * dt;
   turned_rad_ += odometry.angular_radps * dt;
   history_[static_cast<std::size_t>(count_ % kHistoryPeriods)] = {odometry_m_, turned_rad_};
@@ -82,7 +83,7 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   jump_m_ = 0;
   const double expected = 0.5 * (covariance_(0, 0) + covariance_(1, 1)) + fix_variance;
   // What displaces the robot, or misleads vision, tells nothing about the odometry's scale.
-  if (innovation.squaredNorm() > kOutlierDeviations * kOutlierDeviations * expected) decorrelate_scale();
+  if (!(innovation.squaredNorm() <= kOutlierDeviations * kOutlierDeviations * expected)) decorrelate_scale();
   if (detect_displacement({innovation, expected})) {
     jump_m_ = innovation.norm();
     covariance_.topLeftCorner<2, 2>() += jump_m_ * jump_m_ * Eigen::Matrix2d::Identity();
@@ -100,7 +101,7 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   anchor_odometry_m_ = odometry;
   anchor_m_ = predicted + correction.head<2>();
   scale_ += correction.z();
-  if (std::abs(scale_) > kMaxScaleDeviations * settings_.scale_error) {
+  if (!(std::abs(scale_) <= kMaxScaleDeviations * settings_.scale_error)) {
     // Wheels that roll while the robot is displaced look like such an error.
     scale_ = 0;
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
@@ -119,7 +120,10 @@ void PoseEstimator::decorrelate_scale() {
 Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& moved_m) const {
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.topRightCorner<2, 1>() = -moved_m;
-  const double noise_variance = settings_.velocity_noise_mps * settings_.velocity_noise_mps;
+  // If a part of the motion since the anchor was only commanded, all of it counts as such.
+  const double noise_mps =
+      commanded_at_ <= anchor_time_ ? settings_.velocity_noise_mps : settings_.commanded_noise_mps;
+  const double noise_variance = noise_mps * noise_mps;
   const double position_variance =
       (noise_variance * to_seconds(settings_.period) + kSlipVariance_m2ps) * elapsed_s;
   const double scale_variance = kScaleDriftPerSqrtSecond * kScaleDriftPerSqrtSecond * elapsed_s;
@@ -130,7 +134,7 @@ Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& mo
 
 double PoseEstimator::position_error_rms_m() const {
   const auto now = covariance_after(to_seconds(time_ - anchor_time_), odometry_m_ - anchor_odometry_m_);
-  return std::sqrt(std::max(0.0, now(0, 0) + now(1, 1)));
+  return std::sqrt(std::max(now(0, 0) + now(1, 1), 0.0));  // NaN if the sum is
 }
 
 bool PoseEstimator::detect_displacement(const Innovation& latest) {
@@ -145,7 +149,7 @@ bool PoseEstimator::detect_displacement(const Innovation& latest) {
     if (later.dot(earlier) < kMinAgreement * larger) return false;
     sum.offset_m += earlier;
     sum.variance_m2 += recent_innovations_[count].variance_m2;
-    if (sum.offset_m.squaredNorm() > kJumpDeviations * kJumpDeviations * sum.variance_m2) {
+    if (!(sum.offset_m.squaredNorm() <= kJumpDeviations * kJumpDeviations * sum.variance_m2)) {
       recent_innovations_.fill({});
       return true;
     }

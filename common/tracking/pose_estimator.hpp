@@ -22,6 +22,7 @@ struct Odometry {
 /// The robot's sensor model. Noises and errors are standard deviations.
 struct EstimatorSettings {
   double velocity_noise_mps = 0.01;   ///< of one odometry measurement, per axis
+  double commanded_noise_mps = 0.01;  ///< of one velocity that is commanded instead of measured, per axis
   double scale_error = 0.005;         ///< of the odometry's constant relative error
   double fix_noise_m = 0.0005;        ///< of a fix, per axis
   double extra_fix_noise_m = 0.0005;  ///< for the correlation that vision's filter introduces between fixes
@@ -40,10 +41,11 @@ class PoseEstimator {
   PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings,
                 double deviation_m = kKnownPlaceDeviation_m);
 
-  /// Integrates the measurement over the period that ends now; the accelerations are those of the
-  /// motor model. A gap in time clears the history, so that fixes from before it are refused.
+  /// Integrates the measurement over the period that ends now, or what was commanded instead; the
+  /// accelerations are those of the motor model. A gap in time clears the history, so that fixes from before
+  /// it are refused.
   void advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
-               double angular_acceleration_radps2);
+               double angular_acceleration_radps2, bool is_measured = true);
 
   /// Corrects the estimate with a fix from vision. False, and nothing changes, if the fix is not finite, from
   /// the future, older than kHistoryPeriods, or not newer than the last one.
@@ -64,7 +66,11 @@ class PoseEstimator {
   /// The filter's estimate of the root mean square distance from the truth.
   double position_error_rms_m() const;
   /// The filter's estimate of scale_error()'s standard deviation.
-  double odometry_scale_stddev() const { return std::sqrt(std::max(0.0, covariance_(2, 2))); }
+  double odometry_scale_stddev() const { return std::sqrt(std::max(covariance_(2, 2), 0.0)); }
+  /// Whether the pose can be used. What is not finite once remains so.
+  bool is_finite() const {
+    return position_m().allFinite() && std::isfinite(heading_rad()) && covariance_.allFinite();
+  }
   /// The displacement, unmeasured by the wheels, that the last fix showed; 0 if none.
   double jump_m() const { return jump_m_; }
 
@@ -100,6 +106,7 @@ class PoseEstimator {
   Eigen::Matrix3d covariance_;  ///< of the position at the anchor and of the scale
   double heading_anchor_rad_;   ///< heading when turned_rad_ was 0
   double jump_m_ = 0;
+  Time commanded_at_ = Time::min();               ///< when a velocity was last commanded instead of measured
   std::array<Innovation, 3> recent_innovations_;  ///< latest first, before clamping
   EstimatorSettings settings_;
 };

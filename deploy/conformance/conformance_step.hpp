@@ -45,6 +45,7 @@ std::unique_ptr<ConformanceStep> make_new_agent_step();
 std::unique_ptr<ConformanceStep> make_fence_step();
 std::unique_ptr<ConformanceStep> make_switch_step();
 std::unique_ptr<ConformanceStep> make_versions_step();
+std::unique_ptr<ConformanceStep> make_takeover_step();
 std::unique_ptr<ConformanceStep> make_rest_step();
 std::unique_ptr<ConformanceStep> make_latency_step();
 std::unique_ptr<ConformanceStep> make_tracking_step(const Scenario& scenario);

@@ -551,6 +551,7 @@ std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& 
   steps.push_back(make_fence_step());
   steps.push_back(make_switch_step());
   steps.push_back(make_versions_step());
+  steps.push_back(make_takeover_step());
   steps.push_back(make_rest_step());
   steps.push_back(make_latency_step());
   steps.push_back(make_tracking_step(scenario));

@@ -246,6 +246,63 @@ class SwitchStep final : public ConformanceStep {
   std::optional<Feedback> seen_;
 };
 
+/// A new agent while a version of the last one is pending. Motors that obey late have been sent the beginning
+/// of one that starts within the lead.
+class TakeoverStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "takeover"; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    const Feedback& fact = *probe.fact();
+    if (!sent_) {
+      const Time start = probe.robot_now() + context.stream.notice() + kPause;
+      sent_ = context.stream.next(nudge(fact.executing.trajectory.state_at(start), start));
+      probe.version = sent_;
+      earlier_ = probe.incarnation;
+      return false;
+    }
+    const Time start = sent_->trajectory.start();
+    // Half a lead before the start, or so early that the lead has not begun.
+    const Duration before = is_committed_ ? fact.lead / 2 : fact.lead + kPause / 2;
+    if (probe.incarnation == earlier_ && probe.robot_now() >= start - before) {
+      probe.version.reset();
+      probe.incarnation += 1000;
+    }
+    if (fact.obeyed_incarnation == probe.incarnation && !acknowledged_) acknowledged_ = probe.fact();
+    if (fact.valid_at < start + kAnswerTimeout) return false;
+    const bool is_executed = fact.executing.number == sent_->number;
+    const bool is_stated = acknowledged_ && acknowledged_->executing.number == fact.executing.number;
+    if (is_executed != is_committed_)
+      faults_ += is_committed_ ? "; a version that starts within the lead was discarded"
+                               : "; a version that starts later was executed";
+    if (!acknowledged_)
+      faults_ += "; the new agent was not acknowledged";
+    else if (!is_stated)
+      faults_ += "; the fact that acknowledges the new agent states another version than is executed then";
+    context.stream.forget();
+    sent_.reset();
+    acknowledged_.reset();
+    // A robot whose motors obey at once has no lead.
+    if (!is_committed_ && fact.lead > 2 * probe.cycle()) {
+      is_committed_ = true;
+      return false;
+    }
+    const std::string figures =
+        is_committed_ ? "later ones discarded, one within the lead executed" : "discarded";
+    context.report.rows.push_back(
+        {"pending versions", passed_if(faults_.empty()), faults_.empty() ? figures : faults_.substr(2)});
+    return true;
+  }
+
+ private:
+  bool is_committed_ = false;  ///< the version starts within the lead when the new agent comes
+  std::optional<Version> sent_;
+  Incarnation earlier_ = 0;
+  std::optional<Feedback> acknowledged_;  ///< the first fact that acknowledges the new agent
+  std::string faults_;
+};
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Message = msg::Command;
 using Context = ConformanceContext;
@@ -261,6 +318,7 @@ void lower_incarnation(Message& m, std::uint64_t by) {
 std::unique_ptr<ConformanceStep> make_reports_step() { return std::make_unique<ReportsStep>(); }
 std::unique_ptr<ConformanceStep> make_clock_step() { return std::make_unique<ClockStep>(); }
 std::unique_ptr<ConformanceStep> make_new_agent_step() { return std::make_unique<FenceStep>(); }
+std::unique_ptr<ConformanceStep> make_takeover_step() { return std::make_unique<TakeoverStep>(); }
 std::unique_ptr<ConformanceStep> make_switch_step() { return std::make_unique<SwitchStep>(); }
 
 std::unique_ptr<ConformanceStep> make_fence_step() {

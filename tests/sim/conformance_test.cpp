@@ -154,6 +154,26 @@ TEST_CASE("a robot that ignores fences fails in the row of the fences") {
   CHECK(failed(report) == std::vector<std::string>{"fences"});
 }
 
+TEST_CASE("a robot that obeys new agents late fails in the row of its pending versions") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const Scenario scenario = lone_league_robot();
+  SimNetwork network(seed, kBegin, scenario.network);
+  std::uint64_t obeyed = 0;
+  std::optional<Time> heard_at;
+  const auto obey_late = [&](msg::Command& command) {
+    const std::uint64_t agent = command.header().incarnation();
+    if (agent <= obeyed || !is_plausible(agent, network.now())) return;
+    if (!heard_at) heard_at = network.now();
+    if (obeyed != 0 && network.now() - *heard_at < 300ms) return command.header().incarnation(obeyed);
+    obeyed = agent;
+    heard_at.reset();
+  };
+  DrivenFloor floor(network, scenario, {}, kObeysAfter, seed, obey_late);
+  const ConformanceReport report = examine(network, scenario);
+  INFO("seed " << seed << "\n" << to_text(report));
+  CHECK(failed(report) == std::vector<std::string>{"pending versions"});
+}
+
 TEST_CASE("a robot that nobody drives or sees is not judged further") {
   const Scenario scenario = lone_robot();
   SimNetwork network(1, kBegin, scenario.network);

@@ -363,6 +363,7 @@ const std::set<DropReason> kElsewhere{
     DropReason::kUnsentLeaguePacket,  // needs a network that does not work
     DropReason::kUnstoredCommand,     // adapters/robots_node_test
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test
+    DropReason::kMisdatedOdometry,    // adapters/robots_node_test
     DropReason::kRejectedByBase,      // adapters/league_driver_test
     DropReason::kImplausibleEpoch,    // failover_test: codecs refuse such messages before it
 };

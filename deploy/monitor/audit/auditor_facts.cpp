@@ -226,7 +226,7 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
     fail(fmt::format("ends at {:.6f} m/s instead of at rest", std::hypot(end.vx, end.vy)));
   // The stop brakes at D to rest, after the motion that is under way in motors that obey late.
   const double lead_s = static_cast<double>(std::clamp<std::int64_t>(lead_ns, 0, kMaxMotorLead_ns)) * 1e-9;
-  const AuditPath::Node& braked = lead_ns > 0 ? own_stop.path.phase(1) : own_stop.path.first();
+  const AuditPath::Node braked = own_stop.path.at_s(lead_s);
   const double speed = std::hypot(braked.vx, braked.vy);
   const double expected_s = lead_s + speed / scenario_.limits.deceleration_mps2 + 1e-6;
   if (own_stop.path.duration_s() > 1.01 * expected_s + 0.001)

@@ -1,57 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/adapters/driven_robot.hpp"
 
+#include <functional>
+#include <limits>
+
 #include "tests/catch.hpp"
-#include "tests/unit/common/robot/test_memory.hpp"
+#include "tests/unit/agents/adapters/driven_scene.hpp"
 
 namespace sidestep::driven_robot_test {
-namespace {
 
 using namespace std::chrono_literals;
-
-constexpr RobotId kRobot = 3;
-const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
-
-/// A driven robot whose base does exactly what it is commanded, after the latency.
-struct Scene {
-  explicit Scene(Duration latency = 100ms) { settings.latency = latency; }
-
-  void run(Duration duration) {
-    for (const Time end = now + duration; now < end;) {
-      now += 10ms;
-      const BodyVelocity command = robot.tick(now, memory);
-      commanded.add(now, command);
-      const BodyVelocity obeyed = commanded.mean(now - 10ms, now);
-      position_m += 0.01 * rotated(obeyed.linear_mps, heading_rad + 0.005 * obeyed.turn_radps);
-      heading_rad += 0.01 * obeyed.turn_radps;
-      if (sees) fix();
-    }
-  }
-  void fix() {
-    Command command = bare();
-    command.fix = PoseFix{now - 5ms, position_m, heading_rad};
-    robot.on_command(command, now, memory);
-  }
-  Command bare() const {
-    Command command;
-    command.robot = kRobot;
-    command.incarnation = 100;
-    command.epoch = 1;
-    command.sent_at = now;
-    return command;
-  }
-
-  DriveSettings settings;
-  Time now = kBegin;
-  robot::test::TestMemory memory;
-  DrivenRobot robot{kRobot, settings, {}, kBegin};
-  CommandedMotion commanded{100ms};
-  Vec2 position_m{1.5, -0.7};
-  double heading_rad = 0.4;
-  bool sees = true;
-};
-
-}  // namespace
+using test::kDrivenRobot;
+using Scene = test::DrivenScene;
 
 TEST_CASE(
     "a driven robot stands and is silent until fixes agree on where it is, and then reports its own stop "
@@ -88,7 +48,7 @@ TEST_CASE("a driven robot follows a version that comes in time to its end, turni
   Trajectory trajectory(start, base.trajectory.state_at(start));
   trajectory.append(500ms, Vec2(2, 1));
   append_stop(trajectory, 4);
-  command.version = Version{kRobot, 100, base.number + 1, base.number, trajectory};
+  command.version = Version{kDrivenRobot, 100, base.number + 1, base.number, trajectory};
   command.desired_heading_rad = 2;
   scene.robot.on_command(command, scene.now, scene.memory);
   const auto turn = [&] {
@@ -135,6 +95,133 @@ TEST_CASE("after a pause of its process a driven robot stands until it has found
   scene.run(1s);
   CHECK(scene.robot.may_report());
   CHECK(scene.robot.feedback(scene.now).is_off_reference);
+}
+
+namespace {
+
+/// Sends a version that accelerates for a second and stops, and returns the largest error of the robot's own
+/// estimate while `step` runs each period.
+double drive_and_measure(Scene& scene, const std::function<void()>& step) {
+  const Version base = scene.fact().executing;
+  const Time start = scene.now + 150ms;
+  scene.send(test::continuation(base, scene.agent, base.number + 1, start, Vec2(1.2, 0.5), 1s));
+  double largest_m = 0;
+  for (const Time end = start + 1500ms; scene.now < end;) {
+    step();
+    if (!scene.robot.may_report()) return std::numeric_limits<double>::infinity();
+    largest_m = std::max(largest_m, (scene.fact().estimate.position_m - scene.position_m).norm());
+  }
+  return largest_m;
+}
+
+}  // namespace
+
+TEST_CASE("by its base's odometry a driven robot knows where it is although it obeys only in part") {
+  // Reports are dated between the periods of the control.
+  const auto [report_every, ago] =
+      GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
+  CAPTURE(report_every, ago.count());
+  Scene scene;
+  scene.desired_heading_rad = 2;  // it turns as it drives
+  scene.run(1500ms);
+  scene.desired_heading_rad = 0.4;
+  // By its commands it would be 7 mm farther at the end.
+  scene.obeyed_part = 0.995;
+  scene.sees = false;
+  int periods = 0;
+  const auto report = [&] {
+    scene.step();
+    if (++periods % report_every == 0) scene.report_odometry(0ms, ago);
+  };
+  for (int i = 0; i < 20; ++i) report();
+  CHECK(drive_and_measure(scene, report) < 0.001);
+  CHECK(scene.robot.side().own_stops() == 1);
+  CHECK(scene.robot.misdated_odometry() == 0);
+}
+
+TEST_CASE("fixes that are newer than the odometry count when that has come") {
+  Scene scene;
+  scene.run(1500ms);
+  // The base is pushed, of which its odometry knows nothing.
+  for (int i = 0; i < 10; ++i) {
+    scene.step();
+    scene.report_odometry();
+  }
+  const Vec2 push_m(0.004, 0);
+  const Vec2 before_m = scene.fact().estimate.position_m;
+  scene.position_m += push_m;
+  for (int i = 0; i < 20; ++i) {
+    scene.step();
+    scene.robot.on_odometry({kDrivenRobot, scene.now, scene.position_m - push_m, scene.heading_rad},
+                            scene.now);
+  }
+  CHECK((scene.fact().estimate.position_m - before_m - push_m).norm() < 0.001);
+}
+
+TEST_CASE("odometry whose dates are wrong is counted, and does not mislead a driven robot") {
+  const Duration date_error = GENERATE(-150ms, -100ms, -40ms, -10ms, 10ms, 40ms, 100ms, 150ms);
+  CAPTURE(date_error.count());
+  Scene scene;
+  scene.run(1500ms);
+  scene.sees = false;
+  std::uint64_t reports = 0;
+  const double error_m = drive_and_measure(scene, [&] {
+    scene.step();
+    scene.report_odometry(date_error);
+    ++reports;
+  });
+  CHECK(error_m < 0.002);
+  CHECK(scene.robot.misdated_odometry() == reports);
+  CHECK_FALSE(scene.robot.side().has_pending());
+}
+
+TEST_CASE("a clock of a base that is set back during the drive misleads a driven robot for a moment only") {
+  Scene scene;
+  scene.run(1500ms);
+  scene.sees = false;
+  std::uint64_t reports = 0;
+  const double error_m = drive_and_measure(scene, [&] {
+    scene.step();
+    scene.report_odometry(++reports > 50 ? -80ms : 0ms);
+  });
+  CHECK(error_m < 0.01);
+  CHECK(scene.robot.misdated_odometry() > 50);
+}
+
+TEST_CASE("a driven robot is less certain where its odometry is not believed") {
+  const auto error_after = [](Duration date_error) {
+    Scene scene;
+    scene.run(1500ms);
+    for (int i = 0; i < 150; ++i) {
+      scene.sees = i < 50;
+      scene.step();
+      scene.report_odometry(date_error);
+    }
+    return scene.fact().uncertainty.position_error_rms_m;
+  };
+  CHECK(error_after(100ms) > 3 * error_after(0ms));
+}
+
+TEST_CASE("a driven robot whose odometry is no number stands and is silent until it has found its pose") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Scene scene;
+  scene.run(1500ms);
+  const Version base = scene.fact().executing;
+  const Time start = scene.now + 150ms;
+  scene.send(test::continuation(base, scene.agent, base.number + 1, start, Vec2(2, 0), 300ms));
+  scene.run(300ms);
+  scene.robot.on_odometry({kDrivenRobot, scene.now, {0, 0}, 0}, scene.now);
+  scene.step();
+  scene.robot.on_odometry({kDrivenRobot, scene.now, {nan, 0}, 0}, scene.now);
+  for (int i = 0; i < 20 && scene.robot.may_report(); ++i) scene.step();
+  CHECK_FALSE(scene.robot.may_report());
+  CHECK(scene.commanded.latest().linear_mps == Vec2(0, 0));
+  scene.run(100ms);
+  CHECK_FALSE(scene.robot.may_report());
+  scene.run(1s);
+  REQUIRE(scene.robot.may_report());
+  CHECK(scene.fact().is_off_reference);
+  CHECK((scene.fact().estimate.position_m - scene.position_m).norm() < 0.002);
 }
 
 }  // namespace sidestep::driven_robot_test

@@ -27,6 +27,24 @@ TEST_CASE("a base's velocity follows from its odometry, whatever the frame of th
   CHECK_FALSE(measured.at(begin - 5ms));
 }
 
+TEST_CASE("a base that moves and turns moves in the direction that it has in the middle of an interval") {
+  const Time begin = time_from_ns(1'000'000'000'000);
+  const double turn_radps = GENERATE(-2.5, 2.5);
+  MeasuredMotion measured;
+  Vec2 position_m(3, 4);
+  double heading_rad = 0.7;
+  for (int ms = 0; ms <= 200; ++ms) {
+    if (ms % 20 == 0) measured.add({3, begin + ms * 1ms, position_m, heading_rad});
+    position_m += 0.001 * rotated(Vec2(0.5, 0.2), heading_rad + 0.0005 * turn_radps);
+    heading_rad += 0.001 * turn_radps;
+  }
+  const auto velocity = measured.at(begin + 110ms);
+  REQUIRE(velocity);
+  CHECK(velocity->linear_mps.x() == Approx(0.5).margin(0.001));
+  CHECK(velocity->linear_mps.y() == Approx(0.2).margin(0.001));
+  CHECK(velocity->turn_radps == Approx(turn_radps));
+}
+
 TEST_CASE("reports of odometry that come late or after a long gap give no velocity") {
   const Time begin = time_from_ns(1'000'000'000'000);
   MeasuredMotion measured;

@@ -19,7 +19,11 @@ constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 class IdleDriver : public Driver {
  public:
   void send(std::span<const BaseCommand> commands) override { periods += commands.size() == 2; }
+  void on_odometry(std::function<void(const OdometryReport&)> callback) override {
+    report = std::move(callback);
+  }
   int periods = 0;
+  std::function<void(const OdometryReport&)> report;
 };
 
 /// Two robots that stand, and their agents.
@@ -80,6 +84,21 @@ TEST_CASE("driven robots report at least once per cycle, and at once when they o
   CHECK(time_from_ns(scene.facts.front().header().stamp_ns()) - sent < 2ms);
   CHECK(scene.node->is_commanded());
   CHECK(scene.driver.periods > 100);
+}
+
+TEST_CASE("odometry that is dated wrongly is counted for its robot") {
+  Scene scene;
+  scene.run(100ms);
+  const Time now = scene.network.now();
+  scene.driver.report({4, now, {0, 0}, 0});
+  scene.driver.report({7, now + 100ms, {0, 0}, 0});
+  scene.driver.report({7, now - 100ms, {0, 0}, 0});
+  scene.driver.report({99, now + 100ms, {0, 0}, 0});
+  CHECK(scene.node->robot(0).misdated_odometry() == 0);
+  CHECK(scene.node->robot(1).misdated_odometry() == 2);
+  DropCounters drops;
+  scene.node->count_drops(drops);
+  CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
 }
 
 TEST_CASE("robots that restart remember whom they obey, and count what they cannot store") {

@@ -2,6 +2,7 @@
 #include "common/robot/robot_side.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "common/messaging/version_codec.hpp"
@@ -124,7 +125,7 @@ TEST_CASE("a robot whose motors obey late refuses versions that start too soon f
   CHECK(side.facts(at_ms(101)).lead_ns == 100'000'000);
 }
 
-TEST_CASE("a robot whose motors obey late includes the motion under way in its own stop") {
+TEST_CASE("a robot whose motors obey late begins its own stop with the motion under way") {
   TestMemory memory;
   Settings<double> settings;
   settings.actuation_lead_ns = 100'000'000;
@@ -132,17 +133,147 @@ TEST_CASE("a robot whose motors obey late includes the motion under way in its o
   side.begin_at_rest(0, 0);
   Estimate<double> estimate;
   estimate.position_m = {1, 0};
-  estimate.velocity_mps = {1, 0};
-  estimate.coming_velocity_mps = {1.5, 0};
+  estimate.velocity_mps = {0.9, 0};
+  estimate.position_error_rms_m = 0.001;
+  estimate.jump_m = 0.002;
+  estimate.under_way.from_mps = {1, 0};
+  estimate.under_way.part_count = 2;
+  estimate.under_way.parts[0] = {60'000'000, {1.6, 0}};
+  estimate.under_way.parts[1] = {40'000'000, {1.2, 0.5}};
+  estimate.under_way.error_m = 0.003;
+  REQUIRE(side.is_stop_due(at_ms(1), estimate));
   side.check_reference(at_ms(1), estimate, memory);
   REQUIRE(side.is_off_reference());
   const Version& stop = side.executing();
-  REQUIRE(stop.phase_count == 2);
-  const auto before_braking = motion_at<double>(stop, at_ms(101));
-  CHECK(before_braking.velocity_mps.x == Approx(1.5));
-  CHECK(before_braking.position_m.x == Approx(1.125));
-  CHECK(stop.end_ns() == at_ms(401));
-  CHECK(motion_at<double>(stop, at_ms(401)).position_m.x == Approx(1.35));
+  REQUIRE(stop.phase_count == 3);
+  CHECK(stop.vx_mps == 1);
+  const auto between = motion_at<double>(stop, at_ms(61)), braked = motion_at<double>(stop, at_ms(101));
+  CHECK(between.velocity_mps.x == Approx(1.6));
+  CHECK(between.position_m.x == Approx(1 + 0.078));
+  CHECK(braked.velocity_mps.x == Approx(1.2));
+  CHECK(braked.velocity_mps.y == Approx(0.5));
+  CHECK(braked.position_m.x == Approx(1 + 0.078 + 0.056));
+  CHECK(braked.position_m.y == Approx(0.01));
+  CHECK(stop.end_ns() == at_ms(101 + 260));  // from 1.3 m/s
+  CHECK(stop.inflation_m == Approx(0.007));
+}
+
+TEST_CASE("a robot whose motors obey at once ignores motion under way in its own stop") {
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  side.begin_at_rest(0, 0);
+  Estimate<double> estimate;
+  estimate.position_m = {1, 0};
+  estimate.velocity_mps = {1, 0};
+  estimate.under_way.from_mps = {2, 0};
+  estimate.under_way.part_count = 1;
+  estimate.under_way.parts[0] = {60'000'000, {1.6, 0}};
+  estimate.under_way.error_m = 0.003;
+  side.check_reference(at_ms(1), estimate, memory);
+  REQUIRE(side.executing().phase_count == 1);
+  CHECK(side.executing().vx_mps == 1);
+  CHECK(side.executing().inflation_m == 0);
+}
+
+TEMPLATE_TEST_CASE("a robot whose estimate of its place or motion is no number has no pose", "", float,
+                   double) {
+  using Number = std::numeric_limits<TestType>;
+  const TestType bad = GENERATE(Number::quiet_NaN(), Number::infinity(), -Number::infinity());
+  const int field = GENERATE(range(0, 7));
+  CAPTURE(bad, field);
+  TestMemory memory;
+  Settings<TestType> settings;
+  settings.actuation_lead_ns = field < 4 ? 0 : 50'000'000;
+  RobotSide<TestType> side(settings, {});
+  side.begin_at_rest(0, 0);
+  REQUIRE(side.may_report());
+  Estimate<TestType> estimate;
+  // The motion under way is read for an own stop only.
+  if (field >= 4) estimate.position_m.x = 1;
+  estimate.under_way.part_count = 1;
+  estimate.under_way.parts[0].duration_ns = 50'000'000;
+  TestType* const fields[] = {&estimate.position_m.x,
+                              &estimate.position_m.y,
+                              &estimate.velocity_mps.x,
+                              &estimate.velocity_mps.y,
+                              &estimate.under_way.from_mps.x,
+                              &estimate.under_way.from_mps.y,
+                              &estimate.under_way.parts[0].end_velocity_mps.y};
+  *fields[field] = bad;
+  side.check_reference(at_ms(1), estimate, memory);
+  CHECK_FALSE(side.has_pose());
+  CHECK_FALSE(side.may_report());
+  CHECK_FALSE(side.is_off_reference());
+  // It accepts nothing until it has found its pose, and makes an own stop there.
+  const Version version = rest_version(101, 0, 50);
+  CHECK(side.on_command(command(100, 1, &version), at_ms(2), memory));
+  CHECK_FALSE(side.has_pending());
+  side.find_pose();
+  Estimate<TestType> found;
+  found.position_m.x = 2;
+  side.check_reference(at_ms(3), found, memory);
+  CHECK(side.may_report());
+  CHECK(side.is_off_reference());
+  CHECK(side.executing().x_m == 2);
+}
+
+TEMPLATE_TEST_CASE("a robot that does not know how far it may be off stops, inflated by the most", "", float,
+                   double) {
+  const TestType nan = std::numeric_limits<TestType>::quiet_NaN();
+  TestMemory memory;
+  RobotSide<TestType> side({}, {});
+  side.begin_at_rest(0, 0);
+  Estimate<TestType> estimate;
+  SECTION("because its error is no number") {
+    estimate.position_m.x = TestType(0.004);  // within the bound, if nothing were uncertain
+    estimate.position_error_rms_m = nan;
+    REQUIRE(side.needs_uncertainty(at_ms(1), estimate.position_m));
+  }
+  SECTION("because its displacement is no number") {
+    estimate.position_m.x = TestType(0.0031);
+    estimate.jump_m = nan;
+  }
+  CHECK(side.is_stop_due(at_ms(1), estimate));
+  side.check_reference(at_ms(1), estimate, memory);
+  CHECK(side.is_off_reference());
+  CHECK(side.executing().inflation_m == 1);
+}
+
+TEST_CASE("a robot does not plan to switch to a version that it will refuse") {
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  side.begin_at_rest(0, 0);
+  const Version first = rest_version(105, 0, 20), lower = rest_version(104, 105, 40),
+                next = rest_version(106, 105, 60);
+  for (const Version* version : {&first, &lower, &next})
+    REQUIRE(side.on_command(command(100, 1, version), at_ms(1), memory));
+  for (std::int64_t ms = 2; ms < 80; ++ms) {
+    const std::uint64_t planned = side.planned(at_ms(ms + 5)).number;
+    RobotSide<double> later = side;
+    CHECK(planned == later.facts(at_ms(ms + 5)).executing->number);
+    while (side.switch_next(at_ms(ms))) {
+    }
+  }
+  CHECK(side.executing().number == 106);
+}
+
+TEST_CASE("a robot that is switched off and on in somebody's hand is put down at its rest version") {
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  side.begin_at_rest(0, 0);
+  side.lift(at_ms(1), 0, 0);
+  side.switch_on();
+  Version place = rest_version(101, 0, 20);
+  place.x_m = 3;
+  REQUIRE(side.on_command(command(100, 1, &place), at_ms(10), memory));
+  REQUIRE(side.facts(at_ms(20)).executing->number == 101);
+  side.put_down();
+  Estimate<double> there;
+  there.position_m.x = 3;
+  side.check_reference(at_ms(30), there, memory);
+  CHECK_FALSE(side.is_off_reference());
+  CHECK(side.own_stops() == 0);
+  CHECK(side.facts(at_ms(31)).executing->number == 101);
 }
 
 TEST_CASE("a robot without a pose accepts no version") {

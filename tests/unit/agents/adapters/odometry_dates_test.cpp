@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/odometry_dates.hpp"
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::odometry_dates_test {
+
+using namespace std::chrono_literals;
+
+constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+TEST_CASE("dates are believed once a report has arrived at its date, and not for ever") {
+  OdometryDates dates(4ms);
+  CHECK_FALSE(dates.is_believed(kBegin, kBegin + 10ms));
+  CHECK(dates.is_believed(kBegin + 20ms, kBegin + 24ms));
+  CHECK(dates.is_believed(kBegin + 30ms, kBegin + 50ms));
+  CHECK_FALSE(dates.is_believed(kBegin + 30ms, kBegin + 51ms));
+  CHECK(dates.is_believed(kBegin + 500ms, kBegin + 510ms));
+  CHECK_FALSE(dates.is_believed(kBegin + 520ms, kBegin + 530ms));
+}
+
+TEST_CASE("what comes from the future is refused, and nothing is believed until another proof") {
+  OdometryDates dates(4ms);
+  CHECK(dates.is_believed(kBegin, kBegin));
+  CHECK(dates.is_believed(kBegin + 14ms, kBegin + 10ms));
+  CHECK_FALSE(dates.is_believed(kBegin + 25ms, kBegin + 20ms));
+  CHECK_FALSE(dates.is_believed(kBegin + 20ms, kBegin + 30ms));
+  CHECK(dates.is_believed(kBegin + 40ms, kBegin + 40ms));
+}
+
+TEST_CASE("a base whose clock is off by more than the error and the delay is never believed") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const Duration max_error = from_seconds(rng.uniform(0.001, 0.006));
+    const Duration least_delay = from_seconds(rng.uniform(0, 0.003)),
+                   jitter = from_seconds(rng.uniform(0, 0.005));
+    const Duration behind = from_seconds(rng.uniform(0.001, 0.2));
+    const bool is_ahead = rng.chance(0.5);
+    // Of a clock that is ahead, the delay hides a part.
+    const Duration offset = is_ahead ? max_error + least_delay + jitter + behind : -max_error - behind;
+    OdometryDates dates(max_error);
+    Time now = kBegin;
+    for (int i = 0; i < 300; ++i) {
+      now += 20ms;
+      const Duration delay = least_delay + from_seconds(rng.uniform(0, to_seconds(jitter)));
+      REQUIRE_FALSE(dates.is_believed(now + offset, now + delay));
+    }
+  }
+}
+
+}  // namespace sidestep::odometry_dates_test

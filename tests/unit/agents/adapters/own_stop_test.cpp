@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// The own stop of a robot whose motors obey late contains the motion that is under way.
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/catch.hpp"
+#include "tests/unit/agents/adapters/driven_scene.hpp"
+
+namespace sidestep::own_stop_test {
+namespace {
+
+using namespace std::chrono_literals;
+using test::beyond_m;
+using test::continuation;
+using test::DrivenScene;
+
+/// How far the body comes out of the robot's first own stop after `before`, and its inflation, within a
+/// second.
+struct Excursion {
+  std::optional<Version> stop;
+  double beyond_m = 0;
+
+  void follow(DrivenScene& scene, VersionNumber before) {
+    for (int i = 0; i < 150; ++i) {
+      scene.step();
+      const Feedback fact = scene.fact();
+      if (!stop && fact.is_off_reference && fact.executing.number != before) stop = fact.executing;
+      if (stop) beyond_m = std::max(beyond_m, test::beyond_m(*stop, scene.position_m, scene.now));
+    }
+  }
+};
+
+constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
+
+}  // namespace
+
+TEST_CASE("a push before a short version leaves the body within the robot's own stop") {
+  const Duration latency = GENERATE(0ms, 50ms, 100ms, 150ms, 200ms, 300ms);
+  DrivenScene scene(latency);
+  scene.run(1500ms);
+  REQUIRE(scene.robot.may_report());
+  const Version base = scene.fact().executing;
+  const Time start = scene.now + latency + 30ms;
+  // It is over when the first of its motion is obeyed.
+  scene.send(continuation(base, scene.agent, base.number + 1, start, Vec2(3, 0), latency * 5 / 8 + 1ms));
+  scene.run(start - 10ms - scene.now);
+  REQUIRE(scene.fact().executing.number == base.number);
+  scene.position_m += Vec2(0.006, 0);
+  Excursion excursion;
+  excursion.follow(scene, base.number);
+  INFO("latency " << to_seconds(latency) << " s");
+  REQUIRE(excursion.stop);
+  CHECK(excursion.beyond_m <= kTrackingBound_m);
+}
+
+namespace {
+
+Duration random_latency(Rng& rng) {
+  const Duration whole = 10ms * static_cast<int>(rng.below(31));
+  const bool is_odd = rng.chance(0.5);
+  const Duration part = from_seconds(rng.uniform(0, 0.01));
+  return std::min<Duration>(is_odd ? whole + part : whole, CommandedMotion::kMaxLatency);
+}
+
+/// Drives a robot at random and pushes it once. Nullopt if it made an own stop without a push.
+std::optional<Excursion> push_at_random(std::uint64_t seed) {
+  Rng rng(seed);
+  DrivenScene scene(random_latency(rng));
+  const Duration latency = scene.commanded.latency();
+  scene.run(1200ms);
+  Version last = scene.fact().executing;
+  const VersionNumber first_stop = last.number;
+  const Time push_at = scene.now + from_seconds(rng.uniform(0, 2.5));
+  Vec2 aim_mps2(0, 0);
+  for (Time next = scene.now; scene.now < push_at; scene.step()) {
+    if (scene.now < next) continue;
+    // Agents propose about so long ahead, and hold an acceleration for about as long.
+    const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));
+    if (rng.chance(0.4)) {
+      const double size_mps2 = rng.uniform(0, 5), angle_rad = rng.uniform(-3.14, 3.14);
+      aim_mps2 = rotated(Vec2(size_mps2, 0), angle_rad);
+    }
+    if (rng.chance(0.3)) scene.desired_heading_rad = rng.uniform(-3.14, 3.14);
+    last = continuation(last, scene.agent, last.number + 1, scene.now + ahead, aim_mps2, ahead);
+    scene.send(last);
+    next = last.trajectory.start() + (rng.chance(0.1) ? 300ms : 0ms);
+  }
+  if (scene.fact().is_off_reference && scene.fact().executing.number != first_stop) return std::nullopt;
+  const VersionNumber before = scene.fact().executing.number;
+  const double push_m = rng.uniform(0, 0.02), angle_rad = rng.uniform(-3.14, 3.14);
+  scene.position_m += rotated(Vec2(push_m, 0), angle_rad);
+  Excursion excursion;
+  excursion.follow(scene, before);
+  return excursion;
+}
+
+void check_pushes(std::uint64_t first, std::uint64_t count) {
+  std::uint64_t stops = 0, unprovoked = 0, beyond = 0, worst_seed = 0;
+  double worst_m = 0, inflations_m = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    const auto excursion = push_at_random(seed);
+    unprovoked += !excursion;
+    if (!excursion || !excursion->stop) continue;
+    ++stops;
+    inflations_m += excursion->stop->inflation_m;
+    beyond += excursion->beyond_m > kTrackingBound_m;
+    if (excursion->beyond_m > worst_m) worst_m = excursion->beyond_m, worst_seed = seed;
+  }
+  WARN(stops << " own stops, inflated by " << 1e3 * inflations_m / static_cast<double>(stops)
+             << " mm on average; " << beyond << " bodies beyond, at most " << 1e3 * worst_m << " mm, seed "
+             << worst_seed << "; " << unprovoked << " stops without a push");
+  CHECK(beyond == 0);
+  CHECK(unprovoked == 0);
+  CHECK(stops > count / 2);
+}
+
+}  // namespace
+
+TEST_CASE("whenever a robot is pushed, its body stays within its own stop") { check_pushes(1, 2000); }
+
+TEST_CASE("the same for a hundred thousand pushes", "[.]") { check_pushes(1'000'000, 100'000); }
+
+}  // namespace sidestep::own_stop_test
