@@ -67,7 +67,7 @@ bool is_passively_safe_from_hidden(const Trajectory& trajectory, const HiddenSpa
       const State here = state_after(state, phase.acceleration_mps2, std::min(at_s, seconds));
       const Time then = t + from_seconds(std::min(at_s, seconds));
       const double room_m = hidden.distance_m(here.position_m, then) - separation_m;
-      if (room_m <= kTolerance_m) return false;
+      if (!(room_m > kTolerance_m)) return false;
       if (at_s >= seconds) break;
       at_s += room_m / closing_mps;
     }

@@ -30,7 +30,7 @@ double UncontrolledBody::distance_from_path_m(const Vec2& position_m) const {
 double UncontrolledBody::required_distance_m(const Vec2& position_m) const {
   if (velocity_mps.isZero(0)) return kUnknownDirection_m;
   const double ahead_m = (position_m - reach.position_m).dot(velocity_mps) / velocity_mps.norm();
-  return separation_m + kAllowance_m + kSpread * std::max(0.0, ahead_m);
+  return separation_m + kAllowance_m + kSpread * std::max(ahead_m, 0.0);
 }
 
 double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body) {
@@ -74,7 +74,7 @@ bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& 
   const double out_m = distance_m - body.distance_from_path_m(stop_m);
   const double towards_m =
       body.velocity_mps.isZero(0) ? 0 : (stop_m - rest_m).dot(body.velocity_mps) / body.velocity_mps.norm();
-  return out_m >= std::max(0.0, towards_m);
+  return out_m >= std::max(towards_m, 0.0);
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separatio
     if (!rests_well(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
     if (is_passively_safe(candidate, body.reach, min_separation_m)) continue;
     if (stop_spare_m_[i] >= 0) return false;
-    const double min_spare_m = std::min(0.0, stop_spare_m_[i] + kGain_m);
+    const double min_spare_m = std::min(stop_spare_m_[i] + kGain_m, 0.0);
     if (!avoids_by_driving_on(candidate, body, min_spare_m, deceleration_mps2)) return false;
   }
   return true;

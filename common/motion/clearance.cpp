@@ -139,12 +139,16 @@ double min_squared_distance(const RelativeMotion& motion) {
   return minimum;
 }
 
+/// The minimum, or a NaN if a motion that has led to this position had numbers that are none: std::min
+/// ignores them.
+double or_nan(double minimum, const Vec2& last_m) { return minimum + 0 * last_m.squaredNorm(); }
+
 /// Conservative: false only if the motion along the line of centres cannot come within `far_m`.
 bool may_come_within(const RelativeMotion& motion, double far_m) {
   const double distance = motion.d.norm();
-  const double closing = std::min(0.0, motion.seconds * motion.d.dot(motion.v)) +
-                         std::min(0.0, 0.5 * motion.seconds * motion.seconds * motion.d.dot(motion.a));
-  return distance * distance + closing < (far_m + kClearanceTolerance_m) * distance;
+  const double closing = std::min(motion.seconds * motion.d.dot(motion.v), 0.0) +
+                         std::min(0.5 * motion.seconds * motion.seconds * motion.d.dot(motion.a), 0.0);
+  return !(distance * distance + closing >= (far_m + kClearanceTolerance_m) * distance);
 }
 
 /// The minimum squared distance over the phases of the relative motion. Ends early when `stop(squared
@@ -165,7 +169,7 @@ double min_squared_distance(const Trajectory& a, const Trajectory& b, double far
     cursor_b.advance(step);
     minimum = std::min(minimum, (cursor_a.state().position_m - cursor_b.state().position_m).squaredNorm());
   }
-  return minimum;
+  return or_nan(minimum, cursor_a.state().position_m - cursor_b.state().position_m);
 }
 
 /// The minimum squared distance of a motion from an edge while it moves parallel to it, and 0 if it crosses
@@ -216,7 +220,7 @@ double min_squared_distance(const Trajectory& a, std::span<const Vec2> corners, 
     cursor.advance(step);
     add_position();
   }
-  return minimum;
+  return or_nan(minimum, cursor.state().position_m);
 }
 
 /// The corners of any shape but a circle.
@@ -282,7 +286,7 @@ bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m) 
   }
   const double far_m = std::max(min_separation_m, 0.0) + kClearanceTolerance_m;
   const double distance_m = signed_distance(a.at_start().position_m, shape);
-  if (distance_m <= 0) return false;
+  if (!(distance_m > 0)) return false;
   if (distance_m >= far_m + reach_m(a)) return true;
   const Corners corners(shape);
   const double min_squared = far_m * far_m;

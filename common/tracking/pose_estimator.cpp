@@ -146,7 +146,8 @@ bool PoseEstimator::detect_displacement(const Innovation& latest) {
     const Vec2 &later = recent_innovations_[count - 1].offset_m,
                &earlier = recent_innovations_[count].offset_m;
     const double larger = std::max(later.squaredNorm(), earlier.squaredNorm());
-    if (later.dot(earlier) < kMinAgreement * larger) return false;
+    const bool do_disagree = later.dot(earlier) < kMinAgreement * larger;
+    if (do_disagree) return false;
     sum.offset_m += earlier;
     sum.variance_m2 += recent_innovations_[count].variance_m2;
     if (!(sum.offset_m.squaredNorm() <= kJumpDeviations * kJumpDeviations * sum.variance_m2)) {

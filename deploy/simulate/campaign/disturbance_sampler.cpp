@@ -75,7 +75,17 @@ class DisturbanceSampler {
     }
     Place place{robot, {}, angle_rad()};
     while (place.places_m.size() < kPlaces) place.places_m.push_back(positions_.sample());
-    add(times_.after(at, log_uniform(0.05, 10)), std::move(place));
+    const Duration ready = rng_.chance(0.3) ? sample_restart_in_hand(robot, at) : at;
+    add(times_.after(ready, log_uniform(0.05, 10)), std::move(place));
+  }
+
+  /// Somebody changes the battery of a lifted robot. When it is on again.
+  Duration sample_restart_in_hand(RobotId robot, Duration lifted_at) {
+    const Duration off = times_.after(lifted_at, log_uniform(0.02, 1));
+    const Duration on = times_.after(off, log_uniform(0.02, 4));
+    add(off, robot, Kind::DISTURBANCE_SWITCH_OFF);
+    add(on, robot, Kind::DISTURBANCE_SWITCH_ON);
+    return on;
   }
 
   /// A robot loses power for a moment, or longer; then somebody carries it away or takes it off the

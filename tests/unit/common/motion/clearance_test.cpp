@@ -143,6 +143,22 @@ TEST_CASE("the clearance covers all time, long after both trajectories have ende
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
 }
 
+TEST_CASE("a motion with numbers that are none is clear of nothing, however far away") {
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  const Trajectory far = Trajectory::resting(kBegin, {40, 30});
+  const Trajectory good = moving(kBegin, {0, 0}, {1, 0.5}, {0.5, 0}, 0.3);
+  REQUIRE(is_clear(good, far, 0.2));
+  const Trajectory spoilt[] = {
+      moving(kBegin, {bad, 0}, {1, 0.5}, {0.5, 0}, 0.3), moving(kBegin, {0, bad}, {1, 0.5}, {0.5, 0}, 0.3),
+      moving(kBegin, {0, 0}, {bad, 0.5}, {0.5, 0}, 0.3), moving(kBegin, {0, 0}, {1, 0.5}, {0.5, bad}, 0.3)};
+  for (const Trajectory& trajectory : spoilt) {
+    CHECK_FALSE(is_clear(trajectory, far, 0.2));
+    CHECK_FALSE(is_clear(far, trajectory, 0.2));
+    CHECK_FALSE(is_clear(trajectory, Shape(Circle{{40, 30}, 0.1}), 0.2));
+    CHECK_FALSE(is_clear(trajectory, Shape(Box{{39, 29}, {41, 31}}), 0.2));
+  }
+}
+
 TEST_CASE("a static disc equals a robot at rest") {
   Rng rng(31);
   for (int i = 0; i < 10'000; ++i) {

@@ -36,6 +36,30 @@ TEST_CASE("random scenes have the specified size and density, and no two are ali
   CHECK(max_robots == 30);
 }
 
+TEST_CASE("random disturbances include robots that are switched off and on in somebody's hand") {
+  int restarts = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    std::map<RobotId, std::vector<msg::DisturbanceKind>> kinds;
+    std::set<RobotId> placed;
+    const Trial trial = sample_trial(seed, 60s, std::nullopt);
+    for (const TimedFault& timed : trial.plan.faults) {
+      if (const auto* disturbance = std::get_if<RobotDisturbance>(&timed.fault))
+        kinds[disturbance->robot].push_back(disturbance->kind);
+      if (const auto* place = std::get_if<Place>(&timed.fault)) placed.insert(place->robot);
+    }
+    for (const auto& [robot, sequence] : kinds) {
+      const auto lifted = std::ranges::find(sequence, msg::DisturbanceKind::DISTURBANCE_LIFT);
+      const auto on = std::find(lifted, sequence.end(), msg::DisturbanceKind::DISTURBANCE_SWITCH_ON);
+      if (on == sequence.end()) continue;
+      ++restarts;
+      CHECK(std::find(lifted, on, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF) != on);
+      CHECK(placed.contains(robot));
+    }
+  }
+  CHECK(restarts >= 5);
+}
+
 TEST_CASE("random faults stay within their bounds, include every kind, and end before the fault-free end") {
   std::map<std::size_t, int> kinds;
   int one_way = 0, two_way = 0;
