@@ -134,6 +134,17 @@ bool may_order(std::uint32_t client, const msg::OrderTerms& terms, std::size_t p
 
 }  // namespace
 
+// An order's number and client determine its contents.
+bool have_same_orders(const OrderPage& a, const OrderPage& b) {
+  const auto is_same = [](const RememberedOrder& x, const RememberedOrder& y) {
+    return x.order.number == y.order.number && x.order.client == y.order.client &&
+           x.order.robot == y.order.robot && x.order.kind == y.order.kind &&
+           x.order.zone_number == y.order.zone_number && x.progress.state == y.progress.state &&
+           x.progress.goal_index == y.progress.goal_index;
+  };
+  return &a == &b || std::ranges::equal(a.orders, b.orders, is_same);
+}
+
 std::optional<Order> decode(const msg::Order& message, Time now) {
   const std::uint32_t client = message.header().sender();
   const auto& poses = message.poses();
@@ -165,6 +176,7 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
     page.orders.push_back({std::move(*order), {remembered.order_state(), remembered.pose_index()}});
   }
   if (!poses.empty()) return std::nullopt;
+  page.incarnation = message.header().incarnation();
   return page;
 }
 

@@ -11,7 +11,7 @@
 namespace sidestep {
 
 /// More pages than the orders of kMaxRobots robots and all holds and zones need.
-inline constexpr std::uint32_t kMaxOrderPages = 256;
+inline constexpr std::uint32_t kMaxOrderPages = 512;
 
 /// Codecs refuse zones with more corners.
 inline constexpr std::size_t kMaxZoneCorners = 16;
@@ -25,7 +25,11 @@ struct OrderPage {
   std::uint32_t index = 0;
   std::uint32_t count = 0;  ///< of the sender's pages; 0: these orders have changed
   std::vector<RememberedOrder> orders;
+  Incarnation incarnation = 0;  ///< of the process
 };
+
+/// Whether two pages list the same orders with the same progress.
+[[nodiscard]] bool have_same_orders(const OrderPage& a, const OrderPage& b);
 
 /// What an agent does with its robot's order; see OrderStatus in idl/order.idl.
 struct OrderReport {

@@ -39,35 +39,178 @@ OrderBook::Place OrderBook::place_of(const Order& order) {
   return {Kind::kZone, kAllRobots, order.client, order.zone_number};
 }
 
+void OrderBook::count(const Place& place, const Order& order, bool is_added) {
+  const auto rank = static_cast<std::size_t>(rank_of(order.client));
+  const auto change = [&](std::size_t& counter) { counter += is_added ? std::size_t{1} : ~std::size_t{0}; };
+  const auto age = [&](Lifted& lifted) {
+    if (is_added)
+      lifted.by_age.emplace(order.number, place);
+    else
+      lifted.by_age.erase({order.number, place});
+  };
+  switch (order.kind) {
+    case msg::OrderKind::ORDER_HOLD:
+      return change(holds_[rank]);
+    case msg::OrderKind::ORDER_ZONE:
+      return change(zones_[rank]);
+    case msg::OrderKind::ORDER_REMOVE_ZONE:
+      return age(removals_);
+    case msg::OrderKind::ORDER_RESUME:
+      if (rank_of(order.client) == Rank::kClient) age(resumes_);
+      return;
+    case msg::OrderKind::ORDER_GO:
+    case msg::OrderKind::ORDER_CANCEL:
+      return;
+  }
+}
+
+void OrderBook::store(const Place& place, const RememberedOrder& order) {
+  const auto known = orders_.find(place);
+  if (known != orders_.end()) remove(known);
+  orders_.emplace(place, order);
+  count(place, order.order, true);
+}
+
+void OrderBook::remove(std::map<Place, RememberedOrder>::iterator entry) {
+  count(entry->first, entry->second.order, false);
+  orders_.erase(entry);
+}
+
 bool OrderBook::has_room(const Order& order) const {
-  const Kind kind = std::get<Kind>(place_of(order));
-  if (kind == Kind::kDrive) return true;  // one for each robot and rank
-  const auto first_hold = orders_.lower_bound({Kind::kHold, 0, 0, 0});
-  const auto first_zone = orders_.lower_bound({Kind::kZone, 0, 0, 0});
-  const bool is_zone = kind == Kind::kZone;
-  const auto count =
-      is_zone ? std::distance(first_zone, orders_.end()) : std::distance(first_hold, first_zone);
-  const std::size_t limit = is_zone ? kMaxZones : kMaxHolds;
-  return static_cast<std::size_t>(count) < (rank_of(order.client) > Rank::kClient ? 2 * limit : limit);
+  const Rank rank = rank_of(order.client);
+  const auto known = orders_.find(place_of(order));
+  const bool stands = known != orders_.end() && known->second.order.kind == order.kind;
+  if (stands) return true;  // and is replaced
+  if (order.kind == msg::OrderKind::ORDER_ZONE) return zones_[static_cast<std::size_t>(rank)] < kMaxZones;
+  const bool is_bounded = order.kind == msg::OrderKind::ORDER_HOLD && rank == Rank::kClient;
+  return !is_bounded || holds_[static_cast<std::size_t>(rank)] < kMaxHolds;
+}
+
+bool OrderBook::may_be_forgotten(const Order& order) const {
+  if (orders_.contains(place_of(order))) return false;
+  if (order.kind == msg::OrderKind::ORDER_ZONE) return order.number <= removals_.forgotten_number;
+  return order.kind == msg::OrderKind::ORDER_HOLD && rank_of(order.client) == Rank::kClient &&
+         order.number <= resumes_.forgotten_number;
+}
+
+bool OrderBook::is_redundant(const Order& resume) const {
+  const Place own = place_of(resume);
+  return std::ranges::any_of(std::array{resume.robot, kAllRobots}, [&](RobotId scope) {
+    return std::ranges::any_of(std::array{resume.client, kOperator}, [&](ClientId client) {
+      const Place place{Kind::kResume, scope, client, 0};
+      const auto found = orders_.find(place);
+      return place != own && found != orders_.end() && found->second.order.number >= resume.number;
+    });
+  });
+}
+
+bool OrderBook::lifts_any(const Order& resume) const {
+  const bool is_of_operator = resume.client == kOperator;
+  const auto is_lifted_by = [&](const auto& entry) {
+    const Order& hold = entry.second.order;
+    return hold.number < resume.number && (is_of_operator || hold.client == resume.client);
+  };
+  const auto holds_of = [&](RobotId first, RobotId last) {
+    return std::any_of(orders_.lower_bound({Kind::kHold, first, 0, 0}),
+                       orders_.upper_bound({Kind::kHold, last, ~0U, ~0U}), is_lifted_by);
+  };
+  if (resume.robot == kAllRobots) return holds_of(0, kAllRobots);
+  return holds_of(resume.robot, resume.robot) || holds_of(kAllRobots, kAllRobots);
+}
+
+bool OrderBook::is_exception(const Order& resume) const {
+  if (resume.robot == kAllRobots) return false;
+  const auto all = orders_.find(Place{Kind::kHold, kAllRobots, resume.client, 0});
+  return all != orders_.end() && all->second.order.number < resume.number;
+}
+
+void OrderBook::clear_lifted_by(const Order& resume) {
+  const Place own = place_of(resume);
+  const bool is_for_all = resume.robot == kAllRobots;
+  const auto clear = [&](Kind kind, RobotId first, RobotId last) {
+    auto entry = orders_.lower_bound({kind, first, 0, 0});
+    const auto end = orders_.upper_bound({kind, last, ~0U, ~0U});
+    while (entry != end) {
+      const Order& order = entry->second.order;
+      const bool is_lifted =
+          entry->first != own && (resume.client == kOperator || order.client == resume.client) &&
+          (kind == Kind::kHold ? order.number < resume.number : order.number <= resume.number);
+      const auto next = std::next(entry);
+      if (is_lifted) remove(entry);
+      entry = next;
+    }
+  };
+  clear(Kind::kHold, is_for_all ? 0 : resume.robot, resume.robot);
+  clear(Kind::kResume, is_for_all ? 0 : resume.robot, resume.robot);
+}
+
+// A resume that still has an effect is forgotten last: if it were, its robot would be held again.
+void OrderBook::forget_oldest_resumes() {
+  while (resumes_.by_age.size() > kMaxResumes) {
+    const auto is_over = [&](const auto& age) { return !is_exception(orders_.at(age.second).order); };
+    const auto found = std::ranges::find_if(resumes_.by_age, is_over);
+    const auto oldest = found == resumes_.by_age.end() ? resumes_.by_age.begin() : found;
+    resumes_.forgotten_number = std::max(resumes_.forgotten_number, oldest->first);
+    remove(orders_.find(oldest->second));
+  }
+}
+
+void OrderBook::forget_oldest_removals() {
+  while (removals_.by_age.size() > kMaxRemovals) {
+    const auto oldest = removals_.by_age.begin();
+    removals_.forgotten_number = std::max(removals_.forgotten_number, oldest->first);
+    remove(orders_.find(oldest->second));
+  }
+}
+
+bool OrderBook::knows(const Order& order) const {
+  const auto known = orders_.find(place_of(order));
+  if (known != orders_.end() && !is_later(order, known->second.order)) return true;
+  switch (order.kind) {
+    case msg::OrderKind::ORDER_HOLD:
+      return is_lifted(order);
+    case msg::OrderKind::ORDER_RESUME: {
+      const bool is_forgotten =
+          rank_of(order.client) == Rank::kClient && order.number <= resumes_.forgotten_number;
+      return is_redundant(order) || (is_forgotten && !lifts_any(order));
+    }
+    case msg::OrderKind::ORDER_REMOVE_ZONE:
+      return known == orders_.end() && order.number <= removals_.forgotten_number;
+    case msg::OrderKind::ORDER_GO:
+    case msg::OrderKind::ORDER_CANCEL:
+    case msg::OrderKind::ORDER_ZONE:
+      break;
+  }
+  return false;
 }
 
 OrderBook::Outcome OrderBook::merge(const RememberedOrder& order) {
+  newest_number_ = std::max(newest_number_, order.order.number);
   const Place place = place_of(order.order);
   const auto known = orders_.find(place);
-  if (known == orders_.end()) {
-    if (!has_room(order.order)) return Outcome::kFull;
-    orders_.emplace(place, order);
-  } else if (is_later(order.order, known->second.order)) {
-    known->second = order;
-  } else if (is_later(known->second.order, order.order)) {
-    return Outcome::kReplaced;
-  } else if (is_further(order.progress, known->second.progress)) {
+  if (knows(order.order)) {
+    const bool is_replaced = order.order.kind == msg::OrderKind::ORDER_HOLD && is_lifted(order.order);
+    if (is_replaced || (known != orders_.end() && is_later(known->second.order, order.order)))
+      return Outcome::kReplaced;
+    if (known == orders_.end() || !is_further(order.progress, known->second.progress)) return Outcome::kKnown;
     known->second.progress = order.progress;
-  } else {
-    return Outcome::kKnown;
+    return Outcome::kStored;
   }
-  newest_number_ = std::max(newest_number_, order.order.number);
+  store(place, order);
+  if (order.order.kind == msg::OrderKind::ORDER_RESUME) {
+    clear_lifted_by(order.order);
+    forget_oldest_resumes();
+  }
+  if (order.order.kind == msg::OrderKind::ORDER_REMOVE_ZONE) forget_oldest_removals();
   return Outcome::kStored;
+}
+
+OrderBook::Outcome OrderBook::admit(const Order& order) {
+  if (!knows(order)) {
+    if (may_be_forgotten(order)) return Outcome::kReplaced;
+    if (!has_room(order)) return Outcome::kFull;
+  }
+  return merge({order});
 }
 
 bool OrderBook::report(RobotId robot, ClientId client, OrderNumber number, const OrderProgress& progress) {
@@ -95,14 +238,25 @@ bool OrderBook::has_resumed(ClientId client, RobotId robot, OrderNumber number) 
   });
 }
 
+bool OrderBook::is_lifted(const Order& hold) const {
+  return has_resumed(hold.client, hold.robot, hold.number) || has_resumed(kOperator, hold.robot, hold.number);
+}
+
+bool OrderBook::stands(const Order& order) const {
+  const auto known = orders_.find(place_of(order));
+  return known != orders_.end() && known->second.order.kind == order.kind &&
+         !is_later(known->second.order, order) && !is_later(order, known->second.order);
+}
+
 bool OrderBook::is_held(RobotId robot) const {
-  return std::any_of(orders_.lower_bound({Kind::kHold, 0, 0, 0}),
-                     orders_.lower_bound({Kind::kResume, 0, 0, 0}), [&](const auto& entry) {
-                       const Order& hold = entry.second.order;
-                       return (hold.robot == robot || hold.robot == kAllRobots) &&
-                              !has_resumed(hold.client, robot, hold.number) &&
-                              !has_resumed(kOperator, robot, hold.number);
-                     });
+  return std::ranges::any_of(std::array{robot, kAllRobots}, [&](RobotId scope) {
+    return std::any_of(orders_.lower_bound({Kind::kHold, scope, 0, 0}),
+                       orders_.upper_bound({Kind::kHold, scope, ~0U, ~0U}), [&](const auto& entry) {
+                         const Order& hold = entry.second.order;
+                         return !has_resumed(hold.client, robot, hold.number) &&
+                                !has_resumed(kOperator, robot, hold.number);
+                       });
+  });
 }
 
 const RememberedOrder* OrderBook::drive_order(RobotId robot, Rank rank) const {
@@ -133,10 +287,9 @@ std::vector<RememberedOrder> OrderBook::missing_in(const OrderBook& other) const
   std::vector<RememberedOrder> missing;
   for (const auto& [place, order] : orders_) {
     const auto known = other.orders_.find(place);
-    const bool is_known =
-        known != other.orders_.end() && !is_later(order.order, known->second.order) &&
-        (is_later(known->second.order, order.order) || !is_further(order.progress, known->second.progress));
-    if (!is_known) missing.push_back(order);
+    const bool knows_less = known != other.orders_.end() && !is_later(known->second.order, order.order) &&
+                            is_further(order.progress, known->second.progress);
+    if (knows_less || !other.knows(order.order)) missing.push_back(order);
   }
   return missing;
 }

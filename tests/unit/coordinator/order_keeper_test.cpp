@@ -98,4 +98,112 @@ TEST_CASE(
   CHECK(k.keeper.book().drive_order(3, Rank::kClient)->progress.is_finished());
 }
 
+const Scenario& hundreds() {
+  static const Scenario scenario = parse_scenario(
+      "field: {length_m: 100, width_m: 100}\nstreams: {count: 300, spacing_m: 1, lanes_crossed: 4}\n",
+      "hundreds.yaml");
+  return scenario;
+}
+
+/// Clients whose orders are numbered in the order in which they are made.
+struct Clients {
+  OrderNumber number = 1'700'000'000'000'000'000;
+  Order make(msg::OrderKind kind, RobotId robot, ClientId client) { return {kind, robot, client, ++number}; }
+  Order hold(RobotId robot, ClientId client = kClient) {
+    return make(msg::OrderKind::ORDER_HOLD, robot, client);
+  }
+  Order resume(RobotId robot, ClientId client = kClient) {
+    return make(msg::OrderKind::ORDER_RESUME, robot, client);
+  }
+  Order zone(msg::OrderKind kind, std::uint32_t zone_number) {
+    Order order = make(kind, kAllRobots, kClient);
+    order.zone_number = zone_number;
+    if (kind == msg::OrderKind::ORDER_ZONE) order.zone.corners_m = {{0, 0}};
+    return order;
+  }
+};
+
+constexpr auto kRemembered = msg::OrderResult::RESULT_REMEMBERED;
+
+TEST_CASE("clients that have lifted their holds, and removed their zones, can hold and draw again") {
+  OrderKeeper keeper(hundreds(), kSelf);
+  Clients clients;
+  for (RobotId robot = 0; robot < 300; ++robot) {
+    REQUIRE(keeper.on_order(clients.hold(robot)) == kRemembered);
+    REQUIRE(keeper.on_order(clients.resume(robot)) == kRemembered);
+    REQUIRE(keeper.on_order(clients.zone(msg::OrderKind::ORDER_ZONE, robot)) == kRemembered);
+    REQUIRE(keeper.on_order(clients.zone(msg::OrderKind::ORDER_REMOVE_ZONE, robot)) == kRemembered);
+  }
+  CHECK(keeper.on_order(clients.hold(200)) == kRemembered);
+  CHECK(keeper.on_order(clients.hold(200, kClient + 1)) == kRemembered);
+  CHECK(keeper.on_order(clients.zone(msg::OrderKind::ORDER_ZONE, 1000)) == kRemembered);
+}
+
+TEST_CASE("the owner of as many holds as there is room for can lift them") {
+  OrderKeeper keeper(hundreds(), kSelf);
+  Clients clients;
+  for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
+    REQUIRE(keeper.on_order(clients.hold(robot)) == kRemembered);
+  CHECK(keeper.on_order(clients.hold(299)) == msg::OrderResult::RESULT_TOO_MANY);
+  CHECK(keeper.on_order(clients.hold(299, kOperator)) == kRemembered);
+  CHECK(keeper.on_order(clients.resume(0)) == kRemembered);
+  CHECK(keeper.on_order(clients.hold(299)) == kRemembered);
+  CHECK(keeper.on_order(clients.resume(kAllRobots)) == kRemembered);
+  CHECK(keeper.book().hold_count() == 1);  // the operator's
+}
+
+TEST_CASE("a hold that one coordinator has accepted is in all others, however full they are") {
+  OrderKeeper active(hundreds(), kSelf), standby(hundreds(), kOther);
+  for (OrderKeeper* keeper : {&active, &standby}) (void)keeper->update(true, false, kNow);
+  const auto page = [](const OrderKeeper& from, std::uint32_t process) {
+    return OrderPage{process, true, 0, 1, from.book().all()};
+  };
+  Clients clients;
+  for (RobotId robot = 0; robot + 1 < OrderBook::kMaxHolds; ++robot) {
+    const Order hold = clients.hold(robot);
+    REQUIRE(active.on_order(hold) == kRemembered);
+    REQUIRE(standby.on_order(hold) == kRemembered);
+  }
+  // Two clients hold two robots at the same time; the coordinators hear them in different order.
+  const Order a = clients.hold(280), b = clients.hold(281, kClient + 1);
+  CHECK(standby.on_order(b) == kRemembered);
+  CHECK(active.on_order(a) == kRemembered);
+  CHECK(active.on_order(b) == msg::OrderResult::RESULT_TOO_MANY);
+  CHECK(standby.on_order(a) == msg::OrderResult::RESULT_TOO_MANY);
+  (void)standby.on_page(page(active, kSelf));
+  (void)active.on_page(page(standby, kOther));
+  for (const OrderKeeper* keeper : {&active, &standby}) {
+    CHECK(keeper->is_held(280));
+    CHECK(keeper->is_held(281));
+  }
+}
+
+TEST_CASE(
+    "a memory that somebody fills with holds, page by page, holds all robots until an operator resumes") {
+  OrderKeeper keeper(hundreds(), kSelf);
+  (void)keeper.update(true, false, kNow);
+  Clients clients;
+  for (ClientId client = 0; client < OrderKeeper::kMaxMergedHolds; ++client)
+    (void)keeper.on_page({kOther, true, 0, 0, {{clients.hold(7, kClient + client)}}});
+  CHECK_FALSE(keeper.is_held(8));
+  const Order last = clients.hold(9);
+  CHECK(keeper.on_page({kOther, true, 0, 0, {{last}}}));
+  CHECK(keeper.is_held(8));
+  for (ClientId client = 0; client < 1000; ++client)
+    (void)keeper.on_page({kOther, true, 0, 0, {{clients.hold(7, 2 * kClient + client)}}});
+  CHECK(keeper.book().hold_count() == OrderKeeper::kMaxMergedHolds + 1);
+  CHECK(keeper.on_order(clients.resume(kAllRobots, kOperator)) == kRemembered);
+  CHECK_FALSE(keeper.is_held(7));
+  CHECK_FALSE(keeper.is_held(8));
+}
+
+TEST_CASE("a coordinator knows the orders once an agent that knows them has registered") {
+  Keeper k;
+  k.keeper.on_registration(false);
+  CHECK_FALSE(k.keeper.is_complete());
+  k.keeper.on_registration(true);
+  CHECK(k.keeper.is_complete());
+  CHECK_FALSE(k.is_held());
+}
+
 }  // namespace sidestep::order_keeper_test

@@ -84,6 +84,8 @@ TEST_CASE("books that hear the same orders agree with each other and with the ru
     }
     CHECK(first.missing_in(second).empty());
     CHECK(second.missing_in(first).empty());
+    CHECK(first.all().size() == second.all().size());
+    CHECK(first.hold_count() == second.hold_count());
     for (RobotId robot = 0; robot < 3; ++robot) {
       CHECK(first.is_held(robot) == is_held_by_reference(orders, robot));
       CHECK(second.is_held(robot) == first.is_held(robot));
@@ -147,24 +149,151 @@ TEST_CASE("progress only grows, and a robot leaves what it has finished when it 
   CHECK(other.missing_in(book).empty());
 }
 
-TEST_CASE("a zone stays until it is removed, each client has its own numbers, and a book is bounded") {
+RememberedOrder removal(ClientId client, std::uint32_t zone_number, OrderNumber number) {
+  RememberedOrder remembered = zone(client, zone_number, number);
+  remembered.order.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
+  return remembered;
+}
+
+TEST_CASE("a zone stays until it is removed, each client has its own numbers, and clients' room is bounded") {
   OrderBook book;
   book.merge(zone(kAnna, 1, 10));
   book.merge(zone(kBert, 1, 11));
   CHECK(book.zones().size() == 2);
-  RememberedOrder removal = zone(kAnna, 1, 12);
-  removal.order.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
-  book.merge(removal);
+  book.merge(removal(kAnna, 1, 12));
   CHECK(book.zones().size() == 1);
   CHECK(book.merge(zone(kAnna, 1, 10)) == OrderBook::Outcome::kReplaced);
-  for (std::uint32_t i = 2; i < 1000; ++i) book.merge(zone(kAnna, i, 100 + i));
-  CHECK(book.merge(zone(kBert, 7, 5000)) == OrderBook::Outcome::kFull);
-  CHECK(book.zones().size() == OrderBook::kMaxZones - 1);
-  CHECK(book.merge(zone(kReferee, 7, 5000)) == OrderBook::Outcome::kStored);
-  for (std::uint32_t i = 0; i < 2000; ++i) book.merge(hold(5, kAnna + i, 100));
-  CHECK(book.all().size() <= OrderBook::kMaxZones + OrderBook::kMaxHolds + 1);
-  CHECK(book.merge(hold(kAllRobots, kOperator, 100)) == OrderBook::Outcome::kStored);
+  for (std::uint32_t i = 2; i < 1000; ++i) book.admit(zone(kAnna, i, 100 + i).order);
+  CHECK(book.admit(zone(kBert, 7, 5000).order) == OrderBook::Outcome::kFull);
+  CHECK(book.admit(zone(kBert, 1, 5000).order) == OrderBook::Outcome::kStored);  // moves
+  CHECK(book.zones().size() == OrderBook::kMaxZones);
+  CHECK(book.admit(zone(kReferee, 7, 5000).order) == OrderBook::Outcome::kStored);
+  for (std::uint32_t i = 0; i < 2000; ++i) book.admit(hold(5, kAnna + i, 100).order);
+  CHECK(book.hold_count() == OrderBook::kMaxHolds);
+  CHECK(book.admit(hold(kAllRobots, kOperator, 100).order) == OrderBook::Outcome::kStored);
   CHECK(book.is_held(1));
+}
+
+TEST_CASE("of two orders with one number that of the higher client counts, whichever comes first") {
+  for (const auto kind : {msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL}) {
+    const RememberedOrder of_anna = order(kind, 3, kAnna, 10), of_bert = go(3, kBert, 10);
+    OrderBook first, second;
+    CHECK(first.merge(of_anna) == OrderBook::Outcome::kStored);
+    CHECK(first.merge(of_bert) == OrderBook::Outcome::kStored);
+    CHECK(second.merge(of_bert) == OrderBook::Outcome::kStored);
+    CHECK(second.merge(of_anna) == OrderBook::Outcome::kReplaced);
+    for (const OrderBook* book : {&first, &second})
+      CHECK(book->drive_order(3, Rank::kClient)->order.client == kBert);
+    CHECK(first.missing_in(second).empty());
+    CHECK(second.missing_in(first).empty());
+  }
+}
+
+TEST_CASE("a resume lifts only holds with lower numbers: an operator's with the number of a hold does not") {
+  for (const bool hold_is_first : {true, false}) {
+    for (const RobotId scope : {RobotId{3}, kAllRobots}) {
+      OrderBook book;
+      if (hold_is_first) book.merge(hold(3, kAnna, 10));
+      book.merge(resume(scope, kOperator, 10));
+      if (!hold_is_first) book.merge(hold(3, kAnna, 10));
+      CHECK(book.is_held(3));
+      book.merge(resume(scope, kOperator, 11));
+      CHECK_FALSE(book.is_held(3));
+    }
+  }
+}
+
+TEST_CASE("holds that are lifted and zones that are removed give their places back for ever") {
+  OrderBook book;
+  OrderNumber number = 0;
+  std::size_t most = 0;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const ClientId client = kAnna + i % 5000;
+    const RobotId robot = i % 7 == 0 ? kAllRobots : i % 1000;
+    CAPTURE(i);
+    REQUIRE(book.admit(hold(robot, client, ++number).order) == OrderBook::Outcome::kStored);
+    REQUIRE(book.admit(zone(client, i, ++number).order) == OrderBook::Outcome::kStored);
+    REQUIRE(book.is_held(robot % 1000));
+    REQUIRE(book.admit(resume(robot, client, ++number).order) == OrderBook::Outcome::kStored);
+    REQUIRE(book.admit(removal(client, i, ++number).order) == OrderBook::Outcome::kStored);
+    REQUIRE(book.hold_count() + book.zone_count() == 0);
+    most = std::max(most, book.all().size());
+  }
+  CHECK(most <= OrderBook::kMaxResumes + OrderBook::kMaxRemovals);
+}
+
+TEST_CASE("the owner of a hold can lift it, one by one or all at once, however many stand") {
+  for (const bool all_at_once : {true, false}) {
+    OrderBook book;
+    OrderNumber number = 0;
+    for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
+      REQUIRE(book.admit(hold(robot, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+    REQUIRE(book.admit(hold(1000, kAnna, ++number).order) == OrderBook::Outcome::kFull);
+    if (all_at_once) {
+      REQUIRE(book.admit(resume(kAllRobots, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+    } else {
+      for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
+        REQUIRE(book.admit(resume(robot, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+    }
+    CHECK(book.hold_count() == 0);
+    CHECK(book.admit(hold(1000, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+  }
+}
+
+TEST_CASE("an operator's resume of all robots leaves nothing of what clients have held and lifted") {
+  OrderBook book;
+  for (RobotId robot = 0; robot < 200; ++robot) {
+    book.merge(hold(robot, kAnna, 10 + robot));
+    book.merge(resume(robot, kBert, 10 + robot));
+  }
+  book.merge(resume(kAllRobots, kOperator, 1000));
+  CHECK(book.all().size() == 1);
+  CHECK(book.merge(hold(7, kAnna, 999)) == OrderBook::Outcome::kReplaced);  // late
+  CHECK_FALSE(book.is_held(7));
+}
+
+TEST_CASE(
+    "a late repetition of a lifted hold or a removed zone is recognised, however many were lifted since") {
+  OrderBook book;
+  OrderNumber number = 100;
+  const Order first_hold = hold(3, kAnna, ++number).order, first_zone = zone(kAnna, 0, ++number).order;
+  book.admit(first_hold);
+  book.admit(first_zone);
+  for (std::uint32_t i = 0; i < 3 * OrderBook::kMaxResumes; ++i) {
+    book.admit(resume(3, kAnna + i, ++number).order);
+    book.admit(removal(kAnna, i, ++number).order);
+    CHECK(book.admit(first_hold) == OrderBook::Outcome::kReplaced);
+    CHECK(book.admit(first_zone) == OrderBook::Outcome::kReplaced);
+  }
+  CHECK_FALSE(book.is_held(3));
+  CHECK(book.zones().empty());
+  // A new one is admitted, and so is one of the operator.
+  CHECK(book.admit(hold(3, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+  CHECK(book.admit(hold(4, kOperator, 5).order) == OrderBook::Outcome::kStored);
+}
+
+TEST_CASE("one robot that was released of all stays released, whatever else is lifted") {
+  OrderBook book;
+  OrderNumber number = 0;
+  book.admit(hold(kAllRobots, kAnna, ++number).order);
+  book.admit(resume(5, kAnna, ++number).order);
+  for (std::uint32_t i = 0; i < 2 * OrderBook::kMaxResumes; ++i)
+    book.admit(resume(6, kBert + i, ++number).order);
+  CHECK_FALSE(book.is_held(5));
+  CHECK(book.is_held(6));
+}
+
+TEST_CASE("what another process remembers is never refused, however full a book is") {
+  OrderBook book;
+  OrderNumber number = 0;
+  for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
+    book.admit(hold(robot, kAnna, ++number).order);
+  for (std::uint32_t i = 0; i < OrderBook::kMaxZones; ++i) book.admit(zone(kAnna, i, ++number).order);
+  CHECK(book.admit(hold(900, kBert, ++number).order) == OrderBook::Outcome::kFull);
+  CHECK(book.merge(hold(900, kBert, number)) == OrderBook::Outcome::kStored);
+  CHECK(book.is_held(900));
+  CHECK(book.merge(zone(kBert, 1, ++number)) == OrderBook::Outcome::kStored);
+  CHECK(book.zones().size() == OrderBook::kMaxZones + 1);
 }
 
 }  // namespace sidestep::order_book_test
