@@ -84,7 +84,10 @@ Actuation Firmware::tick(Time now, const Odometry& odometry) {
 
   while (side_.switch_next(to_ns(now))) {
   }
+  const bool had_pose = has_pose();
   side_.check_reference(to_ns(now), estimate(now), flash_);
+  const bool is_number = has_pose() && std::isfinite(estimator_.heading_rad());
+  if (had_pose && !is_lifted() && !is_number) forget_pose(now);
   update_executing();
   if (is_lifted()) return last_actuation_ = {};
   return last_actuation_ = has_pose() ? track(now) : brake_by_wheels(now);
@@ -166,7 +169,11 @@ void Firmware::forget_pose(Time now) {
 
 Actuation Firmware::brake_by_wheels(Time now) {
   const Vec2& velocity = estimator_.velocity_mps();
-  if (velocity.norm() > kRestSpeed_mps) moved_at_ = now;
+  if (!velocity.allFinite() || !std::isfinite(estimator_.angular_radps())) {
+    forget_pose(now);
+    return {};
+  }
+  if (!(velocity.norm() <= kRestSpeed_mps)) moved_at_ = now;
   const double lag = settings_.body.lag_s;
   Vec2 braking = -settings_.velocity_gain_ps * (velocity + lag * modelled_.acceleration_mps2);
   if (braking.norm() > settings_.deceleration_mps2) braking *= settings_.deceleration_mps2 / braking.norm();

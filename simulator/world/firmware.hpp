@@ -86,7 +86,7 @@ class Firmware {
   /// Whether it knows its pose.
   bool has_pose() const { return side_.has_pose(); }
   /// Precondition of feedback().
-  bool may_report() const { return side_.may_report(); }
+  bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
   /// Its own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }
   double heading_rad() const { return estimator_.heading_rad(); }

@@ -34,6 +34,9 @@ init {
   /* All robots have registered with the first coordinator, and rest outside the contested places. */
   d_step {
     obeyed[0] = 1; obeyed[1] = 1;
+#ifdef LEAD
+    acknowledged_agent[0] = 1; acknowledged_agent[1] = 1;
+#endif
     obeyed_epoch[0] = 1; obeyed_epoch[1] = 1;
     fenced[A(0, 1)] = true; fenced[A(1, 1)] = true;
     held[A(0, 1)] = BIT(0); held[A(1, 1)] = BIT(0);

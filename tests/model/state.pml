@@ -121,6 +121,9 @@ byte places[2 * NV], starts[2 * NV], base_of[2 * NV], epoch_of[2 * NV];
 
 /* Robots. */
 byte executing[2], pending[2], obeyed[2], obeyed_epoch[2];
+#ifdef LEAD
+byte acknowledged_agent[2]; /* that facts acknowledge, obeyed[i] or an earlier one */
+#endif
 
 /* Agents: the first of each robot, and its successor. */
 bool fenced[4];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/firmware.hpp"
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -301,6 +302,31 @@ TEST_CASE("hostile commands change nothing and are counted") {
     CHECK(facts.estimate.position_m == kStart);
     CHECK(facts.tracking_error_m == 0);
   }
+}
+
+TEST_CASE("a robot whose odometry is no number brakes, and is silent until a fix shows it at rest") {
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  auto robot = firmware();
+  for (int ms = 1; ms < 10; ++ms) (void)robot.tick(at(ms), {});
+  const Odometry spoilt =
+      GENERATE_COPY(Odometry{Vec2(bad, 0), 0}, Odometry{Vec2(0, bad), 0}, Odometry{Vec2(0, 0), bad});
+  for (int ms = 10; ms < 20; ++ms) {
+    const Actuation actuation = robot.tick(at(ms), spoilt);
+    CHECK(actuation.acceleration_mps2.allFinite());
+    CHECK(std::isfinite(actuation.angular_acceleration_radps2));
+    CHECK_FALSE(robot.may_report());
+  }
+  auto seen = bare_command(kRobot, kFirst);
+  seen.fix = PoseFix{at(25), Vec2(3, 4), 0.5};
+  for (int ms = 20; ms < 200; ++ms) (void)robot.tick(at(ms), {});
+  robot.on_command(seen, at(200));
+  CHECK_FALSE(robot.may_report());  // it may have moved then
+  seen.fix->captured_at = at(190);
+  robot.on_command(seen, at(201));
+  (void)robot.tick(at(202), {});
+  REQUIRE(robot.may_report());
+  CHECK(robot.is_off_reference());
+  CHECK((robot.position_m() - Vec2(3, 4)).norm() < 1e-6);
 }
 
 TEST_CASE("versions that start far ahead do not displace an earlier one") {
