@@ -19,8 +19,8 @@
 #define REPORTED_NOTHING 0
 #define LIFTS
 #endif
-/* The motors of robot 0 obey LEAD ticks late, so they have been sent the versions that start by then. A new agent does not
-   discard them, and is acknowledged when the last of them has started. */
+/* The motors of robot 0 obey so late that they have been sent all versions that it holds. A new agent does not discard
+   them, and is acknowledged when the last of them has started. */
 #ifdef LEAD
 #define ACKNOWLEDGED(i) acknowledged_agent[i]
 #ifdef ACKNOWLEDGE_EARLY
@@ -35,23 +35,15 @@ inline acknowledge(i) {
   fi
 }
 inline discard(i) {
-  set_ = 0;
-  v_ = 1;
-  do
-  :: v_ <= LAST(i) ->
-     if
-     :: i == 0 && starts[V(i, v_)] <= now + LEAD -> set_ = set_ | BIT(v_)
-     :: else
-     fi;
-     v_++
-  :: else -> break
-  od;
-  pending[i] = pending[i] & (set_ | (255 & ~BY_FIRST(i)))
+  if
+  :: i == 1 -> pending[i] = pending[i] & ~BY_FIRST(i)
+  :: else
+  fi
 }
-#define MAY_COMMAND(i, k, v) ((i) == 1 || (starts[V(i, v)] > now + LEAD && (k) == ACKNOWLEDGED(i)))
+#define MAY_COMMAND(i, k) ((k) == ACKNOWLEDGED(i))
 #else
 #define ACKNOWLEDGED(i) obeyed[i]
-#define MAY_COMMAND(i, k, v) true
+#define MAY_COMMAND(i, k) true
 inline acknowledge(i) { skip }
 inline discard(i) { pending[i] = pending[i] & ~BY_FIRST(i) }
 #endif
@@ -156,7 +148,7 @@ inline obey(i, k, e) {
          printf("%d: robot %d receives command %d of agent %d, epoch %d\n", now, i, v_, k, e); w_ = v_;       \
          obey(i, k, e); pending[i] = pending[i] | BIT(w_); make_switches(i); report(i); check())
 #define CHOOSE_COMMAND(i, k, e, v)                                                                         \
-  CHOOSE_V(HAS(commands[C(i, e)], v) && MAKER(i, v) == (k) && IN_TIME(i, v) && MAY_COMMAND(i, k, v) && v != executing[i] &&        \
+  CHOOSE_V(HAS(commands[C(i, e)], v) && MAKER(i, v) == (k) && IN_TIME(i, v) && MAY_COMMAND(i, k) && v != executing[i] &&        \
                !HAS(pending[i], v) && (v > executing[i] || MAYBE_OLDER || MAY_GO_BACK(i)) &&                                      \
                MAY_TAKE(i, v) && !IS_KEPT_IN_HAND(i, v), v)
 #ifdef LIFTED_TAKES_ANY
