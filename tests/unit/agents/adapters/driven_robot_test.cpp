@@ -118,8 +118,7 @@ double drive_and_measure(Scene& scene, const std::function<void()>& step) {
 
 TEST_CASE("by its base's odometry a driven robot knows where it is although it obeys only in part") {
   // Reports are dated between the periods of the control.
-  const auto [report_every, ago] =
-      GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
+  const auto [report_every, ago] = GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
   CAPTURE(report_every, ago.count());
   Scene scene;
   scene.desired_heading_rad = 2;  // it turns as it drives
