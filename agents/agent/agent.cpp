@@ -41,7 +41,10 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
                 {.give_up_after = passage_period_ * 2 / 3}),
       estimate_{robot_.start_m, Vec2::Zero()} {
   neighbours_.set_horizon(robot_.start_m, page_horizon_m());
-  if (scenario.laser) sight_.emplace(*scenario.laser, rules_);
+  if (!scenario.laser) return;
+  sight_.emplace(*scenario.laser, rules_,
+                 LaserSightSettings{.position_error_m = scenario.tracking_bound_m,
+                                    .heading_error_rad = settings_.max_heading_error_rad});
 }
 
 bool Agent::on_feedback(const Feedback& feedback) {
@@ -122,11 +125,11 @@ void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clo
     ++invalid_;
     return;
   }
+  obstacles_.on_world(world);
+  if (captured_at <= last_fix_) return;
   fix_ = world.self;
   if (!is_robot_clock_known) return;
   last_fix_ = fix_->captured_at;
-  obstacles_.on_world(world);
-  if (captured_at <= last_fix_) return;
   last_fix_m_ = fix_->position_m;
 }
 

@@ -41,7 +41,6 @@ HiddenSpace Agent::hidden_space() const {
   const Visibility& visibility = sight_->visibility();
   HiddenSpace hidden{visibility.frontiers(), visibility.closed_gaps(), sight_->captured_at(),
                      max_person_speed_mps_};
-  hidden.projection_m = rules_.margin_m / 2;
   hidden.heading_error_rad = settings_.max_heading_error_rad;
   hidden.creep_mps = settings_.creep_mps;
   hidden.observed_from_m = sight_->beams().at_m();

@@ -9,7 +9,7 @@ namespace sidestep {
 struct Frontier {
   Segment segment;
   /// A person beyond the segment can project over it by this much: at capture if the segment is open, at any
-  /// time if it is closed.
+  /// time if it is closed. Of a closed one, 0: nobody who does can touch a robot.
   double bulge_m = 0;
 };
 

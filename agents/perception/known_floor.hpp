@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "common/collision/obstacle_world.hpp"
 #include "common/map/occupancy_map.hpp"
 
 namespace sidestep {
 
-/// What is known to stand on the floor. Both parts are optional, and must outlive their use.
+/// What is known to stand on the floor. All parts are optional, and must outlive their use.
 struct KnownFloor {
   const OccupancyMap* map = nullptr;
   const ObstacleWorld* shapes = nullptr;
@@ -16,6 +18,9 @@ struct KnownFloor {
     return (map != nullptr && map->distance_m(p, within_m) < within_m) ||
            (shapes != nullptr && shapes->touches(p, within_m));
   }
+  /// The nearest point of what stands, or the point itself if it is inside; nullopt if all is farther than
+  /// `within_m`.
+  [[nodiscard]] std::optional<Vec2> nearest_m(const Vec2& p, double within_m) const;
 };
 
 }  // namespace sidestep

@@ -8,25 +8,27 @@
 namespace sidestep {
 namespace {
 
-/// How near to what the rules know a hit belongs to it. Never so far that the front of somebody who leans
-/// against a wall, or both sides of a gap that the smallest person passes, would count as the wall.
-double explained_within_m(const LaserSpec& laser, const FloorRules& rules, double pose_error_m) {
-  const double error_m = laser.range_error_m + pose_error_m;
+double explained_within_m(const LaserSpec& laser, const FloorRules& rules, double position_error_m) {
   const double cell_m = rules.map ? rules.map->cells().grid().resolution_m : 0;
-  const double front_m = 2 * laser.person_radius_m - error_m;
-  return std::max(0.0, std::min({error_m + cell_m, laser.person_radius_m, front_m}));
+  return laser.range_error_m + position_error_m + cell_m;
+}
+
+VisibilitySettings visibility_settings(const LaserSpec& laser, const FloorRules& rules,
+                                       const LaserSightSettings& settings) {
+  const double clear_m = rules.margin_m - settings.position_error_m;
+  return {laser.person_radius_m, laser.range_error_m, settings.position_error_m, settings.heading_error_rad,
+          untouched_distance_m(rules.radius_m, clear_m, laser.person_radius_m)};
 }
 
 }  // namespace
 
 LaserSight::LaserSight(const LaserSpec& laser, const FloorRules& rules, const LaserSightSettings& settings)
     : settings_(settings),
-      explained_within_m_(explained_within_m(laser, rules, settings.pose_error_m)),
+      explained_within_m_(explained_within_m(laser, rules, settings.position_error_m)),
       shapes_(rules.obstacles),
       floor_{rules.map ? &rules.map->cells() : nullptr, rules.obstacles.empty() ? nullptr : &shapes_},
       beams_(laser.settings),
-      visibility_({laser.person_radius_m, laser.range_error_m}) {
-  is_fixed_.resize(static_cast<std::size_t>(laser.settings.beams));
+      visibility_(visibility_settings(laser, rules, settings)) {
   unknown_.reserve(settings.max_unknown);
 }
 
@@ -37,12 +39,7 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
   tracks_.update(beams_, grid_, floor_);
   const bool is_grid_due = captured_at_ - grid_.updated_at() >= settings_.grid_period;
   if (is_grid_due) grid_.update(beams_);
-  for (int beam = 0; beam < beams_.count(); ++beam) {
-    // What is near a robot may be the wall behind it.
-    is_fixed_[static_cast<std::size_t>(beam)] =
-        floor_.is_near(beams_.end_m(beams_[beam]), explained_within_m_);
-  }
-  visibility_.update(beams_, [&](int beam) { return is_fixed_[static_cast<std::size_t>(beam)] != 0; });
+  visibility_.update(beams_, [&](const Vec2& p, double within_m) { return floor_.nearest_m(p, within_m); });
   if (is_grid_due) find_unknown();
   return true;
 }

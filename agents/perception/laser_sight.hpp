@@ -14,7 +14,9 @@
 namespace sidestep {
 
 struct LaserSightSettings {
-  double pose_error_m = 0.02;  ///< bound of the error of a scan's position
+  // Bounds of the errors of a scan's pose. The robot's own place is off by no more than the tracking bound.
+  double position_error_m = SafetyBudget{}.tracking_bound_m;
+  double heading_error_rad = 0.02;
   /// The grid takes scans at most this often: it takes most of the time, and nothing stands up as quickly.
   Duration grid_period{90'000'000};
   double unknown_cell_m = 0.2;          ///< side of the squares that report what stands but is not on the map
@@ -48,7 +50,7 @@ class LaserSight {
   void find_unknown();
 
   LaserSightSettings settings_;
-  double explained_within_m_;
+  double explained_within_m_;  // how far a hit on what the rules know can seem to be from it
   ObstacleWorld shapes_;
   KnownFloor floor_;
   LaserBeams beams_;
@@ -56,8 +58,7 @@ class LaserSight {
   LaserTracks tracks_;
   Visibility visibility_;
   Time captured_at_{};
-  std::vector<std::uint8_t> is_fixed_;  // by beam
-  std::vector<Cell> squares_;           // working memory of find_unknown()
+  std::vector<Cell> squares_;  // working memory of find_unknown()
   std::vector<Circle> unknown_;
 };
 

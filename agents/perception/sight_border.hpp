@@ -11,14 +11,16 @@ namespace sidestep {
 /// The border of the region that rays prove free of hidden people; see Visibility for the derivation.
 class SightBorder {
  public:
-  /// `radius_m` and `error_m`: see closed_gap_m(). Does not allocate once warm.
-  void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double error_m);
+  /// `radius_m`: of the smallest person. `untouched_m`: no robot touches anybody nearer than this to what
+  /// stands. Does not allocate once warm.
+  void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double untouched_m);
 
   /// Whether a point is in the region. False within a nanometre of the border.
   [[nodiscard]] bool contains(const Vec2& p) const;
   /// Where people may step out, counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return frontiers_; }
-  /// Between things that stand; too narrow for people.
+  /// Between things that stand; too narrow for people. The bulge is 0 where nobody who projects through the
+  /// gap can touch a robot.
   std::span<const Frontier> closed_gaps() const { return closed_; }
 
  private:
@@ -29,7 +31,7 @@ class SightBorder {
     double height_m;
   };
 
-  Wedge closed_wedge(const SightRay& ray, const SightRay& next, double bulge_m);
+  Wedge closed_wedge(const SightRay& ray, const SightRay& next, const ClosedGap& gap, double untouched_m);
   Wedge open_wedge(const SightRay& ray, const SightRay& next, double radius_m);
   void add_frontier(const Vec2& from_m, const Vec2& to_m, double bulge_m);
 

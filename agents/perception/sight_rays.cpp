@@ -38,20 +38,37 @@ double sagitta_m(double radius_m, double gap_m) {
   return radius_m - std::sqrt(std::max(0.0, radius_m * radius_m - gap_m * gap_m / 4));
 }
 
+double projection_m(double radius_m, double from_m) {
+  return std::sqrt(2 * radius_m * sagitta_m(radius_m, 2 * from_m));
+}
+
 double angle_between_rad(const SightRay& ray, const SightRay& next) {
   const double angle_rad = next.angle_rad - ray.angle_rad;
   return angle_rad > 0 ? angle_rad : angle_rad + 2 * std::numbers::pi;
 }
 
-std::optional<double> closed_gap_m(const SightRay& ray, const SightRay& next, double radius_m,
-                                   double error_m) {
-  if (!ray.is_standing || !next.is_standing || angle_between_rad(ray, next) >= std::numbers::pi)
-    return std::nullopt;
-  const Vec2 gap = (next.free_m + error_m) * next.direction - (ray.free_m + error_m) * ray.direction;
-  const double gap_m = gap.norm() + 2 * error_m;
-  const double width_m = (next.free_m * next.direction - ray.free_m * ray.direction).norm();
-  if (gap_m >= 2 * radius_m || width_m < kShortestGap_m) return std::nullopt;
-  return gap_m;
+std::optional<ClosedGap> closed_gap(const SightRay& ray, const SightRay& next, double radius_m) {
+  if (!ray.post_m || !next.post_m || angle_between_rad(ray, next) >= std::numbers::pi) return std::nullopt;
+  const Vec2 &post = *ray.post_m, &next_post = *next.post_m;
+  const Vec2 from = ray.free_m * ray.direction, to = next.free_m * next.direction;
+  const double width_m = (to - from).norm();
+  if (width_m >= 2 * radius_m || width_m < kShortestGap_m) return std::nullopt;
+  // The point of the line that is as far from one post as from the other: a disc around each post, which
+  // contains it and the end, contains all between them.
+  const double nearer_to_post = (from - next_post).squaredNorm() - (from - post).squaredNorm();
+  const double nearer_to_next = (to - post).squaredNorm() - (to - next_post).squaredNorm();
+  const double sum = nearer_to_post + nearer_to_next;
+  const Vec2 middle = from + (sum > 0 ? std::clamp(nearer_to_post / sum, 0.0, 1.0) : 0.5) * (to - from);
+  const double error_m = std::max(ray.post_error_m, next.post_error_m);
+  const double ends_m = std::max((from - post).norm(), (to - next_post).norm()) + error_m;
+  const double farthest_m =
+      std::max({ends_m, (middle - post).norm() + error_m, (middle - next_post).norm() + error_m});
+  if (farthest_m >= radius_m) return std::nullopt;
+  const double through_m = sagitta_m(radius_m, (next_post - post).norm());
+  return ClosedGap{{post, next_post},
+                   std::max(through_m, projection_m(radius_m, ends_m)),
+                   projection_m(radius_m, farthest_m),
+                   sagitta_m(radius_m, width_m)};
 }
 
 void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
@@ -73,16 +90,16 @@ void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
   });
 }
 
-void drop_rays_within_gaps(std::vector<SightRay>& rays, double radius_m, double error_m) {
+void drop_rays_within_gaps(std::vector<SightRay>& rays, double radius_m) {
   const std::size_t count = rays.size();
   drop_runs(rays, [&](std::size_t first) -> std::size_t {
     const SightRay& from = rays[first];
-    if (!from.is_standing || closed_gap_m(from, rays[(first + 1) % count], radius_m, error_m)) return 0;
+    if (!from.post_m || closed_gap(from, rays[(first + 1) % count], radius_m)) return 0;
     for (std::size_t last = first + 2; last < first + count; ++last) {
       const SightRay& to = rays[last % count];
       const double angle_rad = angle_between_rad(from, to);
       if (angle_rad >= kMaxAngle_rad || from.free_m * std::sin(angle_rad) >= 2 * radius_m) return 0;
-      if (to.free_m > 0 && closed_gap_m(from, to, radius_m, error_m)) return last - first - 1;
+      if (to.free_m > 0 && closed_gap(from, to, radius_m)) return last - first - 1;
     }
     return 0;
   });

@@ -9,43 +9,68 @@ namespace sidestep {
 struct VisibilitySettings {
   double person_radius_m = 0.15;  ///< of the smallest person, at the height of the laser
   double range_error_m = 0.03;    ///< bound of the error of ranges
+  // Bounds of the errors of a scan's pose, and with them of what is known to stand, in the scan's frame.
+  double position_error_m = 0;
+  double heading_error_rad = 0;
+  double untouched_m = 0;  ///< a robot touches nobody nearer than this to what is known to stand
 };
+
+/// The distance to what is known to stand that everybody has where a robot touches him. The robot's radius is
+/// `robot_radius_m`, and it stays `clear_m` away from what stands; people have at least `person_radius_m`.
+///
+/// Let P be the place of contact, between the centres, at a from a post Q along the line from P to the
+/// person's centre. As the person does not overlap Q, PQ² >= 2 a r; as the robot stays clear of it,
+/// PQ² >= c (2 ρ + c) - 2 a ρ. The larger of both is least where they are equal.
+[[nodiscard]] double untouched_distance_m(double robot_radius_m, double clear_m, double person_radius_m);
 
 /// What a robot did not see in its last scan: where a person may step out.
 ///
-/// **Seen free.** A hidden person, a disc of the smallest radius r or a larger one, was crossed by no beam at
-/// the time of the scan. Take two neighbouring known beams at an angle a, and a line across both at the
-/// distances p along each. What the disc covers of the line lies between the beams, so it is a chord of at
-/// most c = 2 p sin(a / 2). If c < 2 r, the centre cannot be on the near side, and the disc projects over the
-/// line by at most the sagitta r - sqrt(r² - c² / 4). A larger disc projects less. For a wide angle the
-/// nearest point that a disc can reach between the beams is at r / sin(a / 2) - r. The region before these
-/// lines was seen free. Beams that know nothing are left out, which widens the angle between the others. So
-/// are those that end at something narrow, if nobody fits into its shadow.
+/// **Seen free.** A person, a disc of the smallest radius r or a larger one, is crossed by no beam before its
+/// end, whether he was seen or hidden. Take two neighbouring known beams at an angle a, and a line across
+/// both at the distances p along each. What the disc covers of the line lies between the beams, so it is a
+/// chord of at most c = 2 p sin(a / 2). If c < 2 r, the centre cannot be on the near side, and the disc
+/// projects over the line by at most the sagitta r - sqrt(r² - c² / 4). A larger disc projects less. For a
+/// wide angle the nearest point that a disc can reach between the beams is at r / sin(a / 2) - r. The region
+/// before these lines was seen free. Beams that know nothing are left out, which widens the angle between the
+/// others. So are those that end at something narrow, if nobody fits into its shadow.
 ///
-/// **Closed and open.** If the ends of two neighbouring beams are hits on things that stand, closer together
-/// than 2 r, no centre passes between them, ever, but the disc can project by the sagitta. Beams within
-/// such a gap between two posts are left out of the border, so what is behind it does not count.
-/// Every other border is open: jumps in range, the maximum range, unseen sectors, and hits on anything that
-/// may move, e.g. robots and people. These are the frontiers.
+/// **Closed and open.** Where a beam ends says nothing about what it has hit: the side of a person who stands
+/// in a doorway or leans against a wall is as near to the wall as the wall itself appears to be. But nobody's
+/// centre is nearer than r to what is known to stand, whatever was seen there. So the line between the ends
+/// of two neighbouring beams is closed if every point of it is nearer than r to one of two known posts: the
+/// nearest one to each end. No centre is ever on it. The posts are known in the world's frame, and the line
+/// is in the scan's, so r is reduced by the errors of the scan's pose. Beams between two others that form a
+/// closed gap are left out of the border, so what is behind it does not count. Every other border is open:
+/// jumps in range, the maximum range, unseen sectors, and the surfaces of everything that is not within r of
+/// known things, e.g. robots, people and new furniture. These are the frontiers.
 ///
-/// **What follows.** A point of a person that touches the robot at time t was outside the region at the time
-/// of the scan t0, so it, or the centre before it, has crossed a frontier, and was at least as far from there
-/// as the frontier's bulge allows. So no person touches a robot at position x while
-///     distance(x, frontier) > radius + bulge + v_p (t - t0)      for all frontiers.
+/// **What follows.** Let a person touch the robot at y at time t, and let his centre have moved from z0 at
+/// the time t0 of the scan to z. The curve from z0 along the centre's path to z, and straight on to y, has
+/// the length v_p (t - t0) + R with his radius R. At t0 his disc was outside the region, so the curve crosses
+/// the border.
+/// - At an open place f: the disc did not contain f, so f is at least R along the curve, up to the bulge, and
+///   at most v_p (t - t0) of it remain. So no person touches a robot at position x while
+///       distance(x, frontier) > radius + bulge + v_p (t - t0)      for all frontiers.
+/// - At a closed place b, at w from its post Q: not on the centre's path, so b is on the radius that ends at
+///   y. The disc does not overlap Q, which is possible only if y is at most sqrt(2 r (r - sqrt(r² - w²)))
+///   from Q: little more than w. It also projects through a gap between two posts by no more than the
+///   sagitta. So a closed gap is a frontier that does not grow, unless y is so near to Q that no robot
+///   touches anybody there: see untouched_distance_m().
 /// agents/safety/hidden_space.hpp checks trajectories by this.
 class Visibility {
  public:
-  /// Throws std::invalid_argument if a setting is not finite, the radius not positive or the error negative.
+  /// Throws std::invalid_argument if a setting is not finite, the radius not positive or another one
+  /// negative.
   explicit Visibility(const VisibilitySettings& settings = {});
 
-  /// `is_standing(beam)`: whether the beam ends at something that stands and will not move, e.g. a wall of
-  /// the map. Does not allocate once warm.
-  template <typename IsStanding>
-  void update(const LaserBeams& beams, const IsStanding& is_standing) {
+  /// `nearest_known(p, within_m)`: the nearest point to p that is known to stand, or nullopt if none is
+  /// within the distance. Does not allocate once warm.
+  template <typename NearestKnown>
+  void update(const LaserBeams& beams, const NearestKnown& nearest_known) {
     begin(beams);
-    double angle_rad = 0;
-    for (int beam = 0; beam < beams.count(); angle_rad += beams.gap_rad(beam), ++beam)
-      add(beams[beam], angle_rad, is_hit(beams[beam]) && is_standing(beam));
+    for (SightRay& ray : rays_)
+      if (const std::optional<Vec2> post = nearest_known(end_m(ray), settings_.person_radius_m))
+        set_post(ray, *post);
     finish();
   }
 
@@ -55,13 +80,13 @@ class Visibility {
   [[nodiscard]] bool is_before_frontiers(const Vec2& p) const { return reach_.contains(p); }
   /// Where people may step out, counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return reach_.frontiers(); }
-  /// Between hits on things that stand; too narrow for people.
+  /// Between things that are known to stand; too narrow for people.
   std::span<const Frontier> closed_gaps() const { return reach_.closed_gaps(); }
 
  private:
-  static bool is_hit(const Beam& beam) { return beam.end == BeamEnd::kHit || beam.end == BeamEnd::kRobot; }
   void begin(const LaserBeams& beams);
-  void add(const Beam& beam, double angle_rad, bool is_standing);
+  Vec2 end_m(const SightRay& ray) const { return at_m_ + ray.free_m * ray.direction; }
+  void set_post(SightRay& ray, const Vec2& post_m) const;
   void finish();
 
   VisibilitySettings settings_;

@@ -8,14 +8,17 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
+/// The bulge of a closed gap is this at least, or 0 if nobody who projects through it can touch a robot.
+constexpr double kTouching_m = 1e-6;
 /// A trajectory that comes this near to being unsafe counts as unsafe.
 constexpr double kTolerance_m = 1e-3;
 
-/// The smallest distance to a segment less the bulge, up to `limit_m`.
-double nearest_m(const Vec2& p, std::span<const Frontier> frontiers, double ignored_bulge_m, double limit_m) {
+/// The smallest distance to a segment less the bulge, up to `limit_m`. Segments with a smaller bulge than
+/// `min_bulge_m` do not count.
+double nearest_m(const Vec2& p, std::span<const Frontier> frontiers, double min_bulge_m, double limit_m) {
   for (const Frontier& frontier : frontiers) {
     const double within_m = limit_m + frontier.bulge_m;
-    if (frontier.bulge_m < ignored_bulge_m || within_m <= 0) continue;
+    if (frontier.bulge_m < min_bulge_m || within_m <= 0) continue;
     const double distance2 = squared_distance(p, frontier.segment);
     if (distance2 < within_m * within_m) limit_m = std::sqrt(distance2) - frontier.bulge_m;
   }
@@ -29,7 +32,7 @@ double HiddenSpace::distance_m(const Vec2& p, Time t) const {
   const double growth_m = speed_mps * std::abs(to_seconds(t - observed_at));
   const double turned_m = heading_error_rad * (p - observed_from_m).norm();
   const double open_m = nearest_m(p, frontiers, 0, kFar_m) - growth_m;
-  return nearest_m(p, closed_gaps, projection_m, open_m) - turned_m;
+  return nearest_m(p, closed_gaps, kTouching_m, open_m) - turned_m;
 }
 
 namespace {

@@ -13,10 +13,9 @@ namespace sidestep {
 /// there people approach at up to their maximum speed, since the time of the scan.
 struct HiddenSpace {
   std::span<const Frontier> frontiers{};    ///< where people may step out
-  std::span<const Frontier> closed_gaps{};  ///< too narrow for people, who may project over them
+  std::span<const Frontier> closed_gaps{};  ///< too narrow for people, who may project through them
   Time observed_at{};
   double speed_mps = 0;          ///< upper bound, of people
-  double projection_m = 0;       ///< that people over a closed gap may have at any time
   double heading_error_rad = 0;  ///< bound, of the scan's pose
   double creep_mps = 0;          ///< a robot that is not faster counts as being at rest
   Vec2 observed_from_m{0, 0};

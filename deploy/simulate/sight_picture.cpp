@@ -40,7 +40,7 @@ SightPicture::SightPicture(const Scenario& scenario, RobotId robot)
       robot_(robot),
       rules_(floor_rules(scenario)),
       view_(robot, laser_of(scenario, robot).settings),
-      sight_(*scenario.laser, rules_) {}
+      sight_(*scenario.laser, rules_, {.position_error_m = scenario.tracking_bound_m}) {}
 
 void SightPicture::add(const msg::GroundTruth& truth) {
   for (const msg::TrueRobotState& robot : truth.robots())

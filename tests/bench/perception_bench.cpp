@@ -60,6 +60,7 @@ int run() {
   LocalGrid grid;
   LaserTracks tracks, tracks_with_map;
   Visibility visibility;
+  const KnownFloor walls{&scene.map()};
   Series reading{"LaserBeams::read", {}}, tracking{"LaserTracks::update", {}},
       tracking_map{"LaserTracks::update, map", {}}, mapping{"LocalGrid::update", {}},
       seeing{"Visibility::update", {}};
@@ -76,7 +77,9 @@ int run() {
     tracking.measure([&] { tracks.update(beams, grid); });
     tracking_map.measure([&] { tracks_with_map.update(beams, grid, {&scene.map()}); });
     mapping.measure([&] { grid.update(beams); });
-    seeing.measure([&] { visibility.update(beams, [&](int beam) { return tracks.is_standing(beam); }); });
+    seeing.measure([&] {
+      visibility.update(beams, [&](const Vec2& p, double within_m) { return walls.nearest_m(p, within_m); });
+    });
     for (const LaserTrack& track : tracks_with_map.tracks()) {
       moving += track.is_moving;
       phantoms += is_phantom(track, scan.captured_at, discs);

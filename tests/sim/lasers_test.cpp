@@ -5,6 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "deploy/evaluation/study/corners/corner_scene.hpp"
+#include "deploy/evaluation/study/corners/doorway_scene.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -41,6 +42,25 @@ TEST_CASE("no robot is moving when somebody steps out of a place that its laser 
   }
   CHECK(arrived > cases * 7 / 10);
   CHECK(touched_at_rest > 10);  // people do walk into robots
+}
+
+TEST_CASE("no robot is moving when somebody steps out of a doorway that is hardly wider than he is") {
+  int arrived = 0, cases = 0;
+  std::uint64_t touched_at_rest = 0;
+  for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
+    for (std::uint64_t seed = 9'000'001; seed <= 9'000'006; ++seed) {
+      CAPTURE(kDoorwayKinds[kind], seed);
+      const CornerResult result = run_corner(doorway_scene(kind, seed), seed, true);
+      CHECK(result.contacts == 0);
+      CHECK(result.crashes_in_motion == 0);
+      CHECK(result.audit_passed);
+      touched_at_rest += result.crashes;
+      arrived += result.has_arrived;
+      ++cases;
+    }
+  }
+  CHECK(arrived > cases / 2);
+  CHECK(touched_at_rest > 10);
 }
 
 TEST_CASE("six robots work among ten people whom they see by their own lasers") {

@@ -81,6 +81,17 @@ void add_buildings_study(const CliCommand& study, std::function<int()>& action) 
   buildings.on_parsed([&action, options] { action = [options] { return study_buildings(*options); }; });
 }
 
+void add_sight_study(const CliCommand& study, const std::string& name, const std::string& description,
+                     int (*run)(const StudyOptions&), std::function<int()>& action) {
+  const auto options = std::make_shared<StudyOptions>();
+  const CliCommand command = add_study(study, name, description, *options);
+  command.add_option("--cases", options->cases, "number of random cases").check(positive()).show_default();
+  command.add_option("--jobs", options->jobs, "number of parallel processes")
+      .check(positive())
+      .show_default();
+  command.on_parsed([&action, options, run] { action = [options, run] { return run(*options); }; });
+}
+
 }  // namespace
 
 void add_study_command(const CliCommand& root, std::function<int()>& action) {
@@ -99,13 +110,12 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
   add_clutter_study(study, action);
   add_buildings_study(study, action);
-  const CliCommand corners =
-      add_study(study, "corners",
-                "A robot with a laser, and people who step out from behind corners: crashes, time", *options);
-  corners.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(positive())
-      .show_default();
-  corners.on_parsed([&action, options] { action = [options] { return study_corners(*options); }; });
+  add_sight_study(study, "corners",
+                  "A robot with a laser, and people who step out from behind corners: crashes, time",
+                  study_corners, action);
+  add_sight_study(study, "doorways",
+                  "A robot with a laser, and people who stand in doorways and step out: crashes, time",
+                  study_doorways, action);
   const CliCommand joint = add_study(
       study, "explicit", "Robots planned as one or by priority, against the safety search", *options);
   joint.on_parsed([&action, options] { action = [options] { return study_explicit(*options); }; });

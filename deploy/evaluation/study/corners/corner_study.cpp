@@ -5,8 +5,11 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <map>
+#include <span>
+#include <string>
 
 #include "deploy/evaluation/study/corners/corner_scene.hpp"
+#include "deploy/evaluation/study/corners/doorway_scene.hpp"
 #include "deploy/evaluation/study/table/experiment.hpp"
 
 namespace sidestep {
@@ -22,10 +25,13 @@ struct Batch {
   double laser_s = 0, camera_s = 0;  // of the cases that arrived both times
 };
 
-Batch run_batch(std::size_t kind, std::uint64_t first, std::uint64_t count) {
+/// Makes a random scene of a kind.
+using SceneOf = Scenario (*)(std::size_t kind, std::uint64_t seed);
+
+Batch run_batch(SceneOf scene_of, std::size_t kind, std::uint64_t first, std::uint64_t count) {
   Batch sum;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    const Scenario scenario = corner_scene(kind, seed);
+    const Scenario scenario = scene_of(kind, seed);
     const CornerResult result = run_corner(scenario, seed, true);
     sum.arrived += result.has_arrived;
     sum.blocked += !result.has_arrived && result.was_blocked;
@@ -68,25 +74,25 @@ bool summarise(const StudyTable& table) {
   return is_safe;
 }
 
-}  // namespace
-
-int study_corners(const StudyOptions& options) {
+int study_scenes(const std::string& name, std::span<const char* const> kinds, SceneOf scene_of,
+                 const StudyOptions& options) {
   require_study_output(options);
-  const std::uint64_t batches = options.is_quick ? 1 : 40, cases = options.is_quick ? 2 : kBatch;
+  const std::uint64_t of_kind =
+      options.is_quick ? 2 : std::max<std::uint64_t>(options.cases / kinds.size(), 1);
   Experiment experiment;
   experiment.jobs = options.jobs;
-  experiment.table.name = "corners";
+  experiment.table.name = name;
   experiment.table.columns = {
       "kind",    "first_seed", "cases",    "time_ratio", "laser_s",           "camera_s",
       "arrived", "blocked",    "contacts", "crashes",    "crashes_in_motion", "failed_audits"};
   Plot plot{"time with a laser over time with cameras above the floor", "kind of scene", "ratio"};
   experiment.table.plots.push_back(plot);
-  for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
-    for (std::uint64_t i = 0; i < batches; ++i) {
-      const std::uint64_t first = options.seed * 1'000'000 + i * cases;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    for (std::uint64_t done = 0; done < of_kind; done += kBatch) {
+      const std::uint64_t first = options.seed * 1'000'000 + done, cases = std::min(kBatch, of_kind - done);
       experiment.runs.push_back(
-          {kCornerKinds[kind], static_cast<double>(kind), cells(kCornerKinds[kind], first, cases), [=] {
-             const Batch b = run_batch(kind, first, cases);
+          {kinds[kind], static_cast<double>(kind), cells(kinds[kind], first, cases), [=] {
+             const Batch b = run_batch(scene_of, kind, first, cases);
              return fmt::format("{:.3f},{:.3f},{:.3f},{},{},{},{},{},{}",
                                 b.camera_s > 0 ? b.laser_s / b.camera_s : 1.0, b.laser_s, b.camera_s,
                                 b.arrived, b.blocked, b.contacts, b.crashes, b.crashes_in_motion,
@@ -95,8 +101,18 @@ int study_corners(const StudyOptions& options) {
     }
   }
   measure(experiment);
-  write_study_table(experiment.table, "corners", options);
+  write_study_table(experiment.table, name, options);
   return summarise(experiment.table) ? 0 : 1;
+}
+
+}  // namespace
+
+int study_corners(const StudyOptions& options) {
+  return study_scenes("corners", kCornerKinds, corner_scene, options);
+}
+
+int study_doorways(const StudyOptions& options) {
+  return study_scenes("doorways", kDoorwayKinds, doorway_scene, options);
 }
 
 }  // namespace sidestep

@@ -15,8 +15,9 @@ namespace sidestep {
 struct StudyOptions {
   std::string folder;
   std::uint64_t seed = 1;
-  int jobs = 2;           ///< parallel processes, where nothing is timed
-  bool is_quick = false;  ///< a small version of every experiment, for tests
+  int jobs = 2;                  ///< parallel processes, where nothing is timed
+  bool is_quick = false;         ///< a small version of every experiment, for tests
+  std::uint64_t cases = 10'000;  ///< of studies of random cases
 };
 
 /// The measurements of one experiment, and its plots.

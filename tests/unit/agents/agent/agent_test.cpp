@@ -261,6 +261,29 @@ TEST_CASE("before the robot's clock is known, an observation is forwarded but no
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 1);
 }
 
+TEST_CASE("what the laser did not see dates from its scan, as far as its pose is right") {
+  Scenario scenario = two_goals();
+  scenario.laser.emplace();
+  Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
+  agent.on_feedback(resting_at({0, 0}, 0.5));
+  become_ready(agent, 0.6, 0.6);
+  agent.on_world(observation(0, 0.6), at_s(0.61));
+  // Something unknown stands all around.
+  const std::vector<float> ranges_m(static_cast<std::size_t>(scenario.laser->settings.beams), 1.5F);
+  agent.on_scan({{0, 0}, 0, at_s(0.55), ranges_m}, at_s(0.61));
+  const auto plan = agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  REQUIRE(plan);
+  const HiddenSpace& hidden = plan->query.hidden;
+  CHECK(hidden.observed_at == at_s(0.55));
+  CHECK(hidden.observed_from_m == Vec2(0, 0));
+  CHECK(hidden.speed_mps == scenario.max_opponent_speed_mps);
+  CHECK(hidden.heading_error_rad == 0.02);
+  // Beside the range's error, the frontier may be turned about the robot, and people approach since the scan.
+  const double frontier_m = 1.5 - scenario.laser->range_error_m;
+  CHECK(hidden.distance_m({0.5, 0}, at_s(0.75)) ==
+        Approx(frontier_m - 0.5 - 0.2 * scenario.max_opponent_speed_mps - 0.5 * 0.02).margin(0.01));
+}
+
 TEST_CASE("an observation is forwarded to the robot once") {
   DrivenAgent d;
   d.observe(0.001, 0.6, 0.61);

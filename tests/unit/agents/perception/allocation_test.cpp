@@ -18,6 +18,7 @@ TEST_CASE("warm perception does not allocate") {
   LocalGrid grid;
   LaserTracks tracks;
   Visibility visibility;
+  const KnownFloor walls{&scene.map()};
   std::vector<Circle> discs(people.size());
   double sum = 0;
   std::size_t allocations = 0;
@@ -39,7 +40,7 @@ TEST_CASE("warm perception does not allocate") {
     beams.read(scan, std::span(discs).subspan(0, 2));
     tracks.update(beams, grid, {&scene.map()});
     grid.update(beams);
-    visibility.update(beams, [&](int beam) { return tracks.is_standing(beam); });
+    visibility.update(beams, [&](const Vec2& p, double within_m) { return walls.nearest_m(p, within_m); });
     sum += visibility.is_before_frontiers(robot.at_m());
     grid.for_each_occupied({{-1, -1}, {1, 1}}, [&](const Cell&) { sum += 1; });
     sum += static_cast<double>(tracks.tracks().size());

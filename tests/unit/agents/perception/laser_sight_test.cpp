@@ -17,7 +17,7 @@ double nearest_frontier_m(double person_radius_m, double range_error_m, double p
   const ObstacleWorld world(rules.obstacles);
   std::vector<float> ranges(1440);
   LaserScanner(laser.settings).scan({nullptr, nullptr, &world, {&person, 1}}, {0, 0}, 0, ranges);
-  LaserSight sight(laser, rules, {.pose_error_m = pose_error_m});
+  LaserSight sight(laser, rules, {.position_error_m = pose_error_m});
   REQUIRE(sight.update({{0, 0}, 0, time_from_ns(1'000'000'000), ranges}, {}));
   const Vec2 front = person.centre_m - Vec2(person_radius_m, 0);
   double nearest_m = 1e9;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/perception/visibility.hpp"
 
+#include "agents/perception/known_floor.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/perception/hidden_people.hpp"
 
@@ -8,7 +9,14 @@ namespace sidestep::visibility_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
-const auto kAllStand = [](int) { return true; };
+const auto kNothing = [](const Vec2&, double) { return std::optional<Vec2>(); };
+
+/// What is known of a scene, except now and then.
+auto known_in(const test::Scene& scene, Rng& rng, double unknown = 0) {
+  return [&scene, &rng, unknown](const Vec2& p, double within_m) {
+    return rng.chance(unknown) ? std::nullopt : KnownFloor{&scene.map()}.nearest_m(p, within_m);
+  };
+}
 
 TEST_CASE("no point of a person who was hidden counts as seen free") {
   int hidden = 0, near = 0, wrong = 0;
@@ -26,7 +34,7 @@ TEST_CASE("no point of a person who was hidden counts as seen free") {
     LaserBeams beams(laser);
     beams.read({at, truth.heading_rad, Time{}, ranges}, {});
     Visibility visibility(settings);
-    visibility.update(beams, [&](int beam) { return beam % 7 != 0; });
+    visibility.update(beams, known_in(scene, rng, 0.15));
     int wrong_here = 0;
     for (int i = 0; i < 150; ++i) {
       const double x = rng.uniform(-8, 8), y = rng.uniform(-8, 8);
@@ -58,7 +66,7 @@ TEST_CASE("most of what is in view counts as seen free") {
     LaserBeams beams(laser);
     beams.read(scene.scan(at, rng.uniform(-4, 4), Time{}, {}, {}, rng), {});
     Visibility visibility({0.15, 0.01});
-    visibility.update(beams, kAllStand);
+    visibility.update(beams, known_in(scene, rng));
     CHECK(visibility.was_seen_free(at));
     for (int i = 0; i < 1000; ++i) {
       const double x = rng.uniform(-5, 5), y = rng.uniform(-5, 5);
@@ -90,7 +98,10 @@ struct View {
     for (float& range_m : ranges)
       if (rng.chance(dropouts)) range_m = test::kNoRange;
     beams.read({{0, 0}, 0, Time{}, ranges}, robots);
-    visibility.update(beams, [&](int beam) { return stand && beams[beam].end == BeamEnd::kHit; });
+    const KnownFloor floor{nullptr, &world};
+    visibility.update(beams, [&](const Vec2& p, double within_m) {
+      return stand ? floor.nearest_m(p, within_m) : std::nullopt;
+    });
   }
   /// Whether a frontier crosses the line from the origin in this direction, and how near.
   double frontier_m(double angle_rad) const {
@@ -132,10 +143,21 @@ TEST_CASE("a gap is closed if it is too narrow and both sides stand") {
   CHECK(loose.visibility.closed_gaps().empty());
   CHECK(loose.frontier_m(0.3) < 3.2);
   CHECK(loose.visibility.was_seen_free({2.9, 0}));
-  // It takes both sides: here, those that stand are too far apart.
+  // It takes both sides: here, only one is known.
+  const ObstacleWorld half({Segment{{3, -3}, {3, 0}}});
   Visibility lone(settings);
-  lone.update(narrow.beams, [](int beam) { return beam % 200 == 0; });
-  CHECK(lone.closed_gaps().empty());
+  lone.update(fence.beams, [&](const Vec2& p, double within_m) {
+    return KnownFloor{nullptr, &half}.nearest_m(p, within_m);
+  });
+  const auto is_open_at = [&](double y_m) {
+    return std::ranges::any_of(lone.frontiers(), [&](const Frontier& frontier) {
+      return intersect(Segment{{0, 0}, {100, 100 * y_m / 3}}, frontier.segment);
+    });
+  };
+  CHECK_FALSE(is_open_at(-0.5));
+  CHECK_FALSE(is_open_at(0.1));  // still too near to the end of the known half
+  CHECK(is_open_at(0.4));
+  CHECK(is_open_at(0.5));
   // Dropouts leave gaps of a few beams, too narrow for a person.
   const View gaps(laser, room(0.005), settings, {}, true, 0.3);
   CHECK(gaps.visibility.frontiers().empty());
@@ -145,6 +167,32 @@ TEST_CASE("a gap is closed if it is too narrow and both sides stand") {
   CHECK(coarse.frontier_m(0.05) > 1e3);
   const View coarser({30, 2 * kPi, 0.05, 8}, room(0.005), settings);
   CHECK(coarser.frontier_m(0.05) < 3);
+}
+
+//   wall |  |  wall        somebody stands in the doorway: his sides are
+//        | O|              as near to the edges as the walls
+//        o  robot
+TEST_CASE("the surface of somebody in a doorway that he can pass is a frontier, however near the walls are") {
+  const LaserSettings laser{720, 2 * kPi, 0.05, 8};
+  for (const double radius_m : {0.1, 0.15, 0.25, 0.35}) {
+    for (const double more_m : {0.001, 0.02, 0.05, 0.1, 0.2}) {
+      CAPTURE(radius_m, more_m);
+      const double half_m = radius_m + more_m / 2;
+      const std::vector<Shape> walls{Box{{-3, 1}, {-half_m, 1.3}}, Box{{half_m, 1}, {3, 1.3}}};
+      const Circle person{{0, 1 + radius_m / 2}, radius_m};
+      const View view(laser, walls, {radius_m, 0.03}, {&person, 1});
+      const bool is_open = std::ranges::any_of(view.visibility.frontiers(), [&](const Frontier& frontier) {
+        return intersect(Segment{{0, 0}, person.centre_m}, frontier.segment);
+      });
+      CHECK(is_open);
+    }
+    // Nobody passes a narrower one, so what is seen in it is of no interest.
+    const double half_m = radius_m - 0.01;
+    const View view(laser, {Box{{-3, 1}, {-half_m, 1.3}}, Box{{half_m, 1}, {3, 1.3}}}, {radius_m, 0.005});
+    CHECK(std::ranges::none_of(view.visibility.frontiers(), [&](const Frontier& frontier) {
+      return intersect(Segment{{0, 0}, {0, 1.1}}, frontier.segment);
+    }));
+  }
 }
 
 TEST_CASE("nobody hides behind a thin post") {
@@ -194,7 +242,7 @@ TEST_CASE("unseen sectors and empty scans are frontiers") {
   beams.read({{1, 1}, 0, Time{}, dropouts}, {});
   Visibility blind({0.2, 0});
   CHECK_FALSE(blind.was_seen_free({1, 1}));
-  blind.update(beams, kAllStand);
+  blind.update(beams, kNothing);
   CHECK_FALSE(blind.was_seen_free({1, 1}));
   REQUIRE(blind.frontiers().size() == 1);
   CHECK(blind.frontiers()[0].segment.from_m == Vec2(1, 1));
@@ -211,7 +259,7 @@ TEST_CASE("the border is closed around the scanner") {
     LaserBeams beams(laser);
     beams.read(scene.scan(at, 0, Time{}, {}, {0.01, 0.03, 0.1}, rng), {});
     Visibility visibility({0.2, 0.03});
-    visibility.update(beams, [](int beam) { return beam % 3 != 0; });
+    visibility.update(beams, known_in(scene, rng, 0.3));
     std::vector<Segment> border;
     for (const Frontier& frontier : visibility.frontiers()) border.push_back(frontier.segment);
     for (const Frontier& gap : visibility.closed_gaps()) border.push_back(gap.segment);
@@ -235,6 +283,9 @@ TEST_CASE("bad settings of visibility are refused") {
   CHECK_THROWS_AS(Visibility({0.2, -1}), std::invalid_argument);
   CHECK_THROWS_AS(Visibility({std::nan(""), 0}), std::invalid_argument);
   CHECK_THROWS_AS(Visibility({0.2, kInfinite}), std::invalid_argument);
+  CHECK_THROWS_AS(Visibility({0.2, 0, -1}), std::invalid_argument);
+  CHECK_THROWS_AS(Visibility({0.2, 0, 0, kInfinite}), std::invalid_argument);
+  CHECK_THROWS_AS(Visibility({0.2, 0, 0, 0, std::nan("")}), std::invalid_argument);
 }
 
 }  // namespace sidestep::visibility_test

@@ -3,6 +3,7 @@
 
 #include "common/collision/obstacle_world.hpp"
 #include "deploy/evaluation/study/corners/corner_scene.hpp"
+#include "deploy/evaluation/study/corners/doorway_scene.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/evaluation/study/study_files.hpp"
 
@@ -25,6 +26,44 @@ TEST_CASE("the quick study of corners finds no robot that moves when it is touch
     CHECK(row.at("failed_audits") == "0");
   }
   CHECK(folder.has_png("corners"));
+}
+
+TEST_CASE("the quick study of doorways finds no robot that moves when it is touched") {
+  StudyFolder folder;
+  StudyOptions options;
+  options.folder = folder.path();
+  options.seed = 3;
+  options.is_quick = true;
+  REQUIRE(study_doorways(options) == 0);
+  const auto rows = folder.table("doorways", "doorways", 3);
+  CHECK(rows.size() == kDoorwayKinds.size());
+  for (const StudyRow& row : rows) CHECK(row.at("crashes_in_motion") == "0");
+}
+
+TEST_CASE("in scenes of doorways people walk through no wall, many hardly fit, and all step out") {
+  int tight = 0, people = 0;
+  for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      CAPTURE(kDoorwayKinds[kind], seed);
+      const Scenario scenario = doorway_scene(kind, seed);
+      const OccupancyMap& map = scenario.map->cells();
+      for (const OpponentSpec& person : scenario.opponents) {
+        ++people;
+        CHECK(person.radius_m >= scenario.laser->person_radius_m);
+        CHECK(person.speed_mps <= scenario.max_opponent_speed_mps);
+        double nearest_m = 1;
+        for (std::size_t i = 1; i < person.path_m.size(); ++i) {
+          CHECK_FALSE(map.touches(person.path_m[i - 1], person.path_m[i], person.radius_m - 1e-6));
+          nearest_m = std::min(nearest_m, map.distance_m(person.path_m[i], 1));
+        }
+        tight += nearest_m < person.radius_m + 0.03;
+        // It ends in the corridor.
+        CHECK(person.path_m.back().y() < person.path_m.front().y() - 0.1);
+      }
+    }
+  }
+  CHECK(people > 100);
+  CHECK(tight > people / 4);
 }
 
 TEST_CASE("in scenes of corners people walk through no obstacle, and the robot does not see its goal") {
