@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
+#include "deploy/monitor/metrics/report.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "simulator/world/body.hpp"
 #include "tests/catch.hpp"
@@ -299,6 +300,50 @@ TEST_CASE("robots stay clear of those that roll on without power or are carried,
 // What agents do about such robots was tuned on seeds 1 to 1000.
 TEST_CASE("a thousand coasting and carried robots are named and not driven into", "[.long][slow]") {
   check(run_cases(1001, 1000));
+}
+
+// Robot 1 loses power and is carried to where robot 0 is about to drive. By the coordinator's clock, vision
+// may see robots in the future.
+TEST_CASE("a carried robot is named, or nobody drives, wherever clocks are within their bound") {
+  Scenario scenario;
+  scenario.name = "lax clocks";
+  scenario.field = {6, 4};
+  scenario.limits.speed_mps = 0.2;
+  scenario.clock_bound_s = 0.05;
+  scenario.margin_m = 0.05;
+  scenario.vision.delay = std::chrono::milliseconds(GENERATE(10, 60));
+  scenario.robots.resize(2);
+  scenario.robots[0].start_m = {-2.5, 0};
+  scenario.robots[0].goals = {{Vec2(2.5, 0), std::nullopt}, {Vec2(-2.5, 0), std::nullopt}};
+  scenario.robots[1].id = 1;
+  scenario.robots[1].start_m = {0, 1.5};
+  const Duration ahead = std::chrono::milliseconds(GENERATE(0, -20, -45, 45, -250));
+  const bool is_in_bound = std::chrono::abs(ahead) <= from_seconds(scenario.clock_bound_s);
+  CAPTURE(to_seconds(scenario.vision.delay), to_seconds(ahead));
+  SimSystem system(scenario, 1, {{"coordinator", {ahead}}});
+  SimBus listener(system.network());
+  listener.become_observer();
+  bool is_named = false, moves = false;
+  listener.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+    for (const msg::RobotNotice& notice : state.notices())
+      is_named |= notice.robot() == 1 && notice.is_displaced();
+  });
+  system.on_truth([&](const msg::GroundTruth& truth) {
+    for (const msg::TrueRobotState& robot : truth.robots())
+      moves |= robot.robot() == 0 && std::hypot(robot.vx_mps(), robot.vy_mps()) > 0.1;
+  });
+  system.run_for(std::chrono::seconds(3));
+  auto off = disturbance(1, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF);
+  system.disturb(off);
+  system.run_for(std::chrono::milliseconds(100));
+  auto carry = disturbance(1, msg::DisturbanceKind::DISTURBANCE_CARRY);
+  carry.x_m(0.8);
+  carry.duration_ns(1'000'000'000);
+  system.disturb(carry);
+  system.run_for(std::chrono::seconds(30));
+  CHECK(system.metrics().report().contacts == 0);
+  CHECK(moves == is_in_bound);
+  CHECK(is_named == is_in_bound);
 }
 
 TEST_CASE("a robot that is switched on elsewhere drives on, and is no longer named") {
