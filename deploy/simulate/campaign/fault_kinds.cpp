@@ -40,6 +40,7 @@ std::set<std::string> fault_kinds(const Scenario& scenario, const FaultPlan& pla
   if (scenario.vision.ghost_probability > 0) kinds.insert("ghost robots");
   if (scenario.vision.ghost_obstacle_probability > 0) kinds.insert("ghost obstacles");
   if (!scenario.opponents.empty()) kinds.insert(scenario.map ? "people in a building" : "opponents");
+  if (scenario.laser) kinds.insert("lasers");
   if (!robots_with(plan, RobotEnd::kLifted).empty()) kinds.insert("lifted for good");
   return kinds;
 }

@@ -101,8 +101,8 @@ void sample_paths(Scenario& scenario, Rng& rng) {
   }
 }
 
-/// People who walk through the rooms of a building.
-void sample_people(Scenario& scenario, Rng& rng) {
+/// People who walk around obstacles and through the rooms of a building.
+void sample_people(Scenario& scenario, double min_radius_m, double max_radius_m, Rng& rng) {
   const auto is_near_robot = [&](const Vec2& p, double radius_m) {
     return std::ranges::any_of(scenario.robots, [&](const RobotSpec& robot) {
       return (robot.start_m - p).norm() < radius_m + scenario.radius_m + scenario.margin_m;
@@ -110,7 +110,7 @@ void sample_people(Scenario& scenario, Rng& rng) {
   };
   for (std::uint64_t left = 1 + rng.below(6); left > 0; --left) {
     OpponentSpec person;
-    person.radius_m = rng.uniform(0.5, 2) * scenario.radius_m;
+    person.radius_m = rng.uniform(min_radius_m, max_radius_m);
     person.speed_mps = rng.uniform(0.1, 1) * scenario.max_opponent_speed_mps;
     WalkSampler walks(scenario, person.radius_m, rng);
     const int places = 2 + static_cast<int>(rng.below(3));
@@ -147,7 +147,7 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
   if (!rng.chance(scenario.map ? 0.6 : 0.12)) return;
   // On a small floor, quick opponents could be anywhere before a robot has stopped, and no robot would drive.
   scenario.max_opponent_speed_mps = std::min(1.5, 0.25 * scenario.field.width_m);
-  if (scenario.map) return sample_people(scenario, rng);
+  if (scenario.map) return sample_people(scenario, 0.5 * scenario.radius_m, 2 * scenario.radius_m, rng);
   PositionSampler positions(scenario, rng);
   std::vector<Vec2> starts;
   for (const RobotSpec& robot : scenario.robots) starts.push_back(robot.start_m);
@@ -165,6 +165,21 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
   }
 }
 
+void sample_lasers(Scenario& scenario, Rng& rng) {
+  constexpr std::size_t kMaxRobotsWithLasers = 12;  // scans take most of the time
+  if (scenario.robots.size() > kMaxRobotsWithLasers || !rng.chance(0.4)) return;
+  LaserSpec& laser = scenario.laser.emplace();
+  laser.settings.beams = 240 + static_cast<int>(rng.below(480));
+  laser.settings.max_range_m = rng.uniform(4, 10);
+  laser.rate_hz = rng.uniform(10, 30);
+  laser.range_error_m = rng.uniform(0.005, 0.03);
+  if (rng.chance(0.3)) laser.dropout_probability = rng.uniform(0, 0.05);
+  laser.person_radius_m = rng.uniform(0.1, 0.2);
+  scenario.max_opponent_speed_mps = std::min(1.2, 0.25 * scenario.field.width_m);
+  scenario.opponents.clear();
+  sample_people(scenario, laser.person_radius_m, 1.5 * laser.person_radius_m, rng);
+}
+
 void sample_planners(Scenario& scenario, Rng& rng) {
   if (rng.chance(0.5)) return;
   std::vector<std::string> planners = driving_planners();
@@ -179,12 +194,12 @@ void sample_planners(Scenario& scenario, Rng& rng) {
 
 std::string scene_summary(const Scenario& scenario) {
   return fmt::format(
-      "{} robots on {:.2f} x {:.2f} m, {}{} obstacles, {} {}, {} coordinators; {}; "
+      "{} robots{} on {:.2f} x {:.2f} m, {}{} obstacles, {} {}, {} coordinators; {}; "
       "at most {:.2f} m/s; command loss {:.1f} %, "
       "vision delay {:.1f} ms, missed detections {:.1f} %, ghosts {:.1f} % robots and {:.1f} % obstacles",
-      scenario.robots.size(), scenario.field.length_m, scenario.field.width_m,
-      scenario.map ? "a building, " : "", scenario.obstacles.size(), scenario.opponents.size(),
-      scenario.map ? "people" : "opponents", scenario.coordinators,
+      scenario.robots.size(), scenario.laser ? " with lasers" : "", scenario.field.length_m,
+      scenario.field.width_m, scenario.map ? "a building, " : "", scenario.obstacles.size(),
+      scenario.opponents.size(), scenario.map ? "people" : "opponents", scenario.coordinators,
       scenario.robots.front().planner.empty() ? scenario.planner : "a planner for each robot",
       scenario.limits.speed_mps, 100 * scenario.command_loss, to_seconds(scenario.vision.delay) * 1e3,
       100 * scenario.vision.miss_probability, 100 * scenario.vision.ghost_probability,

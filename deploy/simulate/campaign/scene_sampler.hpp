@@ -18,6 +18,9 @@ std::string scene_summary(const Scenario& scenario);
 /// Adds opponents that cross the floor among the robots to some scenes.
 void sample_opponents(Scenario& scenario, Rng& rng);
 
+/// Gives the robots of some scenes lasers, and people who walk there instead of the opponents.
+void sample_lasers(Scenario& scenario, Rng& rng);
+
 /// In every second scene, lets all robots or each of them find paths by a random planner. Not by local
 /// methods that ignore paths: these may stop for ever.
 void sample_planners(Scenario& scenario, Rng& rng);

@@ -127,11 +127,12 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
                    bool has_faults) {
   Rng rng(seed);
   Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork(), disturbance_rng = rng.fork(),
-      opponent_rng = rng.fork(), planner_rng = rng.fork();
+      opponent_rng = rng.fork(), planner_rng = rng.fork(), laser_rng = rng.fork();
   Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
   if (!scenario) {
     sample_opponents(trial.scenario, opponent_rng);
     sample_planners(trial.scenario, planner_rng);
+    sample_lasers(trial.scenario, laser_rng);
   }
   const FaultTimes times(duration - std::min(kFaultFreeEnd, duration / 2), fault_rng);
   FaultPlan& plan = trial.plan;

@@ -120,18 +120,30 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and non
     for (const std::string& kind : sample_trial(seed, 60s, std::nullopt).fault_kinds()) ++trials[kind];
     CHECK(sample_trial(seed, 60s, std::nullopt, false).plan.faults.empty());
   }
-  for (const char* const kind : {"push",           "slip",
-                                 "block",          "reboot",
-                                 "forget pose",    "lift",
-                                 "place",          "switch off",
-                                 "switch on",      "take away",
-                                 "carry",          "clock step",
-                                 "clock drift",    "clock out of bound",
-                                 "other rules",    "forgery",
-                                 "opponents",      "people in a building",
-                                 "seen beside",    "seen as",
-                                 "seen frozen",    "ghost robots",
-                                 "ghost obstacles"}) {
+  for (const char* const kind : {"push",
+                                 "slip",
+                                 "block",
+                                 "reboot",
+                                 "forget pose",
+                                 "lift",
+                                 "place",
+                                 "switch off",
+                                 "switch on",
+                                 "take away",
+                                 "carry",
+                                 "clock step",
+                                 "clock drift",
+                                 "clock out of bound",
+                                 "other rules",
+                                 "forgery",
+                                 "opponents",
+                                 "people in a building",
+                                 "seen beside",
+                                 "seen as",
+                                 "seen frozen",
+                                 "ghost robots",
+                                 "ghost obstacles",
+                                 "lasers"}) {
     CAPTURE(kind, trials[kind]);
     CHECK(trials[kind] >= 0.03 * kTrials);
     CHECK(trials[kind] <= 0.25 * kTrials);
