@@ -285,7 +285,7 @@ bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m) 
            is_clear(a, circle->centre_m, separation_m);
   }
   const double far_m = std::max(min_separation_m, 0.0) + kClearanceTolerance_m;
-  const double distance_m = signed_distance(a.at_start().position_m, shape);
+  const double distance_m = or_nan(signed_distance(a.at_start().position_m, shape), a.at_start().position_m);
   if (!(distance_m > 0)) return false;
   if (distance_m >= far_m + reach_m(a)) return true;
   const Corners corners(shape);

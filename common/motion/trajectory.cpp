@@ -51,7 +51,8 @@ double reach_m(const Trajectory& trajectory) {
     const double seconds = to_seconds(phase.duration);
     // The speed is convex over a phase, so its maximum is at one of the ends.
     const State next = state_after(state, phase.acceleration_mps2, seconds);
-    reach += seconds * std::max(state.velocity_mps.norm(), next.velocity_mps.norm());
+    // What is no number at the end is returned by std::max if it comes first.
+    reach += seconds * std::max(next.velocity_mps.norm(), state.velocity_mps.norm());
     state = next;
   }
   return reach;
