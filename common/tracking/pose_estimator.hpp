@@ -22,12 +22,12 @@ struct Odometry {
 /// The robot's sensor model. Noises and errors are standard deviations.
 struct EstimatorSettings {
   double velocity_noise_mps = 0.01;   ///< of one odometry measurement, per axis
-  double commanded_noise_mps = 0.01;  ///< of one velocity that is commanded instead of measured, per axis
   double scale_error = 0.005;         ///< of the odometry's constant relative error
   double fix_noise_m = 0.0005;        ///< of a fix, per axis
   double extra_fix_noise_m = 0.0005;  ///< for the correlation that vision's filter introduces between fixes
   double velocity_gain = 0.08;        ///< of a velocity measurement relative to the motor model; 1: no model
   Duration period{1'000'000};         ///< of the odometry
+  double commanded_noise_mps = 0.01;  ///< of one velocity that is commanded instead of measured, per axis
 };
 
 /// A robot's estimate of its own pose: dead reckoning from the last fix, with a Kalman filter over position

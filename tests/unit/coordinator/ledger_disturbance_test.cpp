@@ -235,7 +235,7 @@ TEST_CASE("no grant brings two robots closer than external events have left them
   std::map<Conflict, double> shortfall;
   int grants = 0, escapes = 0, pushes = 0, ended = 0;
   double now = 1;
-  for (VersionNumber number = 1; number < 4000; ++number) {
+  for (VersionNumber number = 1; number < 9'000; ++number) {
     const auto robot = static_cast<RobotId>(rng.below(roster.size()));
     now += 0.004;
     const bool is_pushed = rng.chance(0.02);
