@@ -193,7 +193,7 @@ TEST_CASE("restarts and twins of agents make no driven robot leave its version, 
   CHECK(outcome.driven_m > 200);
 }
 
-TEST_CASE("the same for a thousand robot-hours or as many as the environment says", "[.]") {
+TEST_CASE("the same for a thousand robot-hours or as many as the environment says", "[.][slow]") {
   const double hours = hours_of_environment();
   const Outcome outcome = run_floors(1'000'000, hours, true);
   WARN(hours << " robot-hours, " << outcome.restarts << " restarts, " << outcome.twins
@@ -201,7 +201,7 @@ TEST_CASE("the same for a thousand robot-hours or as many as the environment say
              << outcome.violations << " violations, " << outcome.driven_m / 1000 << " km");
 }
 
-TEST_CASE("driven robots whose agents do not restart make no own stop either", "[.]") {
+TEST_CASE("driven robots whose agents do not restart make no own stop either", "[.][slow]") {
   const Outcome outcome = run_floors(1, 0.5, false);
   WARN(outcome.own_stops << " own stops, " << outcome.driven_m / 1000 << " km");
 }

@@ -118,6 +118,6 @@ void check_pushes(std::uint64_t first, std::uint64_t count) {
 
 TEST_CASE("whenever a robot is pushed, its body stays within its own stop") { check_pushes(1, 2000); }
 
-TEST_CASE("the same for a hundred thousand pushes", "[.]") { check_pushes(1'000'000, 100'000); }
+TEST_CASE("the same for a hundred thousand pushes", "[.][slow]") { check_pushes(1'000'000, 100'000); }
 
 }  // namespace sidestep::own_stop_test

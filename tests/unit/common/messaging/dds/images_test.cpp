@@ -76,7 +76,7 @@ TEST_CASE("images of any size arrive unchanged, with and without shared memory")
   CHECK(watcher.wrong == 0);
 }
 
-TEST_CASE("camera process", "[.camera]") {
+TEST_CASE("camera process", "[.camera][slow]") {
   if (std::getenv("SIDESTEP_TEST_OWN_MEMORY")) {
     REQUIRE(unshare(CLONE_NEWNS) == 0);
     REQUIRE(mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0);

@@ -21,7 +21,7 @@ struct Request {
   std::uint32_t key = 0;
 };
 
-TEST_CASE("publishes reliable messages on request", "[.reliable_writer]") {
+TEST_CASE("publishes reliable messages on request", "[.reliable_writer][slow]") {
   REQUIRE(signal(SIGTERM, SIG_DFL) != SIG_ERR);
   DdsSettings settings = test_settings("writer");
   settings.domain = std::atoi(std::getenv("SIDESTEP_TEST_DOMAIN"));

@@ -134,7 +134,7 @@ bool is_known(const DdsListener& listener, const std::string& participant) {
                              [&](const DiscoveredEndpoint& e) { return e.participant == participant; });
 }
 
-TEST_CASE("publishes until it is asked to end", "[.victim]") {
+TEST_CASE("publishes until it is asked to end", "[.victim][slow]") {
   // Catch2 handles SIGTERM too, and allocates memory in the handler. That corrupts the heap if the signal
   // comes during an allocation.
   REQUIRE(signal(SIGTERM, SIG_DFL) != SIG_ERR);
