@@ -157,7 +157,7 @@ void DrivenRobot::advance(Time now) {
   while (estimator_.time() + kPeriod <= until) {
     const Time from = estimator_.time();
     Odometry motion = commanded(from, from + kPeriod, estimator_.heading_rad());
-    const auto body = measured_.at(from + kPeriod / 2);
+    const auto body = measured_.mean(from, from + kPeriod);
     if (body) {
       const double middle_rad = estimator_.heading_rad() + 0.5 * body->turn_radps * to_seconds(kPeriod);
       motion = {rotated(body->linear_mps, middle_rad), body->turn_radps};

@@ -26,11 +26,19 @@ void MeasuredMotion::add(const OdometryReport& report) {
   last_ = report;
 }
 
-std::optional<BodyVelocity> MeasuredMotion::at(Time time) const {
+std::optional<BodyVelocity> MeasuredMotion::mean(Time from, Time to) const {
+  BodyVelocity mean;
+  Time until = to;
   for (std::size_t age = 0; age < std::min(count_, kRemembered); ++age) {
     const Interval& interval = intervals_[(count_ - 1 - age) % kRemembered];
-    if (time > interval.to) return std::nullopt;
-    if (time >= interval.from) return interval.velocity;
+    if (interval.to < until) return std::nullopt;
+    if (interval.from >= until) continue;
+    const Time begin = std::max(interval.from, from);
+    const double share = to_seconds(until - begin) / to_seconds(to - from);
+    mean.linear_mps += share * interval.velocity.linear_mps;
+    mean.turn_radps += share * interval.velocity.turn_radps;
+    until = begin;
+    if (until == from) return mean;
   }
   return std::nullopt;
 }

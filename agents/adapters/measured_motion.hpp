@@ -15,8 +15,9 @@ class MeasuredMotion {
   void add(const OdometryReport& report);
   /// The time of the latest report; Time{} before the first.
   Time until() const { return last_ ? last_->measured_at : Time{}; }
-  /// The velocity at a time before until(); nullopt if the reports around it are not remembered.
-  std::optional<BodyVelocity> at(Time time) const;
+  /// The mean velocity from `from` to `to`; nullopt if the reports do not cover this time, or are not
+  /// remembered. Precondition: from < to.
+  std::optional<BodyVelocity> mean(Time from, Time to) const;
 
  private:
   struct Interval {

@@ -18,13 +18,13 @@ TEST_CASE("a base's velocity follows from its odometry, whatever the frame of th
     measured.add({3, begin + i * 20ms, rotated(Vec2(0.5 * s, 0.2 * s), frame_rad) + Vec2(7, 8), frame_rad});
   }
   CHECK(measured.until() == begin + 200ms);
-  const auto velocity = measured.at(begin + 55ms);
+  const auto velocity = measured.mean(begin + 55ms, begin + 65ms);
   REQUIRE(velocity);
   CHECK(velocity->linear_mps.x() == Approx(0.5));
   CHECK(velocity->linear_mps.y() == Approx(0.2));
   CHECK(velocity->turn_radps == Approx(0).margin(1e-9));
-  CHECK_FALSE(measured.at(begin + 205ms));
-  CHECK_FALSE(measured.at(begin - 5ms));
+  CHECK_FALSE(measured.mean(begin + 195ms, begin + 205ms));
+  CHECK_FALSE(measured.mean(begin - 5ms, begin + 5ms));
 }
 
 TEST_CASE("a base that moves and turns moves in the direction that it has in the middle of an interval") {
@@ -38,7 +38,7 @@ TEST_CASE("a base that moves and turns moves in the direction that it has in the
     position_m += 0.001 * rotated(Vec2(0.5, 0.2), heading_rad + 0.0005 * turn_radps);
     heading_rad += 0.001 * turn_radps;
   }
-  const auto velocity = measured.at(begin + 110ms);
+  const auto velocity = measured.mean(begin + 100ms, begin + 120ms);
   REQUIRE(velocity);
   CHECK(velocity->linear_mps.x() == Approx(0.5).margin(0.001));
   CHECK(velocity->linear_mps.y() == Approx(0.2).margin(0.001));
@@ -52,11 +52,11 @@ TEST_CASE("reports of odometry that come late or after a long gap give no veloci
   measured.add({3, begin - 10ms, {5, 0}, 0});
   CHECK(measured.until() == begin);
   measured.add({3, begin + 2s, {1, 0}, 0});
-  CHECK_FALSE(measured.at(begin + 1s));
+  CHECK_FALSE(measured.mean(begin + 1s, begin + 1010ms));
   measured.add({3, begin + 2020ms, {1.02, 0}, 3.1});
   measured.add({3, begin + 2040ms, {1.02, 0}, -3.1});
-  REQUIRE(measured.at(begin + 2030ms));
-  CHECK(measured.at(begin + 2030ms)->turn_radps == Approx((2 * 3.14159265 - 6.2) / 0.02));
+  REQUIRE(measured.mean(begin + 2022ms, begin + 2038ms));
+  CHECK(measured.mean(begin + 2022ms, begin + 2038ms)->turn_radps == Approx((2 * 3.14159265 - 6.2) / 0.02));
 }
 
 }  // namespace sidestep::measured_motion_test
