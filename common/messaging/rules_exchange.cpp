@@ -54,7 +54,11 @@ void RulesExchange::publish_if_due() {
   message.header().sender(process_);
   message.text().assign(rules_.text().begin(), rules_.text().end());
   // Only now: among many processes, writers that are not needed are what takes time at the start.
-  if (!writer_) writer_ = bus_.advertise(topics::kRules);
+  if (!writer_) {
+    writer_ = bus_.advertise(topics::kRules);
+    // Nobody has found this writer yet, so the message is lost over DDS; what was refused may not come again.
+    for (const int periods : {1, 2, 4}) bus_.at(now + periods * kPeriod, [this] { publish_if_due(); });
+  }
   writer_->publish(message, now);
 }
 
