@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/messaging/attachment.hpp"
+#include "common/messaging/sole_sender.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/protocol/drop_counters.hpp"
 #include "common/time/time.hpp"
@@ -88,6 +89,16 @@ class Bus {
     header_watcher_ = std::move(watcher);
   }
 
+  /// From now on, `watcher` gets the topic, its robot and the header of a message of a second process
+  /// whenever two begin to write a channel that is for one (TopicInfo::is_sole).
+  void watch_contests(std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> watcher) {
+    contest_watcher_ = std::move(watcher);
+  }
+
+  /// From now on, of two processes that write a channel that is for one, those messages count that the one
+  /// sends which was heard first. For observers of a simulation, who know it to be the true one.
+  void follow_first_senders() { follows_first_ = true; }
+
   /// Counts something that this process has dropped, other than for a reason that its node counts.
   void count_drop(DropReason reason) { drops_.count(reason); }
   /// Adds what this bus, or its process outside the node, has dropped.
@@ -117,8 +128,10 @@ class Bus {
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
-            [this, info = TopicInfo(topic), callback = std::move(callback)](const Message& message) mutable {
+            [this, robot, info = TopicInfo(topic), sender = SoleSender(),
+             callback = std::move(callback)](const Message& message) mutable {
               if (!has_same_rules(info, message.header())) return;
+              if (info.is_sole && !admit(sender, info, robot, message.header())) return;
               if (header_watcher_) header_watcher_(info, message.header());
               callback(message);
             });
@@ -148,8 +161,20 @@ class Bus {
     return false;
   }
 
+  bool admit(SoleSender& sender, const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+    const SoleSender::Outcome outcome = sender.receive(header.incarnation(), now());
+    if (outcome == SoleSender::Outcome::kCounts) return true;
+    if (follows_first_ && sender.is_first(header.incarnation())) return true;
+    count_drop(DropReason::kContestedSender);
+    if (outcome == SoleSender::Outcome::kNewlyContested && contest_watcher_)
+      contest_watcher_(topic, robot, header);
+    return false;
+  }
+
   std::uint64_t rules_ = 0;
+  bool follows_first_ = false;
   std::function<void(const TopicInfo&, const msg::Header&)> on_refused_, header_watcher_;
+  std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> contest_watcher_;
   DropCounters drops_;
 };
 

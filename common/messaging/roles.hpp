@@ -43,4 +43,7 @@ inline constexpr Roles kWatchers = Role::kOperator | Role::kViewer | Role::kJudg
 inline constexpr Roles kParts =
     Role::kAgent | Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kRobot | Role::kReferee;
 
+/// Those of which there is one of each number.
+inline constexpr Roles kSoleRoles = Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kReferee;
+
 }  // namespace sidestep

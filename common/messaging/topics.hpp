@@ -25,8 +25,9 @@ namespace sidestep {
 
 /// Quality of service. States are best effort and keep the last sample of each key: each message of the
 /// control cycle supersedes the previous one, and the protocol tolerates loss, so a retransmission would only
-/// cost time. Events are few and must arrive: reliable, in order. Images are states of about a megabyte, and
-/// may go by shared memory.
+/// cost time. Events are few and should arrive: reliable, and in order as far as they have one key (README.md
+/// lists when they are lost nevertheless). Images are states of about a megabyte, and may go by shared
+/// memory.
 enum class Qos : std::uint8_t { kState, kEvent, kImage };
 
 /// A message type without its C++ type, for buses and recordings. Pointers to messages are to messages of
@@ -55,6 +56,7 @@ struct TopicInfo {
       false;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
   bool is_checked = false;  ///< processes refuse its messages if they come from a process with other rules
   MessageType type{};
+  bool is_sole = false;  ///< one process at a time writes a channel, see SoleSender
 };
 
 template <typename Message>
@@ -95,10 +97,10 @@ namespace topics {
 
 inline constexpr Topic<msg::CameraImage> kImages{
     {"images", Role::kSimulator, Role::kVision | kWatchers, Qos::kImage, false, true,
-     message_type<msg::CameraImage>("sidestep::msg::CameraImage", msg::MAX_IMAGE_BYTES)}};
+     message_type<msg::CameraImage>("sidestep::msg::CameraImage", msg::MAX_IMAGE_BYTES), true}};
 inline constexpr Topic<msg::DetectionFrame> kDetections{
     {"detections", Role::kSimulator, Role::kVision | kWatchers, Qos::kState, false, true,
-     message_type<msg::DetectionFrame>("sidestep::msg::DetectionFrame", 1024)}};
+     message_type<msg::DetectionFrame>("sidestep::msg::DetectionFrame", 1024), true}};
 inline constexpr Topic<msg::WorldState> kWorld{
     {"world", Role::kVision, Role::kAgent | Role::kCoordinator | Role::kReferee | Role::kClient | kWatchers,
      Qos::kState, false, true, message_type<msg::WorldState>("sidestep::msg::WorldState", 1024)}};
@@ -110,10 +112,10 @@ inline constexpr Topic<msg::Command> kCommand{{"command", Role::kAgent,
                                                true, message_type<msg::Command>("sidestep::msg::Command")}};
 inline constexpr Topic<msg::Feedback> kFeedback{
     {"feedback", Role::kSimulator | Role::kRobot, Role::kAgent | Role::kCoordinator | kWatchers, Qos::kState,
-     true, true, message_type<msg::Feedback>("sidestep::msg::Feedback")}};
+     true, true, message_type<msg::Feedback>("sidestep::msg::Feedback"), true}};
 inline constexpr Topic<msg::LaserScan> kScan{
     {"scan", Role::kSimulator | Role::kRobot, Role::kAgent | kWatchers, Qos::kState, true, true,
-     message_type<msg::LaserScan>("sidestep::msg::LaserScan", msg::MAX_BEAMS)}};
+     message_type<msg::LaserScan>("sidestep::msg::LaserScan", msg::MAX_BEAMS), true}};
 inline constexpr Topic<msg::Registration> kRegistration{
     {"registration", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kState, false, true,
      message_type<msg::Registration>("sidestep::msg::Registration")}};
@@ -153,9 +155,10 @@ inline constexpr Topic<msg::OrderStatus> kOrderStatus{
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
-/// What each process has refused, dropped or received too late.
+/// What each process has refused, dropped or received too late. Those that must be alone learn from it
+/// whether they are.
 inline constexpr Topic<msg::Counters> kCounters{
-    {"counters", kParts, kWatchers, Qos::kState, false, true,
+    {"counters", kParts, kSoleRoles | kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
 inline constexpr Topic<msg::Disturbance> kDisturbance{
     {"disturbance", Role::kOperator, Role::kAgent | Role::kSimulator | Role::kRobot | kWatchers, Qos::kEvent,
@@ -172,7 +175,7 @@ inline constexpr Topic<msg::ClockReading> kClockReading{
 /// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", Role::kSimulator, Role::kJudge, Qos::kState, false, true,
-     message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024)}};
+     message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024), true}};
 
 /// From every process that has received messages of a process with other rules.
 inline constexpr Topic<msg::SharedRules> kRules{

@@ -3,9 +3,12 @@
 
 #include <atomic>
 #include <fmt/core.h>
+#include <optional>
+#include <stdexcept>
 
 #include "common/log/log.hpp"
 #include "common/messaging/clock_responder.hpp"
+#include "common/messaging/role_watch.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/process/host_name.hpp"
 #include "common/process/network_faults.hpp"
@@ -56,6 +59,16 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
   const RulesExchange rules(bus, process, SharedRules(scenario), [](const RulesMismatch& mismatch) {
     log(LogLevel::kWarning, describe(mismatch));
   });
+  bus.watch_contests([](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+    log(LogLevel::kError, describe_contest(topic, robot, header));
+  });
+  std::optional<std::string> yields_to;
+  const RoleWatch role(bus, process, incarnation, [&](Incarnation other) {
+    const std::string text = describe_other(process, incarnation, other);
+    if (!must_be_alone(process) || incarnation < other) return log(LogLevel::kError, text);
+    yields_to = text;
+    bus.stop();
+  });
   const RunningNodes running = program.start(bus, scenario, incarnation);
   const ClockResponder responder(bus, {process, incarnation, scenario.clock_bound_s, host_name()},
                                  DdsBus::host_clock_ahead);
@@ -72,6 +85,7 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
       fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(), dds.domain, bus.locators()));
   log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
   bus.run();
+  if (yields_to) throw std::runtime_error(*yields_to);
   return adopts && !stop.is_made;
 }
 

@@ -19,6 +19,7 @@ enum class DropReason : std::uint16_t {
   kUnknownParticipant,
   kRefusedParticipant,
   kForgedSender,
+  kContestedSender,
   // Any process that reads the topic.
   kMalformedFeedback,
   kMalformedVerdict,
@@ -107,6 +108,8 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
      "announcements of participants without a valid key of this network", true},
     {DropReason::kForgedSender, "forged_sender",
      "messages in the name of a process for which the sender has no key", true},
+    {DropReason::kContestedSender, "contested_sender",
+     "messages of processes of which only one may send them, while several do", false},
     {DropReason::kMalformedFeedback, "malformed_feedback", "facts of robots", true},
     {DropReason::kMalformedVerdict, "malformed_verdict", "verdicts", true},
     {DropReason::kMalformedWorld, "malformed_world", "world states that are not from vision", true},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
+#include <stdexcept>
 
 #include "common/keys/key_folder.hpp"
 #include "common/log/log.hpp"
@@ -21,6 +22,7 @@ using namespace std::chrono_literals;
 constexpr Duration kPollPeriod = 20ms;      // maximum delay before a death is noticed
 constexpr Duration kStartInterval = 100ms;  // simultaneous starts would stall DDS discovery
 constexpr Duration kStartupTimeout = 20s;   // since the last start
+constexpr Duration kListeningTime = 500ms;  // for another run in the domain, before anything is started
 constexpr Duration kSettlingTime = 500ms;   // after all arrivals, for the final status messages
 constexpr Duration kStuckTimeout = 2s;      // since the last death
 constexpr auto kTerminationTimeout = 3000ms;
@@ -52,6 +54,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);
+  bus_.follow_first_senders();  // those that this launcher starts
   auditor_.on_violation([this](const Violation& violation) {
     if (printed_violations_++ < AuditTotals::kMaxKept)
       print("audit: " + to_line(violation), LogLevel::kError);
@@ -69,6 +72,7 @@ Report Launcher::run() {
     is_interrupted_ = true;
     bus_.stop();
   });
+  require_free_domain();
   const Time begin = bus_.now();
   print(fmt::format("Fast DDS {}, domain {}", fast_dds_version(), options_.dds.domain));
   if (network_) {
@@ -104,6 +108,18 @@ Report Launcher::run() {
     recording_->close();
   }
   return report;
+}
+
+void Launcher::require_free_domain() {
+  bus_.observe<msg::CoordinatorState>(topics::kCoordinator, 0, [this](const msg::CoordinatorState& state) {
+    if (processes_.empty()) other_run_ = state.header().sender();
+  });
+  bus_.run_until(bus_.now() + kListeningTime);
+  if (other_run_)
+    throw std::invalid_argument(
+        fmt::format("DDS domain {} is in use: another run works in it, {} is heard; end that run, or choose "
+                    "another --domain",
+                    options_.dds.domain, process_name(*other_run_)));
 }
 
 void Launcher::print(const std::string& line, LogLevel level) {

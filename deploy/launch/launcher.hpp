@@ -77,6 +77,8 @@ class Launcher {
   Time next_poll();
   void handle(const ChildEvent& event);
   /// Starts the process that shows the run in the browser.
+  /// Throws std::invalid_argument if a coordinator is heard although nothing was started.
+  void require_free_domain();
   void start_monitor();
   void print_last_lines(const std::string& process);
   /// Whether the run is over; then abort_reason_ says why if it was aborted.
@@ -97,6 +99,7 @@ class Launcher {
   std::map<std::string, ProcessSpec> processes_;  ///< by name
   RevokedKeys revoked_keys_;
   RunDirector director_;
+  std::optional<std::uint32_t> other_run_;  // a process that was heard before any was started
   DdsBus bus_;
   RulesExchange rules_;
   RunMetrics metrics_;

@@ -39,7 +39,10 @@ class Stranger {
   }
   template <typename Message>
   void send(const Topic<Message>& topic, Message message, std::optional<Time> stamp = {}) {
-    bus_.advertise(topic, kRobot).publish(message, stamp.value_or(now()));
+    auto writer = bus_.advertise(topic, kRobot);
+    // Until all readers have found the writer.
+    if (topic.qos == Qos::kEvent) system_.run_for(200ms);
+    writer.publish(message, stamp.value_or(now()));
   }
   Time now() const { return system_.now(); }
 
@@ -77,6 +80,7 @@ msg::WorldState world_of(const Stranger& stranger, double x_m, Duration ahead = 
 
 msg::DetectionFrame frame_of(const Stranger& stranger) {
   msg::DetectionFrame frame;
+  frame.header() = stranger.feedback.header();  // the simulator's incarnation
   frame.captured_at_ns(to_ns(stranger.now()));
   frame.obstacles_complete_within_m(1e9);
   return frame;
@@ -127,6 +131,11 @@ const std::vector<Cause> kCauses{
      }},
     {DropReason::kQueueFull, "coordinator",
      [](Stranger&, SimSystem& system) { system.pause("coordinator", 200ms, 1); }},
+    {DropReason::kContestedSender, "agent 0",
+     [](Stranger& s, SimSystem&) {
+       s.feedback.header().incarnation(s.feedback.header().incarnation() + 1);
+       s.send(topics::kFeedback, s.feedback);
+     }},
     {DropReason::kMalformedFeedback, "agent 0",
      [](Stranger& s, SimSystem&) {
        s.feedback.x_m(kNan);
@@ -145,7 +154,11 @@ const std::vector<Cause> kCauses{
        s.send(topics::kObstacles, list);
      }},
     {DropReason::kMalformedScan, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kScan, from<msg::LaserScan>(Sender::kVision)); },
+     [](Stranger& s, SimSystem&) {
+       auto scan = from<msg::LaserScan>(Sender::kVision);
+       scan.header().incarnation(s.feedback.header().incarnation());
+       s.send(topics::kScan, scan);
+     },
      [](Scenario& scenario) { scenario.laser.emplace(); }},
     {DropReason::kMalformedLedgerPage, "agent 0",
      [](Stranger& s, SimSystem&) { s.send(topics::kLedger, from<msg::LedgerPage>(Sender::kVision)); }},
@@ -206,7 +219,11 @@ const std::vector<Cause> kCauses{
        s.send(topics::kDetections, frame);
      }},
     {DropReason::kMalformedImage, "vision",
-     [](Stranger& s, SimSystem&) { s.send(topics::kImages, msg::CameraImage()); },
+     [](Stranger& s, SimSystem&) {
+       msg::CameraImage image;
+       image.header() = s.feedback.header();  // the simulator's incarnation
+       s.send(topics::kImages, image);
+     },
      [](Scenario& scenario) {
        scenario.vision.images = ImageSpec{};
        scenario.robots.resize(1);
@@ -310,13 +327,12 @@ const std::vector<Cause> kCauses{
      }},
     {DropReason::kTooManyObstacles, "vision",
      [](Stranger& s, SimSystem&) {
-       for (std::uint32_t camera = 0; camera < 8; ++camera) {
+       for (std::uint32_t row = 0; row < 8; ++row) {
          auto frame = frame_of(s);
-         frame.camera(camera);
          frame.obstacle_count(msg::MAX_OBSTACLES);
          for (std::size_t i = 0; i < msg::MAX_OBSTACLES; ++i) {
            frame.obstacles()[i].x_m(-50 + 0.39 * static_cast<double>(i));
-           frame.obstacles()[i].y_m(10 + 5 * camera);
+           frame.obstacles()[i].y_m(10 + 5 * row);
            frame.obstacles()[i].radius_m(0.1);
          }
          s.send(topics::kDetections, frame);
@@ -343,6 +359,7 @@ const std::vector<Cause> kCauses{
     {DropReason::kUnusedByMonitor, "monitor",
      [](Stranger& s, SimSystem&) {
        msg::GroundTruth truth;
+       truth.header() = s.feedback.header();
        truth.penetration_m_s(kNan);
        s.send(topics::kTruth, truth);
      }},

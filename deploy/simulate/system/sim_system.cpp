@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "agents/agent/agent_node.hpp"
 #include "common/messaging/order_codec.hpp"
+#include "common/messaging/role_watch.hpp"
 #include "common/messaging/senders.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "simulator/images/image_output.hpp"
@@ -17,6 +19,7 @@ namespace sidestep {
 namespace {
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr std::string_view kSecond = " (second)";
 constexpr Duration kStep = std::chrono::milliseconds(10);
 constexpr Duration kSettlingTime = std::chrono::milliseconds(500);
 
@@ -44,8 +47,14 @@ struct VisionProcess {
 
 }  // namespace
 
+/// The process that a second one of its kind is named after; of another process its own name.
+std::string first_of(const std::string& process) {
+  return process.ends_with(kSecond) ? process.substr(0, process.size() - kSecond.size()) : process;
+}
+
 /// The id of a process that is not an agent.
-std::uint32_t id_of(const std::string& name, const Scenario& scenario) {
+std::uint32_t id_of(const std::string& process, const Scenario& scenario) {
+  const std::string name = first_of(process);
   const auto id = process_id(name);
   if (!id || std::ranges::count(SimSystem::process_names(scenario), name) == 0)
     throw std::invalid_argument("the system has no process \"" + name + "\"");
@@ -55,9 +64,15 @@ std::uint32_t id_of(const std::string& name, const Scenario& scenario) {
 /// Members are destroyed in reverse order: the node before its bus, so the bus never calls a destroyed node.
 struct SimSystem::Process {
   Process(SimNetwork& network, const SimProcessSpec& spec, std::uint32_t id, const SharedRules& shared)
-      : bus(network, spec), rules(bus, id, shared, [this](const RulesMismatch& mismatch) {
-          if (on_event) on_event({LogLevel::kWarning, {}, describe(mismatch)});
-        }) {}
+      : bus(network, spec),
+        rules(bus, id, shared, [this](const RulesMismatch& m) { report(LogLevel::kWarning, describe(m)); }) {
+    bus.watch_contests([this](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+      report(LogLevel::kError, describe_contest(topic, robot, header));
+    });
+  }
+  void report(LogLevel level, const std::string& text) const {
+    if (on_event && level >= reported_level) on_event({level, {}, text});
+  }
   template <typename Node>
   void run(std::shared_ptr<Node> new_node) {
     listen = [&target = *new_node](LogLevel min_level, OnLogEvent callback) {
@@ -68,12 +83,15 @@ struct SimSystem::Process {
 
   SimBus bus;
   OnLogEvent on_event;
+  LogLevel reported_level = LogLevel::kOff;
   RulesExchange rules;
+  std::optional<RoleWatch> role;
   std::shared_ptr<void> node;
   std::function<void(LogLevel, OnLogEvent)> listen;  // sets the callback for the node's events
 };
 
 std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
+std::string second_process(const std::string& process) { return process + std::string(kSecond); }
 
 SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks)
     : scenario_(scenario),
@@ -91,6 +109,7 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)),
       order_writer_(observer_bus_.advertise(topics::kOrder)) {
   observer_bus_.become_observer();
+  observer_bus_.follow_first_senders();
   metrics_.set_auditor(auditor_);
   listen(observer_bus_, scenario_, auditor_);
   observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
@@ -138,12 +157,15 @@ void SimSystem::start(const std::string& name) {
   // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
+  process->role.emplace(bus, id, incarnation, [this, name, id, own = incarnation](Incarnation found) {
+    on_other(name, id, own, found);
+  });
   if (agent != robot_of_.end()) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
     process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
-  } else if (name == "simulator") {
+  } else if (first_of(name) == "simulator") {
     process->run(std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_));
-  } else if (name == "vision") {
+  } else if (first_of(name) == "vision") {
     process->run(std::make_shared<VisionProcess>(bus, scenario, incarnation));
   } else {
     const CoordinatorIdentity self{id - static_cast<std::uint32_t>(Sender::kCoordinator), incarnation};
@@ -153,9 +175,17 @@ void SimSystem::start(const std::string& name) {
   observe(name);
 }
 
+void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {
+  processes_.at(name)->report(LogLevel::kError, describe_other(id, own, other));
+  if (stays_with_others_ || !must_be_alone(id) || own < other) return;
+  // Not here, in a callback of its bus.
+  observer_bus_.at(now(), [this, name] { processes_.erase(name); });
+}
+
 void SimSystem::observe(const std::string& name) {
   if (!on_event_) return;
   Process& process = *processes_.at(name);
+  process.reported_level = min_level_;
   process.on_event = [this, name](const LogEvent& event) { on_event_(name, event); };
   process.listen(min_level_, process.on_event);
 }

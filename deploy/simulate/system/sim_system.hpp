@@ -24,6 +24,8 @@ struct PlanningScratch;
 
 /// The process name of a second agent of a robot.
 std::string twin_process(RobotId robot);
+/// The name of a second process of a kind that must be alone: "simulator" or "vision".
+std::string second_process(const std::string& process);
 
 /// The whole system on SimBus, in one thread and virtual time: one simulated process each for the simulator,
 /// vision, every coordinator and every agent, and an observer with metrics and auditor. The same scenario and
@@ -48,9 +50,12 @@ class SimSystem {
   void kill(const std::string& process);
   /// From its next start on, a process uses another scenario than the system's.
   void use_scenario(const std::string& process, const Scenario& scenario) { scenarios_[process] = scenario; }
-  /// Starts a dead process as a new incarnation without any state of the old one, or twin_process(robot) as a
-  /// second agent.
+  /// Starts a dead process as a new incarnation without any state of the old one, twin_process(robot) as a
+  /// second agent, or second_process(name). The latter ends when it hears the first one.
   void restart(const std::string& process);
+  /// From now on, processes that should be alone stay although they hear an earlier one, as one of another
+  /// program might.
+  void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
   /// Pauses a process as by SIGSTOP and SIGCONT; see SimBus::pause. Does nothing if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
@@ -84,6 +89,7 @@ class SimSystem {
   SimProcessSpec spec_of(const std::string& process);
   void start(const std::string& process);
   void observe(const std::string& process);
+  void on_other(const std::string& process, std::uint32_t id, Incarnation own, Incarnation other);
 
   const Scenario scenario_;
   std::uint64_t seed_;
@@ -107,6 +113,7 @@ class SimSystem {
   std::function<void(const msg::GroundTruth&)> on_truth_;
   LogLevel min_level_ = LogLevel::kOff;
   OnProcessEvent on_event_;
+  bool stays_with_others_ = false;
 };
 
 }  // namespace sidestep

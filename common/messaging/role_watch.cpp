@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/role_watch.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/messaging/process_names.hpp"
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+// A hostile sender may invent any number of processes.
+constexpr std::size_t kMaxOthers = 16;
+
+bool is(std::uint32_t process, Sender sender) { return process == static_cast<std::uint32_t>(sender); }
+
+}  // namespace
+
+bool must_be_alone(std::uint32_t process) {
+  return is(process, Sender::kSimulator) || is(process, Sender::kVision) || is(process, Sender::kReferee);
+}
+
+RoleWatch::RoleWatch(Bus& bus, std::uint32_t process, Incarnation incarnation,
+                     std::function<void(Incarnation)> on_other)
+    : bus_(bus), process_(process), incarnation_(incarnation), on_other_(std::move(on_other)) {
+  if (must_be_alone(process) || is_coordinator(process))
+    bus_.subscribe(topics::kCounters, [this](const msg::Counters& message) { on_counters(message); });
+}
+
+void RoleWatch::on_counters(const msg::Counters& message) {
+  const Incarnation incarnation = message.header().incarnation();
+  const bool is_own = message.process() == process_ && message.header().sender() == process_;
+  if (!is_own || incarnation == incarnation_) return;
+  if (others_.size() >= kMaxOthers && !others_.contains(incarnation)) return;
+  const auto [entry, is_new] =
+      others_.try_emplace(incarnation, Other{bus_.now(), message.header().message_number()});
+  Other& other = entry->second;
+  if (is_new || other.is_confirmed || message.header().message_number() <= other.first_number) return;
+  if (bus_.now() - other.first_heard < kConfirmation) return;
+  other.is_confirmed = true;
+  on_other_(incarnation);
+}
+
+std::string describe_other(std::uint32_t process, Incarnation own, Incarnation other) {
+  const std::string name = process_name(process);
+  const double by_s = to_seconds(Duration{static_cast<std::int64_t>(own - other)});
+  return fmt::format("another {} works in this domain, which started {:.1f} s {}; there must be only one",
+                     name, std::abs(by_s), by_s > 0 ? "earlier" : "later");
+}
+
+std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+  return fmt::format(
+      "two processes send '{}' as {}; nothing that either sends there counts until one of them has ended",
+      channel_name(topic, robot),
+      topic.per_robot ? fmt::format("robot {}", robot) : process_name(header.sender()));
+}
+
+}  // namespace sidestep

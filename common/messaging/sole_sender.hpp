@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "common/time/time.hpp"
+
+namespace sidestep {
+
+/// Watches over a channel that only one process at a time may write (TopicInfo::is_sole), such as the facts
+/// of a robot. Two that speak for the same robot contradict each other, and nothing tells which one is true.
+/// Therefore no message of either counts as long as both are heard. To the protocol they are lost, which
+/// stops robots and is safe.
+class SoleSender {
+ public:
+  enum class Outcome : std::uint8_t { kCounts, kRefused, kNewlyContested };
+  /// A process counts as gone, so that another one may follow it, after this silence, or after the longer one
+  /// if the two have been heard at the same time.
+  static constexpr Duration kGoneAfter{1'000'000'000};
+  static constexpr Duration kGoneAfterContest{6'000'000'000};
+
+  /// Processes a message of the process with this incarnation.
+  [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now) {
+    if (!has_sender_ || (incarnation != sender_ && now - heard_at_ >= gone_after_)) {
+      *this = {};
+      has_sender_ = true;
+      sender_ = incarnation;
+    }
+    if (incarnation == sender_) {
+      heard_at_ = now;
+      if (others_ == 0 || now - other_heard_at_ >= kGoneAfter) {
+        others_ = interleaved_ = 0;
+        is_reported_ = false;
+        return Outcome::kCounts;
+      }
+      ++interleaved_;
+    } else {
+      other_heard_at_ = now;
+      ++others_;
+    }
+    // A message that was overtaken by the first one of a restarted process is no contest, and neither is a
+    // single false one.
+    if (std::min(others_, interleaved_) < kEvidence)
+      return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
+    gone_after_ = kGoneAfterContest;
+    return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewlyContested;
+  }
+
+  /// Whether this is the process that was heard first of those that contradict each other.
+  bool is_first(std::uint64_t incarnation) const { return has_sender_ && incarnation == sender_; }
+
+ private:
+  static constexpr std::uint32_t kEvidence = 2;  // messages of each, in turn
+
+  bool has_sender_ = false, is_reported_ = false;
+  std::uint64_t sender_ = 0;  // incarnation of the process that was heard first
+  Time heard_at_{}, other_heard_at_{};
+  std::uint32_t others_ = 0;       // messages of other processes since the last silence of these
+  std::uint32_t interleaved_ = 0;  // messages of the sender since then
+  Duration gone_after_ = kGoneAfter;
+};
+
+}  // namespace sidestep

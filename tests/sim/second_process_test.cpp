@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two processes of a kind of which there must be only one.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/senders.hpp"
+#include "deploy/monitor/metrics/report.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::second_process_test {
+
+using namespace std::chrono_literals;
+
+Scenario circle(int coordinators = 1) {
+  return parse_scenario("coordinators: " + std::to_string(coordinators) +
+                            "\ntime_limit_s: 120\nfield: {length_m: 6, width_m: 6}\n"
+                            "circle: {count: 8, spacing_m: 0.6}\n",
+                        "circle.yaml");
+}
+
+/// The first simulator's truth, and what processes report.
+struct Watch {
+  SimSystem& system;
+  SimBus bus;
+  Incarnation first = 0;
+  std::uint64_t contacts = 0, firmware_violations = 0;
+  std::map<RobotId, Vec2> velocities_mps;
+  std::set<std::string> reported;  ///< "process: text"
+
+  explicit Watch(SimSystem& observed) : system(observed), bus(observed.network()) {
+    bus.become_observer();
+    bus.observe(topics::kTruth, 0, [this](const msg::GroundTruth& truth) {
+      if (first == 0) first = truth.header().incarnation();
+      if (truth.header().incarnation() != first) return;
+      contacts = truth.contacts();
+      firmware_violations = truth.firmware_violations();
+      for (const msg::TrueRobotState& robot : truth.robots())
+        velocities_mps[robot.robot()] = {robot.vx_mps(), robot.vy_mps()};
+    });
+    system.on_event(LogLevel::kError, [this](const std::string& process, const LogEvent& event) {
+      reported.insert(process + ": " + event.text);
+    });
+  }
+  bool has_reported(const std::string& process, const std::string& words) const {
+    return std::ranges::any_of(reported, [&](const std::string& line) {
+      return line.starts_with(process + ": ") && line.find(words) != std::string::npos;
+    });
+  }
+  double max_speed_mps() const {
+    double result = 0;
+    for (const auto& [robot, velocity] : velocities_mps) result = std::max(result, velocity.norm());
+    return result;
+  }
+  void require_safe() const {
+    REQUIRE(contacts == 0);
+    REQUIRE(firmware_violations == 0);
+    const Report report = system.metrics().report();
+    for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
+    REQUIRE(report.audit->violations == 0);
+  }
+};
+
+TEST_CASE(
+    "a second simulator ends by itself at any time, and the first one's robots touch nobody and arrive") {
+  const auto seed = GENERATE(range(1u, 41u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SimSystem system(circle(seed % 2 == 0 ? 1 : 2), seed);
+  Watch watch(system);
+  system.run_for(from_seconds(rng.uniform(0, 6)));
+  system.restart(second_process("simulator"));
+  system.run_for(3s);
+  CHECK_FALSE(system.is_alive(second_process("simulator")));
+  CHECK(system.is_alive("simulator"));
+  CHECK(watch.has_reported(second_process("simulator"), "another simulator works in this domain"));
+  CHECK(system.run_until_arrived(system.now() + 60s));
+  watch.require_safe();
+}
+
+TEST_CASE("while two simulators stay, robots rest, and every process that hears both names them") {
+  const auto seed = GENERATE(range(1u, 21u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SimSystem system(circle(), seed);
+  Watch watch(system);
+  system.stay_with_others();
+  system.run_for(from_seconds(rng.uniform(0.5, 3)));
+  system.restart(second_process("simulator"));
+  system.run_for(3s);
+  CHECK(watch.max_speed_mps() < 0.02);
+  CHECK(watch.has_reported("vision", "two processes send 'detections' as simulator"));
+  CHECK(watch.has_reported("coordinator", "two processes send 'feedback/3' as robot 3"));
+  CHECK(watch.has_reported("agent 3", "two processes send 'feedback/3' as robot 3"));
+  CHECK(watch.has_reported("simulator", "another simulator works in this domain"));
+  system.run_for(from_seconds(rng.uniform(1, 20)));
+  CHECK(watch.max_speed_mps() < 0.02);
+  watch.require_safe();
+  system.kill(second_process("simulator"));
+  CHECK(system.run_until_arrived(system.now() + 60s));
+  watch.require_safe();
+}
+
+TEST_CASE("two simulators on a bad network, and processes that restart meanwhile, cause no contact") {
+  const auto seed = GENERATE(range(1u, 31u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  Scenario scenario = circle(2);
+  scenario.network = {rng.uniform(0, 0.3), 0.1, 1ms, from_seconds(rng.uniform(0.002, 0.05))};
+  SimSystem system(scenario, seed);
+  Watch watch(system);
+  if (rng.chance(0.5)) system.stay_with_others();
+  system.run_for(from_seconds(rng.uniform(0.5, 4)));
+  system.restart(second_process("simulator"));
+  for (int i = 0; i < 6; ++i) {
+    system.run_for(from_seconds(rng.uniform(0.1, 1.5)));
+    const std::string process = rng.chance(0.4)   ? "vision"
+                                : rng.chance(0.5) ? coordinator_process(static_cast<int>(rng.below(2)))
+                                                  : agent_process(static_cast<RobotId>(rng.below(8)));
+    system.kill(process);
+    system.run_for(from_seconds(rng.uniform(0, 0.3)));
+    system.restart(process);
+  }
+  system.kill(second_process("simulator"));
+  system.run_for(20s);
+  CHECK(watch.contacts == 0);
+  CHECK(watch.firmware_violations == 0);
+}
+
+TEST_CASE("a second vision ends by itself, and robots arrive") {
+  const auto seed = GENERATE(range(1u, 21u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SimSystem system(circle(), seed);
+  Watch watch(system);
+  system.run_for(from_seconds(rng.uniform(0, 6)));
+  system.restart(second_process("vision"));
+  system.run_for(3s);
+  CHECK_FALSE(system.is_alive(second_process("vision")));
+  CHECK(watch.has_reported(second_process("vision"), "another vision works in this domain"));
+  CHECK(system.run_until_arrived(system.now() + 60s));
+  watch.require_safe();
+}
+
+TEST_CASE("two coordinators of one number are named, and robots arrive") {
+  const auto seed = GENERATE(range(1u, 21u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SimSystem system(circle(2), seed);
+  Watch watch(system);
+  system.run_for(from_seconds(rng.uniform(0, 3)));
+  system.restart(second_process("coordinator"));
+  system.run_for(3s);
+  CHECK(watch.has_reported("coordinator", "another coordinator works in this domain"));
+  CHECK(watch.has_reported(second_process("coordinator"), "another coordinator works in this domain"));
+  CHECK(system.run_until_arrived(system.now() + 60s));
+  watch.require_safe();
+}
+
+TEST_CASE("a simulator that restarts is no second one") {
+  SimSystem system(circle(), 1);
+  Watch watch(system);
+  system.run_for(2s);
+  system.kill("simulator");
+  system.run_for(300ms);
+  system.restart("simulator");
+  system.run_for(5s);
+  CHECK(system.is_alive("simulator"));
+  CHECK(watch.reported.empty());
+}
+
+}  // namespace sidestep::second_process_test

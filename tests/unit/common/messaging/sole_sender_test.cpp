@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/sole_sender.hpp"
+
+#include "common/messaging/role_watch.hpp"
+#include "common/messaging/senders.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+#include "tests/drops.hpp"
+
+namespace sidestep::sole_sender_test {
+
+using namespace std::chrono_literals;
+using Outcome = SoleSender::Outcome;
+const Time kBegin = time_from_ns(1'000'000'000'000);
+constexpr Duration kCycle = 16ms;
+
+TEST_CASE("all messages of one process count, also after breaks") {
+  SoleSender sender;
+  for (const Duration at : {0ms, 16ms, 500ms, 3000ms, 20000ms})
+    CHECK(sender.receive(7, kBegin + at) == Outcome::kCounts);
+}
+
+TEST_CASE(
+    "a process follows another one after a second of silence, and its messages are refused until then") {
+  SoleSender sender;
+  CHECK(sender.receive(1, kBegin) == Outcome::kCounts);
+  Time now = kBegin + 100ms;
+  for (; now < kBegin + SoleSender::kGoneAfter; now += kCycle)
+    CHECK(sender.receive(2, now) == Outcome::kRefused);
+  for (int i = 0; i < 100; ++i) CHECK(sender.receive(2, now += kCycle) == Outcome::kCounts);
+}
+
+TEST_CASE("one message of another process costs nothing") {
+  SoleSender sender;
+  for (int i = 0; i < 100; ++i) {
+    const Time now = kBegin + kCycle * i;
+    CHECK(sender.receive(1, now) == Outcome::kCounts);
+    if (i == 50) CHECK(sender.receive(2, now) == Outcome::kRefused);
+  }
+}
+
+TEST_CASE("of two processes that both go on nothing counts from their second cycle on, until one is gone") {
+  const std::uint64_t first = GENERATE(1u, 3u);
+  SoleSender sender;
+  Time now = kBegin;
+  CHECK(sender.receive(first, now) == Outcome::kCounts);
+  int counted = 0, reported = 0;
+  const auto receive = [&](std::uint64_t incarnation) {
+    const Outcome outcome = sender.receive(incarnation, now);
+    CHECK((outcome != Outcome::kCounts || incarnation == first));
+    counted += outcome == Outcome::kCounts;
+    reported += outcome == Outcome::kNewlyContested;
+  };
+  for (int i = 0; i < 600; ++i) {
+    now += kCycle;
+    receive(2);
+    receive(first);
+  }
+  CHECK(counted == 1);
+  CHECK(reported == 1);
+  SECTION("the later one is gone") {
+    const Time gone_at = now;
+    while (now < gone_at + SoleSender::kGoneAfter - kCycle)
+      CHECK(sender.receive(first, now += kCycle) == Outcome::kRefused);
+    now += kCycle;
+    CHECK(sender.receive(first, now += kCycle) == Outcome::kCounts);
+  }
+  SECTION("the earlier one is gone") {
+    const Time gone_at = now;
+    while (now < gone_at + SoleSender::kGoneAfterContest - kCycle)
+      CHECK(sender.receive(2, now += kCycle) == Outcome::kRefused);
+    now += kCycle;
+    CHECK(sender.receive(2, now += kCycle) == Outcome::kCounts);
+  }
+}
+
+TEST_CASE("of three or more processes nothing counts either") {
+  const auto seed = GENERATE(range(1u, 51u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SoleSender sender;
+  (void)sender.receive(1, kBegin);
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint64_t incarnation = 1 + rng.below(5);
+    const bool counts = sender.receive(incarnation, kBegin + 4ms * i) == Outcome::kCounts;
+    CHECK((!counts || (incarnation == 1 && i < 100)));
+  }
+}
+
+TEST_CASE("a reader of a topic for one process gets nothing of two, and says so once") {
+  SimNetwork network(1, kBegin, {});
+  SimBus first(network), second(network), reader(network);
+  auto one = first.advertise(topics::kFeedback, 3), two = second.advertise(topics::kFeedback, 3);
+  int received = 0, contests = 0;
+  reader.subscribe(topics::kFeedback, 3, [&](const msg::Feedback&) { ++received; });
+  reader.watch_contests([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+    ++contests;
+    CHECK(describe_contest(topic, robot, header) ==
+          "two processes send 'feedback/3' as robot 3; nothing that either sends there counts until one of "
+          "them has ended");
+  });
+  msg::Feedback feedback;
+  const auto send = [&](auto& writer, Incarnation incarnation) {
+    feedback.header().incarnation(incarnation);
+    writer.publish(feedback, network.now());
+    network.run_until(network.now() + 5ms);
+  };
+  for (int i = 0; i < 50; ++i) send(one, 11);
+  CHECK(received == 50);
+  for (int i = 0; i < 50; ++i) {
+    send(two, 12);
+    send(one, 11);
+  }
+  CHECK(received <= 52);
+  CHECK(contests == 1);
+  CHECK(drops_of(reader).total(DropReason::kContestedSender) >= 98);
+}
+
+/// A process that counts, and knows who else has its id.
+struct Part {
+  SimBus bus;
+  std::vector<Incarnation> others;
+  RoleWatch role;
+  Writer<msg::Counters> writer = bus.advertise(topics::kCounters);
+  std::uint32_t process;
+  Incarnation incarnation;
+
+  Part(SimNetwork& network, std::uint32_t id, Incarnation own)
+      : bus(network),
+        role(bus, id, own, [this](Incarnation other) { others.push_back(other); }),
+        process(id),
+        incarnation(own) {}
+  void count() {
+    msg::Counters message;
+    message.process(process);
+    message.header().sender(process);
+    message.header().incarnation(incarnation);
+    writer.publish(message, bus.now());
+  }
+};
+
+TEST_CASE("processes with one id that must be alone find each other, once, and not by one message") {
+  const auto id = static_cast<std::uint32_t>(
+      GENERATE(Sender::kSimulator, Sender::kVision, Sender::kReferee, Sender::kCoordinator));
+  SimNetwork network(1, kBegin, {});
+  Part first(network, id, 100), second(network, id, 200);
+  Part other(network, static_cast<std::uint32_t>(Sender::kCoordinator) + 1, 300);
+  for (int i = 0; i < 5; ++i) {
+    for (Part* part : {&first, &second, &other}) part->count();
+    network.run_until(network.now() + 10ms);
+    if (i == 0) {
+      network.run_until(network.now() + 900ms);
+      CHECK(first.others.empty());
+      CHECK(second.others.empty());
+    }
+    network.run_until(network.now() + 1s);
+  }
+  CHECK(first.others == std::vector<Incarnation>{200});
+  CHECK(second.others == std::vector<Incarnation>{100});
+  CHECK(other.others.empty());
+}
+
+TEST_CASE("there may be several processes with the id of an agent") {
+  SimNetwork network(1, kBegin, {});
+  Part first(network, 3, 100), second(network, 3, 200);
+  for (int i = 0; i < 5; ++i) {
+    first.count();
+    second.count();
+    network.run_until(network.now() + 1s);
+  }
+  CHECK(first.others.empty());
+  CHECK_FALSE(must_be_alone(3));
+}
+
+}  // namespace sidestep::sole_sender_test
