@@ -14,7 +14,10 @@ struct KindOf {
   std::string operator()(const Pause&) const { return "pause"; }
   std::string operator()(const Kill&) const { return "kill"; }
   std::string operator()(const Start& start) const {
-    return start.process.ends_with(" (twin)") ? "twin agent" : "restart";
+    return start.process.ends_with(" (twin)") ? "twin agent"
+           : start.process.ends_with(" (second)")
+               ? "second " + start.process.substr(0, start.process.find(' '))
+               : "restart";
   }
   std::string operator()(const RobotDisturbance& disturbance) const {
     if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_CLOCK) return "clock step";

@@ -32,6 +32,7 @@ class FaultSampler {
     if (rng_.chance(0.65)) repeat(8, [&] { sample_kill(); });
     if (rng_.chance(0.1)) repeat(2, [&] { sample_other_rules(); });
     if (rng_.chance(0.1)) sample_forgeries();
+    if (rng_.chance(0.1)) repeat(3, [&] { sample_second(); });
     return std::move(plan_);
   }
 
@@ -203,12 +204,30 @@ class FaultSampler {
     });
   }
 
+  /// Starts a second process of a kind that must be alone, on a host of its own. It may not hear the first
+  /// one, or some of the others, for a while.
+  void sample_second() {
+    const std::string first = rng_.chance(0.6) ? "simulator" : "vision", second = second_process(first);
+    const Duration at = time();
+    if (!seconds_.insert(second).second) return;
+    plan_.hosts.push_back({second});
+    add(at, Start{second});
+    if (rng_.chance(0.5)) {
+      const ProcessNames rest{rng_.chance(0.5) ? first : random_victim()};
+      const Duration length = until_healed(at, log_uniform(0.05, 8));
+      if (rng_.chance(0.7)) add(at, Partition{{second}, rest, length});
+      add(at, Partition{rest, {second}, length});
+    }
+    add(plan_.healed_at - Duration{1}, Kill{second});
+  }
+
   const Scenario& scenario_;
   ProcessNames processes_;
   const FaultTimes& times_;
   Rng& rng_;
   FaultPlan plan_;
   std::set<std::string> with_other_rules_;
+  std::set<std::string> seconds_;
 };
 
 }  // namespace

@@ -34,9 +34,9 @@ struct UnexpectedStates {
   std::vector<RobotId> not_absent;        ///< off the floor, but the agent does not report it
 };
 
-UnexpectedStates find_unexpected_states(const SimSystem& system, const FaultPlan& plan) {
+UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progress, const FaultPlan& plan) {
   UnexpectedStates unexpected;
-  for (const RobotProgress& row : system.metrics().progress()) {
+  for (const RobotProgress& row : progress) {
     const auto end = plan.ends.find(row.robot);
     if (end == plan.ends.end()) {
       const bool is_driving = row.agent_state == msg::AgentState::AGENT_DRIVING ||
@@ -82,7 +82,10 @@ void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult&
   result.stationary = static_cast<int>(meter.stationary_robots(kStationaryDistance_m).size());
 }
 
-void add_failures(const Trial& trial, const SimSystem& system, const Report& report, TrialResult& result) {
+}  // namespace
+
+void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress, bool has_arrived,
+                  const Report& report, TrialResult& result) {
   const auto fail = [&](const std::string& failure) { result.failures.push_back(failure); };
   if (result.contacts > 0)
     fail(fmt::format("{} contacts, {:.6f} m s of penetration", result.contacts, report.penetration_m_s));
@@ -96,7 +99,7 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
   const std::vector<RobotId> out_of_bound = robots_with(trial.plan, RobotEnd::kClockOutOfBound);
   const bool may_move = static_cast<int>(out_of_bound.size()) < result.robots;
   if (may_move && report.grants == 0) fail("no coordinator ever granted");
-  const UnexpectedStates unexpected = find_unexpected_states(system, trial.plan);
+  const UnexpectedStates unexpected = find_unexpected_states(progress, trial.plan);
   if (!unexpected.not_driving.empty()) {
     fail(fmt::format("stuck: robots {} do not drive, long after the last fault",
                      list(unexpected.not_driving)));
@@ -117,11 +120,9 @@ void add_failures(const Trial& trial, const SimSystem& system, const Report& rep
   const bool may_block = std::ranges::any_of(trial.plan.ends, [](const auto& entry) {
     return entry.second != RobotEnd::kLifted && entry.second != RobotEnd::kTakenAway;
   });
-  if (!may_block && result.stationary == result.robots && !system.metrics().all_arrived())
+  if (!may_block && result.stationary == result.robots && !has_arrived)
     fail("stuck: no robot moves, long after the last fault");
 }
-
-}  // namespace
 
 Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario,
                    bool has_faults) {
@@ -166,7 +167,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
-  add_failures(trial, system, final_report, result);
+  add_failures(trial, system.metrics().progress(), system.metrics().all_arrived(), final_report, result);
   if (report) {
     *report = final_report;
     report->must_arrive = false;

@@ -31,6 +31,11 @@ struct Trial {
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
                                  const std::optional<Scenario>& scenario, bool has_faults = true);
 
+/// Adds the reasons why a trial failed to its result, whose figures are known. `progress` and `has_arrived`,
+/// that of all robots, are those of its end.
+void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress, bool has_arrived,
+                  const Report& report, TrialResult& result);
+
 /// Callbacks for a closer look at one trial; each may be empty.
 struct TrialHooks {
   std::function<void(SimSystem&)> on_start;
