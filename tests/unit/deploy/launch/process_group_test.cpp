@@ -144,6 +144,27 @@ TEST_CASE("a child with `restart` is started again after each death, as a new pr
   CHECK(group.poll(0ms).empty());
 }
 
+TEST_CASE("a child that dies again and again is started less and less often, but soon after a long life") {
+  ProcessGroup group(log_path());
+  pid_t pid = group.start(shell("mortal", "exec sleep 1000", true));
+  const auto restart_delay = [&] {
+    kill(pid, SIGKILL);
+    REQUIRE(next_event(group).kind == Kind::kDied);
+    const auto died_at = SteadyClock::now();
+    const ChildEvent start = next_event(group);
+    REQUIRE(start.kind == Kind::kStarted);
+    pid = start.pid;
+    return SteadyClock::now() - died_at;
+  };
+  CHECK(restart_delay() < 1s);
+  for (int i = 0; i < 3; ++i) (void)restart_delay();
+  CHECK(restart_delay() > 1500ms);
+  // A life of more than two seconds.
+  CHECK(group.poll(2100ms).empty());
+  CHECK(restart_delay() < 1s);
+  CHECK(restart_delay() < 1s);
+}
+
 TEST_CASE("a child that is alive or dead is started again on request, once, with new arguments") {
   ProcessGroup group(log_path());
   const pid_t first = group.start(shell("target", "echo first; exec sleep 1000"));
