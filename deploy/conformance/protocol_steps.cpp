@@ -269,7 +269,9 @@ class TakeoverStep final : public ConformanceStep {
       probe.version.reset();
       probe.incarnation += 1000;
     }
-    if (fact.obeyed_incarnation == probe.incarnation && !acknowledged_) acknowledged_ = probe.fact();
+    const bool has_come = probe.incarnation != earlier_;
+    if (has_come && fact.obeyed_incarnation == probe.incarnation && !acknowledged_)
+      acknowledged_ = probe.fact();
     if (fact.valid_at < start + kAnswerTimeout) return false;
     const bool is_executed = fact.executing.number == sent_->number;
     const bool is_stated = acknowledged_ && acknowledged_->executing.number == fact.executing.number;
