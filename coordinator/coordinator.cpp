@@ -34,6 +34,13 @@ void Coordinator::begin_epoch(Epoch epoch) {
   watched_until_ = {};
   for (Record& record : records_) record = {};
   unregistered_count_ = ledger_.roster().size();
+  silent_count_ = 0;
+}
+
+void Coordinator::forget_times() {
+  displaced_.clear();
+  watched_until_ = {};
+  for (Record& record : records_) record.heard_at.reset();
 }
 
 std::optional<Verdict> Coordinator::on_registration(const Registration& registration) {

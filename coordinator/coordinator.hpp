@@ -45,6 +45,10 @@ class Coordinator {
   /// Initially none is held.
   void set_held(RobotId robot, bool is_held) { held_[robot] = is_held; }
 
+  /// This coordinator's clock was set back: what it remembers of times by this clock, and of observations
+  /// that it accepted by it, is void.
+  void forget_times();
+
   bool is_active() const { return epoch_ != 0; }
   /// False until every robot of the roster has registered, or its absence is attested.
   bool is_granting() const { return is_active() && unregistered_count_ == 0; }

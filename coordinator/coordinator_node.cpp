@@ -30,7 +30,7 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       self_(self),
       cycle_(scenario.cycle),
       max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
-      failover_(self, is_standby, bus.now()),
+      failover_(self, is_standby, bus.now(), {roster_of(scenario), scenario.cycle}),
       coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_),
       orders_(scenario, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number),
       counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
@@ -116,6 +116,9 @@ void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
 }
 
 void CoordinatorNode::handle(const Registration& registration) {
+  if (coordinator_.ledger().has_robot(registration.robot))
+    failover_.reception().on_registration(registration.robot, bus_.now());
+  if (registration.epoch == 0) return;  // the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
   const bool was_granting = coordinator_.is_granting();
   if (const auto verdict = coordinator_.on_registration(registration)) {
@@ -153,6 +156,9 @@ void CoordinatorNode::report_registration(const Registration& registration, cons
 void CoordinatorNode::handle(const Feedback& feedback) {
   observe_epoch(feedback.robot, feedback.obeyed_epoch, EpochHolder::kRobot);
   if (!feedback.is_absent()) heard_at_[feedback.robot] = bus_.now();
+  const bool is_granted = !feedback.is_off_reference && !feedback.is_absent();
+  if (coordinator_.ledger().has_robot(feedback.robot))
+    failover_.reception().on_fact(feedback.robot, feedback.executing.number, is_granted, bus_.now());
   const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
   if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
   events_.report(LogLevel::kWarning, feedback.robot,
@@ -169,6 +175,7 @@ void CoordinatorNode::on_world(const msg::WorldState& message) {
     drops_.count(is_from_vision ? DropReason::kFutureWorld : DropReason::kMalformedWorld);
     return;
   }
+  failover_.reception().on_vision(bus_.now());
   observations_.clear();
   bool is_whole = true;
   for (const msg::TrackedRobot& robot : message.robots()) {
@@ -228,11 +235,17 @@ void CoordinatorNode::on_order(const msg::Order& message) {
 
 void CoordinatorNode::handle(const OrderPage& page) {
   if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
+  if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
   const bool was_complete = orders_.is_complete();
   if (orders_.on_page(page)) apply_orders();
   if (orders_.is_complete() == was_complete) return;
   apply_holds();
   publish_state();
+}
+
+void CoordinatorNode::handle(const OrderReport& report) {
+  if (coordinator_.ledger().has_robot(report.robot)) failover_.reception().on_agent(report.robot, bus_.now());
+  (void)orders_.on_report(report);
 }
 
 void CoordinatorNode::update_orders() {
@@ -275,6 +288,8 @@ void CoordinatorNode::publish_orders_periodically() {
 }
 
 void CoordinatorNode::handle(const Proposal& proposal) {
+  if (coordinator_.ledger().has_robot(proposal.robot))
+    failover_.reception().on_agent(proposal.robot, bus_.now());
   observe_epoch(proposal.robot, proposal.epoch, EpochHolder::kAgent);
   if (const auto verdict = coordinator_.on_proposal(proposal)) answer(*verdict);
 }
@@ -303,8 +318,16 @@ void CoordinatorNode::apply_epoch() {
 
 void CoordinatorNode::update_failover() {
   bus_.at(bus_.now() + Failover::kUpdatePeriod, [this] { update_failover(); });
-  failover_.update(bus_.now());
+  if (bus_.now() < updated_at_) forget_times();
+  updated_at_ = bus_.now();
+  failover_.update(bus_.now(), coordinator_.is_granting());
   apply_epoch();
+}
+
+void CoordinatorNode::forget_times() {
+  heard_at_.clear();
+  orders_published_at_.reset();
+  coordinator_.forget_times();
 }
 
 void CoordinatorNode::publish_state() {

@@ -47,7 +47,7 @@ class CoordinatorNode {
   void on_attestation(const msg::AbsenceAttestation& message);
   void on_order(const msg::Order& message);
   void handle(const OrderPage& page);
-  void handle(const OrderReport& report) { (void)orders_.on_report(report); }
+  void handle(const OrderReport& report);
   /// Learns from a registration whether there may be orders, and tells the agent those that it lacks.
   void learn_of_orders(const Registration& registration);
   /// Completes the memory of orders if that is possible.
@@ -68,6 +68,8 @@ class CoordinatorNode {
   /// Adopts the epoch of failover_, or stands by if failover_ does, and publishes the new state.
   void apply_epoch();
   void update_failover();
+  /// This process's clock was set back: what it remembers of times is void.
+  void forget_times();
   void publish_state();
   void publish_state_periodically();
   void publish_ledger();
@@ -88,6 +90,7 @@ class CoordinatorNode {
   EventReporter events_;
   StateChanges changes_{events_};
   std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
+  Time updated_at_{};                           // by update_failover()
   std::vector<RobotObservation> observations_;  // of the last world state
   std::optional<Time> orders_published_at_;     // all of them
   int standby_periods_ = 0;                     // heartbeat periods while standing by

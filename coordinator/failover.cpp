@@ -18,18 +18,46 @@ constexpr Duration kStartTimeoutStagger{200'000'000};
 // After a pause of this length, unprocessed heartbeats may be queued.
 constexpr Duration kPauseThreshold{60'000'000};
 constexpr int kMaxBackoffExponent = 2;
+// A coordinator that was superseded earlier has not failed.
+constexpr Duration kMinAttempt{200'000'000};
+constexpr int kMaxFailures = 4;
+// While no robot moves, a vain attempt costs nothing.
+constexpr int kMaxFailuresAtRest = 1;
+constexpr Duration kRestTime{1'000'000'000};
+// Robots that begin to execute granted versions as often as this are served by a coordinator that this one
+// does not hear.
+constexpr Duration kServiceGap{60'000'000};
+// So are robots that do so for that long after the last heartbeat; then they may also rest for a moment.
+constexpr Duration kUnheardService{500'000'000};
+constexpr Duration kMaxPauseOfService{1'000'000'000};
+// A measurement of the clock may be repeated for so long.
+constexpr Duration kMinRequest{150'000'000};
+// An active coordinator that serves for this long has not failed.
+constexpr Duration kProbation{1'000'000'000};
 // Two instances with the same number that begin above one known epoch choose different epochs, because each
 // adds its incarnation modulo this spread.
 constexpr Epoch kEpochSpread = 1'000'003;
 
 }  // namespace
 
-Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now)
-    : self_(self), last_heartbeat_(now), last_update_(now), is_starting_(is_standby) {
+Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now, const FleetSpec& fleet)
+    : self_(self),
+      roster_(fleet.roster),
+      reception_(fleet.fact_period),
+      unheard_at_(now),
+      last_heartbeat_(now),
+      last_update_(now),
+      is_starting_(is_standby) {
   if (!is_standby) begin_epoch(now, {});
 }
 
 void Failover::begin_epoch(Time now, const RoleCause& cause) {
+  if (!is_active()) {
+    active_since_ = now;
+    has_served_ = has_risen_ = false;
+  }
+  serving_since_.reset();
+  reception_.forget_requests();
   cause_ = cause;
   const Epoch above = highest_ == 0 ? 0 : highest_ + 1 + self_.incarnation % kEpochSpread;
   const Epoch min_epoch =
@@ -44,13 +72,21 @@ void Failover::stand_by(Time now, const RoleCause& cause) {
   if (is_active()) {
     cause_ = cause;
     heard_.reset();
+    const bool has_tried = now - active_since_ > kMinAttempt;
+    if (has_tried && (!has_served_ || is_any_unserved(kMinRequest, now)))
+      failures_ = std::min(failures_ + 1, kMaxFailures);
   }
+  reception_.forget_requests();
+  missing_.clear();
   epoch_ = 0;
   last_heartbeat_ = now;
   has_heartbeat_ = false;
 }
 
-void Failover::record_heartbeat(Time now) {
+void Failover::record_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
+  missing_.clear();
+  for (const msg::RobotNotice& notice : heartbeat.notices)
+    if (notice.is_missing()) missing_.insert(notice.robot());
   if (has_heartbeat_) gaps_[heartbeat_count_++ % gaps_.size()] = now - last_heartbeat_;
   has_heartbeat_ = true;
   last_heartbeat_ = now;
@@ -70,12 +106,14 @@ void Failover::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
     if (heartbeat.incarnation < self_.incarnation) return begin_epoch(now, shared);
     return stand_by(now, shared);
   }
+  const bool is_new_epoch = heartbeat.epoch > highest_;
   highest_ = heartbeat.epoch;
   if (is_active()) {
     stand_by(now, {msg::RoleReason::ROLE_EPOCH_OF_COORDINATOR, number, Duration{0}, heartbeat.epoch});
   } else {
-    record_heartbeat(now);
+    record_heartbeat(heartbeat, now);
   }
+  if (is_new_epoch) reception_.forget_requests();
   heard_ = number;
 }
 
@@ -93,9 +131,14 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
   const RoleCause cause{holder == EpochHolder::kRobot ? msg::RoleReason::ROLE_EPOCH_OF_ROBOT
                                                       : msg::RoleReason::ROLE_EPOCH_OF_AGENT,
                         robot, Duration{0}, epoch};
-  // A coordinator that is not granting yet begins a new epoch above the obeyed one. A granting one has been
-  // superseded by one whose heartbeats do not arrive: it stands by, each time for twice as long.
-  if (is_active() && !is_granting) return begin_epoch(now, cause);
+  // A coordinator that has just become active begins a new epoch above the obeyed one, once. One that grants,
+  // that waits in vain, or that was superseded again has a rival whose heartbeats do not arrive: it stands
+  // by, each time for twice as long.
+  const bool is_new = now - active_since_ <= kRegistrationTime && !has_risen_;
+  if (is_active() && !is_granting && is_new) {
+    has_risen_ = true;
+    return begin_epoch(now, cause);
+  }
   if (is_active()) backoff_exponent_ = std::min(backoff_exponent_ + 1, kMaxBackoffExponent);
   stand_by(now, cause);
 }
@@ -109,19 +152,78 @@ RoleCause Failover::takeover_cause(Time now) const {
 
 Duration Failover::takeover_timeout() const {
   if (is_starting_) return kStartTimeout + kStartTimeoutStagger * self_.number;
+  // While another coordinator is heard, it does not matter that this one could not serve.
+  const int failures = has_heartbeat_ ? 0 : std::min(failures_, kMaxBackoffExponent);
   const Duration longest_gap = *std::max_element(gaps_.begin(), gaps_.end());
   return (kHeartbeatTimeout + kTimeoutStagger * self_.number +
           std::min(std::max(longest_gap, kHeartbeatPeriod), kStartTimeout)) *
-         (1 << backoff_exponent_);
+         (1 << std::max(backoff_exponent_, failures));
 }
 
-void Failover::update(Time now) {
-  if (now - last_update_ > kPauseThreshold) {
-    last_heartbeat_ = now;
+void Failover::update(Time now, bool is_granting) {
+  const bool was_set_back = now < last_update_;
+  if (was_set_back || now - last_update_ > kPauseThreshold) {
+    last_heartbeat_ = unheard_at_ = now;
+    active_since_ = std::min(active_since_, now);
+    serving_since_.reset();
     has_heartbeat_ = false;
+    reception_.forget_requests();
   }
+  if (was_set_back) reception_.clear();
   last_update_ = now;
-  if (!is_active() && now - last_heartbeat_ > takeover_timeout()) begin_epoch(now, takeover_cause(now));
+  if (!reception_.hears_robots(now)) unheard_at_ = now;
+  if (is_active()) return observe_own_service(now, is_granting);
+  if (are_heartbeats_lost(now)) return begin_epoch(now, takeover_cause(now));
+  if (const auto robot = unserved_robot(now))
+    begin_epoch(now, {msg::RoleReason::ROLE_EPOCH_OF_AGENT, *robot, Duration{0}, highest_});
+}
+
+void Failover::observe_own_service(Time now, bool is_granting) {
+  if (!is_granting || is_any_unserved(kRegistrationTime, now)) {
+    serving_since_.reset();
+    return;
+  }
+  has_served_ = true;
+  if (!serving_since_) serving_since_ = now;
+  if (now - *serving_since_ >= kProbation) failures_ = 0;
+}
+
+// A coordinator that hears no robot could not serve it. Those that hear them again at the same time do not
+// take over simultaneously.
+bool Failover::are_heartbeats_lost(Time now) const {
+  return now - last_heartbeat_ > takeover_timeout() && now - unheard_at_ > kTimeoutStagger * self_.number &&
+         !is_served_by_other(now);
+}
+
+bool Failover::is_served_by_other(Time now) const {
+  const bool has_unheard_coordinator =
+      reception_.served_at() && *reception_.served_at() - last_heartbeat_ >= kUnheardService;
+  return reception_.is_fleet_served(has_unheard_coordinator ? kMaxPauseOfService : kServiceGap, now);
+}
+
+std::optional<RobotId> Failover::unserved_robot(Time now) const {
+  if (highest_ == 0 || now - unheard_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
+  for (const RobotId robot : missing_)
+    if (has_asked_long(robot, kRegistrationTime, now)) return robot;
+  // Others may be served, so there must be hope to serve all.
+  if (!reception_.hears_agents(roster_, now) || !reception_.hears_vision(now)) return std::nullopt;
+  for (const RobotId robot : roster_)
+    if (has_asked_long(robot, kServiceTime, now)) return robot;
+  return std::nullopt;
+}
+
+bool Failover::has_asked_long(RobotId robot, Duration first, Time now) const {
+  const bool is_at_rest = !reception_.is_fleet_served(kRestTime, now);
+  const int failures = is_at_rest ? std::min(failures_, kMaxFailuresAtRest) : failures_;
+  const Duration needed = first * (1 << failures);
+  // Requests come at intervals, which must not align those who answer them.
+  return reception_.request_duration(robot, now) >= needed - FleetReception::kMaxRequestGap / 3 &&
+         reception_.time_since_first_request(robot, now) >= needed + 2 * kTimeoutStagger * self_.number;
+}
+
+bool Failover::is_any_unserved(Duration min, Time now) const {
+  return std::ranges::any_of(roster_,
+                             [&](RobotId robot) { return reception_.request_duration(robot, now) >= min; });
 }
 
 }  // namespace sidestep

@@ -85,7 +85,8 @@ bool OrderKeeper::update(bool is_granting, bool has_history, Time now) {
     waiting_since_.reset();
     return false;
   }
-  if (!waiting_since_) waiting_since_ = now;
+  // It lies in the future if this process's clock was set back.
+  if (!waiting_since_ || now < *waiting_since_) waiting_since_ = now;
   if (!has_history) {
     // No order can have been carried out.
     for (const auto& [robot, has_goals] : has_goals_) {

@@ -109,6 +109,14 @@ void Agent::begin_if_changed(std::uint64_t revision) {
   if (assignment_.goal()) desired_heading_rad_ = goal().heading_rad.value_or(robot_.start_heading_rad);
 }
 
+bool Agent::is_unserved(Time now) const {
+  if (negotiation_.is_unserved(now)) return true;
+  // Vision works, but the coordinator does not hear it.
+  const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
+  return negotiation_.wait_reason(now) == WaitReason::kNone && !negotiation_.is_absent() &&
+         is_recent(last_fix_, settings_.max_fix_age) && !is_recent(watched_until_, settings_.max_watch_age);
+}
+
 Registration Agent::registration() {
   Registration registration = negotiation_.registration();
   registration.has_moved = robot_has_moved_;
@@ -117,6 +125,8 @@ Registration Agent::registration() {
 }
 
 void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
+  // The robot's clock was ahead when that fix was accepted.
+  if (is_robot_clock_known && last_fix_ > now + max_clock_difference_) last_fix_ = {};
   if (!world.self) return;
   const Time captured_at = world.self->captured_at;
   const bool is_ahead =
@@ -129,7 +139,7 @@ void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clo
   if (captured_at <= last_fix_) return;
   fix_ = world.self;
   if (!is_robot_clock_known) return;
-  last_fix_ = fix_->captured_at;
+  last_fix_ = captured_at;
   last_fix_m_ = fix_->position_m;
 }
 

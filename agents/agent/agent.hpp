@@ -81,6 +81,9 @@ class Agent {
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
   Registration registration();
+  void on_request(Time now) { negotiation_.on_request(now); }
+  /// Whether the coordinator does not serve this agent, so that the agent should ask for another one.
+  bool is_unserved(Time now) const;
   /// The earliest start for a new version: the next cycle, or a later one on a slow network.
   Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
@@ -165,6 +168,8 @@ class Agent {
   double search_horizon_m() const;
   /// As search_horizon_m(), plus the distance that robots drive while a ledger page ages.
   double page_horizon_m() const;
+  /// The robot's clock was set back: what began by it before has begun at a time that is not known.
+  void restart_timers(Time now);
   /// Leaves a passage to a robot with the right of way, if this robot makes no progress.
   void decide_whether_to_give_way(Time now);
   /// The robots to which this one may have to give way.

@@ -17,6 +17,8 @@ namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
+// An agent that asks for another coordinator may do so for long.
+constexpr int kCyclesBetweenRequests = 6;
 constexpr Duration kOrderRepetitionPeriod{250'000'000};
 constexpr Duration kOrderStatusPeriod{1'000'000'000};
 
@@ -138,7 +140,7 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   register_if_due();
   const bool needs_orders = heartbeat->epoch == agent_.epoch() && !heartbeat->remembers_orders;
   if (needs_orders && agent_.assignment().is_known() &&
-      bus_.now() - orders_repeated_at_ > kOrderRepetitionPeriod) {
+      has_elapsed(kOrderRepetitionPeriod, orders_repeated_at_)) {
     orders_repeated_at_ = bus_.now();
     publish_orders(agent_.assignment().all(), true);
   }
@@ -210,6 +212,11 @@ void AgentNode::report_changes() {
 
 Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_offset(); }
 
+// A time in the future was read before this process's clock was set back.
+bool AgentNode::has_elapsed(Duration period, Time since) const {
+  return std::chrono::abs(bus_.now() - since) >= period;
+}
+
 Time AgentNode::cycle_after(Time now) const {
   const Duration elapsed = (now - next_cycle_) % cycle_;
   return now - elapsed + (elapsed < Duration{0} ? Duration{0} : cycle_);
@@ -227,10 +234,11 @@ void AgentNode::schedule_next_cycle() {
 }
 
 void AgentNode::register_if_due() {
-  if (!agent_.needs_registration()) {
+  const bool needs_registration = agent_.needs_registration();
+  if (!needs_registration && !agent_.is_unserved(robot_now())) {
     registration_wait_ = 0;
   } else if (registration_wait_ == 0) {
-    registration_wait_ = kCyclesBetweenRegistrations;
+    registration_wait_ = needs_registration ? kCyclesBetweenRegistrations : kCyclesBetweenRequests;
     publish_registration();
   }
 }
@@ -273,6 +281,7 @@ void AgentNode::publish_command(const Command& command) {
 
 void AgentNode::publish_registration() {
   auto message = encode(agent_.registration());
+  agent_.on_request(robot_now());
   registration_writer_.publish(message, bus_.now());
   clocks_.on_request_sent(time_from_ns(message.header().stamp_ns()));
 }
@@ -306,7 +315,7 @@ void AgentNode::publish_order_status() {
     const auto reason = r.blockage ? r.blockage->reason : msg::BlockReason::BLOCK_NONE;
     return std::tuple(r.client, r.number, r.progress.state, r.progress.goal_index, r.is_held, reason);
   };
-  if (news(report) == news(order_report_) && bus_.now() - order_status_at_ < kOrderStatusPeriod) return;
+  if (news(report) == news(order_report_) && !has_elapsed(kOrderStatusPeriod, order_status_at_)) return;
   order_status_at_ = bus_.now();
   order_report_ = report;
   report.remaining_s = agent_.remaining_s();

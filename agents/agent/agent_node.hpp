@@ -66,6 +66,8 @@ class AgentNode {
   double speed_limit_mps() const;
   void report_changes();
   Time robot_now() const;
+  /// Whether so much time has passed since a time by this process's clock.
+  bool has_elapsed(Duration period, Time since) const;
   /// The start of this robot's first cycle after a time.
   Time cycle_after(Time now) const;
   void schedule_next_cycle();

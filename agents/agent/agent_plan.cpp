@@ -42,6 +42,7 @@ WaitReason Agent::wait_reason(Time now) const {
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
   if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
+  if (now < last_plan_) restart_timers(now);
   last_plan_ = now;
   const Version& base = negotiation_.base_at(start);
   const Vec2 rest = base.trajectory.rest_position_m();
@@ -97,6 +98,13 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   query.preferred_mps2 = preferred_accelerations(at_start.velocity_mps, desired.hold);
   if (route.is_way_out) query.way_out_m = route.end_m;
   return MotionPlan{query, base.number, intent};
+}
+
+void Agent::restart_timers(Time now) {
+  give_way_.restart(now);
+  blocked_since_.reset();
+  standstill_.reset();
+  occluded_corners_.clear();
 }
 
 void Agent::decide_whether_to_give_way(Time now) {

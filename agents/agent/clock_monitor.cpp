@@ -4,8 +4,26 @@
 #include <algorithm>
 
 namespace sidestep {
+namespace {
+
+// What a smaller change of this process's clock spoils is over as soon.
+constexpr Duration kMinSetback{10'000'000};
+
+}  // namespace
+
+bool ClockMonitor::is_before_arrivals(Time now) const { return now < latest_ - kMinSetback; }
+
+void ClockMonitor::arrived(Time received) {
+  if (is_before_arrivals(received)) {
+    robot_.reset();
+    coordinator_.reset();
+    requests_ = {};
+  }
+  latest_ = received;
+}
 
 void ClockMonitor::on_feedback(const Feedback& feedback, Incarnation own, Time received) {
+  arrived(received);
   const auto& command = feedback.command;
   if (feedback.obeyed_incarnation != own || !command) return;
   if (feedback.robot_incarnation != robot_incarnation_) {
@@ -27,6 +45,7 @@ void ClockMonitor::on_epoch(Epoch epoch) {
 }
 
 void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
+  arrived(received);
   const Time asked = verdict.request_sent_at;
   if (verdict.epoch != epoch_ || asked == Time{}) return;
   if (std::ranges::find(requests_, asked) == requests_.end()) return;  // another agent's request, or too old
@@ -34,6 +53,7 @@ void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
 }
 
 std::optional<OffsetInterval> ClockMonitor::robot_coordinator_offset(Time now) const {
+  if (is_before_arrivals(now)) return std::nullopt;
   const auto robot = robot_.at(now, kMaxMeasurementAge),
              coordinator = coordinator_.at(now, kMaxMeasurementAge);
   if (!robot || !coordinator) return std::nullopt;
@@ -58,7 +78,7 @@ bool ClockMonitor::is_beyond_bound(Time now) const {
 }
 
 bool ClockMonitor::is_measurement_due(Time now) const {
-  return !coordinator_.at(now, kMaxMeasurementAge / 2);
+  return is_before_arrivals(now) || !coordinator_.at(now, kMaxMeasurementAge / 2);
 }
 
 Duration ClockMonitor::max_robot_offset(Time now) const {

@@ -62,6 +62,10 @@ class ClockMonitor {
 
  private:
   Duration bound() const { return from_seconds(budget_.clock_bound_s); }
+  /// The time of an arrival. If this process's clock was set back, earlier exchanges mean nothing.
+  void arrived(Time received);
+  /// Whether this process's clock has been set back since the last arrival.
+  bool is_before_arrivals(Time now) const;
 
   SafetyBudget budget_;
   double margin_m_;
@@ -72,6 +76,7 @@ class ClockMonitor {
   Duration robot_offset_{0};
   std::array<Time, 64> requests_{};  // send times of the latest requests: echoes of other stamps are ignored
   std::size_t request_count_ = 0;
+  Time latest_{};  // arrival
   std::uint64_t invalid_ = 0;
 };
 

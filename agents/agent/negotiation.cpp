@@ -9,6 +9,15 @@ namespace {
 
 // A coordinator that has been silent for longer does not count as granting.
 constexpr Duration kCoordinatorTimeout{500'000'000};
+// So long after a request an answer is overdue, even on slow networks.
+constexpr Duration kMaxAnswerTime{400'000'000};
+// An agent that knows no epoch waits for its coordinator to start.
+constexpr Duration kMaxStartTime{2'000'000'000};
+// A version that starts later was proposed by a wrong clock.
+constexpr Duration kMaxAhead{2'000'000'000};
+// Facts in a row of an earlier incarnation of the robot, after which the fact of the later one was false.
+// Late ones are fewer.
+constexpr int kFactsOfOneIncarnation = 60;
 constexpr int kMaxProposalsPerStart = 4;
 // For as many cycles beyond its lead an agent proposes although it hears nothing from its robot. A robot
 // without power rolls on, while others count on its versions.
@@ -21,36 +30,53 @@ constexpr Incarnation kIncarnationSpread = 1'000'003;
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
     : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pacing_(cycle) {}
 
+// A later incarnation's clock may be behind. One false fact must not exclude all true ones for good.
+bool Negotiation::update_incarnation(const Feedback& feedback) {
+  if (feedback.robot_incarnation == robot_incarnation_) {
+    facts_of_earlier_incarnation_ = 0;
+    return true;
+  }
+  const bool is_earlier = feedback.robot_incarnation < robot_incarnation_;
+  if (is_earlier && ++facts_of_earlier_incarnation_ < kFactsOfOneIncarnation) return false;
+  robot_incarnation_ = feedback.robot_incarnation;
+  facts_of_earlier_incarnation_ = 0;
+  latest_fact_ = Time::min();
+  if (superseded_at_) superseded_at_ = Time::min();
+  return true;
+}
+
 void Negotiation::on_feedback(const Feedback& feedback) {
+  const bool is_current = update_incarnation(feedback);
   if (feedback.obeyed_incarnation > incarnation_) {
     // An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that
     // this agent's clock is behind an earlier agent's.
-    if (fenced_) superseded_at_ = std::max(superseded_at_.value_or(feedback.valid_at), feedback.valid_at);
+    const Time at = is_current ? feedback.valid_at : Time::min();
+    if (fenced_) superseded_at_ = std::max(superseded_at_.value_or(at), at);
     if (!fenced_) incarnation_ = feedback.obeyed_incarnation + 1 + incarnation_ % kIncarnationSpread;
     return;
   }
   if (feedback.obeyed_incarnation < incarnation_) return;  // does not acknowledge this agent
   // A robot never obeys an earlier agent again, so a later fact that acknowledges this agent shows that the
   // one about another agent was false.
-  if (superseded_at_ && feedback.valid_at > *superseded_at_) superseded_at_.reset();
+  if (superseded_at_ && is_current && feedback.valid_at > *superseded_at_) superseded_at_.reset();
   silent_cycles_ = 0;
   pacing_.set_robot_lead(feedback.lead);
   robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
   if (robot_epoch_ > epoch_) adopt_epoch(robot_epoch_);
   if (!fenced_) {
-    finish_fencing(feedback);
+    if (is_current) finish_fencing(feedback);
     return;
   }
-  apply_fact(feedback);
+  apply_fact(feedback, is_current);
 }
 
-void Negotiation::apply_fact(const Feedback& feedback) {
+void Negotiation::apply_fact(const Feedback& feedback, bool is_current) {
   const Version& executing = feedback.executing;
   const Time at = feedback.valid_at;
   const std::size_t before = held_.versions().size();
   const bool has_advanced = executing.number != executing_;
   if (feedback.is_absent()) {
-    if (at < latest_fact_) {
+    if (!is_current || at < latest_fact_) {
       ++counts_.late_facts;
       return;
     }
@@ -63,14 +89,14 @@ void Negotiation::apply_fact(const Feedback& feedback) {
   } else {
     // A later fact about an older version shows that an earlier fact was false: robots never go back.
     const auto is_older = [&](const Version& held) { return held.number < executing.number; };
-    if (!std::ranges::any_of(held_.versions(), is_older) && at <= latest_fact_) {
+    if (!std::ranges::any_of(held_.versions(), is_older) && (!is_current || at <= latest_fact_)) {
       ++counts_.late_facts;
       return;
     }
-    latest_fact_ = std::max(latest_fact_, at);
+    if (is_current) latest_fact_ = std::max(latest_fact_, at);
     return rebase(executing);
   }
-  latest_fact_ = std::max(latest_fact_, at);
+  if (is_current) latest_fact_ = std::max(latest_fact_, at);
   // If the robot has advanced, one removed version is the one that it executed before. All others were lost:
   // the robot can no longer switch to them.
   for (std::size_t gone = before - held_.versions().size(); gone > (has_advanced ? 1 : 0); --gone) {
@@ -95,6 +121,7 @@ void Negotiation::finish_fencing(const Feedback& feedback) {
   if (!feedback.is_absent()) held_.add(feedback.executing);
   executing_ = feedback.executing.number;
   latest_fact_ = feedback.valid_at;
+  fenced_at_ = feedback.valid_at;
   next_number_ = std::max(next_number_, feedback.obeyed_incarnation);
   number_above(feedback.executing);
 }
@@ -109,6 +136,8 @@ void Negotiation::adopt_epoch(Epoch epoch) {
   epoch_ = epoch;
   registration_pending_ = true;
   granting_ = false;
+  unanswered_since_.reset();
+  unknown_since_.reset();
   close_proposals();
   for (SentProposal& sent : proposals_) sent.answered = true;
   pacing_.reset();
@@ -139,7 +168,7 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
     ++counts_.old_epochs;
     // This coordinator does not know the highest epoch, and no other one is alive: a registration tells it
     // the epoch.
-    if (now - last_heartbeat_at_ > kCoordinatorTimeout) registration_pending_ = true;
+    if (!hears_coordinator(now)) registration_pending_ = true;
     return;
   }
   if (heartbeat.epoch > epoch_) adopt_epoch(heartbeat.epoch);
@@ -148,10 +177,25 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   granting_ = heartbeat.mode == msg::CoordinatorMode::COORDINATOR_GRANTING;
 }
 
+// A time far in the future means that a clock has been set.
+bool Negotiation::hears_coordinator(Time now) const {
+  return std::chrono::abs(now - last_heartbeat_at_) < kCoordinatorTimeout;
+}
+
+bool Negotiation::is_unserved(Time now) const {
+  const auto lasts = [=](const std::optional<Time>& since, Duration limit) {
+    return since && now - *since >= limit;
+  };
+  if (!fenced_ || is_superseded() || robot_epoch_ != epoch_) return false;
+  if (epoch_ == 0) return lasts(fenced_at_, kMaxStartTime);
+  return !hears_coordinator(now) || lasts(unanswered_since_, kMaxAnswerTime) ||
+         lasts(unknown_since_, kMaxAnswerTime);
+}
+
 WaitReason Negotiation::wait_reason(Time now) const {
   if (!fenced_) return WaitReason::kNotFenced;
   if (is_superseded()) return WaitReason::kSuperseded;
-  if (epoch_ == 0 || now - last_heartbeat_at_ >= kCoordinatorTimeout) return WaitReason::kNoCoordinator;
+  if (epoch_ == 0 || !hears_coordinator(now)) return WaitReason::kNoCoordinator;
   if (robot_epoch_ != epoch_) return WaitReason::kEpochNotObeyed;
   if (registration_pending_) return WaitReason::kNotRegistered;
   if (!granting_) return missing_ ? WaitReason::kNotRegistered : WaitReason::kOthersNotRegistered;
@@ -161,17 +205,22 @@ WaitReason Negotiation::wait_reason(Time now) const {
 }
 
 bool Negotiation::has_upcoming_version(Time now) const {
-  const auto is_pending = [&](const SentProposal& sent) { return sent.open && sent.start() > now; };
-  return std::ranges::any_of(proposals_, is_pending) || last_start() > now;
+  const auto is_pending = [&](const SentProposal& sent) {
+    return sent.open && sent.start() > now && sent.start() <= now + kMaxAhead;
+  };
+  return std::ranges::any_of(proposals_, is_pending) || last_start(now) > now;
 }
 
-Time Negotiation::last_start() const {
-  if (!is_absent()) return base_at(Time::max()).trajectory.start();
-  return held_.versions().empty() ? Time::min() : held_.versions().back().trajectory.start();
+Time Negotiation::last_start(Time now) const {
+  if (!is_absent()) return base_at(now + kMaxAhead).trajectory.start();
+  Time last = Time::min();
+  for (const Version& version : held_.versions())
+    if (version.trajectory.start() <= now + kMaxAhead) last = std::max(last, version.trajectory.start());
+  return last;
 }
 
 std::optional<Time> Negotiation::retry_start(Time now) const {
-  if (proposal_count_ == 0 || proposals_for_start_ >= kMaxProposalsPerStart || last_start() > now)
+  if (proposal_count_ == 0 || proposals_for_start_ >= kMaxProposalsPerStart || last_start(now) > now)
     return std::nullopt;
   const SentProposal& last = newest_proposal();
   const bool is_due =
@@ -182,6 +231,10 @@ std::optional<Time> Negotiation::retry_start(Time now) const {
 Registration Negotiation::registration() {
   registration_pending_ = false;
   return {robot_, incarnation_, epoch_, Time{}, held_};
+}
+
+void Negotiation::on_request(Time now) {
+  if (!unanswered_since_ || *unanswered_since_ > now) unanswered_since_ = now;
 }
 
 const Version& Negotiation::base_at(Time start) const {
@@ -203,6 +256,7 @@ Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNum
   proposals_for_start_ = is_again ? proposals_for_start_ + 1 : 1;
   if (!is_again) counts_.cycles += static_cast<std::uint64_t>(lead());
   ++counts_.proposals;
+  on_request(now);
 
   SentProposal& sent = proposals_[proposal_count_++ % proposals_.size()];
   sent.count = 0;
@@ -224,6 +278,8 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
     ++counts_.unexpected_verdicts;
     return {};
   }
+  unanswered_since_.reset();
+  if (verdict.proposal_number != 0) observe_knowledge(verdict, now);
   const auto sent = std::ranges::find_if(proposals_, [&](const SentProposal& a) {
     return !a.answered && a.number() == verdict.proposal_number;
   });
@@ -258,6 +314,17 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
   close_proposals();
   held_.add(*granted);
   return {*granted, round_trip};
+}
+
+// A coordinator that does not hear the robot has a full ledger, and does not know the latest versions.
+void Negotiation::observe_knowledge(const Verdict& verdict, Time now) {
+  const msg::Reason reason = verdict.reasons.front();
+  const bool is_unknown =
+      reason == msg::Reason::REASON_LEDGER_FULL || reason == msg::Reason::REASON_BASE_UNKNOWN;
+  if (!is_unknown)
+    unknown_since_.reset();
+  else if (!unknown_since_ || *unknown_since_ > now)
+    unknown_since_ = now;
 }
 
 void Negotiation::close_cycle(Time now) {

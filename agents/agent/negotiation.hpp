@@ -74,7 +74,13 @@ class Negotiation {
   /// Feedback since the last proposal shows that the robot does not execute the version that was assumed.
   bool is_contradicted() const { return contradicted_; }
 
+  /// Whether the agent should ask for another coordinator, by repeating its registration: it hears none that
+  /// is active, or has no answer from it, or the coordinator does not know what the robot executes.
+  bool is_unserved(Time now) const;
+
   Registration registration();
+  /// A request that the coordinator answers has been sent.
+  void on_request(Time now);
   /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
   /// is_absent().
   const Version& base_at(Time start) const;
@@ -103,15 +109,21 @@ class Negotiation {
     Time start() const { return candidates.front().trajectory.start(); }
   };
   void number_above(const Version& executing);
+  /// Whether the fact is of the robot's current incarnation.
+  bool update_incarnation(const Feedback& feedback);
   void finish_fencing(const Feedback& feedback);
-  void apply_fact(const Feedback& feedback);
+  void apply_fact(const Feedback& feedback, bool is_current);
   /// Replaces all versions by one that the robot executes and this agent does not know.
   void rebase(const Version& executing);
+  /// Learns from a verdict whether the coordinator knows what the robot executes.
+  void observe_knowledge(const Verdict& verdict, Time now);
   bool has_base_of(const Version& version) const;
   void adopt_epoch(Epoch epoch);
   void check_assumptions();
-  /// Start of the last version that the robot is expected to take.
-  Time last_start() const;
+  /// Start of the last version that the robot is expected to take soon.
+  Time last_start(Time now) const;
+  /// Whether a heartbeat of the active coordinator has arrived lately.
+  bool hears_coordinator(Time now) const;
   void close_proposals();
   const SentProposal& newest_proposal() const {
     return proposals_[(proposal_count_ - 1) % proposals_.size()];
@@ -127,10 +139,15 @@ class Negotiation {
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
   bool missing_ = false, granting_ = false;  // by the coordinator's last heartbeat
   Time last_heartbeat_at_{};                 // when that heartbeat arrived
+  std::optional<Time> fenced_at_;            // when the robot acknowledged this agent
+  std::optional<Time> unanswered_since_;     // the first request since the last answer
+  std::optional<Time> unknown_since_;        // since when the coordinator has not known the robot's versions
   int silent_cycles_ = 0;                    // since the last fact that acknowledges this agent
   VersionSet held_;                          // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
-  Time latest_fact_{};  // by the robot's clock
+  Time latest_fact_{};                    // by the robot's clock
+  Incarnation robot_incarnation_ = 0;     // times of different ones are not compared
+  int facts_of_earlier_incarnation_ = 0;  // in a row
   VersionNumber next_number_;
   std::array<SentProposal, 8> proposals_;
   std::size_t proposal_count_ = 0;

@@ -30,6 +30,7 @@ void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& ro
     ++invalid_;
     return;
   }
+  if (has_future(now)) forget(now);
   bool is_whole = true;
   for (const ObservedObstacle& observed : list.obstacles) {
     if (observed.observed_at > now + max_clock_difference_) {
@@ -43,7 +44,20 @@ void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& ro
           {observed.position_m, radius_m, observed.observed_at - max_clock_difference_, max_speed_mps_},
           robot_m, now);
   }
-  if (is_whole) completeness_.on_list(list);
+  if (is_whole && now >= incomplete_until_) completeness_.on_list(list);
+}
+
+bool ObservedObstacles::has_future(Time now) const {
+  const auto is_future = [=](const MovingObstacle& obstacle) { return obstacle.observed_at > now; };
+  return completeness_.complete_at() > now + max_vision_lead(max_clock_difference_) ||
+         incomplete_until_ > now + kMaxObservationAge || std::ranges::any_of(obstacles_, is_future);
+}
+
+void ObservedObstacles::forget(Time now) {
+  tracks_.clear();
+  obstacles_.clear();
+  completeness_ = CompletenessMonitor(max_speed_mps_, max_clock_difference_);
+  incomplete_until_ = now + kMaxObservationAge;
 }
 
 void ObservedObstacles::store(const Track& track, const MovingObstacle& obstacle, const Vec2& robot_m,

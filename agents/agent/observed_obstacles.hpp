@@ -48,6 +48,10 @@ class ObservedObstacles {
   /// Forgets the farthest obstacle, unless it is nearer than this one. Returns whether it has.
   bool make_room_for(const MovingObstacle& obstacle, const Vec2& robot_m, Time now);
   void drop_old(Time now);
+  /// Whether something is remembered that was accepted when the robot's clock was ahead of now.
+  bool has_future(Time now) const;
+  /// Forgets everything. Lists count again when every forgotten obstacle would have been dropped.
+  void forget(Time now);
 
   double max_speed_mps_;
   Duration max_clock_difference_;
@@ -55,6 +59,7 @@ class ObservedObstacles {
   std::vector<Track> tracks_;              // ascending
   std::vector<MovingObstacle> obstacles_;  // of tracks_
   std::uint64_t invalid_ = 0;
+  Time incomplete_until_{};  // after forget()
 };
 
 }  // namespace sidestep

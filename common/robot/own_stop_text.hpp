@@ -15,6 +15,8 @@ constexpr const char* to_text(robot::OwnStopReason reason) {
       return "it was displaced without its wheels measuring it";
     case robot::OwnStopReason::kRestart:
       return "its firmware has restarted, or it has found its pose";
+    case robot::OwnStopReason::kClockSetBack:
+      return "its clock was set back";
   }
   return "?";
 }

@@ -83,6 +83,18 @@ void RobotSide<Real>::switch_on() {
 }
 
 template <typename Real>
+void RobotSide<Real>::set_clock_back(std::int64_t now_ns) {
+  pending_count_ = 0;
+  has_command_ = false;
+  last_fact_ns_ = INT64_MIN;
+  drifted_since_ns_ = kNever_ns;
+  if (is_lifted_)
+    lift(now_ns, executing_.x_m, executing_.y_m);
+  else
+    is_clock_set_back_ = true;
+}
+
+template <typename Real>
 bool RobotSide<Real>::store(const DurableState& next, StableMemory& memory) {
   if (next == durable_) return true;
   if (!memory.store(next)) return false;
@@ -190,7 +202,7 @@ bool RobotSide<Real>::holds(std::uint64_t number) const {
 
 template <typename Real>
 bool RobotSide<Real>::may_take(const Version& version) const {
-  if (!has_pose_ || version.number <= highest_executed_) return false;
+  if (!has_pose_ || is_clock_set_back_ || version.number <= highest_executed_) return false;
   return !is_lifted_ || (version.base == 0 && version.is_rest());
 }
 
@@ -253,7 +265,8 @@ Real RobotSide<Real>::error_m(std::int64_t now_ns, const Vec<Real>& position_m) 
 
 template <typename Real>
 bool RobotSide<Real>::needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const {
-  return is_rebooting_ || !(error_m(now_ns, position_m) < Real(0.5) * settings_.drift_bound_m);
+  return is_rebooting_ || is_clock_set_back_ ||
+         !(error_m(now_ns, position_m) < Real(0.5) * settings_.drift_bound_m);
 }
 
 // The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
@@ -302,7 +315,7 @@ bool RobotSide<Real>::must_stop(std::int64_t now_ns, const Estimate<Real>& estim
 template <typename Real>
 bool RobotSide<Real>::is_stop_due(std::int64_t now_ns, const Estimate<Real>& estimate) const {
   OwnStopReason reason{};
-  return may_stop(now_ns) && (is_rebooting_ || must_stop(now_ns, estimate, reason));
+  return may_stop(now_ns) && (is_rebooting_ || is_clock_set_back_ || must_stop(now_ns, estimate, reason));
 }
 
 template <typename Real>
@@ -312,9 +325,10 @@ void RobotSide<Real>::check_reference(std::int64_t now_ns, const Estimate<Real>&
   }
   if (is_lifted_ || !has_pose_) return;
   if (!is_finite(estimate.position_m) || !is_finite(estimate.velocity_mps)) return lose_pose();
-  if (is_rebooting_ && may_stop(now_ns)) {
+  if ((is_rebooting_ || is_clock_set_back_) && may_stop(now_ns)) {
+    const auto reason = is_clock_set_back_ ? OwnStopReason::kClockSetBack : OwnStopReason::kRestart;
     restart();
-    return start_own_stop(OwnStopReason::kRestart, estimate, now_ns, memory);
+    return start_own_stop(reason, estimate, now_ns, memory);
   }
   OwnStopReason reason{};
   const bool must = must_stop(now_ns, estimate, reason);
@@ -376,7 +390,7 @@ bool RobotSide<Real>::begin_with_motion_under_way(Version& stop, const Estimate<
 template <typename Real>
 void RobotSide<Real>::lift(std::int64_t now_ns, double x_m, double y_m) {
   is_lifted_ = true;
-  is_rebooting_ = false;
+  is_rebooting_ = is_clock_set_back_ = false;
   has_pose_ = true;  // a lifted robot needs none until it is put down
   has_found_pose_ = false;
   is_off_reference_ = false;
@@ -393,7 +407,7 @@ void RobotSide<Real>::restart() {
   highest_seen_ = highest_executed_ = durable_.number_bound;
   has_moved_ = durable_.has_moved;
   is_off_reference_ = false;
-  is_rebooting_ = false;
+  is_rebooting_ = is_clock_set_back_ = false;
   has_command_ = false;
   drifted_since_ns_ = kNever_ns;
   pending_count_ = 0;

@@ -32,6 +32,7 @@ enum class OwnStopReason : std::uint8_t {
   kDrifted,       ///< beyond the drift bound for kMaxRecovery_ns
   kDisplaced,     ///< displaced without its wheels measuring it
   kRestart,       ///< the robot has restarted
+  kClockSetBack,  ///< its clock has been set back
 };
 
 /// What the protocol needs of a command. Its numbers and times are checked: finite, and less than an hour
@@ -100,8 +101,8 @@ struct Facts {
 /// A robot without a pose accepts no version, and must not report facts. A lifted robot executes nothing
 /// (version 0) and accepts only a granted rest version on base 0.
 ///
-/// All times are by the robot's clock in nanoseconds since 1970, and never go back. `Real` is float or
-/// double. Needs no heap, no exceptions and no operating system.
+/// All times are by the robot's clock in nanoseconds since 1970, and go back only with set_clock_back().
+/// `Real` is float or double. Needs no heap, no exceptions and no operating system.
 template <typename Real>
 class RobotSide {
  public:
@@ -128,6 +129,10 @@ class RobotSide {
   void reboot() { is_rebooting_ = true; }
   /// It has been without power, and has lost its pending versions.
   void switch_on();
+  /// Its clock reads less than before. The times of its versions and facts are void, so it reports nothing
+  /// until the next check_reference() makes a stop of its own, by the new time. The caller's facts bear a
+  /// higher incarnation of the robot from then on.
+  void set_clock_back(std::int64_t now_ns);
 
   /// Obeys a command, or refuses and counts it. Whether it is from an agent that the robot obeys; then the
   /// robot may use the rest of the command, such as a fix.
@@ -158,7 +163,9 @@ class RobotSide {
   /// The facts at this time. Precondition: may_report().
   Facts facts(std::int64_t now_ns);
   /// Whether it executes a version that begins where it is, and has stored what its facts would acknowledge.
-  bool may_report() const { return has_pose_ && !has_found_pose_ && !is_memory_broken_; }
+  bool may_report() const {
+    return has_pose_ && !has_found_pose_ && !is_memory_broken_ && !is_clock_set_back_;
+  }
 
   const Version& executing() const { return executing_; }
   /// What is to be executed at a later time, as far as it is known.
@@ -196,7 +203,8 @@ class RobotSide {
   bool is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const;
   Real error_m(std::int64_t now_ns, const Vec<Real>& position_m) const;
   bool may_stop(std::int64_t now_ns) const {
-    return !is_lifted_ && has_pose_ && now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
+    const bool is_new = now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
+    return !is_lifted_ && has_pose_ && (is_clock_set_back_ || is_new);
   }
   std::int64_t drifted_since_ns(std::int64_t now_ns, const Estimate<Real>& estimate) const;
   bool must_stop(std::int64_t now_ns, const Estimate<Real>& estimate, OwnStopReason& reason) const;
@@ -219,7 +227,8 @@ class RobotSide {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   bool has_pose_ = false;
-  bool has_found_pose_ = false;  ///< and has not made its own stop there yet
+  bool has_found_pose_ = false;     ///< and has not made its own stop there yet
+  bool is_clock_set_back_ = false;  ///< and it has not made its own stop by the new time yet
   bool is_memory_broken_ = false;
   bool has_command_ = false;
   std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;

@@ -54,6 +54,12 @@ class PoseEstimator {
   /// wheels measuring it; the estimate then follows the fixes.
   bool correct(Time captured_at, const Vec2& position_m, double heading_rad);
 
+  /// The robot's clock has been set: what it knows of earlier times keeps its age.
+  void set_clock(Duration change) {
+    time_ += change;
+    anchor_time_ += change;
+  }
+
   Time time() const { return time_; }
   Vec2 position_m() const { return anchor_m_ + (odometry_m_ - anchor_odometry_m_) * (1 - scale_); }
   const Vec2& velocity_mps() const { return velocity_mps_; }

@@ -160,6 +160,13 @@ void Firmware::switch_on(Time now) {
   moved_at_ = now;
 }
 
+void Firmware::set_clock_back(Time before, Time now) {
+  side_.set_clock_back(to_ns(now));
+  update_executing();
+  estimator_.set_clock(now - before);
+  moved_at_ = std::min(moved_at_, now);
+}
+
 void Firmware::forget_pose(Time now) {
   estimator_ = PoseEstimator(Vec2(0, 0), 0, now, settings_.estimator);
   last_actuation_ = modelled_ = {};

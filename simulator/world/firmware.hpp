@@ -37,7 +37,7 @@ class SimulatedFlash final : public robot::StableMemory {
 /// every fact contains a position. The first fix of the resting robot gives it a pose. It makes a stop of its
 /// own there.
 ///
-/// All times are by the robot's clock, which never goes back.
+/// All times are by the robot's clock, which goes back only with set_clock_back().
 class Firmware {
  public:
   Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
@@ -74,7 +74,12 @@ class Firmware {
   /// pending versions.
   void switch_on(Time now);
 
-  /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls.
+  /// The robot's clock reads `now` although it read `before` already. The robot has to begin a new
+  /// incarnation, and makes a stop of its own by the new time.
+  void set_clock_back(Time before, Time now);
+
+  /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls but
+  /// with set_clock_back().
   Feedback feedback(Time now);
 
   const Version& executing() const { return executing_; }

@@ -35,6 +35,7 @@ bool FirmwareMonitor::arrived_in_time(const Arrival& wanted) const {
 }
 
 void FirmwareMonitor::switched(const Version& to) {
+  check_rule(!expects_clock_stop_);
   check_rule(to.base == executing_.number);
   check_rule(to.number > highest_executed_);
   check_rule(arrived_in_time({to.number, to.base, to.incarnation, to.trajectory.start()}));
@@ -72,23 +73,35 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   check_rule(to.base == executing_.number);
   check_rule(to.number > highest_executed_ && to.number > highest_seen_);
   check_rule(to.incarnation >= acknowledged_ && to.incarnation <= highest_seen_);
-  check_rule(to.trajectory.start() > last_fact_ && to.trajectory.start() > executing_.trajectory.start());
+  check_rule(to.trajectory.start() > last_fact_);
+  check_rule(expects_clock_stop_ || to.trajectory.start() > executing_.trajectory.start());
   check_rule(is_own_stop(to.trajectory));
   check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
   // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
   const State reference = executing_.trajectory.state_at(to.trajectory.start());
   const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
-  check_rule(expects_reboot_stop_ || error_m >= 0.5 * drift_bound_m(tracking_bound_m_));
-  expects_reboot_stop_ = false;
+  check_rule(expects_reboot_stop_ || expects_clock_stop_ ||
+             error_m >= 0.5 * drift_bound_m(tracking_bound_m_));
+  expects_reboot_stop_ = expects_clock_stop_ = false;
   executing_ = to;
   highest_executed_ = to.number;
   is_own_ = true;
 }
 
+void FirmwareMonitor::clock_went_back() {
+  last_fact_ = Time::min();
+  arrival_count_ = 0;
+  highest_arrived_ = 0;
+  if (is_lifted_)
+    lifted();
+  else
+    expects_clock_stop_ = true;
+}
+
 void FirmwareMonitor::lifted() {
   executing_ = Version{};
   is_lifted_ = true;
-  is_own_ = false;
+  is_own_ = expects_clock_stop_ = false;
 }
 
 void FirmwareMonitor::put_down() {
@@ -97,6 +110,7 @@ void FirmwareMonitor::put_down() {
 }
 
 void FirmwareMonitor::reported(const Feedback& fact) {
+  check_rule(!expects_clock_stop_);
   check_rule(fact.executing.number == executing_.number);
   check_rule(fact.is_off_reference == is_own_ && fact.is_lifted == is_lifted_);
   check_rule(fact.obeyed_incarnation >= acknowledged_ && fact.obeyed_epoch >= acknowledged_epoch_);

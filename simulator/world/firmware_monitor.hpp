@@ -28,6 +28,8 @@ class FirmwareMonitor {
   void lifted();
   void put_down();
   void rebooted() { expects_reboot_stop_ = true; }
+  /// The robot's clock has gone back, so that earlier times mean nothing.
+  void clock_went_back();
 
   std::uint64_t violations() const { return violations_; }
 
@@ -50,6 +52,7 @@ class FirmwareMonitor {
   bool is_own_ = false;  ///< executing a stop of its own
   bool is_lifted_ = false;
   bool expects_reboot_stop_ = false;  ///< rebooted, with the stop of its own still to come
+  bool expects_clock_stop_ = false;   ///< the same, after its clock has gone back
   VersionNumber highest_executed_ = 0;
   std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
   Incarnation acknowledged_ = 0;    ///< highest reported in a fact

@@ -60,8 +60,16 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
   bus.at(begin, [this] { wake(); });
 }
 
-// Never goes back, even if the host's clock is set back, so that reported facts stay true.
-Time SimulatorNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
+// The world goes on if the host's clock is set back, as do the bodies in it.
+Time SimulatorNode::clock() {
+  const Time now = world_.world_time(bus_.now());
+  if (now < clock_) world_.on_host_clock_set_back(clock_ - now);
+  return clock_ = std::max(clock_, now);
+}
+
+void SimulatorNode::at(Time world_time, std::function<void()> callback) {
+  bus_.at(world_.host_time(world_time), std::move(callback));
+}
 
 void SimulatorNode::wake() {
   const Time now = clock();
@@ -142,7 +150,7 @@ void SimulatorNode::watch_start(std::size_t robot, Time now) {
   const Time start = world_.next_start(robot);
   if (start == watched_start_[robot] || start - now > kMaxTimerAhead) return;
   watched_start_[robot] = start;
-  bus_.at(start, [this, robot] { on_start(robot); });
+  at(start, [this, robot] { on_start(robot); });
 }
 
 void SimulatorNode::on_start(std::size_t robot) {
@@ -153,15 +161,17 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
+  // If its clock was set back, the robot reports nothing before it has made its own stop.
+  (void)world_.robot_time(robot, now);
   if (!world_.may_report(robot)) {
     feedback_due_[robot] = now + cycle_;
     world_.clear_pending_feedback(robot);
     return;
   }
   Feedback facts = world_.feedback(robot, now);
-  facts.robot_incarnation = incarnation_;
+  facts.robot_incarnation += incarnation_;
   msg::Feedback message = encode(facts);
-  feedback_[robot].publish(message, now);
+  feedback_[robot].publish(message, bus_.now());
   feedback_due_[robot] = now + cycle_;
   world_.clear_pending_feedback(robot);
   watch_start(robot, now);
@@ -176,7 +186,7 @@ void SimulatorNode::publish_truth(Time now) {
   truth_message_.simulator(static_cast<std::uint32_t>(Sender::kSimulator));
   truth_message_.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
   truth_message_.header().incarnation(incarnation_);
-  truth_.publish(truth_message_, now);
+  truth_.publish(truth_message_, bus_.now());
   truth_due_ = std::max(truth_due_ + kTruthPeriod, now);
 }
 
@@ -189,11 +199,12 @@ void SimulatorNode::capture_frame(Time now) {
   // Robots with lasers have to see opponents themselves.
   const auto opponents = lasers_ ? std::span<const Circle>() : world_.opponents().discs();
   cameras_.capture(captured_at, {world_.bodies(), ball, opponents, world_.sight_errors()}, slot->message);
+  slot->message.captured_at_ns(to_ns(world_.host_time(captured_at)));
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kFrameExpiry < now) return;
-  if (capture_listener_) capture_listener_(slot->message.camera(), captured_at);
+  if (capture_listener_) capture_listener_(slot->message.camera(), world_.host_time(captured_at));
   slot->is_waiting = true;
-  bus_.at(slot->publish_at, [this] { publish_frames(); });
+  at(slot->publish_at, [this] { publish_frames(); });
 }
 
 void SimulatorNode::publish_scan() {
@@ -201,7 +212,7 @@ void SimulatorNode::publish_scan() {
   if (!lasers_->scan(world_, scan_message_)) return;
   scan_message_.header().sender(world_.id(robot));
   scan_message_.header().incarnation(incarnation_);
-  scans_[robot].publish(scan_message_, clock());
+  scans_[robot].publish(scan_message_, bus_.now());
 }
 
 void SimulatorNode::publish_frames() {
@@ -210,7 +221,7 @@ void SimulatorNode::publish_frames() {
     if (!frame.is_waiting || frame.publish_at > now) continue;
     frame.message.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
     frame.message.header().incarnation(incarnation_);
-    if (publishes_detections_) detections_.publish(frame.message, now);
+    if (publishes_detections_) detections_.publish(frame.message, bus_.now());
     if (detection_listener_) detection_listener_(frame.message);
     frame.is_waiting = false;
   }

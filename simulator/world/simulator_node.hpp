@@ -60,7 +60,10 @@ class SimulatorNode {
     Time publish_at{};
     msg::DetectionFrame message;
   };
+  /// The time of the world.
   Time clock();
+  /// Calls back at a time of the world.
+  void at(Time world_time, std::function<void()> callback);
   void wake();
   void advance(Time now);
   void on_command(std::size_t robot, const msg::Command& message);

@@ -99,11 +99,21 @@ void World::step() {
   }
 }
 
-// A clock that is set back stands still until the new time has caught up with it, so that reported facts stay
-// true.
+// A clock that is set back by less than the bound stands still until the new time has caught up with it, so
+// that reported facts stay true. What was reported by a clock that is set back farther is void.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  return robot.clock = std::max(robot.clock, robot.clock_error.reading(now));
+  const Time reading = robot.clock_error.reading(now);
+  if (robot.clock - reading <= clock_bound_) return robot.clock = std::max(robot.clock, reading);
+  robot.firmware.set_clock_back(robot.clock, reading);
+  robot.monitor.clock_went_back();
+  ++robot.clock_setbacks;
+  return robot.clock = reading;
+}
+
+void World::on_host_clock_set_back(Duration by) {
+  host_behind_ += by;
+  for (Robot& robot : robots_) robot.clock_error.offset -= by;
 }
 
 Time World::next_start(std::size_t index) const {
@@ -176,6 +186,7 @@ Feedback World::feedback(std::size_t index, Time now) {
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
   Feedback facts = robots_[index].firmware.feedback(clock);
+  facts.robot_incarnation = robots_[index].clock_setbacks;
   robots_[index].monitor.reported(facts);
   return facts;
 }
@@ -205,7 +216,7 @@ double World::reference_error_m(std::size_t index) const {
 }
 
 void World::fill(msg::GroundTruth& truth) const {
-  truth.valid_at_ns(to_ns(time_));
+  truth.valid_at_ns(to_ns(host_time(time_)));
   truth.contacts(contacts().contacts);
   for (std::size_t i = 0; i < std::min<std::size_t>(contacts().contacts, msg::MAX_CONTACTS); ++i) {
     const ContactPair& contact = contacts().recent_contacts[i];
@@ -239,7 +250,7 @@ void World::fill(msg::GroundTruth& truth) const {
     robot.vy_mps(bodies_[i].velocity_mps().y());
     robot.reference_error_m(reference_error_m(i));
     const std::optional<Time> end = disturbance_end(i);
-    robot.disturbance_end_ns(end ? to_ns(*end) : -1);
+    robot.disturbance_end_ns(end ? to_ns(host_time(*end)) : -1);
   }
   truth.robots().resize(count);
 }

@@ -23,8 +23,8 @@
 namespace sidestep {
 
 /// The simulated floor: all bodies with their firmware, the ball, the obstacles and the opponents, in steps
-/// of kPhysicsStep. Robots are addressed by their index in the scenario. Times are by the host's clock; each
-/// robot has a clock of its own.
+/// of kPhysicsStep. Robots are addressed by their index in the scenario. Times are by the host's clock, but
+/// go on if that is set back; each robot has a clock of its own.
 class World {
  public:
   World(const Scenario& scenario, Time begin, std::uint64_t seed);
@@ -44,10 +44,17 @@ class World {
   void on_command(std::size_t robot, const Command& command, Time now);
   /// A command that could not be decoded reaches a robot. Precondition: as above.
   void on_malformed_command(std::size_t robot, Time now);
-  /// The robot's clock, which never goes back.
+  /// The robot's clock. If it has gone back by more than the clock bound, the robot begins a new incarnation.
   Time robot_time(std::size_t robot, Time now);
-  /// The robot's facts, without robot_incarnation.
+  /// The robot's facts; robot_incarnation is how often the robot has begun a new one.
   Feedback feedback(std::size_t robot, Time now);
+  /// The host's clock, and with it the clocks of all robots, has been set back by so much; the time of this
+  /// world goes on.
+  void on_host_clock_set_back(Duration by);
+  /// What the host's clock shows at a time of this world.
+  Time host_time(Time t) const { return t - host_behind_; }
+  /// The time of this world when the host's clock shows this.
+  Time world_time(Time shown) const { return shown + host_behind_; }
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
   /// clear_pending_feedback(); each listed once.
@@ -89,7 +96,8 @@ class World {
     Vec2 last_position_m;  ///< without slip, for the odometry
     double last_heading_rad;
     ClockError clock_error;  ///< of the robot's clock, relative to the host's
-    Time clock;              ///< the latest reading; the clock never goes back
+    Time clock;              ///< the latest reading
+    std::uint64_t clock_setbacks = 0;
     VersionNumber last_own_stop = 0;
     std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later
     bool has_pending_feedback = false;
@@ -136,6 +144,7 @@ class World {
   Duration clock_bound_;
   double tracking_bound_m_;
   Time time_;
+  Duration host_behind_{0};  ///< how far the host's clock has been set back
   std::vector<Body> bodies_;
   std::vector<SightError> sight_errors_;
   std::vector<Robot> robots_;

@@ -123,7 +123,7 @@ void World::set_clock(std::size_t index, Duration offset, Time now) {
   Robot& robot = robots_[index];
   const Time before = robot_time(index, now);
   switch_versions(index, before);
-  robot.clock_error = {offset, robot.clock_error.drift_ppm, now};
+  robot.clock_error = {offset - host_behind_, robot.clock_error.drift_ppm, now};
   const bool moves = robot.firmware.executing().trajectory.end() > before;
   if (robot.is_powered && (moves || robot.firmware.next_start() != Time::max()) &&
       std::chrono::abs(robot.clock_error.reading(now) - before) > clock_bound_)

@@ -17,6 +17,10 @@ void CameraWatch::on_frame(std::uint32_t camera, Time captured_at) {
   watched.last = captured_at;
 }
 
+void CameraWatch::forget() {
+  for (auto& [number, camera] : cameras_) camera = {};
+}
+
 bool CameraWatch::is_complete(Time now) const {
   const auto watches = [=](const auto& entry) {
     const Camera& camera = entry.second;

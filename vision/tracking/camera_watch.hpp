@@ -29,6 +29,8 @@ class CameraWatch {
   void on_frame(std::uint32_t camera, Time captured_at);
   /// Whether all cameras watch. False if there is none.
   bool is_complete(Time now) const;
+  /// Every camera has to watch anew, and earlier frames do not make later ones late.
+  void forget();
 
  private:
   struct Camera {

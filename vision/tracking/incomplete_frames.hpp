@@ -24,6 +24,7 @@ class IncompleteFrames {
   /// frames.
   void update(const Frame& frame, double complete_within_m);
   bool is_empty() const { return frames_.empty(); }
+  void clear() { frames_.clear(); }
   /// No missing obstacle can be nearer than this to any of the robots at a time.
   [[nodiscard]] double complete_within_m(std::span<const Vec2> robots_m, Time t) const;
 

@@ -48,6 +48,11 @@ ObstacleTracker::ObstacleTracker(const ObstacleTrackerSettings& settings)
   listed_.reserve(kMaxTracks);
 }
 
+void ObstacleTracker::forget() {
+  tracks_.clear();
+  incomplete_frames_.clear();
+}
+
 void ObstacleTracker::update(const Frame& frame) {
   double complete_within_m = frame.obstacles_complete_within_m();
   const int confirm_hits = incomplete_frames_.is_empty() ? settings_.confirm_hits : 1;

@@ -37,6 +37,8 @@ class ObstacleTracker {
   /// Updates the tracks from a usable frame. Frames may come in any order; an observation older than a
   /// track's last one does not change it.
   void update(const Frame& frame);
+  /// Forgets all obstacles, but not which numbers have been used.
+  void forget();
   /// Writes the confirmed tracks that are current at a time, nearest to one of the robots first, and up to
   /// which distance they are complete. See ObstacleList in idl/vision.idl. `robots` holds the robots at that
   /// time.

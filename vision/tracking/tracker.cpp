@@ -117,6 +117,12 @@ void Tracker::update(const Frame& frame) {
   frames_ += is_new ? 1 : 0;
 }
 
+void Tracker::forget() {
+  robots_.assign(robots_.size(), Track());
+  ball_ = Track();
+  obstacles_.forget();
+}
+
 void Tracker::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kUntimelyFrame, std::nullopt, untimely_frames_);
   drops.count(DropReason::kMalformedFrame, std::nullopt, malformed_frames_);

@@ -41,6 +41,8 @@ class Tracker {
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
+  /// Forgets all observations: the clock was set back, so that later ones would seem older.
+  void forget();
   /// Detections that were not used.
   void count_drops(DropCounters& drops) const;
   /// Fills in valid_at_ns, the number of frames, and the ball and robots extrapolated from their last

@@ -58,8 +58,15 @@ void VisionNode::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kMalformedFrame, std::nullopt, unknown_cameras_);
 }
 
+void VisionNode::on_clock_set_back(Duration by) {
+  tracker_.forget();
+  watch_.forget();
+  next_ -= by;
+}
+
 void VisionNode::publish() {
   const Time now = bus_.now();
+  if (now < next_ - period_) on_clock_set_back(next_ - now);
   tracker_.world_at(now, world_);
   tracker_.obstacles_at(world_, obstacles_);
   if (!watch_.is_complete(now)) obstacles_.complete_within_m(0);

@@ -55,6 +55,8 @@ class VisionNode {
 
  private:
   void publish();
+  /// This process's clock was set back by so much: frames that arrive now would seem older than those before.
+  void on_clock_set_back(Duration by);
 
   Bus& bus_;
   Duration period_;

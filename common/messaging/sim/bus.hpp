@@ -39,6 +39,8 @@ class SimBus : public Bus {
   /// From now on, observers receive nothing that this process sends. For hostile senders: audit and metrics
   /// judge what the others say.
   void hide_from_observers();
+  /// Sets the process's clock. Timers keep their true times.
+  void set_clock(const ClockError& clock) { clock_ = clock; }
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
   /// queued. Further ones are lost, as when a socket buffer is full. At the end, all queued messages and
   /// timers are delivered at the same time. A pause within another one can only prolong it.

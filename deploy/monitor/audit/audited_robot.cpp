@@ -159,6 +159,12 @@ void AuditedRobot::reset() {
   forgotten_ = kept_versions;
 }
 
+void AuditedRobot::forget_times() {
+  if (fact) fact->at_ns = kAlways;
+  drifted_since_ns = beyond_bound_since_ns = kNever;
+  for (KnownVersion& version : versions) version.executed_until_ns = kAlways;
+}
+
 Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {
   if (fact.is_lifted && fact.executing == 0) {
     // Only a rest version that was granted and not yet executed remains possible for a lifted robot, and what

@@ -120,7 +120,7 @@ class AuditedRobot {
 
   /// The latest fact.
   struct Fact {
-    std::uint64_t life = 0;  ///< incarnation of the simulator
+    std::uint64_t life = 0;  ///< incarnation of the robot
     std::int64_t at_ns = 0;
     std::int64_t earliest_ns = kAlways, latest_ns = kAlways;  ///< bounds of its sending time
     VersionNumber executing = 0;
@@ -198,6 +198,8 @@ class AuditedRobot {
   ProposalRecord& add_proposal();
   /// Forgets everything but the id and the counters: a new simulator starts with a new floor.
   void reset();
+  /// Forgets the times of facts: the robot's clock was set back.
+  void forget_times();
 
  private:
   ExecutedVersions forgotten_;

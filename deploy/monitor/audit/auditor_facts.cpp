@@ -25,6 +25,10 @@ constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
 constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
 
+// A robot counts its incarnations on from that of its simulator, which is a clock reading in nanoseconds.
+// Another simulator starts later than that.
+constexpr std::uint64_t kMaxSetbacks = 100'000;
+
 bool is_sane(const msg::Feedback& feedback) {
   return std::isfinite(feedback.x_m()) && std::isfinite(feedback.y_m()) && std::isfinite(feedback.vx_mps()) &&
          std::isfinite(feedback.vy_mps()) && std::isfinite(feedback.tracking_error_m()) &&
@@ -67,7 +71,10 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
   }
   const std::uint64_t life = feedback.header().incarnation();
   if (robot->fact && life > robot->fact->life) {
-    robot->reset();
+    if (life - robot->fact->life <= kMaxSetbacks)
+      robot->forget_times();
+    else
+      robot->reset();
     observations_[index_of(*robot)] = {};
   }
   if (!reception.is_newest || (robot->fact && life < robot->fact->life)) return;

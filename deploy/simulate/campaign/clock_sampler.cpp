@@ -5,8 +5,14 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/messaging/process_names.hpp"
+
 namespace sidestep {
 namespace {
+
+// Numbers that clocks have given are refused an hour ahead, clocks of agents differ by seconds anyway, and a
+// campaign's virtual time begins at 1000 s.
+constexpr double kMaxClockJump_s = 3580, kMaxSetback_s = 900;
 
 // Any two clocks drift apart by less than the 200 ppm that agents assume.
 constexpr double kMaxDrift_ppm = 90;
@@ -104,6 +110,28 @@ class ClockSampler {
 };
 
 }  // namespace
+
+void sample_clock_jumps(const Scenario& scenario, const FaultTimes& times, FaultPlan& plan, Rng& rng) {
+  if (!rng.chance(0.12)) return;
+  const auto offset_of = [&](const std::string& process) {
+    const auto found = plan.clocks.find(process);
+    return found == plan.clocks.end() ? Duration{0} : found->second.offset;
+  };
+  for (std::uint64_t left = 1 + rng.below(4); left > 0; --left) {
+    const double u = rng.uniform();
+    const std::string process =
+        u < 0.4 ? coordinator_process(
+                      static_cast<int>(rng.below(static_cast<std::uint64_t>(scenario.coordinators))))
+        : u < 0.5 ? "vision"
+                  : agent_process(scenario.robots[rng.below(scenario.robots.size())].id);
+    const double size_s = sample_log_uniform(0.001, kMaxClockJump_s, rng);
+    const Duration error = from_seconds(rng.chance(0.5) ? size_s : -std::min(size_s, kMaxSetback_s));
+    const Duration at = times.sample(rng);
+    const Duration right_at = times.after(at, sample_log_uniform(0.05, 8, rng));
+    plan.faults.push_back({at, ClockJump{process, offset_of(process) + error}});
+    plan.faults.push_back({right_at, ClockJump{process, offset_of(process)}});
+  }
+}
 
 RobotEnd end_of_clock(Duration error, const Scenario& scenario) {
   // Without faults, the interval of a measured offset is narrower than this.

@@ -4,6 +4,7 @@
 #include "common/config/scenario.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/simulate/campaign/fault_plan.hpp"
+#include "deploy/simulate/campaign/fault_times.hpp"
 
 namespace sidestep {
 
@@ -14,6 +15,10 @@ inline constexpr Duration kCertainlyDetectedOffset = std::chrono::seconds(6);
 /// clocks differ from coordinators' by less than the scenario's bound all the time, except that in one of ten
 /// samples some or all differ by far more, and that clocks of some robots drift out of the bound.
 void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, Rng& rng);
+
+/// Samples jumps of processes' clocks by a millisecond to an hour, which are put right before all faults end.
+/// The simulator's clock is that of the ground truth and does not jump.
+void sample_clock_jumps(const Scenario& scenario, const FaultTimes& times, FaultPlan& plan, Rng& rng);
 
 /// How a robot ends whose clock was right and at the end is wrong by this much.
 [[nodiscard]] RobotEnd end_of_clock(Duration error, const Scenario& scenario);

@@ -136,12 +136,11 @@ class DisturbanceSampler {
     const RobotSpec& robot = scenario_.robots[rng_.below(scenario_.robots.size())];
     if (plan_.ends.contains(robot.id) || !handled_.insert(robot.id).second) return;
     const Duration at = times_.sample(rng_);
-    const double size_s = rng_.chance(0.6) ? log_uniform(0.0006, 0.03) : log_uniform(0.03, 5);
+    const double size_s = rng_.chance(0.6) ? log_uniform(0.0006, 0.03) : log_uniform(0.03, 900);
     const Duration error = from_seconds(rng_.chance(0.5) ? size_s : -size_s);
     add_clock(at, robot, error);
-    // A clock that is set back stands still until time has caught up with it.
-    const Duration right_at = std::min(times_.after(at, log_uniform(0.05, 15)),
-                                       plan_.healed_at - Duration{1} - std::max(error, Duration{0}));
+    const Duration right_at =
+        std::min(times_.after(at, log_uniform(0.05, 15)), plan_.healed_at - Duration{1});
     if (rng_.chance(0.75) && right_at > at)
       add_clock(right_at, robot, Duration{0});
     else

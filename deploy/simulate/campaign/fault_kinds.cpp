@@ -11,6 +11,8 @@ namespace {
 struct KindOf {
   std::string operator()(const LinkChange&) const { return "network"; }
   std::string operator()(const Partition&) const { return "partition"; }
+  std::string operator()(const LastingCut&) const { return "lasting cut"; }
+  std::string operator()(const ClockJump&) const { return "process clock step"; }
   std::string operator()(const Pause&) const { return "pause"; }
   std::string operator()(const Kill&) const { return "kill"; }
   std::string operator()(const Start& start) const {

@@ -81,6 +81,12 @@ class Describe {
     return fmt::format("partition from {} to {} for {:.3f} s", group(partition.from), group(partition.to),
                        to_seconds(partition.duration));
   }
+  std::string operator()(const LastingCut& cut) const {
+    return fmt::format("links from {} to {} cut for good", group(cut.from), group(cut.to));
+  }
+  std::string operator()(const ClockJump& jump) const {
+    return fmt::format("clock of {} set to {:+.4f} ms", jump.process, ms(jump.offset));
+  }
   std::string operator()(const Pause& pause) const {
     return fmt::format("{} paused for {:.3f} s, at most {} messages queued", group(pause.processes),
                        to_seconds(pause.duration), pause.max_queued);

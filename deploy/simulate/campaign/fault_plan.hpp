@@ -25,6 +25,16 @@ struct Partition {
   ProcessNames from, to;
   Duration duration{0};
 };
+/// Drops all messages from these processes to a coordinator, or from a coordinator to them, for good. The
+/// other coordinators have to work without it.
+struct LastingCut {
+  ProcessNames from, to;
+};
+/// Sets how far the clock of a process is ahead.
+struct ClockJump {
+  std::string process;
+  Duration offset{0};
+};
 /// SIGSTOP and, after the duration, SIGCONT.
 struct Pause {
   ProcessNames processes;
@@ -74,8 +84,9 @@ struct SendForgery {
   std::size_t forgery = 0;  ///< of forgeries()
 };
 
-using Fault = std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place,
-                           TakeAway, StartWithOtherRule, StartWithOwnRules, SendForgery>;
+using Fault =
+    std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place, TakeAway,
+                 StartWithOtherRule, StartWithOwnRules, SendForgery, LastingCut, ClockJump>;
 
 struct TimedFault {
   Duration at{0};  ///< since the start of the run
@@ -92,7 +103,7 @@ enum class RobotEnd {
 };
 
 /// All faults of one run. None occurs or persists after `healed_at`, except that robots in `ends` remain as
-/// they are.
+/// they are, and lasting cuts.
 struct FaultPlan {
   std::vector<ProcessNames> hosts;           ///< messages within a host are fast and never lost
   std::map<std::string, ClockError> clocks;  ///< by process

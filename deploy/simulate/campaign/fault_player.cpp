@@ -51,7 +51,7 @@ void FaultPlayer::for_each_link(const ProcessNames& from, const ProcessNames& to
 
 void FaultPlayer::set(const Link& link) {
   LinkQuality quality = link.is_within_host ? within_host() : link.quality;
-  quality.is_cut = link.cuts > 0;
+  quality.is_cut = link.cuts > 0 || link.is_cut_for_good;
   system_.set_link(link.from, link.to, quality);
 }
 
@@ -62,6 +62,10 @@ void FaultPlayer::operator()(const LinkChange& change) {
 void FaultPlayer::operator()(const Partition& partition) {
   for_each_link(partition.from, partition.to, [](Link& link) { ++link.cuts; });
   ends_.push_back({system_.now() - system_.begin() + partition.duration, partition});
+}
+
+void FaultPlayer::operator()(const LastingCut& cut) {
+  for_each_link(cut.from, cut.to, [](Link& link) { link.is_cut_for_good = true; });
 }
 
 void FaultPlayer::operator()(const Pause& pause) {

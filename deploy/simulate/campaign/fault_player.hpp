@@ -24,6 +24,8 @@ class FaultPlayer {
 
   void operator()(const LinkChange& change);
   void operator()(const Partition& partition);
+  void operator()(const LastingCut& cut);
+  void operator()(const ClockJump& jump) { system_.set_clock(jump.process, jump.offset); }
   void operator()(const Pause& pause);
   void operator()(const Kill& kill) { system_.kill(kill.process); }
   void operator()(const Start& start) { system_.restart(start.process); }
@@ -41,6 +43,7 @@ class FaultPlayer {
     LinkQuality quality;
     bool is_within_host = false;
     int cuts = 0;  // partitions may overlap
+    bool is_cut_for_good = false;
   };
   struct End {
     Duration at;

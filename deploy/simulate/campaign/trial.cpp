@@ -11,6 +11,7 @@
 #include "deploy/simulate/campaign/disturbance_sampler.hpp"
 #include "deploy/simulate/campaign/fault_player.hpp"
 #include "deploy/simulate/campaign/fault_sampler.hpp"
+#include "deploy/simulate/campaign/reception_sampler.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 
 namespace sidestep {
@@ -128,7 +129,8 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
                    bool has_faults) {
   Rng rng(seed);
   Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork(), disturbance_rng = rng.fork(),
-      opponent_rng = rng.fork(), planner_rng = rng.fork(), laser_rng = rng.fork();
+      opponent_rng = rng.fork(), planner_rng = rng.fork(), laser_rng = rng.fork(), reception_rng = rng.fork(),
+      clock_jump_rng = rng.fork();
   Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
   if (!scenario) {
     sample_opponents(trial.scenario, opponent_rng);
@@ -145,6 +147,8 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   if (disturbance_rng.chance(0.08))
     trial.scenario.vision.ghost_obstacle_probability = disturbance_rng.uniform(0, kMaxGhostObstacles);
   sample_disturbances(trial.scenario, times, plan, disturbance_rng);
+  sample_reception(trial.scenario, times, plan, reception_rng);
+  sample_clock_jumps(trial.scenario, times, plan, clock_jump_rng);
   std::ranges::stable_sort(plan.faults, {}, &TimedFault::at);
   return trial;
 }

@@ -18,7 +18,6 @@
 namespace sidestep {
 namespace {
 
-constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr std::string_view kSecond = " (second)";
 constexpr Duration kStep = std::chrono::milliseconds(10);
 constexpr Duration kSettlingTime = std::chrono::milliseconds(500);
@@ -93,14 +92,15 @@ struct SimSystem::Process {
 std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
 std::string second_process(const std::string& process) { return process + std::string(kSecond); }
 
-SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks)
+SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks,
+                     Time begin)
     : scenario_(scenario),
       seed_(seed),
       rng_(seed),
       clocks_(std::move(clocks)),
-      begin_(kBegin),
+      begin_(begin),
       scratch_(std::make_shared<PlanningScratch>(scenario_)),
-      network_(seed, kBegin, scenario.network),
+      network_(seed, begin, scenario.network),
       metrics_(scenario_),
       auditor_(scenario_, {true, {}}),
       observer_bus_(network_),
@@ -108,6 +108,7 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
              [this](const RulesMismatch& mismatch) { metrics_.on_mismatch(mismatch); }),
       disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)),
       order_writer_(observer_bus_.advertise(topics::kOrder)) {
+  for (auto& [process, clock] : clocks_) clock.since = begin_;
   observer_bus_.become_observer();
   observer_bus_.follow_first_senders();
   metrics_.set_auditor(auditor_);
@@ -142,8 +143,7 @@ SimProcessSpec SimSystem::spec_of(const std::string& process) {
   const ProcessId id = known != ids_.end() ? known->second : network_.new_process();
   ids_[process] = id;
   const auto clock = clocks_.find(process);
-  return clock == clocks_.end() ? SimProcessSpec{id}
-                                : SimProcessSpec{id, {clock->second.offset, clock->second.drift_ppm, begin_}};
+  return clock == clocks_.end() ? SimProcessSpec{id} : SimProcessSpec{id, clock->second};
 }
 
 void SimSystem::start(const std::string& name) {
@@ -216,6 +216,13 @@ void SimSystem::on_order_answer(std::function<void(const msg::OrderAnswer&)> cal
 
 void SimSystem::on_order_status(std::function<void(const msg::OrderStatus&)> callback) {
   observer_bus_.subscribe<msg::OrderStatus>(topics::kOrderStatus, std::move(callback));
+}
+
+void SimSystem::set_clock(const std::string& process, Duration offset) {
+  const ClockError clock{offset, clocks_[process].drift_ppm, now()};
+  clocks_[process] = clock;
+  const auto found = processes_.find(process);
+  if (found != processes_.end()) found->second->bus.set_clock(clock);
 }
 
 void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {

@@ -32,9 +32,11 @@ std::string second_process(const std::string& process);
 /// seed give the same run, bit for bit.
 class SimSystem {
  public:
-  /// Starts all processes at virtual time 1000 s. `clocks` holds the errors of processes' clocks; they apply
+  static constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+  /// Starts all processes at this virtual time. `clocks` holds the errors of processes' clocks; they apply
   /// to all incarnations.
-  SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {});
+  SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {},
+            Time begin = kBegin);
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
   SimSystem& operator=(const SimSystem&) = delete;
@@ -66,6 +68,8 @@ class SimSystem {
   /// Calls back with every answer of a coordinator to an order, and with every status of an order.
   void on_order_answer(std::function<void(const msg::OrderAnswer&)> callback);
   void on_order_status(std::function<void(const msg::OrderStatus&)> callback);
+  /// Sets how far the clock of a process, and of all its later incarnations, is ahead of true time.
+  void set_clock(const std::string& process, Duration offset);
   /// Sets the quality of the link between two processes, for all their incarnations.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
   /// The names of the processes that a system starts.

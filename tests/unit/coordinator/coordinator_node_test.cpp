@@ -335,4 +335,54 @@ TEST_CASE("a coordinator that stands by answers nothing") {
   CHECK_FALSE(floor.node.coordinator().is_active());
 }
 
+TEST_CASE("a coordinator that has yielded publishes its state at a standby's rate, whatever it knew") {
+  Floor floor;
+  floor.register_both();
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  const auto see = [&] {
+    world.valid_at_ns(to_ns(floor.network.now()));
+    floor.send(topics::kWorld, world);
+  };
+  // Robot 1 falls silent while it should move.
+  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  const double now_s = to_seconds(floor.network.now().time_since_epoch());
+  const Version moving = continued(floor.a, 10, now_s + 0.1, {0, 3}, 0.3);
+  floor.send(topics::kProposal, proposal_of({moving}, floor.node.coordinator().epoch()));
+  for (int i = 0; i < 4; ++i) see();
+  REQUIRE(floor.node.coordinator().has_uncontrolled_robots());
+  msg::CoordinatorState other;
+  other.coordinator(1);
+  other.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + 1);
+  other.epoch(floor.node.coordinator().epoch() + 1);
+  other.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
+  floor.send(topics::kCoordinator, other);
+  REQUIRE_FALSE(floor.node.coordinator().is_active());
+  int published = 0;
+  floor.outside.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& message) {
+    published += message.coordinator() == 0 ? 1 : 0;
+  });
+  const Time begin = floor.network.now();
+  for (int i = 0; i < 30; ++i) {
+    see();
+    floor.send(topics::kCoordinator, other);
+  }
+  CAPTURE(published, to_seconds(floor.network.now() - begin));
+  CHECK(published <= 1 + to_seconds(floor.network.now() - begin) / 0.2);
+}
+
+TEST_CASE("a coordinator whose clock was set back works as before") {
+  Floor floor;
+  floor.register_both();
+  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  floor.bus.set_clock({std::chrono::seconds(-5), 0, floor.network.now()});
+  floor.run();
+  const Epoch epoch = floor.node.coordinator().epoch();
+  CHECK(floor.node.coordinator().is_granting());
+  floor.send(topics::kProposal, floor.proposal());
+  REQUIRE(floor.verdicts.size() == 1);
+  CHECK(floor.verdicts[0].granted_version() == 10);
+  CHECK(floor.node.coordinator().epoch() == epoch);
+}
+
 }  // namespace sidestep::coordinator_node_test

@@ -48,6 +48,26 @@ TEST_CASE("versions must be proposed in increasing order") {
         msg::Reason::REASON_OLD_VERSION);
 }
 
+TEST_CASE("a denied version is not granted later, when its verdict is forgotten") {
+  Floor floor;
+  floor.register_both();
+  // The first one would drive through the other robot.
+  const auto denied = proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6)}, kEpoch);
+  REQUIRE(floor.ask(denied).reasons[0] == msg::Reason::REASON_CONFLICT);
+  for (VersionNumber number = 1; number <= 9; ++number)  // older ones, which are answered, but not remembered
+    CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {0, 3})}, kEpoch)).granted_version == 0);
+  for (VersionNumber number = 11; number <= 20; ++number)
+    CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {3, 0}, 0.6)}, kEpoch)).granted_version == 0);
+  // The other robot is lifted: the path is free.
+  auto lifted = fact(rest_version(2, {1, 0}), 2);
+  lifted.is_lifted(true);
+  floor.receive(lifted);
+  const Verdict late = floor.ask(denied);
+  CHECK(late.granted_version == 0);
+  CHECK(late.reasons[0] == msg::Reason::REASON_OLD_VERSION);
+  CHECK(floor.ask(proposal_of({continued(floor.a, 21, 3, {3, 0}, 0.6)}, kEpoch)).granted_version == 21);
+}
+
 TEST_CASE("proposals for another epoch or from an older agent are refused") {
   Floor floor;
   floor.register_both();

@@ -171,4 +171,33 @@ TEST_CASE("nothing is granted to a robot that vision sees away from its versions
   CHECK(floor.ask(proposal_of({continued(floor.a, 11, 2, {0, 3})}, kEpoch)).granted_version == 11);
 }
 
+TEST_CASE("a coordinator that begins an epoch or stands by names no robot as silent") {
+  Floor floor;
+  floor.register_both();
+  const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
+  REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
+  floor.receive(fact(p, 1.01));
+  const RobotObservation observation{1, at_s(1.07), {0, 0}, Vec2(0, 0), 1e-6};
+  floor.coordinator.on_world({&observation, 1}, at_s(1.07));
+  REQUIRE(floor.coordinator.has_uncontrolled_robots());
+  floor.coordinator.begin_epoch(GENERATE(Epoch{0}, kEpoch + 1));
+  CHECK_FALSE(floor.coordinator.has_uncontrolled_robots());
+}
+
+TEST_CASE("a coordinator whose clock was set back uses observations again") {
+  Floor floor;
+  floor.register_both();
+  const auto see = [&](double x, double at) {
+    const RobotObservation observation{1, at_s(at), {x, 0}, Vec2(0, 0), 1e-6};
+    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    return floor.coordinator.displaced().contains(1);
+  };
+  // Its host's clock, and the cameras', were an hour ahead.
+  CHECK_FALSE(see(0, 3600));
+  floor.coordinator.forget_times();
+  CHECK(floor.coordinator.state().watched_until_ns() == 0);
+  CHECK(see(0.3, 10));
+  CHECK(floor.coordinator.state().watched_until_ns() == to_ns(at_s(10)));
+}
+
 }  // namespace sidestep::coordinator_test

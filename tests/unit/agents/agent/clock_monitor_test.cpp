@@ -231,4 +231,20 @@ TEST_CASE("echoes of other senders' messages and impossible stamps are ignored")
   CHECK(after->high == before->high);
 }
 
+TEST_CASE("an agent whose own clock is set measures the other clocks again") {
+  const double jump_s = GENERATE(-3500.0, -5.0, -0.05, 0.05, 5.0, 3500.0);
+  CAPTURE(jump_s);
+  ClockFixture f;
+  f.measure_both(0, 60);
+  REQUIRE(f.clocks.allows_motion(at_s(1.01)));
+  // Both other clocks are behind or ahead of the agent's from now on.
+  f.robot_s = f.coordinator_s = -jump_s;
+  const double now = 1 + jump_s;
+  if (jump_s < 0) CHECK_FALSE(f.clocks.allows_motion(at_s(now)));
+  if (jump_s < 0) CHECK(f.clocks.is_measurement_due(at_s(now)));
+  f.measure_both(now, 10);
+  CHECK(f.clocks.allows_motion(at_s(now + 0.2)));
+  CHECK(to_seconds(f.clocks.robot_offset()) == Approx(-jump_s).margin(0.002));
+}
+
 }  // namespace sidestep::clock_monitor_test

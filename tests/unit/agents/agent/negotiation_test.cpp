@@ -108,6 +108,151 @@ TEST_CASE("nothing is proposed to a coordinator that has fallen silent") {
   CHECK(f.n.may_propose(at_s(1.7)));
 }
 
+TEST_CASE("nothing is proposed two cycles after the last fact, and again after the next one") {
+  NegotiationFixture f;
+  f.become_ready();
+  REQUIRE(f.n.lead() == 1);
+  int cycles = 0;
+  for (; f.n.may_propose(at_s(1.0)) && cycles < 100; ++cycles) f.n.close_cycle(at_s(1.0));
+  CHECK(cycles == 3);
+  CHECK(f.n.wait_reason(at_s(1.0)) == WaitReason::kRobotSilent);
+  f.n.on_feedback(fact(f.initial, 1.0));
+  CHECK(f.n.may_propose(at_s(1.0)));
+}
+
+TEST_CASE("times of different incarnations of a robot are not compared") {
+  NegotiationFixture f;
+  f.become_ready();
+  const auto own_stop = [](VersionNumber number, double start) {
+    return Version{kRobot, kSelf, number, 0, Trajectory::resting(at_s(start), {0.1, 0})};
+  };
+  const auto fact_of = [&](Incarnation robot, const Version& executing, double at) {
+    Feedback feedback = fact(executing, at);
+    feedback.robot_incarnation = robot;
+    feedback.is_off_reference = true;
+    return feedback;
+  };
+  f.n.on_feedback(fact_of(1, own_stop(5000, 3600), 3600));
+  REQUIRE(f.n.executing().number == 5000);
+  // Its clock has been set back.
+  f.n.on_feedback(fact_of(2, own_stop(9000, 10), 10));
+  CHECK(f.n.executing().number == 9000);
+  SECTION("a late fact of the earlier one changes nothing") {
+    f.n.on_feedback(fact_of(1, own_stop(5000, 3600), 3601));
+    CHECK(f.n.executing().number == 9000);
+    f.n.on_feedback(fact_of(2, own_stop(7000, 10), 9));
+    CHECK(f.n.executing().number == 9000);
+    // Robots never go back: the fact before was false.
+    f.n.on_feedback(fact_of(2, own_stop(7000, 10), 11));
+    CHECK(f.n.executing().number == 7000);
+  }
+  SECTION("a false fact of a later one does not exclude true ones for good") {
+    f.n.on_feedback(fact_of(99, own_stop(20'000, 10), 3000));
+    REQUIRE(f.n.executing().number == 20'000);
+    int facts = 0;
+    for (; f.n.executing().number != 9000 && facts < 1000; ++facts)
+      f.n.on_feedback(fact_of(2, own_stop(9000, 10), 11 + 0.01 * facts));
+    CHECK(facts == 60);
+  }
+  SECTION("lifting") {
+    Feedback lifted = fact_of(3, f.initial, 11);
+    lifted.is_off_reference = false;
+    lifted.is_lifted = true;
+    f.n.on_feedback(lifted);
+    CHECK(f.n.is_absent());
+  }
+}
+
+TEST_CASE("a silent agent continues although its robot's clock was set back meanwhile") {
+  NegotiationFixture f;
+  f.become_ready();
+  f.n.on_feedback(fact(f.initial, 3600, f.n.incarnation() + 5));
+  REQUIRE(f.n.is_superseded());
+  Feedback feedback = fact(f.initial, 1, f.n.incarnation());
+  f.n.on_feedback(feedback);
+  CHECK(f.n.is_superseded());
+  feedback.robot_incarnation = 7;
+  f.n.on_feedback(feedback);
+  CHECK_FALSE(f.n.is_superseded());
+}
+
+TEST_CASE("an agent goes on although a version starts much later, by a wrong clock") {
+  NegotiationFixture f;
+  f.become_ready();
+  const auto granted = f.grant(f.propose(3600, 0.96), 0.97);
+  REQUIRE(granted);
+  CHECK_FALSE(f.n.has_upcoming_version(at_s(1.0)));
+  const auto next = f.grant(f.propose(1.1, 1.0), 1.01);
+  REQUIRE(next);
+  CHECK(f.n.has_upcoming_version(at_s(1.0)));
+  CHECK(next->base == f.initial.number);
+  // It may still execute either.
+  CHECK(f.n.registration().versions->versions().size() == 3);
+  f.n.on_feedback(fact(*next, 1.2));
+  CHECK(f.n.registration().versions->versions().size() == 1);
+}
+
+TEST_CASE("an agent asks for another coordinator if it hears none, or none answers") {
+  NegotiationFixture f;
+  CHECK_FALSE(f.n.is_unserved(at_s(0.5)));
+  SECTION("none has ever been heard") {
+    f.n.on_feedback(fact(f.initial, 0.5, kSelf, 0));
+    CHECK_FALSE(f.n.is_unserved(at_s(2.4)));
+    CHECK(f.n.is_unserved(at_s(2.5)));
+  }
+  SECTION("heartbeats") {
+    f.become_ready();
+    CHECK_FALSE(f.n.is_unserved(at_s(1.3)));
+    CHECK(f.n.is_unserved(at_s(1.4)));
+    f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.4));
+    CHECK_FALSE(f.n.is_unserved(at_s(1.5)));
+    // The clock was ahead.
+    f.n.on_coordinator_state(heartbeat(kEpoch), at_s(100));
+    CHECK(f.n.is_unserved(at_s(2)));
+    CHECK(f.n.wait_reason(at_s(2)) == WaitReason::kNoCoordinator);
+  }
+  SECTION("answers") {
+    f.become_ready();
+    const Proposal first = f.propose(1.1, 1.0);
+    (void)f.propose(1.2, 1.1);
+    f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.3));
+    CHECK_FALSE(f.n.is_unserved(at_s(1.39)));
+    CHECK(f.n.is_unserved(at_s(1.4)));
+    (void)f.n.on_verdict(verdict_on(first), at_s(1.41));
+    CHECK_FALSE(f.n.is_unserved(at_s(1.42)));
+    f.n.on_request(at_s(1.5));
+    f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.8));
+    CHECK(f.n.is_unserved(at_s(1.9)));
+    Verdict registered = verdict_on(first);
+    registered.proposal_number = 0;
+    (void)f.n.on_verdict(registered, at_s(1.9));
+    CHECK_FALSE(f.n.is_unserved(at_s(1.9)));
+  }
+  SECTION("a coordinator that does not hear the robot") {
+    f.become_ready();
+    const auto reason = GENERATE(msg::Reason::REASON_LEDGER_FULL, msg::Reason::REASON_BASE_UNKNOWN);
+    for (int i = 0; i < 8; ++i) {
+      const double now = 1 + 0.05 * i;
+      f.n.on_coordinator_state(heartbeat(kEpoch), at_s(now));
+      CHECK_FALSE(f.n.is_unserved(at_s(now)));
+      Verdict verdict = verdict_on(f.propose(now + 0.1, now));
+      verdict.reasons.fill(reason);
+      (void)f.n.on_verdict(verdict, at_s(now));
+    }
+    f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.4));
+    CHECK(f.n.is_unserved(at_s(1.4)));
+    Verdict conflict = verdict_on(f.propose(1.6, 1.45));
+    conflict.reasons.fill(msg::Reason::REASON_CONFLICT);
+    (void)f.n.on_verdict(conflict, at_s(1.45));
+    CHECK_FALSE(f.n.is_unserved(at_s(1.45)));
+  }
+  SECTION("but not if the robot does not acknowledge the epoch") {
+    f.become_ready();
+    f.n.on_coordinator_state(heartbeat(kEpoch + 8), at_s(1));
+    CHECK_FALSE(f.n.is_unserved(at_s(9)));
+  }
+}
+
 TEST_CASE("a new agent learns from its robot which epoch it has obeyed, and ignores lower ones") {
   NegotiationFixture f;
   f.n.on_feedback(fact(f.initial, 0.5, kSelf, kEpoch));

@@ -182,4 +182,26 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all th
   CHECK(f.obstacles.seen(now + from_seconds(1.2)).is_everywhere());
 }
 
+TEST_CASE("what was accepted when the robot's clock was ahead is forgotten, and lists count a second later") {
+  Fixture f;
+  f.receive(5, 1, 3600, 3600.02);
+  REQUIRE(f.obstacles.complete_at() == at_s(3600));
+  // The clocks are right from now on.
+  f.receive(List(10).add(6, 2, 10), 10.02);
+  CHECK(f.obstacles.complete_at() == Time{});
+  REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);
+  CHECK(f.obstacles.recent(at_s(10.02))[0].position_m == Vec2(2, 0));
+  f.receive(List(11).add(6, 2, 11), 11.01);
+  CHECK(f.obstacles.complete_at() == Time{});
+  f.receive(List(11.03).add(6, 2, 11.03), 11.05);
+  CHECK(f.obstacles.complete_at() == at_s(11.03));
+  // Once more, before lists count.
+  f.receive(5, 1, 3600, 3600.02);
+  f.receive(List(12).add(6, 2, 12), 12.02);
+  f.receive(5, 1, 3600, 3600.02);
+  f.receive(List(12.5).add(6, 2, 12.5), 12.52);
+  f.receive(List(13.6).add(6, 2, 13.6), 13.62);
+  CHECK(f.obstacles.complete_at() == at_s(13.6));
+}
+
 }  // namespace sidestep::observed_obstacles_test

@@ -293,4 +293,56 @@ TEST_CASE("a robot without a pose accepts no version") {
   CHECK(side.own_stop_reason() == OwnStopReason::kRestart);
 }
 
+TEST_CASE(
+    "a robot whose clock is set back makes a stop of its own by the new time, above all that it received") {
+  const std::int64_t back_ns = GENERATE(1'000'000, 5'000'000'000, 3'500'000'000'000);
+  CAPTURE(back_ns);
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  side.begin_at_rest(1, 2);
+  const std::int64_t before_ns = at_ms(4'000'000), now_ns = before_ns - back_ns;
+  const Version first = driving_version(side.executing(), 101, before_ns - 20'000'000, {2, 0});
+  (void)side.on_command(command(100, 1, &first), before_ns - 30'000'000, memory);
+  REQUIRE(side.facts(before_ns).executing->number == 101);
+  const Version pending = driving_version(side.executing(), 102, before_ns + 10'000'000, {2, 0});
+  (void)side.on_command(command(100, 1, &pending), before_ns, memory);
+  REQUIRE(side.has_pending());
+  const auto estimate = exactly_at<double>(first, before_ns);
+
+  side.set_clock_back(now_ns);
+  CHECK_FALSE(side.may_report());
+  CHECK_FALSE(side.has_pending());
+  // The command is repeated before the robot has made its stop.
+  (void)side.on_command(command(100, 1, &pending), now_ns, memory);
+  CHECK_FALSE(side.has_pending());
+  side.check_reference(now_ns + 1'000'000, estimate, memory);
+  REQUIRE(side.may_report());
+  CHECK(side.own_stops() == 1);
+  CHECK(side.own_stop_reason() == OwnStopReason::kClockSetBack);
+  const Facts facts = side.facts(now_ns + 1'000'000);
+  CHECK(facts.executing->start_ns == now_ns + 1'000'000);
+  CHECK(facts.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
+  CHECK(facts.executing->vx_mps == estimate.velocity_mps.x);
+  // By its new clock that version is in time, but it was granted by the old one.
+  (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
+  CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
+}
+
+TEST_CASE("a lifted robot whose clock is set back stays lifted, and has no pending version") {
+  TestMemory memory;
+  RobotSide<double> side({}, {});
+  side.begin_at_rest(1, 2);
+  // Lifted before it could make its own stop.
+  side.set_clock_back(at_ms(5000));
+  side.lift(at_ms(5000), 1, 2);
+  REQUIRE(side.may_report());
+  const Version rest = rest_version(101, 0, 5100);
+  (void)side.on_command(command(100, 1, &rest), at_ms(5001), memory);
+  side.set_clock_back(at_ms(1000));
+  CHECK(side.is_lifted());
+  CHECK(side.may_report());
+  CHECK_FALSE(side.has_pending());
+  CHECK(side.facts(at_ms(1000)).executing->start_ns == at_ms(1000));
+}
+
 }  // namespace sidestep::robot

@@ -248,4 +248,28 @@ TEST_CASE("a node with frames from its caller ignores the bus and calls its list
   CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
 }
 
+TEST_CASE("vision sees robots again although its clock and the cameras' have been ahead") {
+  const Duration ahead = std::chrono::milliseconds(GENERATE(50, 5000, 3'500'000));
+  CAPTURE(to_seconds(ahead));
+  Rng rng(3);
+  const TrueMotion motion = TrueMotion::driving(rng, 2);
+  SimNetwork net(1, kBegin, {});
+  SimBus camera_bus(net), vision_bus(net), listener_bus(net);
+  std::optional<msg::WorldState> last;
+  listener_bus.subscribe<msg::WorldState>(topics::kWorld,
+                                          [&](const msg::WorldState& world) { last = world; });
+  Cameras cameras(camera_bus, motion, Rng(2));
+  VisionNode node(vision_bus, scenario_of(1), 77);
+  net.run_until(after_s(1));
+  for (SimBus* bus : {&camera_bus, &vision_bus}) bus->set_clock({ahead, 0, net.now()});
+  net.run_until(after_s(2));
+  for (SimBus* bus : {&camera_bus, &vision_bus}) bus->set_clock({});
+  last.reset();
+  net.run_until(after_s(2.3));
+  REQUIRE(last);
+  CHECK(time_from_ns(last->valid_at_ns()) > after_s(2.2));
+  REQUIRE(last->robots().size() == 1);
+  CHECK(time_from_ns(last->robots()[0].observed_at_ns()) > after_s(2.2));
+}
+
 }  // namespace sidestep::vision_node_test

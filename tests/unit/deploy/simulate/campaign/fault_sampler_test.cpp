@@ -143,7 +143,9 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and non
                                  "seen frozen",
                                  "ghost robots",
                                  "ghost obstacles",
-                                 "lasers"}) {
+                                 "lasers",
+                                 "lasting cut",
+                                 "process clock step"}) {
     CAPTURE(kind, trials[kind]);
     CHECK(trials[kind] >= 0.03 * kTrials);
     CHECK(trials[kind] <= 0.25 * kTrials);

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clocks that jump, and agree again.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+#include "tests/sim/shuttles.hpp"
+
+namespace sidestep::clock_jumps_test {
+
+constexpr Duration kMaxRecovery = std::chrono::seconds(5);
+// Clocks that go back by an hour must not show a negative time.
+constexpr Time kBegin = time_from_ns(100'000'000'000'000);
+
+/// From then on a clock is off by so much.
+struct Jump {
+  Duration at{0};
+  std::string clock;  ///< of this process or, if it begins with "robot ", of a robot
+  Duration offset{0};
+};
+
+struct History {
+  Scenario scenario;
+  std::vector<Jump> jumps;
+  Duration agree_at{0};  ///< from then on, all clocks agree
+};
+
+/// 1 ms to an hour, forth or back.
+Duration sample_offset(Rng& rng) {
+  const double size_s = 0.001 * std::pow(3.59e6, rng.uniform());
+  return from_seconds(rng.chance(0.5) ? size_s : -size_s);
+}
+
+History sample(std::uint64_t seed) {
+  Rng rng(seed);
+  History history{shuttles(4, 1 + static_cast<int>(rng.below(3)), rng.chance(0.5)), {}, Duration{0}};
+  std::vector<std::string> clocks = SimSystem::process_names(history.scenario);
+  for (const RobotSpec& robot : history.scenario.robots)
+    clocks.push_back("robot " + std::to_string(robot.id));
+  history.agree_at = from_seconds(rng.uniform(2.5, 9));
+  const std::uint64_t count = rng.chance(0.4) ? 1 : 2 + rng.below(5);
+  // A host's clock that is set takes several with it.
+  const bool is_common = rng.chance(0.3);
+  const Duration common = sample_offset(rng);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Duration at = from_seconds(rng.uniform(0.3, to_seconds(history.agree_at)));
+    history.jumps.push_back({at, clocks[rng.below(clocks.size())], is_common ? common : sample_offset(rng)});
+  }
+  std::ranges::stable_sort(history.jumps, {}, &Jump::at);
+  std::vector<Jump> ends;
+  for (const Jump& jump : history.jumps) ends.push_back({history.agree_at, jump.clock, Duration{0}});
+  history.jumps.insert(history.jumps.end(), ends.begin(), ends.end());
+  return history;
+}
+
+void apply(const Jump& jump, SimSystem& system) {
+  if (!jump.clock.starts_with("robot ")) return system.set_clock(jump.clock, jump.offset);
+  msg::Disturbance disturbance;
+  disturbance.robot(static_cast<RobotId>(std::stoul(jump.clock.substr(6))));
+  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_CLOCK);
+  disturbance.clock_offset_ns(jump.offset.count());
+  system.disturb(disturbance);
+}
+
+/// The time after which all robots drive, in seconds after all clocks agree.
+double run(std::uint64_t seed) {
+  const History history = sample(seed);
+  for (const Jump& jump : history.jumps)
+    UNSCOPED_INFO(
+        fmt::format("{:.3f} s: {} {:+.4f} s", to_seconds(jump.at), jump.clock, to_seconds(jump.offset)));
+  SimSystem system(history.scenario, seed, {}, kBegin);
+  MotionWatch motion(system);
+  for (const Jump& jump : history.jumps) {
+    system.run_until(system.begin() + jump.at);
+    apply(jump, system);
+  }
+  motion.begin();
+  double last_s = 0;
+  for (bool do_all_drive = false;
+       !do_all_drive && system.now() < system.begin() + history.agree_at + kMaxRecovery;) {
+    system.run_for(std::chrono::milliseconds(50));
+    do_all_drive = std::ranges::all_of(history.scenario.robots, [&](const RobotSpec& robot) {
+      last_s = std::max(last_s, motion.first_motion_s(robot.id).value_or(last_s));
+      return motion.first_motion_s(robot.id).has_value();
+    });
+  }
+  for (const RobotSpec& robot : history.scenario.robots) {
+    INFO("robot " << robot.id);
+    CHECK(motion.first_motion_s(robot.id));
+  }
+  const Report report = system.metrics().report();
+  CHECK(report.unexcused_contacts() == 0);
+  CHECK(report.firmware_violations == 0);
+  // Ground truth has the simulator's clock. While that is wrong, the audit compares places of different
+  // times.
+  const bool is_truth_misdated =
+      std::ranges::any_of(history.jumps, [](const Jump& jump) { return jump.clock == "simulator"; });
+  const std::uint64_t misjudged =
+      is_truth_misdated ? report.audit->by_rule[static_cast<std::size_t>(AuditRule::kPosition)] : 0;
+  for (const Violation& violation : report.audit->first) UNSCOPED_INFO(to_line(violation));
+  CHECK(report.audit->violations == misjudged);
+  return last_s;
+}
+
+void run_all(std::uint64_t first, std::uint64_t last) {
+  std::vector<double> seconds;
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    CAPTURE(seed);
+    seconds.push_back(run(seed));
+  }
+  std::ranges::sort(seconds);
+  const auto part = [&](double share) {
+    return seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1))];
+  };
+  WARN(fmt::format(
+      "all robots drive {:.2f} s (median), {:.2f} s (99 %), {:.2f} s (longest) after {} histories", part(0.5),
+      part(0.99), part(1), seconds.size()));
+}
+
+TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds") { run_all(1, 25); }
+
+TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds, in 500 histories",
+          "[.long]") {
+  run_all(1, 500);
+}
+
+TEST_CASE("a robot whose clock goes back drives again once the clock is right") {
+  const double back_s = GENERATE(0.001, 0.1, 2.5, 5.0, 60.0, 3000.0);
+  CAPTURE(back_s);
+  SimSystem system(shuttles(3, 1), 1, {}, kBegin);
+  MotionWatch motion(system);
+  const std::string clock = "robot 1";
+  system.run_for(std::chrono::seconds(1));
+  apply({Duration{0}, clock, from_seconds(-back_s)}, system);
+  system.run_for(std::chrono::seconds(9));
+  apply({Duration{0}, clock, Duration{0}}, system);
+  motion.begin();
+  system.run_for(std::chrono::seconds(2));
+  CHECK(motion.first_motion_s(1));
+  CHECK(system.metrics().report().audit->violations == 0);
+}
+
+}  // namespace sidestep::clock_jumps_test

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/fleet_reception.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::fleet_reception_test {
+
+constexpr Duration kPeriod{16'666'667};
+
+Time after_ms(int ms) { return time_from_ns(1'000'000'000'000) + std::chrono::milliseconds(ms); }
+
+TEST_CASE("a coordinator hears robots while facts arrive of half of those that it heard before") {
+  FleetReception reception(kPeriod);
+  CHECK_FALSE(reception.hears_robots(after_ms(0)));
+  for (const RobotId robot : {1, 2, 3, 4}) reception.on_fact(robot, 5, false, after_ms(0));
+  CHECK(reception.hears_robots(after_ms(80)));
+  CHECK_FALSE(reception.hears_robots(after_ms(90)));
+  reception.on_fact(1, 5, false, after_ms(100));
+  CHECK_FALSE(reception.hears_robots(after_ms(100)));
+  reception.on_fact(2, 5, false, after_ms(100));
+  CHECK(reception.hears_robots(after_ms(100)));
+  // Robots that have been silent for long do not count.
+  reception.on_fact(4, 5, false, after_ms(10'200));
+  CHECK(reception.hears_robots(after_ms(10'200)));
+}
+
+TEST_CASE("a fleet is served while robots begin to execute granted versions") {
+  FleetReception reception(kPeriod);
+  const Duration lately = std::chrono::milliseconds(60);
+  reception.on_fact(1, 5, true, after_ms(0));
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(0)));  // it may have executed it for long
+  reception.on_fact(1, 5, true, after_ms(10));
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(10)));
+  reception.on_fact(1, 9, false, after_ms(20));  // a stop of its own
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(20)));
+  reception.on_fact(1, 10, true, after_ms(30));
+  CHECK(reception.is_fleet_served(lately, after_ms(89)));
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(90)));
+  reception.on_fact(1, 7, true, after_ms(100));  // late
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(100)));
+}
+
+TEST_CASE("an agent asks for a coordinator as long as it repeats its registration") {
+  FleetReception reception(kPeriod);
+  CHECK(reception.request_duration(1, after_ms(0)) == Duration{0});
+  for (int ms = 0; ms <= 600; ms += 100) reception.on_registration(1, after_ms(ms));
+  CHECK(reception.request_duration(1, after_ms(650)) == std::chrono::milliseconds(600));
+  CHECK(reception.time_since_first_request(1, after_ms(650)) == std::chrono::milliseconds(650));
+  CHECK(reception.request_duration(1, after_ms(1000)) == Duration{0});
+  // One a second is a measurement of the clock.
+  for (int ms = 2000; ms <= 9000; ms += 1000) {
+    reception.on_registration(1, after_ms(ms));
+    CHECK(reception.request_duration(1, after_ms(ms)) == Duration{0});
+  }
+  for (int ms = 9100; ms <= 9500; ms += 100) reception.on_registration(1, after_ms(ms));
+  reception.forget_requests();
+  reception.on_registration(1, after_ms(9600));
+  CHECK(reception.request_duration(1, after_ms(9600)) == Duration{0});
+}
+
+TEST_CASE("a coordinator hears agents if a message of each has arrived lately") {
+  FleetReception reception(kPeriod);
+  reception.on_agent(1, after_ms(0));
+  CHECK_FALSE(reception.hears_agents({1, 2}, after_ms(0)));
+  reception.on_agent(2, after_ms(1000));
+  CHECK(reception.hears_agents({1, 2}, after_ms(2500)));
+  CHECK_FALSE(reception.hears_agents({1, 2}, after_ms(2600)));
+  CHECK(reception.hears_agents({2}, after_ms(2600)));
+}
+
+}  // namespace sidestep::fleet_reception_test
