@@ -13,10 +13,12 @@ constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
 
-/// Whether an order of this kind is in force after it was accepted, so that coordinators must not forget it.
-bool lasts(const Order& order) { return drives(order) || order.kind == msg::OrderKind::ORDER_ZONE; }
-
 bool stops(const Order& order) { return order.kind == msg::OrderKind::ORDER_HOLD; }
+
+/// Whether an order of this kind is in force after it was accepted, so that coordinators must not forget it.
+bool lasts(const Order& order) {
+  return drives(order) || stops(order) || order.kind == msg::OrderKind::ORDER_ZONE;
+}
 
 /// Whether nothing remains of an order after a later one of the same client.
 bool replaces(const Order& later, const Order& earlier) {
@@ -90,10 +92,11 @@ OrderHandle OrderClient::send_zone(Order order) {
   return send(std::move(order));
 }
 
-void OrderClient::replace_unanswered(const Order& later) {
+void OrderClient::replace_earlier(const Order& later) {
   std::vector<OrderHandle> replaced;
   for (const auto& [handle, sent] : sent_) {
-    if (sent.phase == OrderPhase::kSent && replaces(later, sent.order)) replaced.push_back(handle);
+    const bool is_open = sent.phase == OrderPhase::kSent || (stops(sent.order) && !is_closed(sent));
+    if (is_open && replaces(later, sent.order)) replaced.push_back(handle);
   }
   for (const OrderHandle handle : replaced) {
     const auto sent = sent_.find(handle);
@@ -102,7 +105,7 @@ void OrderClient::replace_unanswered(const Order& later) {
 }
 
 OrderHandle OrderClient::send(Order order) {
-  replace_unanswered(order);
+  replace_earlier(order);
   newest_ = std::max(newest_ + 1, static_cast<OrderNumber>(to_ns(bus_.now())));
   order.client = client_;
   order.number = newest_;
@@ -127,9 +130,9 @@ bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
   const bool is_affected = answer.result() == msg::OrderResult::RESULT_REPLACED ||
                            sent.order.kind == msg::OrderKind::ORDER_HOLD ||
                            sent.order.kind == msg::OrderKind::ORDER_RESUME;
-  if (sent.is_renumbered || !is_behind || !is_affected || is_refused(answer.result())) return false;
+  if (sent.is_number_final || !is_behind || !is_affected || is_refused(answer.result())) return false;
   if (sent.order.kind == msg::OrderKind::ORDER_RESUME && is_followed_by_hold(sent)) return false;
-  sent.is_renumbered = true;
+  sent.is_number_final = true;
   by_number_.erase(sent.order.number);
   sent.order.number = ++newest_;
   by_number_[newest_] = sent.handle;
@@ -181,6 +184,7 @@ void OrderClient::on_answer(const msg::OrderAnswer& answer) {
   if (!found || found->phase != OrderPhase::kSent || renumber(*found, answer)) return;
   SentOrder& sent = *found;
   sent.refusal = answer.result();
+  sent.is_number_final = true;
   switch (answer.result()) {
     case msg::OrderResult::RESULT_REMEMBERED:
       return update(sent, OrderPhase::kAccepted, 0);
@@ -220,18 +224,22 @@ void OrderClient::compare(const OrderBook& remembered) {
   }
   for (const OrderHandle handle : open) {
     const auto sent = sent_.find(handle);
-    if (sent != sent_.end()) compare(sent->second, remembered.in_place_of(sent->second.order));
+    if (sent != sent_.end()) compare(sent->second, remembered);
   }
 }
 
-void OrderClient::compare(SentOrder& sent, const RememberedOrder* known) {
+void OrderClient::compare(SentOrder& sent, const OrderBook& remembered) {
   const OrderNumber number = sent.order.number;
+  const RememberedOrder* const known = remembered.in_place_of(sent.order);
   if (known && known->order.number == number && known->order.client == client_) {
     missing_.erase(sent.handle);
+    if (stops(sent.order)) return;  // the answer says when others remember it too
     // The robot's status is more recent, unless it was lost.
     if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
       update(sent, phase_of(known->progress), known->progress.goal_index);
   } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
+    update(sent, OrderPhase::kReplaced, sent.goal_index);
+  } else if (stops(sent.order) && remembered.is_lifted(sent.order)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
   } else if (sent.phase != OrderPhase::kSent && ++missing_[sent.handle] >= kRoundsUntilForgotten) {
     missing_.erase(sent.handle);

@@ -16,11 +16,11 @@ namespace sidestep {
 /// What has become of an order.
 enum class OrderPhase : std::uint8_t {
   kSent,      ///< no coordinator has answered yet
-  kAccepted,  ///< coordinators remember it; orders other than to drive are complete then
+  kAccepted,  ///< coordinators remember it, and an agent too if it holds; all but go are complete then
   kDriving,
   kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can
   kArrived,   ///< at the last goal
-  kReplaced,  ///< by a later order
+  kReplaced,  ///< by a later order; of a hold: lifted
   kRefused
 };
 
@@ -33,7 +33,9 @@ using OrderHandle = std::uint64_t;
 struct SentOrder {
   OrderHandle handle = 0;
   Order order;
-  bool is_renumbered = false;  ///< because its first number was below those of earlier orders
+  /// A coordinator has answered, or it was numbered again because its first number was below those of earlier
+  /// orders.
+  bool is_number_final = false;
   OrderPhase phase = OrderPhase::kSent;
   msg::OrderResult refusal = msg::OrderResult::RESULT_REMEMBERED;  ///< if it is refused
   std::size_t goal_index = 0;                                      ///< of the goal that the robot drives to
@@ -41,9 +43,10 @@ struct SentOrder {
 };
 
 /// Sends orders, repeats them until a coordinator has answered and whenever all coordinators have forgotten
-/// them, and follows what becomes of them. If this client's clock is behind those of others, an order is
-/// numbered again, above all that the coordinators know: otherwise an earlier order of another client would
-/// count as later. That never moves an order behind a later one of this client.
+/// them (orders to go, holds and zones, as long as they are in force), and follows what becomes of them. If
+/// this client's clock is behind those of others, an order is numbered again, above all that the coordinators
+/// know: otherwise an earlier order of another client would count as later. That never moves an order behind
+/// a later one of this client.
 class OrderClient {
  public:
   OrderClient(Bus& bus, ClientId client);
@@ -81,7 +84,7 @@ class OrderClient {
   OrderHandle send(Order order);
   OrderHandle send_zone(Order order);
   /// Stops repeating the orders that this one makes meaningless.
-  void replace_unanswered(const Order& later);
+  void replace_earlier(const Order& later);
   bool is_followed_by_hold(const SentOrder& resume) const;
   void publish(const Order& order);
   /// nullptr: no order of this client has this number.
@@ -94,7 +97,7 @@ class OrderClient {
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
   void compare(const OrderBook& remembered);
-  void compare(SentOrder& sent, const RememberedOrder* known);
+  void compare(SentOrder& sent, const OrderBook& remembered);
   void forget(std::map<OrderHandle, SentOrder>::iterator sent);
   void update(SentOrder& sent, OrderPhase phase, std::size_t goal_index);
 

@@ -114,7 +114,8 @@ TEST_CASE("a zone in force is not forgotten in favour of later orders, whose num
     system.run_for(5ms);
   }
   const auto is_known = [&](OrderHandle handle) { return system.client.find(handle) != nullptr; };
-  CHECK(static_cast<std::size_t>(std::ranges::count_if(handles, is_known)) == OrderClient::kMaxFinal + 1);
+  // The last zone and the last hold are in force.
+  CHECK(static_cast<std::size_t>(std::ranges::count_if(handles, is_known)) == OrderClient::kMaxFinal + 2);
   CHECK(is_known(standing));
   CHECK(is_known(handles.back()));
 }
@@ -136,6 +137,72 @@ TEST_CASE("a zone that all coordinators have forgotten is sent again") {
   CHECK(system.received[0].zone_number == 1);
   CHECK(system.client.find(zone)->phase == OrderPhase::kAccepted);
   CHECK(system.client.find(removed) == nullptr);
+}
+
+/// Whether the client sends the order again after all coordinators have forgotten it.
+bool is_sent_again(System& system, OrderHandle handle) {
+  system.received.clear();
+  for (int i = 0; i < 5; ++i) {
+    system.tell_memory();
+    system.run_for(1s);
+  }
+  const OrderNumber number = system.client.find(handle)->order.number;
+  return std::ranges::any_of(system.received, [=](const Order& order) { return order.number == number; });
+}
+
+TEST_CASE("an order to go, and a hold, that all coordinators have forgotten are sent again as they were") {
+  System system;
+  const OrderHandle go = system.client.go(0, {{{1, 0}}}), hold = system.client.hold(3);
+  system.run_for(1s);
+  system.tell_memory();
+  const OrderNumber number = system.client.find(hold)->order.number;
+  for (const OrderHandle handle : {go, hold}) {
+    INFO("order " << handle);
+    CHECK(system.client.find(handle)->phase == OrderPhase::kAccepted);
+    CHECK_FALSE(is_sent_again(system, handle));
+    system.book = {};
+    CHECK(is_sent_again(system, handle));
+    CHECK(system.client.find(handle)->phase == OrderPhase::kAccepted);
+  }
+  CHECK(system.client.find(hold)->order.number == number);
+  CHECK(system.book.is_held(3));
+  CHECK(system.book.drive_order(0, Rank::kClient));
+  const OrderHandle hold_all = system.client.hold(kAllRobots);
+  system.run_for(1s);
+  CHECK(system.client.find(hold)->phase == OrderPhase::kReplaced);
+  system.book = {};
+  CHECK(is_sent_again(system, hold_all));
+  CHECK(system.book.is_held(4));
+}
+
+TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent again") {
+  const bool by_owner = GENERATE(true, false);
+  CAPTURE(by_owner);
+  System system;
+  const OrderHandle hold = system.client.hold(3);
+  system.run_for(100ms);
+  const Order resume{msg::OrderKind::ORDER_RESUME, kAllRobots, static_cast<ClientId>(Sender::kOperator),
+                     static_cast<OrderNumber>(to_ns(system.client_bus.now()))};
+  if (by_owner)
+    system.client.resume(kAllRobots);
+  else
+    system.book.merge({resume});
+  system.run_for(100ms);
+  system.tell_memory();
+  CHECK(system.client.find(hold)->phase == OrderPhase::kReplaced);
+  system.book = {};
+  CHECK_FALSE(is_sent_again(system, hold));
+}
+
+TEST_CASE("a hold of one robot is still in force after its client has resumed another") {
+  System system;
+  const OrderHandle hold = system.client.hold(3);
+  system.run_for(100ms);
+  system.client.resume(4);
+  system.run_for(100ms);
+  system.book = {};
+  CHECK(is_sent_again(system, hold));
+  CHECK(system.book.is_held(3));
 }
 
 TEST_CASE("a client whose clock is behind its earlier orders still moves its zone") {
