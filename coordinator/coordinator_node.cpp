@@ -21,6 +21,8 @@ constexpr Duration kSilence{1'000'000'000};
 constexpr Duration kOrderPeriod{1'000'000'000};
 // A new agent is told the orders at once, but not more often than this.
 constexpr Duration kMinOrderPeriod{50'000'000};
+// While agents wait to be told what they remember, before they register.
+constexpr Duration kRegisteringOrderPeriod{200'000'000};
 
 }  // namespace
 
@@ -120,6 +122,7 @@ void CoordinatorNode::handle(const Registration& registration) {
     failover_.reception().on_registration(registration.robot, bus_.now());
   if (registration.epoch == 0) return;  // the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
+  if (!registration.versions) repeat_orders();  // the agent waits to be told the orders that it remembers
   const bool was_granting = coordinator_.is_granting();
   if (const auto verdict = coordinator_.on_registration(registration)) {
     answer(*verdict);
@@ -133,7 +136,14 @@ void CoordinatorNode::handle(const Registration& registration) {
 }
 
 void CoordinatorNode::learn_of_orders(const Registration& registration) {
-  has_history_ |= registration.knows_orders || registration.has_moved;
+  has_history_ |= registration.has_moved;
+  const bool was_complete = orders_.is_complete();
+  orders_.on_registration(registration.knows_orders);
+  if (orders_.is_complete() != was_complete) {
+    apply_holds();
+    publish_orders(orders_.book().all(), false);  // agents that know nothing wait for a complete memory
+    publish_state();
+  }
   if (!registration.knows_orders) repeat_orders();
 }
 
@@ -159,6 +169,10 @@ void CoordinatorNode::handle(const Feedback& feedback) {
   const bool is_granted = !feedback.is_off_reference && !feedback.is_absent();
   if (coordinator_.ledger().has_robot(feedback.robot))
     failover_.reception().on_fact(feedback.robot, feedback.executing.number, is_granted, bus_.now());
+  if (feedback.obeyed_epoch == coordinator_.epoch() && confirmations_.is_waiting()) {
+    confirmations_.on_obeyed(feedback.robot);
+    confirm_holds();
+  }
   const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
   if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
   events_.report(LogLevel::kWarning, feedback.robot,
@@ -216,6 +230,20 @@ void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
   }
 }
 
+void CoordinatorNode::handle(const OrderReport& report) {
+  (void)orders_.on_report(report);
+  if (!coordinator_.ledger().has_robot(report.robot)) return;
+  confirmations_.on_report(report);
+}
+
+void CoordinatorNode::confirm_holds() {
+  for (const Order& hold : confirmations_.take_confirmed(orders_.book())) {
+    const bool stands = orders_.book().stands(hold);
+    answer(hold.client, hold.number,
+           stands ? msg::OrderResult::RESULT_REMEMBERED : msg::OrderResult::RESULT_REPLACED);
+  }
+}
+
 void CoordinatorNode::on_order(const msg::Order& message) {
   const auto order = decode(message, bus_.now());
   const auto result = order ? orders_.on_order(*order) : msg::OrderResult::RESULT_MALFORMED;
@@ -225,9 +253,18 @@ void CoordinatorNode::on_order(const msg::Order& message) {
     drops_.count(DropReason::kRefusedOrder);
   apply_orders();
   if (!coordinator_.is_active()) return;
+  const bool is_new_hold =
+      order && order->kind == msg::OrderKind::ORDER_HOLD && result == msg::OrderResult::RESULT_REMEMBERED;
+  if (is_new_hold)
+    confirmations_.add(*order);
+  else
+    answer(message.header().sender(), message.terms().order_number(), result);
+}
+
+void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResult result) {
   msg::OrderAnswer answer;
-  answer.client(message.header().sender());
-  answer.order_number(message.terms().order_number());
+  answer.client(client);
+  answer.order_number(number);
   answer.result(result);
   answer.newest_number(orders_.book().newest_number());
   publish(answer_writer_, answer);
@@ -237,7 +274,11 @@ void CoordinatorNode::handle(const OrderPage& page) {
   if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
   if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
   const bool was_complete = orders_.is_complete();
-  if (orders_.on_page(page)) apply_orders();
+  if (orders_.on_page(page)) {
+    has_learned_orders_ = true;
+    apply_orders();
+    tell_registering_agents();
+  }
   if (orders_.is_complete() == was_complete) return;
   apply_holds();
   publish_state();
@@ -275,11 +316,22 @@ void CoordinatorNode::apply_orders() {
 }
 
 void CoordinatorNode::publish_orders(std::span<const RememberedOrder> orders, bool have_changed) {
-  if (!have_changed) orders_published_at_ = bus_.now();
+  if (!have_changed) {
+    orders_published_at_ = bus_.now();
+    has_learned_orders_ = false;
+  }
   for (msg::OrderMemory& page : encode(orders, orders_.is_complete(), have_changed)) {
     page.process(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
     publish(memory_writer_, page);
   }
+}
+
+void CoordinatorNode::tell_registering_agents() {
+  if (!coordinator_.is_active() || coordinator_.is_granting()) return;
+  const bool is_due =
+      !orders_published_at_ ||
+      bus_.now() - *orders_published_at_ > (has_learned_orders_ ? kMinOrderPeriod : kRegisteringOrderPeriod);
+  if (is_due) publish_orders(orders_.book().all(), false);
 }
 
 void CoordinatorNode::publish_orders_periodically() {
@@ -309,6 +361,7 @@ void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
   has_history_ = false;
+  confirmations_.clear();
   changes_.reset();
   report_role();
   publish_state();
@@ -342,6 +395,8 @@ void CoordinatorNode::publish_state() {
 void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
   update_orders();
+  confirm_holds();
+  tell_registering_agents();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }
 

@@ -11,6 +11,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"
+#include "coordinator/hold_confirmations.hpp"
 #include "coordinator/order_keeper.hpp"
 #include "coordinator/state_changes.hpp"
 
@@ -48,6 +49,12 @@ class CoordinatorNode {
   void on_order(const msg::Order& message);
   void handle(const OrderPage& page);
   void handle(const OrderReport& report);
+  void answer(ClientId client, OrderNumber number, msg::OrderResult result);
+  /// Answers the clients whose holds an agent remembers too.
+  void confirm_holds();
+  /// Tells the orders again while agents have to register: they do so once they have been told all that they
+  /// remember.
+  void tell_registering_agents();
   /// Learns from a registration whether there may be orders, and tells the agent those that it lacks.
   void learn_of_orders(const Registration& registration);
   /// Completes the memory of orders if that is possible.
@@ -81,7 +88,8 @@ class CoordinatorNode {
   Failover failover_;
   Coordinator coordinator_;
   OrderKeeper orders_;
-  bool has_history_ = false;  // in this epoch, a robot has registered that has moved or been given orders
+  HoldConfirmations confirmations_;
+  bool has_history_ = false;  // in this epoch, a robot has registered that may have been given orders before
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
   Writer<msg::OrderAnswer> answer_writer_;
@@ -93,6 +101,7 @@ class CoordinatorNode {
   Time updated_at_{};                           // by update_failover()
   std::vector<RobotObservation> observations_;  // of the last world state
   std::optional<Time> orders_published_at_;     // all of them
+  bool has_learned_orders_ = false;             // since then, from another process
   int standby_periods_ = 0;                     // heartbeat periods while standing by
   DropCounters drops_;                          // messages that this node has not used
   CounterPublisher counters_;

@@ -33,7 +33,7 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       max_person_speed_mps_(scenario.max_opponent_speed_mps),
       scan_period_(scenario.laser ? from_seconds(1 / scenario.laser->rate_hz) : Duration{0}),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)),
-      assignment_(robot, robot_.goals),
+      assignment_(robot, robot_.goals, roster_of(scenario)),
       desired_heading_rad_(robot_.start_heading_rad),
       planner_(make_driving_planner(robot_.planner.empty() ? scenario.planner : robot_.planner)),
       passage_period_(from_seconds(settings.passage_s + settings.passage_m / rules_.limits.speed_mps)),
@@ -117,9 +117,16 @@ bool Agent::is_unserved(Time now) const {
          is_recent(last_fix_, settings_.max_fix_age) && !is_recent(watched_until_, settings_.max_watch_age);
 }
 
+bool Agent::is_told_all_orders() const {
+  if (assignment_.remembers_nothing()) return true;
+  return in_charge_.epoch == negotiation_.epoch() &&
+         assignment_.is_told_by(in_charge_.coordinator, in_charge_.incarnation);
+}
+
 Registration Agent::registration() {
   Registration registration = negotiation_.registration();
-  registration.has_moved = robot_has_moved_;
+  const Epoch former = negotiation_.former_epoch();
+  registration.has_moved = robot_has_moved_ || (former != 0 && former != registration.epoch);
   registration.knows_orders = assignment_.is_known();
   return registration;
 }
@@ -145,7 +152,8 @@ void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clo
 
 void Agent::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
   negotiation_.on_coordinator_state(heartbeat, now);
-  if (heartbeat.epoch != negotiation_.epoch()) return;
+  if (heartbeat.epoch != negotiation_.epoch() || heartbeat.epoch == 0) return;
+  in_charge_ = {heartbeat.sender, heartbeat.incarnation, heartbeat.epoch};
   displaced_.on_heartbeat(heartbeat, now);
   watched_until_ = heartbeat.watched_until;
 }
@@ -174,7 +182,7 @@ Proposal Agent::propose_rest_version(Time now, Time start) {
 
 Command Agent::command(Time now) {
   if (forwarded_ && forwarded_->trajectory.start() <= now) forwarded_.reset();
-  Command command{robot_.id, negotiation_.incarnation(), negotiation_.epoch()};
+  Command command{robot_.id, negotiation_.incarnation(), negotiation_.command_epoch()};
   command.version = forwarded_;
   command.fix = std::exchange(fix_, std::nullopt);
   command.desired_heading_rad = desired_heading_rad_;

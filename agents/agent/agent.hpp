@@ -77,6 +77,10 @@ class Agent {
   Epoch epoch() const { return negotiation_.epoch(); }
   bool is_superseded() const { return negotiation_.is_superseded(); }
   bool needs_registration() const { return negotiation_.needs_registration(); }
+  bool is_fenced() const { return negotiation_.is_fenced(); }
+  /// Whether the coordinator in charge has told all orders that this agent remembers. The agent registers
+  /// only then: so no order is lost that an agent remembers.
+  bool is_told_all_orders() const;
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
@@ -84,6 +88,8 @@ class Agent {
   void on_request(Time now) { negotiation_.on_request(now); }
   /// Whether the coordinator does not serve this agent, so that the agent should ask for another one.
   bool is_unserved(Time now) const;
+  /// See Negotiation.
+  Registration epoch_notice() const { return negotiation_.epoch_notice(); }
   /// The earliest start for a new version: the next cycle, or a later one on a slow network.
   Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
@@ -224,6 +230,13 @@ class Agent {
   Rng rng_;
   Assignment assignment_;
   bool robot_has_moved_ = false;  // ever, by a granted version
+  /// The coordinator that was heard last in its epoch.
+  struct Charge {
+    std::uint32_t coordinator = 0;
+    Incarnation incarnation = 0;
+    Epoch epoch = 0;
+  };
+  Charge in_charge_;
   double desired_heading_rad_;
   ZoneMap zones_;
   NamedPlanner planner_;

@@ -19,7 +19,6 @@ constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
 // An agent that asks for another coordinator may do so for long.
 constexpr int kCyclesBetweenRequests = 6;
-constexpr Duration kOrderRepetitionPeriod{250'000'000};
 constexpr Duration kOrderStatusPeriod{1'000'000'000};
 
 /// Offset of the robot's cycles from multiples of the cycle time.
@@ -82,7 +81,10 @@ void AgentNode::on_feedback(const msg::Feedback& message) {
   if (!accept(feedback, DropReason::kMalformedFeedback)) return;
   measure_robot_clock(*feedback);
   const Epoch last_epoch = agent_.epoch();
+  const bool was_fenced = agent_.is_fenced();
   const bool is_contradicted = agent_.on_feedback(*feedback);
+  // The robot's first acknowledgement is answered at once by the epoch: nothing moves before it obeys it.
+  if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
   publish_order_status();
   changes_.on_feedback(*feedback);
   if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), std::nullopt);
@@ -138,12 +140,6 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
   register_if_due();
-  const bool needs_orders = heartbeat->epoch == agent_.epoch() && !heartbeat->remembers_orders;
-  if (needs_orders && agent_.assignment().is_known() &&
-      has_elapsed(kOrderRepetitionPeriod, orders_repeated_at_)) {
-    orders_repeated_at_ = bus_.now();
-    publish_orders(agent_.assignment().all(), true);
-  }
   if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))
     negotiate_if_time();
 }
@@ -176,8 +172,16 @@ void AgentNode::on_orders(const msg::OrderMemory& message) {
   if (!page) return drops_.count(DropReason::kMalformedOrder);
   agent_.on_orders(page);
   if (agent_.is_superseded()) return;
-  if (const auto missing = agent_.take_missing_orders(); !missing.empty()) publish_orders(missing, false);
+  if (const auto missing = agent_.take_missing_orders(); !missing.empty()) publish_orders(missing);
+  const auto holds = [&](const RememberedOrder& order) {
+    const bool concerns = order.order.robot == robot_ || order.order.robot == kAllRobots;
+    return concerns && order.order.kind == msg::OrderKind::ORDER_HOLD;
+  };
+  // The coordinator waits for an agent that remembers the hold before it confirms it.
+  if (page->count == 0 && std::ranges::any_of(page->orders, holds)) order_status_at_ = {};
   publish_order_status();
+  if (agent_.needs_registration() && agent_.is_told_all_orders()) registration_wait_ = 0;
+  register_if_due();
 }
 
 void AgentNode::begin_cycle() {
@@ -237,16 +241,18 @@ void AgentNode::register_if_due() {
   const bool needs_registration = agent_.needs_registration();
   if (!needs_registration && !agent_.is_unserved(robot_now())) {
     registration_wait_ = 0;
-  } else if (registration_wait_ == 0) {
-    registration_wait_ = needs_registration ? kCyclesBetweenRegistrations : kCyclesBetweenRequests;
-    publish_registration();
+    return;
   }
+  if (registration_wait_ > 0) return;
+  registration_wait_ = needs_registration ? kCyclesBetweenRegistrations : kCyclesBetweenRequests;
+  const bool may_register = agent_.is_told_all_orders();
+  publish(may_register ? agent_.registration() : agent_.epoch_notice());
 }
 
 void AgentNode::measure_coordinator_clock() {
-  if (measurement_wait_ > 0) return;
+  if (measurement_wait_ > 0 || agent_.needs_registration()) return;
   measurement_wait_ = kCyclesBetweenRegistrations;
-  publish_registration();
+  publish(agent_.registration());
 }
 
 bool AgentNode::clocks_agree() {
@@ -279,8 +285,8 @@ void AgentNode::publish_command(const Command& command) {
   command_writer_.publish(message, bus_.now());
 }
 
-void AgentNode::publish_registration() {
-  auto message = encode(agent_.registration());
+void AgentNode::publish(const Registration& registration) {
+  auto message = encode(registration);
   agent_.on_request(robot_now());
   registration_writer_.publish(message, bus_.now());
   clocks_.on_request_sent(time_from_ns(message.header().stamp_ns()));
@@ -299,8 +305,8 @@ void AgentNode::count_drops(DropCounters& drops) const {
   world_.count_drops(drops);
 }
 
-void AgentNode::publish_orders(std::span<const RememberedOrder> orders, bool are_all) {
-  for (msg::OrderMemory& page : encode(orders, agent_.assignment().is_known(), !are_all)) {
+void AgentNode::publish_orders(std::span<const RememberedOrder> orders) {
+  for (msg::OrderMemory& page : encode(orders, agent_.assignment().is_known(), true)) {
     page.process(robot_);
     page.header().sender(robot_);
     page.header().incarnation(agent_.incarnation());

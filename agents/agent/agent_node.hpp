@@ -76,11 +76,11 @@ class AgentNode {
   /// Proposes a version that starts at `start`.
   void negotiate(Time start);
   void publish_command(const Command& command);
-  void publish_registration();
+  void publish(const Registration& registration);
   void publish_proposal(const Proposal& proposal);
   void publish_status();
-  /// Tells coordinators of orders; all that the agent remembers, or those that one lacks.
-  void publish_orders(std::span<const RememberedOrder> orders, bool are_all);
+  /// Tells coordinators of orders that one lacks.
+  void publish_orders(std::span<const RememberedOrder> orders);
   /// Publishes the order's status if it has changed, and once a second.
   void publish_order_status();
 
@@ -108,7 +108,7 @@ class AgentNode {
   Writer<msg::OrderMemory> order_writer_;
   Writer<msg::OrderStatus> order_status_writer_;
   OrderReport order_report_;  // published last
-  Time orders_repeated_at_{}, order_status_at_{};
+  Time order_status_at_{};
   CounterPublisher counters_;
 };
 

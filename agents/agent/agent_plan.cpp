@@ -116,7 +116,6 @@ void Agent::decide_whether_to_give_way(Time now) {
 }
 
 std::vector<OtherRobot> Agent::others_in_passages(Time now) {
-  const Passer self{robot_.id, assignment_.report().number};
   std::vector<OtherRobot> others;
   for (const Version* version : neighbours_.newest(estimate_.position_m, page_horizon_m())) {
     OtherRobot other{version->robot, true, version->trajectory.rest_position_m()};
@@ -126,7 +125,7 @@ std::vector<OtherRobot> Agent::others_in_passages(Time now) {
       // A route across a large floor would take too long.
       for (std::optional<Vec2>& goal : other.goals_m)
         if ((*goal - other.position_m).norm() > settings_.longest_trip_m) goal = version->intent->waypoint_m;
-      other.has_right_of_way = may_pass_first({version->robot, orders.number}, self, now, passage_period_);
+      other.has_right_of_way = assignment_.yields_to({version->robot, orders.number}, now, passage_period_);
     }
     others.push_back(other);
   }

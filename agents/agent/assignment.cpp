@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <utility>
 
 namespace sidestep {
 namespace {
 
 constexpr std::array kFromHighestRank{Rank::kOperator, Rank::kReferee, Rank::kClient, Rank::kScenario};
 
-// With more, what has changed since the whole memory is forgotten.
-constexpr std::size_t kMaxPages = 256;
+// With more, they are put together to one.
+constexpr std::size_t kMaxPages = msg::MAX_MEMORY_ORDERS * 8;
 
 bool is_zone(const Order& order) {
   return order.kind == msg::OrderKind::ORDER_ZONE || order.kind == msg::OrderKind::ORDER_REMOVE_ZONE;
@@ -21,6 +23,11 @@ bool is_to_do(const RememberedOrder* order) {
 }
 
 }  // namespace
+
+Assignment::Assignment(RobotId robot, std::vector<Goal> scenario_goals, std::vector<RobotId> roster)
+    : robot_(robot), scenario_goals_(std::move(scenario_goals)), roster_(std::move(roster)) {
+  std::ranges::sort(roster_);
+}
 
 void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
   if (!is_coordinator(page->process)) return;
@@ -37,39 +44,98 @@ void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
   }
   if (page->count > 0)
     add(std::move(page));
-  else if (memory_.size() < kMaxPages)
-    memory_.push_back(std::move(page));
+  else
+    add_changes(std::move(page));
   if (!concerns_robot) return;
   is_held_ = book_.is_held(robot_);
   choose();
 }
 
-void Assignment::add(std::shared_ptr<const OrderPage> page) {
-  Round& round = rounds_[page->process];
-  if (page->index == 0) round = {};
-  if (page->index != round.pages.size()) return;
-  for (const RememberedOrder& order : page->orders) {
-    if (concerns(order)) round.book.merge(order);
-  }
-  const bool is_last = page->index + 1 == page->count;
-  const bool is_complete = page->is_complete;
-  round.pages.push_back(std::move(page));
-  if (!is_last) return;
-  missing_ = book_.missing_in(round.book);
-  if (is_complete) {
-    is_known_ = true;
-    memory_ = std::move(round.pages);
-  }
-  round = {};
+bool Assignment::is_on_roster(const Order& order) const {
+  return roster_.empty() || order.robot == kAllRobots || std::ranges::binary_search(roster_, order.robot);
 }
 
-std::vector<RememberedOrder> Assignment::all() const {
-  OrderBook whole;
-  for (const auto& page : memory_) {
-    for (const RememberedOrder& order : page->orders) whole.merge(order);
+void Assignment::add_changes(std::shared_ptr<const OrderPage> page) {
+  if (page->orders.empty()) return;
+  std::erase_if(told_by_, [&](const auto& coordinator) { return coordinator.first != page->process; });
+  changes_.push_back(std::move(page));
+  if (changes_.size() <= kMaxPages) return;
+  OrderPage together;
+  together.orders = all();
+  changes_.assign(1, std::make_shared<const OrderPage>(std::move(together)));
+  told_.clear();
+}
+
+void Assignment::add(std::shared_ptr<const OrderPage> page) {
+  Round& round = rounds_[page->process];
+  if (page->index == 0) round.clear();
+  if (page->index != round.size()) return;
+  const bool is_last = page->index + 1 == page->count;
+  round.push_back(std::move(page));
+  if (!is_last) return;
+  const Round whole = std::exchange(round, {});
+  is_known_ |= whole.back()->is_complete;
+  compare(whole);
+}
+
+void Assignment::compare(const Round& round) {
+  const OrderPage& last = *round.back();
+  const bool is_same =
+      changes_.empty() && !has_progressed_ &&
+      std::ranges::equal(round, told_, [](const auto& a, const auto& b) { return have_same_orders(*a, *b); });
+  if (is_same) {
+    told_by_[last.process] = last.incarnation;
+    missing_.clear();
+    return;
   }
+  const OrderBook remembered = whole_book();
+  OrderBook told, both = remembered;
+  bool is_new = false;
+  for (const auto& page : round) {
+    for (const RememberedOrder& order : page->orders) {
+      told.merge(order);
+      is_new |= !remembered.knows(order.order);
+      both.merge(order);
+    }
+  }
+  missing_ = both.missing_in(told);
+  const auto lacks = [&](const RememberedOrder& order) { return !told.knows(order.order); };
+  if (is_new) told_by_.clear();
+  if (std::ranges::any_of(missing_, lacks))
+    told_by_.erase(last.process);
+  else
+    told_by_[last.process] = last.incarnation;
+  // What this coordinator lacks stays remembered.
+  told_ = round;
+  changes_.clear();
+  has_progressed_ = false;
+  if (missing_.empty()) return;
+  OrderPage kept;
+  kept.orders = missing_;
+  changes_.push_back(std::make_shared<const OrderPage>(std::move(kept)));
+}
+
+bool Assignment::is_told_by(std::uint32_t coordinator, Incarnation incarnation) const {
+  const auto found = told_by_.find(coordinator);
+  return found != told_by_.end() && found->second == incarnation;
+}
+
+template <typename Use>
+void Assignment::for_each(Use use) const {
+  for (const auto& pages : {std::cref(told_), std::cref(changes_)}) {
+    for (const auto& page : pages.get()) {
+      for (const RememberedOrder& order : page->orders) use(order);
+    }
+  }
+}
+
+OrderBook Assignment::whole_book() const {
+  OrderBook whole;
+  for_each([&](const RememberedOrder& order) {
+    if (is_on_roster(order.order)) whole.merge(order);
+  });
   for (const RememberedOrder& order : book_.all()) whole.merge(order);
-  return whole.all();
+  return whole;
 }
 
 OrderReport Assignment::report() const {
@@ -80,11 +146,9 @@ OrderReport Assignment::report() const {
 
 OtherAssignment Assignment::other(RobotId robot) const {
   OrderBook book;
-  for (const auto& page : memory_) {
-    for (const RememberedOrder& order : page->orders) {
-      if (order.order.robot == robot || order.order.robot == kAllRobots) book.merge(order);
-    }
-  }
+  for_each([&](const RememberedOrder& order) {
+    if (order.order.robot == robot || order.order.robot == kAllRobots) book.merge(order);
+  });
   OtherAssignment other;
   other.is_held = book.is_held(robot);
   for (const Rank rank : kFromHighestRank) {
@@ -125,7 +189,7 @@ void Assignment::take(const RememberedOrder& order) {
   if (goals_.empty()) return;
   progress_.goal_index = std::min(progress_.goal_index, goals_.size() - 1);
   if (!progress_.is_finished()) progress_.state = msg::OrderState::ORDER_DRIVING;
-  book_.report(robot_, client_, number_, progress_);
+  has_progressed_ |= book_.report(robot_, client_, number_, progress_);
 }
 
 void Assignment::drop() {
@@ -150,7 +214,7 @@ void Assignment::on_arrival() {
   } else {
     progress_.state = msg::OrderState::ORDER_ARRIVED;
   }
-  book_.report(robot_, client_, number_, progress_);
+  has_progressed_ |= book_.report(robot_, client_, number_, progress_);
 }
 
 }  // namespace sidestep

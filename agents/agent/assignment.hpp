@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "agents/navigation/right_of_way.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/protocol/order_book.hpp"
 
@@ -25,9 +27,9 @@ struct OtherAssignment {
 /// without one stays where it is, and returns there if something moves it away.
 class Assignment {
  public:
-  /// `scenario_goals`: of orders that the scenario gives.
-  Assignment(RobotId robot, std::vector<Goal> scenario_goals)
-      : robot_(robot), scenario_goals_(std::move(scenario_goals)) {}
+  /// `scenario_goals`: of orders that the scenario gives. Orders of robots that are not on the roster are
+  /// not remembered; empty: all are.
+  Assignment(RobotId robot, std::vector<Goal> scenario_goals, std::vector<RobotId> roster = {});
 
   /// Orders that a coordinator remembers.
   void on_page(std::shared_ptr<const OrderPage> page);
@@ -55,25 +57,37 @@ class Assignment {
   const std::vector<Order>& zones() const { return zones_; }
   /// Increases with every change of zones().
   std::uint64_t zone_revision() const { return zone_revision_; }
-  /// What the last memory that was heard says of another robot.
+  /// What is remembered of another robot.
   OtherAssignment other(RobotId robot) const;
+  /// Whether the other robot comes first where the two cannot pass each other; see may_pass_first().
+  bool yields_to(const Passer& other, Time t, Duration period) const {
+    return may_pass_first(other, {robot_, number_}, t, period);
+  }
 
-  /// All orders, also of other robots, whose agents may have restarted together with all coordinators.
-  std::vector<RememberedOrder> all() const;
-  /// Orders for the robot that the coordinator lacked whose memory has been heard last; then none.
+  /// All orders, also of other robots, whose agents may have restarted together with all coordinators. What
+  /// a coordinator's memory lacks is not forgotten: that coordinator may have been cut off.
+  std::vector<RememberedOrder> all() const { return whole_book().all(); }
+  bool remembers_nothing() const { return told_.empty() && changes_.empty() && book_.empty(); }
+  /// Orders of all robots that the coordinator lacked whose memory has been heard last; then none.
   std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
+  /// Whether this run of a coordinator has told every order that is remembered. It has not forgotten any
+  /// since: coordinators do not forget.
+  bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const;
 
  private:
-  /// A coordinator's memory, while its pages arrive.
-  struct Round {
-    std::vector<std::shared_ptr<const OrderPage>> pages;
-    OrderBook book;  // of the robot
-  };
+  using Round = std::vector<std::shared_ptr<const OrderPage>>;
+  bool is_on_roster(const Order& order) const;
   bool concerns(const RememberedOrder& order) const {
     return order.order.robot == robot_ || order.order.robot == kAllRobots;
   }
   /// Adds a page of a coordinator's whole memory.
   void add(std::shared_ptr<const OrderPage> page);
+  void add_changes(std::shared_ptr<const OrderPage> page);
+  /// Compares a coordinator's whole memory with what is remembered.
+  void compare(const Round& round);
+  template <typename Use>
+  void for_each(Use use) const;
+  OrderBook whole_book() const;
   void take(const RememberedOrder& order);
   void drop();
   /// Whether the order still stands.
@@ -83,8 +97,12 @@ class Assignment {
   const std::vector<Goal> scenario_goals_;
   OrderBook book_;  // of the robot
   bool is_known_ = false, is_held_ = false;
-  std::vector<std::shared_ptr<const OrderPage>> memory_;  // whole, and what has changed since
-  std::map<std::uint32_t, Round> rounds_;                 // by coordinator
+  std::vector<RobotId> roster_;                   // ascending
+  Round told_;                                    // the last whole memory of a coordinator
+  Round changes_;                                 // what that lacked, and what has changed since
+  bool has_progressed_ = false;                   // the robot, since that memory was heard
+  std::map<std::uint32_t, Round> rounds_;         // by coordinator: whole memories while their pages arrive
+  std::map<std::uint32_t, Incarnation> told_by_;  // see is_told_by()
   std::vector<RememberedOrder> missing_;
   // The order that the robot carries out, or has carried out last.
   ClientId client_ = 0;

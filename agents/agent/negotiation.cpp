@@ -117,6 +117,7 @@ void Negotiation::rebase(const Version& executing) {
 
 void Negotiation::finish_fencing(const Feedback& feedback) {
   fenced_ = true;
+  former_epoch_ = feedback.obeyed_epoch;
   held_.clear();
   if (!feedback.is_absent()) held_.add(feedback.executing);
   executing_ = feedback.executing.number;

@@ -40,10 +40,15 @@ class Negotiation {
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
 
-  /// The incarnation and the epoch that commands carry. The incarnation changes only before the robot has
-  /// acknowledged this agent.
+  /// The incarnation that commands carry, and the highest epoch that is known. The incarnation changes only
+  /// before the robot has acknowledged this agent.
   Incarnation incarnation() const { return incarnation_; }
   Epoch epoch() const { return epoch_; }
+  /// The epoch that commands carry: none before the robot has acknowledged this agent, so that the
+  /// acknowledgement shows which epoch the robot obeyed before.
+  Epoch command_epoch() const { return fenced_ ? epoch_ : 0; }
+  /// The epoch that the robot obeyed when it acknowledged this agent; 0: none, or it has not acknowledged it.
+  Epoch former_epoch() const { return former_epoch_; }
 
   bool is_fenced() const { return fenced_; }
   /// The robot is off the floor and executes nothing, although it may still take a rest version.
@@ -81,6 +86,9 @@ class Negotiation {
   Registration registration();
   /// A request that the coordinator answers has been sent.
   void on_request(Time now);
+  /// A registration that registers nobody: it asks the coordinator of the epoch to tell all orders, and tells
+  /// others the epoch.
+  Registration epoch_notice() const { return {robot_, incarnation_, epoch_, Time{}, std::nullopt}; }
   /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
   /// is_absent().
   const Version& base_at(Time start) const;
@@ -136,6 +144,7 @@ class Negotiation {
   std::optional<Time> superseded_at_;        // latest fact that acknowledges a later agent
   Epoch epoch_ = 0;                          // highest that was received
   Epoch robot_epoch_ = 0;                    // highest that the robot has acknowledged
+  Epoch former_epoch_ = 0;                   // that it obeyed when it acknowledged this agent
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
   bool missing_ = false, granting_ = false;  // by the coordinator's last heartbeat
   Time last_heartbeat_at_{};                 // when that heartbeat arrived

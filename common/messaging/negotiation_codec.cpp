@@ -135,7 +135,7 @@ msg::Registration encode(const Registration& registration) {
   message.header().incarnation(registration.incarnation);
   message.epoch(registration.epoch);
   const VersionSet versions = registration.versions.value_or(VersionSet{});
-  message.is_absent(versions.versions().empty());
+  message.is_absent(registration.versions && versions.versions().empty());
   message.has_moved(registration.has_moved);
   message.knows_orders(registration.knows_orders);
   message.version_count(static_cast<std::uint8_t>(versions.versions().size()));

@@ -37,8 +37,12 @@ void RulesExchange::on_rules(const msg::SharedRules& message) {
 
 void RulesExchange::report(std::uint32_t process, Fingerprint fingerprint,
                            std::vector<RuleDifference> differences) {
-  if (reported_.size() >= kMaxReported) return;
-  const auto [known, is_new] = reported_.try_emplace({process, fingerprint}, false);
+  const std::pair key(process, fingerprint);
+  const bool is_full = reported_.size() >= kMaxReported && !reported_.contains(key);
+  // Anybody can invent processes. Those of later come in the place of others, but rarely.
+  if (is_full && !later_reports_.admit(bus_.now())) return;
+  if (is_full) reported_.erase(reported_.begin());
+  const auto [known, is_new] = reported_.try_emplace(key, false);
   if (!is_new && (known->second || differences.empty())) return;
   known->second = !differences.empty();
   on_mismatch_({process, std::move(differences)});

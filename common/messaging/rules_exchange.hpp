@@ -8,6 +8,7 @@
 
 #include "common/config/shared_rules.hpp"
 #include "common/messaging/bus.hpp"
+#include "common/time/rate_limit.hpp"
 
 namespace sidestep {
 
@@ -46,6 +47,7 @@ class RulesExchange {
   std::optional<Time> published_at_;
   /// By process and fingerprint: whether the differences have been reported.
   std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;
+  RateLimit later_reports_{1, std::chrono::seconds(10)};  ///< once reported_ is full
 };
 
 /// "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".

@@ -41,9 +41,11 @@ struct Registration {
   Incarnation incarnation = 0;  ///< of the agent
   Epoch epoch = 0;
   Time sent_at{};  ///< by the agent's clock
-  /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed.
+  /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed, or
+  /// registers nobody and only asks for the orders.
   std::optional<VersionSet> versions{};
-  bool has_moved = false;     ///< the robot has ever executed a granted version
+  /// The robot has ever executed a granted version, or had obeyed another epoch before it obeyed this agent.
+  bool has_moved = false;
   bool knows_orders = false;  ///< the agent has learned all orders
 };
 

@@ -77,6 +77,31 @@ struct OrderedSystem {
     order.zone_number = zone_number;
     system.send(order);
   }
+  /// Cuts the links between two processes, in both directions, or heals them.
+  void cut(const std::string& a, const std::string& b, bool is_cut = true) {
+    cut_one_way(a, b, is_cut);
+    cut_one_way(b, a, is_cut);
+  }
+  void cut_one_way(const std::string& from, const std::string& to, bool is_cut = true) {
+    LinkQuality quality;
+    quality.is_cut = is_cut;
+    system.set_link(from, to, quality);
+  }
+  /// Cuts a process off from all others and from the clients, or heals its links.
+  void isolate(const std::string& process, bool is_cut = true) {
+    for (const std::string& other : SimSystem::process_names(scenario))
+      if (other != process) cut(process, other, is_cut);
+    LinkQuality quality;
+    quality.is_cut = is_cut;
+    system.set_client_link(process, quality);
+  }
+  /// Kills everything but the simulator and vision at once, and starts it again.
+  void restart_everything() {
+    const auto names = SimSystem::process_names(scenario);
+    for (const std::string& process : names)
+      if (process != "simulator" && process != "vision") system.kill(process);
+    for (const std::string& process : names) system.restart(process);
+  }
   template <typename Condition>
   bool run_until(Duration limit, Condition condition) {
     const Time end = system.now() + limit;

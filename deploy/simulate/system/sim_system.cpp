@@ -103,7 +103,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       network_(seed, begin, scenario.network),
       metrics_(scenario_),
       auditor_(scenario_, {true, {}}),
-      observer_bus_(network_),
+      observer_(network_.new_process()),
+      observer_bus_(network_, {observer_}),
       rules_(observer_bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario_),
              [this](const RulesMismatch& mismatch) { metrics_.on_mismatch(mismatch); }),
       disturbance_writer_(observer_bus_.advertise(topics::kDisturbance)),
@@ -227,6 +228,10 @@ void SimSystem::set_clock(const std::string& process, Duration offset) {
 
 void SimSystem::set_link(const std::string& from, const std::string& to, const LinkQuality& quality) {
   network_.set_link(spec_of(from).process, spec_of(to).process, quality);
+}
+
+void SimSystem::set_client_link(const std::string& to, const LinkQuality& quality) {
+  network_.set_link(observer_, spec_of(to).process, quality);
 }
 
 void SimSystem::restart(const std::string& process) {

@@ -72,6 +72,8 @@ class SimSystem {
   void set_clock(const std::string& process, Duration offset);
   /// Sets the quality of the link between two processes, for all their incarnations.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
+  /// Sets the quality of the link on which a process gets the orders of send().
+  void set_client_link(const std::string& to, const LinkQuality& quality);
   /// The names of the processes that a system starts.
   static std::vector<std::string> process_names(const Scenario& scenario);
 
@@ -105,6 +107,7 @@ class SimSystem {
   SimNetwork network_;
   RunMetrics metrics_;
   Auditor auditor_;
+  const ProcessId observer_;
   SimBus observer_bus_;
   RulesExchange rules_;
   Writer<msg::Disturbance> disturbance_writer_;

@@ -41,6 +41,27 @@ TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept
   CHECK(missing(floor.coordinator).size() == 2);
 }
 
+TEST_CASE("a held robot in motion is granted nothing, however many versions it may execute") {
+  Floor floor;
+  floor.register_both();
+  Version last = floor.a;
+  VersionNumber number = 10;
+  for (std::size_t versions = 2; versions <= 4; ++versions) {
+    // The agent does not cooperate: it proposes although its robot is held.
+    const Version next = continued(last, number, 1 + 0.01 * static_cast<double>(versions), {0, 3});
+    floor.coordinator.set_held(1, true);
+    const Verdict refused = floor.ask(proposal_of({next}, kEpoch));
+    CHECK(refused.granted_version == 0);
+    CHECK(refused.reasons[0] == msg::Reason::REASON_HELD);
+    CHECK(floor.coordinator.ledger().versions(1).size() == versions - 1);
+    floor.coordinator.set_held(1, false);
+    REQUIRE(floor.ask(proposal_of({next}, kEpoch)).granted_version == number);
+    REQUIRE(floor.coordinator.ledger().versions(1).size() == versions);
+    last = next;
+    ++number;
+  }
+}
+
 TEST_CASE("a held robot is granted nothing until it is released, in every epoch") {
   Floor floor;
   floor.coordinator.set_held(1, true);

@@ -385,4 +385,62 @@ TEST_CASE("a coordinator whose clock was set back works as before") {
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
+TEST_CASE("a coordinator tells all orders at the moment at which its epoch begins") {
+  Floor floor(true);
+  int whole_memories = 0;
+  std::optional<Time> begun_at, told_at;
+  floor.outside.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+    if (state.epoch() != 0 && !begun_at) begun_at = time_from_ns(state.header().stamp_ns());
+  });
+  floor.outside.subscribe(topics::kOrderMemory, [&](const msg::OrderMemory& page) {
+    if (page.page_count() == 0) return;
+    ++whole_memories;
+    if (begun_at && !told_at) told_at = time_from_ns(page.header().stamp_ns());
+  });
+  while (!begun_at && floor.network.now() < kBegin + std::chrono::seconds(5))
+    floor.network.run_until(floor.network.now() + std::chrono::milliseconds(1));
+  floor.run();
+  REQUIRE(begun_at);
+  REQUIRE(told_at);
+  CHECK(*told_at == *begun_at);
+  // And again until all agents have registered, for those that have not heard it.
+  whole_memories = 0;
+  for (int i = 0; i < 20; ++i) floor.run();
+  CHECK(whole_memories >= 2);
+}
+
+msg::Order hold_of(RobotId robot, OrderNumber number) {
+  msg::Order hold;
+  hold.robot(robot);
+  hold.header().sender(1'000'001);
+  hold.terms().order_kind(msg::OrderKind::ORDER_HOLD);
+  hold.terms().order_number(number);
+  return hold;
+}
+
+TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's agent reports it") {
+  Floor floor;
+  floor.register_both();
+  std::vector<msg::OrderAnswer> answers;
+  floor.outside.subscribe(topics::kOrderAnswer,
+                          [&](const msg::OrderAnswer& answer) { answers.push_back(answer); });
+  floor.send(topics::kOrder, hold_of(1, 1000));
+  CHECK(answers.empty());
+  floor.send(topics::kProposal, floor.proposal());
+  REQUIRE(floor.verdicts.size() == 1);
+  CHECK(floor.verdicts[0].reasons()[0] == msg::Reason::REASON_HELD);
+  msg::OrderStatus status;
+  status.robot(1);
+  status.header().sender(1);
+  status.is_held(true);
+  floor.send(topics::kOrderStatus, status);
+  CHECK(answers.empty());
+  auto feedback = fact(floor.a, 1001);
+  feedback.obeyed_epoch(floor.node.coordinator().epoch());
+  floor.send(topics::kFeedback, feedback);
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0].order_number() == 1000);
+  CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);
+}
+
 }  // namespace sidestep::coordinator_node_test

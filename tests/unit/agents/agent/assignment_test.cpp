@@ -124,7 +124,7 @@ TEST_CASE("a new agent goes on where the last one was, and leaves finished order
   CHECK_FALSE(third.assignment.goal());  // the finished order has been left
 }
 
-TEST_CASE("an agent remembers the orders of all robots, as the coordinator told them last") {
+TEST_CASE("an agent remembers the orders of all robots, also those that a coordinator's memory lacks") {
   const RememberedOrder other{{msg::OrderKind::ORDER_CANCEL, 4, kClient, 20}};
   const RememberedOrder another{{msg::OrderKind::ORDER_CANCEL, 5, kClient, 21}};
   Robot r;
@@ -133,8 +133,102 @@ TEST_CASE("an agent remembers the orders of all robots, as the coordinator told 
   CHECK(r.assignment.all().size() == 3);
   r.assignment.on_arrival();
   CHECK(r.assignment.all().front().progress.goal_index == 1);
+  r.assignment.take_missing();
   r.hear(memory({scenario_order(), another}));
-  CHECK(r.assignment.all().size() == 2);
+  CHECK(r.assignment.all().size() == 3);
+  const auto missing = r.assignment.take_missing();
+  REQUIRE(missing.size() == 2);  // the progress of this robot, and the order of another
+  CHECK(missing[1].order.robot == 4);
+}
+
+RememberedOrder hold_of(RobotId robot, OrderNumber number) {
+  return {{msg::OrderKind::ORDER_HOLD, robot, kClient, number}};
+}
+OrderPage told_by(std::uint32_t process, Incarnation incarnation, OrderPage page) {
+  page.process = process;
+  page.incarnation = incarnation;
+  return page;
+}
+
+TEST_CASE("an agent knows whether a coordinator has told every order that it remembers") {
+  constexpr std::uint32_t kActive = kCoordinator, kStandby = kCoordinator + 1;
+  Robot r;
+  CHECK(r.assignment.remembers_nothing());
+  r.hear(told_by(kActive, 1, memory({hold_of(8, 5)})));
+  CHECK_FALSE(r.assignment.remembers_nothing());
+  CHECK(r.assignment.is_told_by(kActive, 1));
+  CHECK_FALSE(r.assignment.is_told_by(kActive, 2));  // it has forgotten all
+  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  // Partitioned meanwhile: its memory claims to be complete, too.
+  r.hear(told_by(kStandby, 1, memory({})));
+  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  REQUIRE(r.assignment.take_missing().size() == 1);
+  r.hear(told_by(kStandby, 1, memory({})));
+  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK(r.assignment.take_missing().size() == 1);  // told again
+  r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
+  CHECK(r.assignment.is_told_by(kStandby, 1));
+  CHECK(r.assignment.take_missing().empty());
+  // A new order of one coordinator is not known to have reached the other.
+  r.hear(told_by(kActive, 1, change(hold_of(9, 6))));
+  CHECK(r.assignment.is_told_by(kActive, 1));
+  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  r.hear(told_by(kActive, 1, memory({hold_of(8, 5), hold_of(9, 6), hold_of(10, 7)})));
+  r.hear(told_by(kStandby, 1, memory({hold_of(8, 5), hold_of(9, 6)})));
+  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK(r.assignment.is_told_by(kActive, 1));
+}
+
+TEST_CASE("an agent's memory outlives coordinators that have forgotten everything, one after the other") {
+  Robot r;
+  r.hear(memory({hold_of(8, 5)}));
+  for (Incarnation incarnation = 2; incarnation < 10; ++incarnation) {
+    OrderPage empty =
+        told_by(kCoordinator + static_cast<std::uint32_t>(incarnation % 3), incarnation, memory({}));
+    empty.is_complete = incarnation % 2 == 0;
+    r.hear(empty);
+    CHECK(r.assignment.take_missing().size() == 1);
+    CHECK(r.assignment.all().size() == 1);
+    CHECK(r.assignment.other(8).is_held);
+  }
+}
+
+TEST_CASE("an agent forgets no order, however many have changed since the last whole memory") {
+  Robot r;
+  r.hear(memory({hold_of(8, 5)}));
+  for (OrderNumber number = 100; number < 2000; ++number) {
+    RememberedOrder order = go(kClient, number, {{1, 0}});
+    order.order.robot = 100 + static_cast<RobotId>(number % 700);
+    r.hear(change(order));
+  }
+  CHECK(r.assignment.all().size() == 701);
+  r.hear(memory({}));
+  CHECK(r.assignment.take_missing().size() == 701);
+}
+
+TEST_CASE("of two agents in a passage the one with the older order passes first, whichever robot has it") {
+  constexpr Duration kPeriod = std::chrono::seconds(30);
+  for (const RobotId older : {RobotId{3}, RobotId{8}}) {
+    CAPTURE(older);
+    Assignment of_3(3, {}), of_8(8, {});
+    RememberedOrder drive_3 = go(kClient, older == 3 ? 10 : 20, {{1, 0}}),
+                    drive_8 = go(kClient, older == 8 ? 10 : 20, {{2, 0}});
+    drive_8.order.robot = 8;
+    for (Assignment* assignment : {&of_3, &of_8})
+      assignment->on_page(std::make_shared<OrderPage>(memory({drive_3, drive_8})));
+    for (int period = 1; period < 4; ++period) {  // in every fourth period the order is random
+      const Time t = Time(period * kPeriod + kPeriod / 2);
+      CHECK(of_3.yields_to({8, of_3.other(8).number}, t, kPeriod) == (older == 8));
+      CHECK(of_8.yields_to({3, of_8.other(3).number}, t, kPeriod) == (older == 3));
+    }
+  }
+}
+
+TEST_CASE("an agent remembers nothing of robots that are not on the roster") {
+  Assignment assignment(3, {}, {4, 3});
+  assignment.on_page(
+      std::make_shared<OrderPage>(memory({hold_of(4, 5), hold_of(9, 6), hold_of(kAllRobots, 7)})));
+  CHECK(assignment.all().size() == 2);
 }
 
 TEST_CASE("a robot is held as the orders say") {

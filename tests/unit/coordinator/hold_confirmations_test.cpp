@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/hold_confirmations.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::hold_confirmations_test {
+
+constexpr ClientId kClient = 1'000'001;
+
+struct Floor {
+  OrderBook book;
+  HoldConfirmations confirmations;
+  OrderNumber number = 0;
+
+  Order hold(RobotId robot) {
+    const Order order{msg::OrderKind::ORDER_HOLD, robot, kClient, ++number};
+    book.merge({order});
+    confirmations.add(order);
+    return order;
+  }
+  /// An agent's report, and a fact of its robot after it.
+  void report(RobotId robot, bool is_held) {
+    OrderReport report;
+    report.robot = robot;
+    report.is_held = is_held;
+    confirmations.on_report(report);
+    confirmations.on_obeyed(robot);
+  }
+  std::size_t confirmed() { return confirmations.take_confirmed(book).size(); }
+};
+
+TEST_CASE("a hold is confirmed once, when the agent of its robot reports to be held") {
+  Floor floor;
+  floor.report(3, true);  // by an earlier hold
+  floor.hold(3);
+  CHECK(floor.confirmed() == 0);
+  floor.report(4, true);
+  floor.report(3, false);
+  CHECK(floor.confirmed() == 0);
+  floor.report(3, true);
+  CHECK(floor.confirmed() == 1);
+  CHECK(floor.confirmed() == 0);
+}
+
+TEST_CASE("a hold of all robots is confirmed when any of their agents reports to be held") {
+  Floor floor;
+  floor.hold(kAllRobots);
+  floor.report(3, false);
+  CHECK(floor.confirmed() == 0);
+  floor.report(4, true);
+  CHECK(floor.confirmed() == 1);
+}
+
+TEST_CASE("a hold is not confirmed by an agent whose robot may obey another coordinator by then") {
+  Floor floor;
+  floor.hold(3);
+  floor.confirmations.on_obeyed(3);
+  OrderReport report;
+  report.robot = 3;
+  report.is_held = true;
+  floor.confirmations.on_report(report);
+  CHECK(floor.confirmed() == 0);
+  floor.confirmations.on_obeyed(4);
+  CHECK(floor.confirmed() == 0);
+  floor.confirmations.on_obeyed(3);
+  CHECK(floor.confirmed() == 1);
+}
+
+TEST_CASE("a hold is not confirmed as long as no agent of its robots reports to be held") {
+  Floor floor;
+  floor.hold(3);
+  for (int i = 0; i < 100; ++i) {
+    floor.report(4, true);
+    floor.report(3, false);
+    floor.confirmations.on_obeyed(3);
+    CHECK(floor.confirmed() == 0);
+  }
+}
+
+TEST_CASE("a hold that was lifted or replaced before it was confirmed is waited for no longer") {
+  Floor floor;
+  floor.hold(3);
+  floor.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient, ++floor.number}});
+  CHECK(floor.confirmed() == 1);  // with the answer that it is replaced
+  floor.hold(3);
+  const Order last = floor.hold(3);
+  floor.report(3, true);
+  const auto confirmed = floor.confirmations.take_confirmed(floor.book);
+  REQUIRE(confirmed.size() == 1);
+  CHECK(confirmed[0].number == last.number);
+}
+
+}  // namespace sidestep::hold_confirmations_test
