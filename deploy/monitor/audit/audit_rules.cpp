@@ -46,6 +46,9 @@ constexpr std::array<AuditRuleInfo, kAuditRules> kRules{{
     {"contact", "the promise, S-08", "robots touch nothing"},
     {"crash", "opponents", "a robot is at rest before a moving object touches it"},
     {"firmware-monitor", "firmware, S-05", "the simulator's firmware monitor finds no violation"},
+    {"held", "orders, S-45", "nothing is granted to a robot while an order holds it"},
+    {"forgotten-order", "who remembers, S-48",
+     "a confirmed order stands until a later one replaces, lifts or removes it"},
 }};
 
 }  // namespace

@@ -42,8 +42,10 @@ enum class AuditRule : std::uint8_t {
   kContact,
   kCrash,
   kFirmwareMonitor,
+  kHeld,
+  kForgottenOrder,
 };
-inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kFirmwareMonitor) + 1;
+inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kForgottenOrder) + 1;
 
 struct AuditRuleInfo {
   const char* name;         ///< e.g. "clearance"

@@ -45,7 +45,17 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
       observed_(scenario.robots.size()),
       seen_contacts_(scenario),
       disturbances_(scenario.robots.size(), disturbance_settings(scenario, input.is_complete)),
-      index_(kMaxRobots, scenario.robots.size()) {
+      index_(kMaxRobots, scenario.robots.size()),
+      orders_(roster_of(scenario), input.is_complete,
+              [this](AuditRule rule, RobotId robot, VersionNumber version, Epoch epoch, std::string detail) {
+                Violation violation;
+                violation.rule = rule;
+                violation.robot = robot;
+                violation.version = version;
+                violation.epoch = epoch;
+                violation.detail = std::move(detail);
+                report(std::move(violation));
+              }) {
   for (const RobotSpec& spec : scenario.robots) {
     index_.at(spec.id) = robots_.size();
     robots_.emplace_back().id = spec.id;
@@ -188,6 +198,9 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     ++totals_.invalid;
     return;
   }
+  // Registers nobody, and tells a coordinator only the epoch.
+  if (registration.version_count() == 0 && !registration.is_absent()) return;
+  orders_.on_registration(registration);
   AuditedRobot::Registered registered;
   registered.epoch = epoch;
   registered.incarnation = registration.header().incarnation();
@@ -224,6 +237,26 @@ void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
          fmt::format("{} robots' registrations are missing, although the coordinator has granted",
                      missing.size()));
+}
+
+void Auditor::on_order(const msg::Order& order, Time now) {
+  now_ = now;
+  orders_.on_order(order);
+}
+
+void Auditor::on_order_answer(const msg::OrderAnswer& answer, Time now) {
+  now_ = now;
+  orders_.on_answer(answer);
+}
+
+void Auditor::on_order_memory(const msg::OrderMemory& memory, Time now) {
+  now_ = now;
+  orders_.on_memory(memory);
+}
+
+void Auditor::on_order_status(const msg::OrderStatus& status, Time now) {
+  now_ = now;
+  orders_.on_status(status);
 }
 
 void Auditor::on_command(const msg::Command& command, Time now) {
@@ -280,6 +313,11 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
   subscribe(topics::kWorld, 0, &Auditor::on_world);
   subscribe(topics::kDisturbance, 0, &Auditor::on_disturbance);
   subscribe(topics::kAttestation, 0, &Auditor::on_attestation);
+  subscribe(topics::kOrder, 0, &Auditor::on_order);
+  subscribe(topics::kOrderAnswer, 0, &Auditor::on_order_answer);
+  subscribe(topics::kOrderMemory, 0, &Auditor::on_order_memory);
+  subscribe(topics::kAgentOrders, 0, &Auditor::on_order_memory);
+  subscribe(topics::kOrderStatus, 0, &Auditor::on_order_status);
   for (const RobotSpec& robot : scenario.robots) {
     subscribe(topics::kVerdict, robot.id, &Auditor::on_verdict);
     subscribe(topics::kCommand, robot.id, &Auditor::on_command);

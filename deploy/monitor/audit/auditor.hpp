@@ -19,6 +19,7 @@
 #include "deploy/monitor/audit/audited_robot.hpp"
 #include "deploy/monitor/audit/disturbances.hpp"
 #include "deploy/monitor/audit/heard_time.hpp"
+#include "deploy/monitor/audit/order_audit.hpp"
 #include "deploy/monitor/audit/seen_contacts.hpp"
 #include "deploy/monitor/senders/message_trace.hpp"
 
@@ -60,6 +61,11 @@ class Auditor {
   void on_disturbance(const msg::Disturbance& disturbance, Time now);
   /// The operator attests that a robot that says nothing is not on the floor.
   void on_attestation(const msg::AbsenceAttestation& attestation, Time now);
+  void on_order(const msg::Order& order, Time now);
+  void on_order_answer(const msg::OrderAnswer& answer, Time now);
+  /// What a coordinator or an agent remembers.
+  void on_order_memory(const msg::OrderMemory& memory, Time now);
+  void on_order_status(const msg::OrderStatus& status, Time now);
   /// A message of a process with other rules was refused.
   void on_refused() { ++totals_.refused; }
   /// Time passes, perhaps without messages.
@@ -137,6 +143,8 @@ class Auditor {
   // Grants.
   void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
   void check_grant(AuditedRobot& robot, KnownVersion& known, const msg::Verdict& verdict);
+  /// Tells the audit of orders of a grant that moves a robot.
+  void judge_order(const KnownVersion& known, const msg::Verdict& verdict);
   /// The content of a version's base; nullptr if it was not received. An agent that restarts may use numbers
   /// that its predecessor used in vain.
   const KnownVersion* base_of(const AuditedRobot& robot, const KnownVersion& known) const;
@@ -275,6 +283,7 @@ class Auditor {
   std::vector<Evidence> earlier_evidence_;
   std::vector<LiveVersion> changed_;
   std::vector<VersionNumber> page_numbers_;
+  OrderAudit orders_;
   AuditTotals totals_;
   std::function<void(const Violation&)> on_violation_;
 };

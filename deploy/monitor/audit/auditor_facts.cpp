@@ -16,9 +16,6 @@ constexpr std::int64_t kRetention_ns = 1'500'000'000;
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
 // A robot checks its tracking error once per millisecond, but reports the position in between.
 constexpr double kReportingTolerance_m = 0.0005;
-// Versions that begin this long after a robot's first fact were granted after that fact, and after an auditor
-// that joined a run had found all senders.
-constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
 // Robots whose motors obey later than this are not driven.
 constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 // Robots check themselves every millisecond. Beyond the drift bound they may take 25 ms to return.

@@ -83,6 +83,15 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   known->is_granted_by_page = false;
   if (candidate || verdict.proposal_number() <= robot.max_evicted_proposal) known->is_proposed = true;
   check_grant(robot, *known, verdict);
+  judge_order(*known, verdict);
+}
+
+// A robot that is to be put down is granted its place although it is held. A verdict may be repeated; if not
+// all messages are received, only a version that starts long after the hold was certainly granted after it.
+void Auditor::judge_order(const KnownVersion& known, const msg::Verdict& verdict) {
+  const bool is_place = known.version.base() == 0 && known.path.duration_s() <= 0;
+  if (!known.has_content || is_place) return;
+  orders_.on_grant(verdict, input_.is_complete ? kAlways : known.version.start_ns() - kMaxLead_ns);
 }
 
 ProposalRecord* Auditor::answered_proposal(AuditedRobot& robot, const msg::Verdict& verdict) const {

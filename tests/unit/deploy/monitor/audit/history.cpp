@@ -70,6 +70,11 @@ HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(sys
   collect(topics::kWorld, 0);
   collect(topics::kDisturbance, 0);
   collect(topics::kAttestation, 0);
+  collect(topics::kOrder, 0);
+  collect(topics::kOrderAnswer, 0);
+  collect(topics::kOrderMemory, 0);
+  collect(topics::kAgentOrders, 0);
+  collect(topics::kOrderStatus, 0);
   for (const RobotSpec& robot : history.scenario.robots) {
     collect(topics::kVerdict, robot.id);
     collect(topics::kCommand, robot.id);
@@ -78,10 +83,14 @@ HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(sys
 }
 
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration) {
+  return history_of(scenario, seed, [=](SimSystem& system) { system.run_for(duration); });
+}
+
+History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act) {
   History history{scenario, {}};
   SimSystem system(scenario, seed);
   const HistoryRecorder recorder(system, history);
-  system.run_for(duration);
+  act(system);
   return history;
 }
 
@@ -101,6 +110,10 @@ struct Deliver {
   void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
   void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
   void operator()(const msg::AbsenceAttestation& m) const { auditor.on_attestation(m, at); }
+  void operator()(const msg::Order& m) const { auditor.on_order(m, at); }
+  void operator()(const msg::OrderAnswer& m) const { auditor.on_order_answer(m, at); }
+  void operator()(const msg::OrderMemory& m) const { auditor.on_order_memory(m, at); }
+  void operator()(const msg::OrderStatus& m) const { auditor.on_order_status(m, at); }
 };
 
 }  // namespace

@@ -12,9 +12,10 @@
 
 namespace sidestep {
 
-using AuditedMessage = std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState,
-                                    msg::LedgerPage, msg::Command, msg::Feedback, msg::GroundTruth,
-                                    msg::WorldState, msg::Disturbance, msg::AbsenceAttestation>;
+using AuditedMessage =
+    std::variant<msg::Proposal, msg::Verdict, msg::Registration, msg::CoordinatorState, msg::LedgerPage,
+                 msg::Command, msg::Feedback, msg::GroundTruth, msg::WorldState, msg::Disturbance,
+                 msg::AbsenceAttestation, msg::Order, msg::OrderAnswer, msg::OrderMemory, msg::OrderStatus>;
 
 struct ReceivedMessage {
   Time at;
@@ -62,6 +63,8 @@ class HistoryRecorder {
 
 /// The messages of a simulated run of this duration; the same seed gives the same history.
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
+/// Those of a run that `act` lets go on, in which it gives orders and kills processes.
+History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);
 

@@ -126,6 +126,9 @@ TEST_CASE("bodies and paths that are wrong are refused with what is wrong") {
   CHECK(error("/api/robots/3/dance", "{}") == "robots have no dance");
   CHECK(error("/api/robots/3/fault", R"({"kind": "melt"})").starts_with("kind: expected one of: push, slip"));
   CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
+  CHECK(error("/api/zones/1", R"({"corners": [[0, 0]], "radius": 1})") == "radius: is unknown");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0]], "speed_limit": 1})") ==
+        "speed_limit: is unknown");
   CHECK(error("/api/zones/1", R"({"corners": [], "radius_m": 1})") ==
         "corners: expected a list of 1 to 16 points");
   CHECK(error("/api/nothing", "") == "there is no /api/nothing");
