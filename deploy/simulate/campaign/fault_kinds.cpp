@@ -31,6 +31,23 @@ struct KindOf {
   std::string operator()(const StartWithOtherRule&) const { return "other rules"; }
   std::string operator()(const StartWithOwnRules&) const { return "restart"; }
   std::string operator()(const SendForgery&) const { return "forgery"; }
+  std::string operator()(const GiveOrder& give) const {
+    switch (give.order.kind) {
+      case msg::OrderKind::ORDER_GO:
+        return "order to go";
+      case msg::OrderKind::ORDER_CANCEL:
+        return "cancellation";
+      case msg::OrderKind::ORDER_HOLD:
+        return give.order.robot == kAllRobots ? "hold of all robots" : "hold";
+      case msg::OrderKind::ORDER_RESUME:
+        return "resume";
+      case msg::OrderKind::ORDER_ZONE:
+        return "zone";
+      case msg::OrderKind::ORDER_REMOVE_ZONE:
+        break;
+    }
+    return "removal of a zone";
+  }
 };
 
 }  // namespace

@@ -63,6 +63,27 @@ std::string_view to_text(RobotEnd end) {
   return "";
 }
 
+std::string to_text(const Order& order) {
+  const std::string robot = order.robot == kAllRobots ? "all robots" : fmt::format("robot {}", order.robot);
+  switch (order.kind) {
+    case msg::OrderKind::ORDER_GO:
+      return fmt::format("client {} sends {} to ({:.3f}, {:.3f}) m", order.client, robot,
+                         order.goals.front().position_m.x(), order.goals.front().position_m.y());
+    case msg::OrderKind::ORDER_CANCEL:
+      return fmt::format("client {} cancels its order to {}", order.client, robot);
+    case msg::OrderKind::ORDER_HOLD:
+      return fmt::format("client {} holds {}", order.client, robot);
+    case msg::OrderKind::ORDER_RESUME:
+      return fmt::format("client {} resumes {}", order.client, robot);
+    case msg::OrderKind::ORDER_ZONE:
+      return fmt::format("client {} draws zone {} around ({:.3f}, {:.3f}) m", order.client, order.zone_number,
+                         order.zone.corners_m.front().x(), order.zone.corners_m.front().y());
+    case msg::OrderKind::ORDER_REMOVE_ZONE:
+      break;
+  }
+  return fmt::format("client {} removes zone {}", order.client, order.zone_number);
+}
+
 /// Describes a fault in words.
 class Describe {
  public:
@@ -113,6 +134,7 @@ class Describe {
   std::string operator()(const StartWithOwnRules& start) const {
     return start.process + " started again with the right scenario";
   }
+  std::string operator()(const GiveOrder& give) const { return to_text(give.order); }
   std::string operator()(const SendForgery& send) const {
     return fmt::format("forged message about robot {}: {}", send.victim, forgeries()[send.forgery].name);
   }

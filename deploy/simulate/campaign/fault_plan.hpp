@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/messaging/sim/links.hpp"
+#include "common/protocol/order.hpp"
 #include "common/protocol/robot_disturbance.hpp"
 #include "common/time/clock_error.hpp"
 
@@ -84,9 +85,14 @@ struct SendForgery {
   std::size_t forgery = 0;  ///< of forgeries()
 };
 
+/// A client gives an order; its number is set when it is sent.
+struct GiveOrder {
+  Order order;
+};
+
 using Fault =
     std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place, TakeAway,
-                 StartWithOtherRule, StartWithOwnRules, SendForgery, LastingCut, ClockJump>;
+                 StartWithOtherRule, StartWithOwnRules, SendForgery, LastingCut, ClockJump, GiveOrder>;
 
 struct TimedFault {
   Duration at{0};  ///< since the start of the run

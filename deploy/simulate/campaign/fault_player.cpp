@@ -26,6 +26,10 @@ FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const Faul
     if (send && std::ranges::none_of(forgers_, is_of))
       forgers_.push_back(std::make_unique<Forger>(system.network(), scenario, send->victim));
   }
+  const auto is_order = [](const TimedFault& timed) {
+    return std::holds_alternative<GiveOrder>(timed.fault);
+  };
+  if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system);
   for (const ProcessNames& from_host : plan.hosts) {
     for (const ProcessNames& to_host : plan.hosts) {
       for (const std::string& from : from_host) {
@@ -99,6 +103,10 @@ void FaultPlayer::operator()(const SendForgery& send) {
   }
 }
 
+std::vector<std::string> FaultPlayer::order_failures() const {
+  return clients_ ? clients_->failures() : std::vector<std::string>{};
+}
+
 void FaultPlayer::advance(Duration until) {
   for (;;) {
     Duration next = until;
@@ -117,6 +125,7 @@ void FaultPlayer::advance(Duration until) {
 
 void FaultPlayer::heal() {
   is_healed_ = true;
+  operator_.resume_held();
   ends_.clear();
   for (auto& [sender, row] : links_) {
     for (auto& [receiver, link] : row) {

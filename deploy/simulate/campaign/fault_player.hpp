@@ -9,6 +9,7 @@
 #include "deploy/simulate/campaign/fault_plan.hpp"
 #include "deploy/simulate/campaign/floor_operator.hpp"
 #include "deploy/simulate/campaign/forger.hpp"
+#include "deploy/simulate/campaign/order_clients.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 
 namespace sidestep {
@@ -36,6 +37,10 @@ class FaultPlayer {
   void operator()(const StartWithOtherRule& start);
   void operator()(const StartWithOwnRules& start) { start_with(scenario_, start.process); }
   void operator()(const SendForgery& send);
+  void operator()(const GiveOrder& give) { clients_->give(give.order); }
+
+  /// What was wrong with clients' orders, in words.
+  std::vector<std::string> order_failures() const;
 
  private:
   struct Link {
@@ -62,6 +67,7 @@ class FaultPlayer {
   const FaultPlan& plan_;
   FloorOperator operator_;
   std::vector<std::unique_ptr<Forger>> forgers_;  // one per victim
+  std::optional<OrderClients> clients_;           // if the plan has orders
   std::size_t next_ = 0;
   bool is_healed_ = false;
   std::map<std::string, std::map<std::string, Link>> links_;  // by sender, then receiver

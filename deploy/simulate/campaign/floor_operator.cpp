@@ -11,6 +11,7 @@ namespace {
 constexpr Duration kPeriod = std::chrono::milliseconds(250);
 constexpr std::size_t kRequestsPerPlace = 6;
 constexpr Duration kMinCarryTime = std::chrono::milliseconds(50);
+constexpr Duration kResumePeriod = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -61,12 +62,25 @@ void FloorOperator::take_away(RobotId robot) {
 }
 
 std::optional<Time> FloorOperator::due() const {
-  return placings_.empty() && taken_away_.empty() ? std::nullopt : std::optional(due_);
+  return placings_.empty() && taken_away_.empty() && !resumes_ ? std::nullopt : std::optional(due_);
+}
+
+void FloorOperator::resume_if_held() {
+  const auto is_held = [](const RobotProgress& row) {
+    return row.agent_state == msg::AgentState::AGENT_HELD;
+  };
+  if (!resumes_ || system_.now() - resumed_at_ < kResumePeriod ||
+      !std::ranges::any_of(system_.metrics().progress(), is_held))
+    return;
+  resumed_at_ = system_.now();
+  const auto number = static_cast<OrderNumber>(to_ns(system_.now()));
+  system_.send({msg::OrderKind::ORDER_RESUME, kAllRobots, static_cast<ClientId>(Sender::kOperator), number});
 }
 
 void FloorOperator::update() {
   if (!due() || system_.now() < due_) return;
   due_ = system_.now() + kPeriod;
+  resume_if_held();
   std::erase_if(placings_, [this](Placing& placing) {
     const Place& request = placing.request;
     if (position_of(request.robot)) return placing.is_off_floor;

@@ -21,6 +21,9 @@ class FloorOperator {
   void carry(const Carry& carry, Time limit);
   void place(const Place& place);
   void take_away(RobotId robot);
+  /// From now on, resumes all robots while any is held: after a restart of everything, coordinators hold all
+  /// robots for an operator.
+  void resume_held() { resumes_ = true; }
 
   /// When the operator acts next; nullopt: has nothing to do.
   std::optional<Time> due() const;
@@ -34,6 +37,7 @@ class FloorOperator {
     bool is_off_floor = false;  ///< has been seen off the floor; the lifting may take effect late
   };
   const Vec2* position_of(RobotId robot) const;
+  void resume_if_held();
   void publish(const RobotDisturbance& disturbance);
 
   SimSystem& system_;
@@ -42,6 +46,8 @@ class FloorOperator {
   std::map<RobotId, Vec2> on_floor_;
   std::vector<Placing> placings_;
   std::set<RobotId> taken_away_;
+  bool resumes_ = false;
+  Time resumed_at_{};
   Time due_{};
 };
 

@@ -5,12 +5,14 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 
 #include "deploy/simulate/campaign/clock_sampler.hpp"
 #include "deploy/simulate/campaign/distance_meter.hpp"
 #include "deploy/simulate/campaign/disturbance_sampler.hpp"
 #include "deploy/simulate/campaign/fault_player.hpp"
 #include "deploy/simulate/campaign/fault_sampler.hpp"
+#include "deploy/simulate/campaign/order_sampler.hpp"
 #include "deploy/simulate/campaign/reception_sampler.hpp"
 #include "deploy/simulate/campaign/scene_sampler.hpp"
 
@@ -130,7 +132,7 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   Rng rng(seed);
   Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork(), disturbance_rng = rng.fork(),
       opponent_rng = rng.fork(), planner_rng = rng.fork(), laser_rng = rng.fork(), reception_rng = rng.fork(),
-      clock_jump_rng = rng.fork();
+      clock_jump_rng = rng.fork(), order_rng = rng.fork();
   Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
   if (!scenario) {
     sample_opponents(trial.scenario, opponent_rng);
@@ -149,6 +151,7 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   sample_disturbances(trial.scenario, times, plan, disturbance_rng);
   sample_reception(trial.scenario, times, plan, reception_rng);
   sample_clock_jumps(trial.scenario, times, plan, clock_jump_rng);
+  sample_orders(trial.scenario, times, plan, order_rng);
   std::ranges::stable_sort(plan.faults, {}, &TimedFault::at);
   return trial;
 }
@@ -167,11 +170,13 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
     if (hooks.on_truth) hooks.on_truth(truth);
   });
   if (hooks.on_start) hooks.on_start(system);
-  FaultPlayer(system, trial.scenario, trial.plan).run_until(trial.duration);
+  FaultPlayer player(system, trial.scenario, trial.plan);
+  player.run_until(trial.duration);
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
   add_failures(trial, system.metrics().progress(), system.metrics().all_arrived(), final_report, result);
+  std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
   if (report) {
     *report = final_report;
     report->must_arrive = false;

@@ -150,6 +150,12 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and non
     CHECK(trials[kind] >= 0.03 * kTrials);
     CHECK(trials[kind] <= 0.25 * kTrials);
   }
+  for (const char* const kind :
+       {"order to go", "cancellation", "hold", "hold of all robots", "resume", "zone", "removal of a zone"}) {
+    CAPTURE(kind, trials[kind]);
+    CHECK(trials[kind] >= 0.1 * kTrials);
+    CHECK(trials[kind] <= 0.6 * kTrials);
+  }
 }
 
 TEST_CASE("robots' clocks are within the bound of every coordinator's clock, or far beyond it and listed") {

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/simulate/campaign/order_clients.hpp"
+
+#include "tests/catch.hpp"
+#include "tests/sim/ordered_system.hpp"
+
+namespace sidestep::order_clients_test {
+
+using namespace std::chrono_literals;
+
+constexpr ClientId kOther = kOtherClient;
+
+struct Trial {
+  SimSystem system{waiting_robots(2), 1};
+  OrderClients clients{system};
+  Trial() { system.run_for(2s); }
+  void give(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
+    Order order{kind, robot, client};
+    order.goals = std::move(goals);
+    clients.give(order);
+  }
+  /// An operator of whom the judge does not know.
+  void resume_secretly() {
+    system.send(
+        {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
+  }
+};
+
+TEST_CASE("a held robot that moves fails a trial, one that was resumed does not") {
+  const bool is_resumed = GENERATE(false, true);
+  const RobotId scope = GENERATE(RobotId{0}, kAllRobots);
+  CAPTURE(is_resumed, scope);
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_HOLD, scope, kClient);
+  trial.system.run_for(4s);
+  CHECK(trial.clients.failures().empty());
+  if (is_resumed)
+    trial.give(msg::OrderKind::ORDER_RESUME, 0, kClient);
+  else
+    trial.resume_secretly();
+  trial.give(msg::OrderKind::ORDER_GO, 0, kOther, {{{1, 1}}});
+  trial.system.run_for(3s);
+  CHECK(trial.clients.failures().empty() == is_resumed);
+}
+
+TEST_CASE("an order that a coordinator does not remember fails a trial, until its client has repeated it") {
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
+  trial.system.run_for(2s);
+  CHECK(trial.clients.failures().empty());
+  for (const std::string& process : {std::string("coordinator"), agent_process(0), agent_process(1)})
+    trial.system.kill(process);
+  for (const std::string& process : {std::string("coordinator"), agent_process(0), agent_process(1)})
+    trial.system.restart(process);
+  bool has_failed = false;
+  for (int i = 0; i < 200 && !has_failed; ++i) {
+    trial.system.run_for(50ms);
+    has_failed = !trial.clients.failures().empty();
+  }
+  CHECK(has_failed);
+  trial.system.run_for(10s);
+  CHECK(trial.clients.failures().empty());
+}
+
+TEST_CASE("an order without an answer fails a trial") {
+  Trial trial;
+  trial.system.kill("coordinator");
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  trial.system.run_for(2s);
+  CHECK(trial.clients.failures().size() == 1);
+}
+
+}  // namespace sidestep::order_clients_test
