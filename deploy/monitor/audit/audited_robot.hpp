@@ -18,8 +18,8 @@ namespace sidestep {
 
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
-/// Versions that begin this long after a robot's first fact were granted after that fact, and after an auditor
-/// that joined a run had found all senders.
+/// Versions that begin this long after a robot's first fact were granted after that fact, and after an
+/// auditor that joined a run had found all senders.
 inline constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
 
 /// Why a fact rules out that a version is executed from then on.
