@@ -122,7 +122,7 @@ void run_all(std::uint64_t first, std::uint64_t last) {
 TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds") { run_all(1, 25); }
 
 TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds, in 500 histories",
-          "[.long]") {
+          "[.long][slow]") {
   run_all(1, 500);
 }
 

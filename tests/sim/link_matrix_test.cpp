@@ -163,7 +163,7 @@ TEST_CASE("robots drive on within two seconds as long as some coordinator and al
 TEST_CASE(
     "robots drive on within two seconds as long as some coordinator and all agents can talk, in 1,000 "
     "matrices",
-    "[.long]") {
+    "[.long][slow]") {
   run_all(1, 1000);
 }
 
