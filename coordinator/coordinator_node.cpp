@@ -233,6 +233,7 @@ void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
 void CoordinatorNode::handle(const OrderReport& report) {
   (void)orders_.on_report(report);
   if (!coordinator_.ledger().has_robot(report.robot)) return;
+  failover_.reception().on_agent(report.robot, bus_.now());
   confirmations_.on_report(report);
 }
 
@@ -282,11 +283,6 @@ void CoordinatorNode::handle(const OrderPage& page) {
   if (orders_.is_complete() == was_complete) return;
   apply_holds();
   publish_state();
-}
-
-void CoordinatorNode::handle(const OrderReport& report) {
-  if (coordinator_.ledger().has_robot(report.robot)) failover_.reception().on_agent(report.robot, bus_.now());
-  (void)orders_.on_report(report);
 }
 
 void CoordinatorNode::update_orders() {

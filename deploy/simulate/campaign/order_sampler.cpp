@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-constexpr auto kFloorOperator = static_cast<ClientId>(Sender::kFloorOperator);
+constexpr auto kFloorOperator = static_cast<ClientId>(Sender::kOperator);
 constexpr auto kFirstClient = static_cast<ClientId>(Sender::kClient) + 1;
 constexpr std::uint32_t kZones = 3;
 
