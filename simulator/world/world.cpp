@@ -103,7 +103,9 @@ void World::step() {
 // that reported facts stay true. What was reported by a clock that is set back farther is void.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  const Time reading = robot.clock_error.reading(now);
+  // A scan or a command may ask for a moment before the last question.
+  robot.read_at = std::max(robot.read_at, now);
+  const Time reading = robot.clock_error.reading(robot.read_at);
   if (robot.clock - reading <= clock_bound_) return robot.clock = std::max(robot.clock, reading);
   robot.firmware.set_clock_back(robot.clock, reading);
   robot.monitor.clock_went_back();

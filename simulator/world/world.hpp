@@ -95,8 +95,9 @@ class World {
     Actuation actuation;
     Vec2 last_position_m;  ///< without slip, for the odometry
     double last_heading_rad;
-    ClockError clock_error;  ///< of the robot's clock, relative to the host's
-    Time clock;              ///< the latest reading
+    ClockError clock_error;      ///< of the robot's clock, relative to the host's
+    Time clock;                  ///< the latest reading
+    Time read_at = Time::min();  ///< when it was read
     std::uint64_t clock_setbacks = 0;
     VersionNumber last_own_stop = 0;
     std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later

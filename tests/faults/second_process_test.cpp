@@ -49,7 +49,9 @@ TEST_CASE("a second run in one domain is refused before it starts a process") {
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   std::vector<std::string> arguments{"run", run.scenario_file()};
   for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
-  CHECK(run.command(arguments) == "exit code 2");
+  run.start("second", "sidestep", arguments);
+  REQUIRE(run.wait_until([&] { return run.exit_reason("second").has_value(); }));
+  CHECK(run.exit_reason("second") == "exit code 2");
   CHECK(run.printed("another run works in it"));
   const std::string ended = run.wait_for_end();
   INFO(run.output());

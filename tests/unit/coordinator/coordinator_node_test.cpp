@@ -40,10 +40,12 @@ struct Floor {
   }
 
   /// Runs for longer than the period of heartbeats.
-  void run() { network.run_until(network.now() + std::chrono::milliseconds(30)); }
+  void run() { run_for(std::chrono::milliseconds(30)); }
+  void run_for(Duration duration) { network.run_until(network.now() + duration); }
   template <typename Message>
   void send(const Topic<Message>& topic, Message message, RobotId channel = 1) {
     auto writer = outside.advertise(topic, channel);
+    if (topic.qos == Qos::kEvent) run_for(std::chrono::milliseconds(200));  // the node finds the writer
     writer.publish(message, network.now());
     run();
   }
@@ -397,8 +399,10 @@ TEST_CASE("a coordinator tells all orders at the moment at which its epoch begin
     ++whole_memories;
     if (begun_at && !told_at) told_at = time_from_ns(page.header().stamp_ns());
   });
-  while (!begun_at && floor.network.now() < kBegin + std::chrono::seconds(5))
-    floor.network.run_until(floor.network.now() + std::chrono::milliseconds(1));
+  while (!begun_at && floor.network.now() < kBegin + std::chrono::seconds(5)) {
+    floor.send(topics::kFeedback, fact(floor.a, 1000), 1);
+    floor.send(topics::kFeedback, fact(floor.b, 1000), 2);
+  }
   floor.run();
   REQUIRE(begun_at);
   REQUIRE(told_at);

@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 using Outcome = SoleSender::Outcome;
 const Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle = 16ms;
+// Incarnations of different processes.
+constexpr std::uint64_t kOne = 1'000'000, kTwo = 2'000'000, kThree = 3'000'000;
 
 TEST_CASE("all messages of one process count, also after breaks") {
   SoleSender sender;
@@ -24,24 +26,24 @@ TEST_CASE("all messages of one process count, also after breaks") {
 TEST_CASE(
     "a process follows another one after a second of silence, and its messages are refused until then") {
   SoleSender sender;
-  CHECK(sender.receive(1, kBegin) == Outcome::kCounts);
+  CHECK(sender.receive(kOne, kBegin) == Outcome::kCounts);
   Time now = kBegin + 100ms;
   for (; now < kBegin + SoleSender::kGoneAfter; now += kCycle)
-    CHECK(sender.receive(2, now) == Outcome::kRefused);
-  for (int i = 0; i < 100; ++i) CHECK(sender.receive(2, now += kCycle) == Outcome::kCounts);
+    CHECK(sender.receive(kTwo, now) == Outcome::kRefused);
+  for (int i = 0; i < 100; ++i) CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);
 }
 
 TEST_CASE("one message of another process costs nothing") {
   SoleSender sender;
   for (int i = 0; i < 100; ++i) {
     const Time now = kBegin + kCycle * i;
-    CHECK(sender.receive(1, now) == Outcome::kCounts);
-    if (i == 50) CHECK(sender.receive(2, now) == Outcome::kRefused);
+    CHECK(sender.receive(kOne, now) == Outcome::kCounts);
+    if (i == 50) CHECK(sender.receive(kTwo, now) == Outcome::kRefused);
   }
 }
 
 TEST_CASE("of two processes that both go on nothing counts from their second cycle on, until one is gone") {
-  const std::uint64_t first = GENERATE(1u, 3u);
+  const std::uint64_t first = GENERATE(kOne, kThree);
   SoleSender sender;
   Time now = kBegin;
   CHECK(sender.receive(first, now) == Outcome::kCounts);
@@ -54,7 +56,7 @@ TEST_CASE("of two processes that both go on nothing counts from their second cyc
   };
   for (int i = 0; i < 600; ++i) {
     now += kCycle;
-    receive(2);
+    receive(kTwo);
     receive(first);
   }
   CHECK(counted == 1);
@@ -69,9 +71,9 @@ TEST_CASE("of two processes that both go on nothing counts from their second cyc
   SECTION("the earlier one is gone") {
     const Time gone_at = now;
     while (now < gone_at + SoleSender::kGoneAfterContest - kCycle)
-      CHECK(sender.receive(2, now += kCycle) == Outcome::kRefused);
+      CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kRefused);
     now += kCycle;
-    CHECK(sender.receive(2, now += kCycle) == Outcome::kCounts);
+    CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);
   }
 }
 
@@ -80,12 +82,27 @@ TEST_CASE("of three or more processes nothing counts either") {
   CAPTURE(seed);
   Rng rng(seed);
   SoleSender sender;
-  (void)sender.receive(1, kBegin);
+  (void)sender.receive(kOne, kBegin);
   for (int i = 0; i < 1000; ++i) {
-    const std::uint64_t incarnation = 1 + rng.below(5);
+    const std::uint64_t incarnation = kOne * (1 + rng.below(5));
     const bool counts = sender.receive(incarnation, kBegin + 4ms * i) == Outcome::kCounts;
-    CHECK((!counts || (incarnation == 1 && i < 100)));
+    CHECK((!counts || (incarnation == kOne && i < 100)));
   }
+}
+
+TEST_CASE("a robot that raises its incarnation is heard at once, but not what it sent before") {
+  SoleSender sender;
+  Time now = kBegin;
+  for (std::uint64_t life = 0; life < 5; ++life) {
+    for (int i = 0; i < 10; ++i) CHECK(sender.receive(kOne + life, now += kCycle) == Outcome::kCounts);
+    CHECK(sender.receive(kOne + life + 1, now += 1ms) == Outcome::kCounts);
+    CHECK(sender.receive(kOne + life, now += 1ms) == Outcome::kRefused);
+    now += SoleSender::kGoneAfter;
+  }
+  // A process that began later is another one, and so is one that began a moment earlier.
+  CHECK(sender.receive(kOne + 5, now) == Outcome::kCounts);
+  CHECK(sender.receive(kOne + 5 + SoleSender::kMaxRaise + 1, now) == Outcome::kRefused);
+  CHECK(sender.receive(kOne - 1, now) != Outcome::kCounts);
 }
 
 TEST_CASE("a reader of a topic for one process gets nothing of two, and says so once") {
@@ -106,11 +123,11 @@ TEST_CASE("a reader of a topic for one process gets nothing of two, and says so 
     writer.publish(feedback, network.now());
     network.run_until(network.now() + 5ms);
   };
-  for (int i = 0; i < 50; ++i) send(one, 11);
+  for (int i = 0; i < 50; ++i) send(one, kOne);
   CHECK(received == 50);
   for (int i = 0; i < 50; ++i) {
-    send(two, 12);
-    send(one, 11);
+    send(two, kTwo);
+    send(one, kOne);
   }
   CHECK(received <= 52);
   CHECK(contests == 1);

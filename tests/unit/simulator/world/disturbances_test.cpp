@@ -285,7 +285,8 @@ TEST_CASE("a robot without a pose that is lifted or switched off and on behaves 
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot's facts are by its own clock, which stands still after being set back") {
+TEST_CASE(
+    "a robot's facts are by its own clock, which stands still if it is set back by less than the bound") {
   Scenario scenario = separated_robots(1);
   scenario.robots[0].clock_offset = milliseconds(7);
   World world(scenario, kBegin, 1);
@@ -306,18 +307,30 @@ TEST_CASE("a robot's facts are by its own clock, which stands still after being 
   CHECK(world.firmware(0).executing().number == 5);
 
   auto clock = disturbance(0, msg::DisturbanceKind::DISTURBANCE_CLOCK);
-  clock.clock_offset = milliseconds(-30);
+  const Duration little = from_seconds(0.8 * scenario.clock_bound_s);
+  clock.clock_offset = milliseconds(7) - little;
   REQUIRE(world.disturb(0, clock, now));
   const Time frozen_at = now + milliseconds(7);
-  world.advance(now += milliseconds(20));
+  world.advance(now += little / 2);
   CHECK(world.feedback(0, now).valid_at == frozen_at);
   world.advance(now += milliseconds(30));
+  CHECK(world.feedback(0, now).valid_at == now + milliseconds(7) - little);
+  CHECK(world.firmware(0).own_stops() == 0);
+  const Incarnation incarnation = world.feedback(0, now).robot_incarnation;
+
+  // What it has reported by a clock that is set back farther is void.
+  clock.clock_offset = milliseconds(-30);
+  REQUIRE(world.disturb(0, clock, now));
+  world.advance(now += milliseconds(20));
   CHECK(world.feedback(0, now).valid_at == now - milliseconds(30));
+  CHECK(world.feedback(0, now).robot_incarnation == incarnation + 1);
+  CHECK(world.firmware(0).own_stops() == 1);
   clock.clock_offset = milliseconds(400);
   REQUIRE(world.disturb(0, clock, now));
   CHECK(world.feedback(0, now).valid_at == now + milliseconds(400));
   world.advance(now += milliseconds(500));
-  CHECK(world.firmware(0).own_stops() == 0);
+  CHECK(world.feedback(0, now).robot_incarnation == incarnation + 1);
+  CHECK(world.firmware(0).own_stops() == 1);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -374,23 +387,23 @@ TEST_CASE("ground truth reports a jump of a clock beyond the bound while the rob
     REQUIRE(world.disturb(0, clock, now));
   };
   world.advance(now);
-  set_clock(milliseconds(-4));
+  set_clock(milliseconds(4));
   CHECK(disturbance_end_ns() < 0);
   Trajectory dash(now + milliseconds(20), {world.bodies()[0].position_m(), {0, 0}});
   dash.append(milliseconds(200), Vec2(3, 0));
   append_stop(dash, 5);
   world.on_command(0, test::command_with({0, 1, 1, 0, dash}), now);
-  set_clock(milliseconds(-3));
+  set_clock(milliseconds(5));
   CHECK(disturbance_end_ns() == to_ns(now));
   world.advance(now += milliseconds(100));
   const std::int64_t first_ns = disturbance_end_ns();
-  set_clock(milliseconds(-3) + from_seconds(0.9 * scenario.clock_bound_s));
+  set_clock(milliseconds(5) + from_seconds(0.9 * scenario.clock_bound_s));
   CHECK(disturbance_end_ns() == first_ns);
-  set_clock(milliseconds(5));
+  set_clock(milliseconds(13));
   CHECK(disturbance_end_ns() == to_ns(now));
   world.advance(now += milliseconds(1000));
   const std::int64_t last_ns = disturbance_end_ns();
-  set_clock(milliseconds(10));
+  set_clock(milliseconds(18));
   CHECK(disturbance_end_ns() == last_ns);
 }
 

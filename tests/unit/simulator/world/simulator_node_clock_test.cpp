@@ -87,20 +87,25 @@ TEST_CASE("a simulator catches up after a long pause, and continues") {
   CHECK(node.world().firmware_violations() == 0);
 }
 
-TEST_CASE("facts stay true if the host's clock is set back") {
+TEST_CASE("robots whose host's clock is set back stop by themselves, in a new incarnation") {
   const Scenario scenario = separated_robots(1);
   ManualBus bus;
   SimulatorNode node(bus, scenario, 1, 1);
   bus.set(kBegin + milliseconds(500));
   bus.run_due();
-  const Time fact = time_from_ns(bus.facts.back().valid_at_ns());
+  const msg::Feedback before = bus.facts.back();
   bus.set(kBegin + milliseconds(400));
   const Vec2 mark = scenario.robots[0].start_m;
-  bus.deliver_command(test::command_with({0, 1, 1, 0, Trajectory::resting(fact - milliseconds(50), mark)}));
+  // On a base that the robot leaves because of the jump.
+  bus.deliver_command(
+      test::command_with({0, 1, 1, 0, Trajectory::resting(kBegin + milliseconds(450), mark)}));
   bus.set(kBegin + milliseconds(600));
   bus.run_due();
-  CHECK(bus.facts.back().executing().version_number() == 0);
-  CHECK(node.world().firmware(0).counts().refused_late == 1);
+  const msg::Feedback& after = bus.facts.back();
+  CHECK(after.header().incarnation() > before.header().incarnation());
+  CHECK(after.is_off_reference());
+  CHECK(after.executing().version_number() > 1);
+  CHECK(node.world().firmware(0).own_stops() == 1);
   CHECK(node.world().firmware_violations() == 0);
 }
 
