@@ -223,7 +223,8 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
   const auto fail = [&](const std::string& detail) {
     report(AuditRule::kOffReference, robot.id, &own_stop, 0, detail);
   };
-  if (robot.fact && own_stop.number <= robot.fact->executing)
+  // With the same number it is the stop that the robot executes already, of which messages were missed.
+  if (robot.fact && own_stop.number < robot.fact->executing)
     fail(fmt::format("is not numbered above version {}, which it replaces", robot.fact->executing));
   const AuditPath::Node& end = own_stop.path.last();
   if (std::hypot(end.vx, end.vy) > 1e-5)
