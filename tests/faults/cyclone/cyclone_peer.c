@@ -234,12 +234,15 @@ static int go(uint32_t robot, double x_m, double y_m) {
   const uint64_t number = (uint64_t)dds_time();
   const dds_time_t deadline = dds_time() + kTimeout;
   bool is_sent = false;
+  dds_time_t next_sending = 0;
   while (dds_time() < deadline) {
     dds_publication_matched_status_t matched;
     check(dds_get_publication_matched_status(writer, &matched), "order");
-    if (!is_sent && matched.current_count > 0) {
+    // The coordinator may be found after others. A repeated order changes nothing.
+    if (matched.current_count > 0 && dds_time() >= next_sending) {
       send_order(writer, robot, number, x_m, y_m);
       is_sent = true;
+      next_sending = dds_time() + DDS_MSECS(500);
     }
     sidestep_msg_OrderStatus* sample = NULL;
     void* samples[1] = {NULL};
