@@ -46,7 +46,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
       seen_contacts_(scenario),
       disturbances_(scenario.robots.size(), disturbance_settings(scenario, input.is_complete)),
       index_(kMaxRobots, scenario.robots.size()),
-      orders_(roster_of(scenario), input.is_complete,
+      orders_(roster_of(scenario), input.is_complete, stamps_,
               [this](AuditRule rule, RobotId robot, VersionNumber version, Epoch epoch, std::string detail) {
                 Violation violation;
                 violation.rule = rule;
@@ -95,7 +95,8 @@ AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& header) 
 Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
   const bool is_of_agent = kind == kProposalKind || kind == kRegistrationKind || kind == kCommandKind;
   MessageTrace& messages = is_of_agent ? agent_trace_ : trace_;
-  const Reception reception = messages.record(static_cast<std::uint64_t>(kind) << 32 | key, header, now_);
+  const Reception reception = messages.record(channel_of(kind, key), header, now_);
+  stamps_.record(channel_of(kind, key), header);
   if (!input_.is_complete && !is_of_agent && reception.missed > 0) disturbances_.on_missed();
   return reception;
 }
@@ -231,7 +232,8 @@ void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   const std::vector<RobotId> missing = missing_robots(state);
   if (missing.empty()) return;
   const std::int64_t sent_ns = input_.is_complete ? reception.earliest_ns : state.header().stamp_ns();
-  if (known->second.granter_life != state.header().incarnation() || sent_ns <= known->second.first_grant_ns)
+  if (known->second.granter_life != state.header().incarnation() || sent_ns <= known->second.first_grant_ns ||
+      !are_times_comparable(state.header()))
     return;
   known->second.is_reported = true;
   report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
@@ -246,16 +248,19 @@ void Auditor::on_order(const msg::Order& order, Time now) {
 
 void Auditor::on_order_answer(const msg::OrderAnswer& answer, Time now) {
   now_ = now;
+  stamps_.record(channel_of(kOrderAnswerKind, 0), answer.header());
   orders_.on_answer(answer);
 }
 
 void Auditor::on_order_memory(const msg::OrderMemory& memory, Time now) {
   now_ = now;
+  stamps_.record(channel_of(kOrderMemoryKind, 0), memory.header());
   orders_.on_memory(memory);
 }
 
 void Auditor::on_order_status(const msg::OrderStatus& status, Time now) {
   now_ = now;
+  stamps_.record(channel_of(kOrderStatusKind, 0), status.header());
   orders_.on_status(status);
 }
 

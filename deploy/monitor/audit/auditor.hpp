@@ -17,6 +17,7 @@
 #include "deploy/monitor/audit/audit_shape.hpp"
 #include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/monitor/audit/audited_robot.hpp"
+#include "deploy/monitor/audit/comparable_stamps.hpp"
 #include "deploy/monitor/audit/disturbances.hpp"
 #include "deploy/monitor/audit/heard_time.hpp"
 #include "deploy/monitor/audit/order_audit.hpp"
@@ -119,9 +120,20 @@ class Auditor {
     kCommandKind,
     kFeedbackKind,
     kTruthKind,
-    kWorldKind
+    kWorldKind,
+    kOrderAnswerKind,
+    kOrderMemoryKind,
+    kOrderStatusKind
   };
+  static constexpr std::uint64_t channel_of(Kind kind, std::uint32_t key) {
+    return static_cast<std::uint64_t>(kind) << 32 | key;
+  }
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
+  /// Whether times of an agent or a coordinator can be compared: always those of the auditor's clock, those
+  /// of the sender's until it was set back.
+  bool are_times_comparable(const msg::Header& header) const {
+    return input_.is_complete || stamps_.tell_order(header.sender(), header.incarnation());
+  }
   /// An upper bound of the time at which a coordinator sent a message: of the auditor's clock if it receives
   /// every message, otherwise of the coordinator's, which compares its messages exactly.
   std::int64_t granter_time_ns(const msg::Header& header, const Reception& reception) const;
@@ -250,6 +262,7 @@ class Auditor {
   double tracking_bound_m_;
   std::int64_t clock_bound_ns_;
   double sight_allowance_m_;
+  ComparableStamps stamps_;   ///< of agents and coordinators
   MessageTrace trace_;        ///< of robots, coordinators and the reference
   MessageTrace agent_trace_;  ///< of agents
   Time now_{};

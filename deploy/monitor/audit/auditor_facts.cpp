@@ -275,6 +275,7 @@ bool Auditor::is_after_registration(const AuditedRobot& robot, const msg::Feedba
   if (input_.is_complete) return registered.latest_ns < reception.earliest_ns;
   // The robot repeats the time of a command that the agent sent after the registration.
   return feedback.obeyed_incarnation() == registered.incarnation &&
+         stamps_.tell_order(robot.id, registered.incarnation) &&
          feedback.command_stamp_ns() > registered.stamp_ns;
 }
 

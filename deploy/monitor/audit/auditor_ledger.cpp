@@ -45,6 +45,7 @@ void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
   }
   if (verdict.granted_version() == 0) return;
   begin_run();
+  if (!are_times_comparable(verdict.header())) return;
   const KnownVersion* before = robot.find(verdict.granted_version());
   // A delayed coordinator may repeat its verdict on an old proposal, whose version may have been evicted
   // here.
@@ -200,6 +201,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
 // The ledger never takes back a version that it has forgotten, so it held one from the first page that listed
 // it to the last. All versions of a robot are on one page.
 void Auditor::use_ledger_page(const msg::LedgerPage& page) {
+  if (!are_times_comparable(page.header())) return;
   EpochRecord& record = epoch_record(page.epoch());
   if (record.page_life == 0) record.page_life = page.header().incarnation();
   const bool is_of_granter =

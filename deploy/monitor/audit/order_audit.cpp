@@ -95,8 +95,9 @@ class OrderAudit::Memory {
   std::size_t resumes_ = 0, removals_ = 0;
 };
 
-OrderAudit::OrderAudit(std::vector<RobotId> roster, bool is_complete, Report report)
-    : roster_(std::move(roster)), is_complete_(is_complete), report_(std::move(report)) {}
+OrderAudit::OrderAudit(std::vector<RobotId> roster, bool is_complete, const ComparableStamps& stamps,
+                       Report report)
+    : roster_(std::move(roster)), is_complete_(is_complete), stamps_(stamps), report_(std::move(report)) {}
 
 OrderAudit::Terms OrderAudit::terms_of(std::uint32_t robot, std::uint32_t client,
                                        const msg::OrderTerms& terms) {
@@ -121,7 +122,8 @@ OrderAudit::Terms OrderAudit::terms_of(std::uint32_t robot, std::uint32_t client
 }
 
 OrderAudit::Coordinator* OrderAudit::coordinator_of(const msg::Header& header) {
-  if (!is_coordinator(header.sender())) return nullptr;
+  if (!is_coordinator(header.sender()) || !stamps_.tell_order(header.sender(), header.incarnation()))
+    return nullptr;
   Coordinator& coordinator = coordinators_[header.sender()];
   if (header.incarnation() < coordinator.incarnation) return nullptr;
   if (header.incarnation() > coordinator.incarnation) {
@@ -166,10 +168,11 @@ void OrderAudit::on_status(const msg::OrderStatus& status) {
   if (is_complete_ && status.order_number() != 0)
     add_witness({status.order_number(), status.client()}, robot, witness);
   HeldFlag& flag = held_[robot];
-  if (std::pair(witness.incarnation, witness.stamp_ns) < std::pair(flag.incarnation, flag.stamp_ns)) return;
+  const std::uint64_t message = status.header().message_number();
+  if (std::pair(witness.incarnation, message) < std::pair(flag.incarnation, flag.message)) return;
   const bool was_set = flag.is_set && flag.incarnation == witness.incarnation;
   flag.incarnation = witness.incarnation;
-  flag.stamp_ns = witness.stamp_ns;
+  flag.message = message;
   flag.is_set = status.is_held();
   if (was_set == flag.is_set) return;
   if (flag.is_set && flag.cause && !flag.has_several_causes && is_complete_)
@@ -320,7 +323,8 @@ bool OrderAudit::has_witness(const Terms& terms, Epoch epoch) const {
     const auto registered = registered_.find(entry.first);
     return registered != registered_.end() && registered->second.epoch == epoch &&
            registered->second.incarnation == entry.second.incarnation &&
-           registered->second.stamp_ns > entry.second.stamp_ns;
+           registered->second.stamp_ns > entry.second.stamp_ns &&
+           stamps_.tell_order(entry.first, entry.second.incarnation);
   });
 }
 

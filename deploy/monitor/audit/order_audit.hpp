@@ -11,6 +11,7 @@
 
 #include "common/motion/version.hpp"
 #include "deploy/monitor/audit/audit_rules.hpp"
+#include "deploy/monitor/audit/comparable_stamps.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/order.hpp"
 
@@ -23,7 +24,8 @@ class OrderAudit {
  public:
   using Report = std::function<void(AuditRule, RobotId, VersionNumber, Epoch, std::string)>;
   /// `is_complete`: every message is received. Only then does the audit know what each agent remembers.
-  OrderAudit(std::vector<RobotId> roster, bool is_complete, Report report);
+  /// `stamps` must outlive the audit and have recorded each message before it.
+  OrderAudit(std::vector<RobotId> roster, bool is_complete, const ComparableStamps& stamps, Report report);
 
   void on_order(const msg::Order& order);
   void on_answer(const msg::OrderAnswer& answer);
@@ -66,7 +68,7 @@ class OrderAudit {
     VersionNumber version = 0;
     Epoch epoch = 0;
   };
-  /// One run of a coordinator. All stamps are by its clock.
+  /// One run of a coordinator. All stamps are by its clock, which must not be set back.
   struct Coordinator {
     Incarnation incarnation = 0;
     std::map<Key, std::int64_t> told_ns;  // when it first told each hold that it remembers
@@ -84,7 +86,7 @@ class OrderAudit {
   };
   struct HeldFlag {
     Incarnation incarnation = 0;
-    std::int64_t stamp_ns = 0;
+    std::uint64_t message = 0;
     bool is_set = false;
     std::optional<Key> cause;  // the only hold that was sent while it was not set
     bool has_several_causes = false;
@@ -105,6 +107,7 @@ class OrderAudit {
 
   const std::vector<RobotId> roster_;  // ascending
   const bool is_complete_;
+  const ComparableStamps& stamps_;
   const Report report_;
   std::map<std::uint32_t, Coordinator> coordinators_;  // by sender
   std::map<Key, Terms> sent_;                          // bounded; the lowest numbers are forgotten first

@@ -104,6 +104,35 @@ TEST_CASE("a grant between two holds, of which the first was lifted, breaks no r
         }) == 0);
 }
 
+TEST_CASE(
+    "a grant that a coordinator stamped later than a hold, because its clock was set back, breaks no rule") {
+  // The hold begins after the last grant, while the clock is behind for a second.
+  const auto held = [](Duration set_back) {
+    return violations(AuditRule::kHeld, [&](History& h) {
+      Time last_grant{};
+      h.each<msg::Verdict>([&](msg::Verdict& verdict, Time at) {
+        if (verdict.granted_version() != 0) last_grant = at;
+      });
+      const auto is_after = [&](Time at) { return at > last_grant; };
+      REQUIRE(is_after(h.messages.back().at - 500ms));
+      const auto set = [&](auto& message, Time at) {
+        const bool is_behind = is_after(at) && !is_after(at - 1s);
+        if (is_behind) message.header().stamp_ns(message.header().stamp_ns() - set_back.count());
+      };
+      h.each<msg::Verdict>(set);
+      h.each<msg::CoordinatorState>(set);
+      h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time at) {
+        if (page.process() < kCoordinator) return;
+        set(page, at);
+        if (is_after(at) && page.page_count() > 0)
+          add(page, remembered(msg::OrderKind::ORDER_HOLD, kHeldRobot, kClient, 1000));
+      });
+    });
+  };
+  CHECK(held(0s) == 0);
+  CHECK(held(10s) == 0);
+}
+
 TEST_CASE("a confirmed order that a coordinator remembers no more, without a later one, breaks a rule") {
   const auto forgotten = [](const msg::RememberedOrder& order, std::vector<msg::RememberedOrder> kept) {
     return violations(AuditRule::kForgottenOrder, [&](History& h) {

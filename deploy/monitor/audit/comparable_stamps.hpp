@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "common/time/time.hpp"
+#include "idl/header.hpp"
+
+namespace sidestep {
+
+/// Whether the times by which a process stamps its messages tell their order. They do not once its clock was
+/// set back: a later message then has an earlier stamp, also on another topic, where message numbers tell no
+/// order either.
+class ComparableStamps {
+ public:
+  /// `channel` distinguishes the streams that one sender numbers separately.
+  void record(std::uint64_t channel, const msg::Header& header);
+  /// Whether the messages of this run of a process were stamped in the order of their numbers so far. Nothing
+  /// is known of a run of which no message was recorded, or only long ago.
+  [[nodiscard]] bool tell_order(std::uint32_t sender, Incarnation incarnation) const;
+
+ private:
+  static constexpr std::size_t kMaxRuns = 4096, kMaxChannels = 2048;
+
+  struct Newest {
+    std::uint64_t number = 0;
+    std::int64_t stamp_ns = 0;
+  };
+  struct Run {
+    std::map<std::uint64_t, Newest> newest;  // by channel
+    bool was_set_back = false;
+    std::uint64_t used = 0;
+  };
+  std::map<std::pair<std::uint32_t, Incarnation>, Run> runs_;
+  std::uint64_t uses_ = 0;
+};
+
+}  // namespace sidestep
