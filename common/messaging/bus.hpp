@@ -99,6 +99,10 @@ class Bus {
   /// sends which was heard first. For observers of a simulation, who know it to be the true one.
   void follow_first_senders() { follows_first_ = true; }
 
+  /// Later subscriptions to channels that are for one process listen for a moment before they believe it. For
+  /// a process that starts among others.
+  void listen_first() { listening_ = SoleSender::kListening; }
+
   /// Counts something that this process has dropped, other than for a reason that its node counts.
   void count_drop(DropReason reason) { drops_.count(reason); }
   /// Adds what this bus, or its process outside the node, has dropped.
@@ -128,7 +132,7 @@ class Bus {
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
-            [this, robot, info = TopicInfo(topic), sender = SoleSender(),
+            [this, robot, info = TopicInfo(topic), sender = SoleSender(listening_),
              callback = std::move(callback)](const Message& message) mutable {
               if (!has_same_rules(info, message.header())) return;
               if (info.is_sole && !admit(sender, info, robot, message.header())) return;
@@ -173,6 +177,7 @@ class Bus {
 
   std::uint64_t rules_ = 0;
   bool follows_first_ = false;
+  Duration listening_{0};
   std::function<void(const TopicInfo&, const msg::Header&)> on_refused_, header_watcher_;
   std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> contest_watcher_;
   DropCounters drops_;

@@ -20,6 +20,13 @@ class SoleSender {
   /// if the two have been heard at the same time.
   static constexpr Duration kGoneAfter{1'000'000'000};
   static constexpr Duration kGoneAfterContest{6'000'000'000};
+  /// A process that starts among others listens for so long before it believes anybody. Otherwise it would
+  /// take whomever it heard first for the only one.
+  static constexpr Duration kListening{300'000'000};
+
+  SoleSender() = default;
+  /// Nothing counts in the time `listening` after the first message.
+  explicit SoleSender(Duration listening) : listening_(listening) {}
 
   /// A robot whose clock is set back raises its incarnation by one: a little higher, it is the same process.
   /// Those of different processes are readings of clocks in nanoseconds.
@@ -29,10 +36,12 @@ class SoleSender {
   [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now) {
     if (has_sender_ && incarnation > sender_ && incarnation - sender_ <= kMaxRaise) sender_ = incarnation;
     if (!has_sender_ || (incarnation != sender_ && now - heard_at_ >= gone_after_)) {
-      *this = {};
+      *this = SoleSender(listening_);
       has_sender_ = true;
       sender_ = incarnation;
+      believes_from_ = now + listening_;
     }
+    if (now < believes_from_) return listen(incarnation, now);
     if (incarnation == sender_) {
       heard_at_ = now;
       if (others_ == 0 || now - other_heard_at_ >= kGoneAfter) {
@@ -57,11 +66,21 @@ class SoleSender {
   bool is_first(std::uint64_t incarnation) const { return has_sender_ && incarnation == sender_; }
 
  private:
+  /// Each process that is heard beside the first one proves a contest.
+  Outcome listen(std::uint64_t incarnation, Time now) {
+    (incarnation == sender_ ? heard_at_ : other_heard_at_) = now;
+    if (incarnation == sender_) return Outcome::kRefused;
+    others_ = interleaved_ = kEvidence;
+    gone_after_ = kGoneAfterContest;
+    return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewlyContested;
+  }
+
   static constexpr std::uint32_t kEvidence = 2;  // messages of each, in turn
 
   bool has_sender_ = false, is_reported_ = false;
   std::uint64_t sender_ = 0;  // incarnation of the process that was heard first
-  Time heard_at_{}, other_heard_at_{};
+  Duration listening_{0};
+  Time heard_at_{}, other_heard_at_{}, believes_from_{};
   std::uint32_t others_ = 0;       // messages of other processes since the last silence of these
   std::uint32_t interleaved_ = 0;  // messages of the sender since then
   Duration gone_after_ = kGoneAfter;

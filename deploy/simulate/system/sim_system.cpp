@@ -154,6 +154,7 @@ void SimSystem::start(const std::string& name) {
   const Scenario& scenario = other != scenarios_.end() ? other->second : scenario_;
   auto process = std::make_unique<Process>(network_, spec_of(name), id, SharedRules(scenario));
   SimBus& bus = process->bus;
+  if (now() > begin_) bus.listen_first();
   // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it
   // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];

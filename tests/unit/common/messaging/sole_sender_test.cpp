@@ -77,6 +77,33 @@ TEST_CASE("of two processes that both go on nothing counts from their second cyc
   }
 }
 
+TEST_CASE("a process that starts among others believes nobody until it has listened") {
+  SoleSender sender(SoleSender::kListening);
+  Time now = kBegin;
+  for (; now < kBegin + SoleSender::kListening; now += kCycle)
+    CHECK(sender.receive(1, now) == Outcome::kRefused);
+  for (int i = 0; i < 100; ++i) CHECK(sender.receive(1, now += kCycle) == Outcome::kCounts);
+}
+
+TEST_CASE("a process that starts while two speak believes neither, whomever it hears first") {
+  const auto seed = GENERATE(range(1u, 101u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SoleSender sender(SoleSender::kListening);
+  int reported = 0;
+  for (int cycle = 0; cycle < 600; ++cycle) {
+    for (const std::uint64_t incarnation : {1u, 2u}) {
+      // In any order, with losses.
+      if (rng.chance(0.3)) continue;
+      const Time now = kBegin + kCycle * cycle + from_seconds(rng.uniform(0, 0.001));
+      const Outcome outcome = sender.receive(incarnation, now);
+      CHECK(outcome != Outcome::kCounts);
+      reported += outcome == Outcome::kNewlyContested;
+    }
+  }
+  CHECK(reported == 1);
+}
+
 TEST_CASE("of three or more processes nothing counts either") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
@@ -176,6 +203,23 @@ TEST_CASE("processes with one id that must be alone find each other, once, and n
   CHECK(first.others == std::vector<Incarnation>{200});
   CHECK(second.others == std::vector<Incarnation>{100});
   CHECK(other.others.empty());
+}
+
+TEST_CASE("another process is found also after very many messages of invented ones") {
+  SimNetwork network(1, kBegin, {});
+  const auto id = static_cast<std::uint32_t>(Sender::kVision);
+  Part first(network, id, 100), second(network, id, 200), inventor(network, id, 0);
+  for (Incarnation i = 1000; i < 2000; ++i) {
+    inventor.incarnation = i;
+    inventor.count();
+    network.run_until(network.now() + 1ms);
+  }
+  network.run_until(network.now() + 1s);
+  for (int i = 0; i < 3; ++i) {
+    second.count();
+    network.run_until(network.now() + 1s);
+  }
+  CHECK(first.others == std::vector<Incarnation>{200});
 }
 
 TEST_CASE("there may be several processes with the id of an agent") {
