@@ -153,9 +153,11 @@ ProposalRecord& AuditedRobot::add_proposal() {
 
 void AuditedRobot::reset() {
   const RobotId kept_id = id;
+  const Epoch last_epoch = std::max(forgotten_in, registered ? registered->epoch : 0);
   const ExecutedVersions kept_versions = executed_versions();
   *this = AuditedRobot();
   id = kept_id;
+  forgotten_in = last_epoch;
   forgotten_ = kept_versions;
 }
 

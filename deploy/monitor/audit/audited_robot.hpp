@@ -116,8 +116,9 @@ class AuditedRobot {
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
   std::size_t early_verdict_count = 0;
-  std::uint64_t max_evicted_proposal = 0;   ///< proposals up to this number may have been evicted
-  VersionNumber max_evicted_version = 0;    ///< versions up to this number may have been evicted
+  std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
+  Epoch forgotten_in = 0;                 ///< up to this epoch, ledgers may list versions that reset() forgot
+  VersionNumber max_evicted_version = 0;  ///< versions up to this number may have been evicted
   std::int64_t traceable_from_ns = kNever;  ///< versions that start later were granted during the audit
   std::size_t first_recent = 0;             ///< versions before this index were excluded long ago
 

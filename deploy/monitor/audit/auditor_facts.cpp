@@ -259,7 +259,8 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
   for (auto& [epoch, record] : epochs_) {
     if (!input_.is_complete) break;
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
-    if (record.first_grant_ns >= reception.earliest_ns || epoch <= robot.attested_until) continue;
+    if (record.first_grant_ns >= reception.earliest_ns) continue;
+    if (epoch <= std::max(robot.attested_until, robot.forgotten_in)) continue;
     record.is_reported = true;
     report(AuditRule::kAllRegistered, robot.id, nullptr, epoch,
            fmt::format("still obeys epoch {}, so it cannot have registered before the first grant",

@@ -172,7 +172,8 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     // A coordinator that receives no facts keeps versions that were evicted here long ago.
     if (robot.was_evicted(version.version_number())) continue;
     const bool may_be_held = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
-    if (input_.is_complete && is_of_epoch && !may_be_held) {
+    const bool may_be_forgotten = page.epoch() <= robot.forgotten_in;
+    if (input_.is_complete && is_of_epoch && !may_be_held && !may_be_forgotten) {
       report(AuditRule::kLedgerPage, robot.id,
              known ? known : &robot.find_or_insert(version.version_number()), page.epoch(),
              "is in the ledger, but was neither registered nor granted");
@@ -258,6 +259,8 @@ void Auditor::check_ledger_page(const msg::LedgerPage& page) {
       // The version's content may have been evicted here before a delayed coordinator granted the version.
       if (!known.has_content) continue;
       if (known.exclusion != Exclusion::kNone || known.is_own_stop || !known.is_in(page.epoch())) continue;
+      // The ledger still tells of the robot on its former floor.
+      if (known.number == 0 && page.epoch() <= robot.forgotten_in) continue;
       if (std::ranges::find(page_numbers_, known.number) != page_numbers_.end()) continue;
       report(AuditRule::kLedgerPage, id, &known, page.epoch(),
              "is not in the ledger, although no fact has excluded it");

@@ -70,7 +70,6 @@ void FaultPlayer::operator()(const Partition& partition) {
 
 void FaultPlayer::operator()(const LastingCut& cut) {
   for_each_link(cut.from, cut.to, [](Link& link) { link.is_cut_for_good = true; });
-  if (clients_ && cut.to.size() == 1) clients_->expect_no_memory_of(cut.to.front());
 }
 
 void FaultPlayer::operator()(const Pause& pause) {

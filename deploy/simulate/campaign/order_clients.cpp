@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "common/messaging/process_names.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -109,7 +107,10 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
 void OrderClients::on_memory(const msg::OrderMemory& message) {
   if (message.page_count() == 0) return;
   const auto page = decode(message, bus_.now());
-  if (!page || !page->is_complete) return;  // e.g. of a coordinator with other rules
+  if (!page) return;  // e.g. of a coordinator with other rules
+  // It was started again, and may know no order yet.
+  if (!page->is_complete) memories_.erase(page->process);
+  if (!page->is_complete) return;
   Memory& memory = arriving_[page->process];
   if (page->index == 0) memory = {};
   if (page->index != memory.pages) return;
@@ -132,7 +133,6 @@ void OrderClients::check_drives(const Client& client, std::vector<std::string>& 
     }
     if (!drives(order)) continue;
     for (const auto& [process, memory] : memories_) {
-      if (deaf_.contains(process_name(process))) continue;
       const auto known = memory.drives.find({order.robot, rank_of(order.client)});
       if (known == memory.drives.end() || known->second < std::pair(order.number, order.client))
         failures.push_back(fmt::format("process {} has forgotten order {} of client {} to robot {}", process,

@@ -29,8 +29,6 @@ class OrderClients {
   explicit OrderClients(SimSystem& system);
 
   void give(const Order& order);
-  /// A coordinator that hears only some processes, for good, may never learn of an order again.
-  void expect_no_memory_of(const std::string& process) { deaf_.insert(process); }
   /// What was wrong, in words.
   std::vector<std::string> failures() const;
 
@@ -67,7 +65,6 @@ class OrderClients {
   std::vector<Hold> holds_;                              // that nobody has tried to lift who may
   std::map<RobotId, Vec2> rest_m_;                       // where robots that must rest are
   std::map<std::uint32_t, Memory> arriving_, memories_;  // by coordinator; the last whole ones
-  std::set<std::string> deaf_;                           // processes
   std::vector<std::string> failures_;
 };
 

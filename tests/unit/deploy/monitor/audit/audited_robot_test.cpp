@@ -95,8 +95,12 @@ TEST_CASE("executed versions are counted with what was received of them, also af
   robot.forget(11);
   CHECK(robot.versions.empty());
   check();
+  robot.registered.emplace().epoch = 7;
   robot.reset();
   check();
+  CHECK(robot.forgotten_in == 7);
+  robot.reset();
+  CHECK(robot.forgotten_in == 7);
 }
 
 TEST_CASE("a version is found near its former index") {
