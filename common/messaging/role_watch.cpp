@@ -32,7 +32,10 @@ void RoleWatch::on_counters(const msg::Counters& message) {
   const Incarnation incarnation = message.header().incarnation();
   const bool is_own = message.process() == process_ && message.header().sender() == process_;
   if (!is_own || incarnation == incarnation_) return;
-  if (others_.size() >= kMaxOthers && !others_.contains(incarnation)) return;
+  if (others_.size() >= kMaxOthers && !others_.contains(incarnation)) {
+    const auto heard = [](const auto& other) { return other.second.first_heard; };
+    others_.erase(std::ranges::min_element(others_, {}, heard));
+  }
   const auto [entry, is_new] =
       others_.try_emplace(incarnation, Other{bus_.now(), message.header().message_number()});
   Other& other = entry->second;

@@ -148,25 +148,43 @@ std::vector<ParticipantId> Admission::newly_refused(Time now) {
 
 Admission::Known* Admission::find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal) {
   std::string bytes(der.begin(), der.end());
-  if (const auto found = known_.find(bytes); found != known_.end()) return &found->second;
+  if (const auto found = known_.find(bytes); found != known_.end()) {
+    found->second.announced = now;
+    return &found->second;
+  }
   const auto refuse = [&refusal](Refusal why) -> Known* {
     refusal = why;
     return nullptr;
   };
-  if (known_.size() >= kMaxKnown) return refuse(Refusal::kTooMany);
   if (!checks_.admit(now)) return refuse(Refusal::kTooFast);
   const auto certificate = Certificate::from_der(der);
   if (!certificate) return refuse(Refusal::kNoCertificate);
   if (!certificate->is_issued_by(authority_)) return refuse(Refusal::kOtherAuthority);
   const auto identity = certificate->identity();
   if (!identity) return refuse(Refusal::kUnknownSubject);
-  const Known found{*identity,
-                    certificate->serial(),
-                    certificate->prefix(),
-                    *identity == self_ || exchange_messages(*identity, self_),
-                    certificate->not_before(),
-                    certificate->not_after()};
+  if (known_.size() >= kMaxKnown) forget_oldest();
+  if (known_.size() >= kMaxKnown) return refuse(Refusal::kTooMany);
+  Known found{*identity,
+              certificate->serial(),
+              certificate->prefix(),
+              *identity == self_ || exchange_messages(*identity, self_),
+              certificate->not_before(),
+              certificate->not_after()};
+  found.announced = now;
   return &known_.emplace(std::move(bytes), found).first->second;
+}
+
+void Admission::forget_oldest() {
+  auto oldest = known_.end();
+  for (auto entry = known_.begin(); entry != known_.end(); ++entry) {
+    const bool is_older = oldest == known_.end() || entry->second.announced < oldest->second.announced;
+    if (is_older && !is_in_use(entry->second)) oldest = entry;
+  }
+  if (oldest != known_.end()) known_.erase(oldest);
+}
+
+bool Admission::is_in_use(const Known& known) const {
+  return std::ranges::any_of(participants_, [&](const auto& p) { return p.second.known == &known; });
 }
 
 Admission::Refusal Admission::check_now(const Known& known, Time now) const {

@@ -99,6 +99,7 @@ class Admission {
     bool is_needed;
     Time not_before, not_after;
     RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
+    Time announced{};  ///< last
   };
   struct Participant {
     Known* known = nullptr;
@@ -107,10 +108,13 @@ class Admission {
     bool is_proven = false;
   };
 
+  /// Forgets the certificate that was announced longest ago, unless a participant has it.
+  void forget_oldest();
   /// The certificate, if the authority has issued it; otherwise says why not.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const std::string& version, Time now);
   Refusal check_now(const Known& known, Time now) const;
+  bool is_in_use(const Known& known) const;
 
   const Identity self_;
   std::optional<ParticipantId> self_id_;

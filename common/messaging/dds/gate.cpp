@@ -12,15 +12,18 @@
 namespace sidestep {
 namespace {
 
-// A hostile sender can be refused for any number of reasons.
-constexpr std::size_t kMaxReported = 64;
+// A hostile sender can be refused for any number of reasons. Those beyond this number at once are reported
+// one per period.
+constexpr int kMaxReported = 64;
+constexpr Duration kReportPeriod = std::chrono::seconds(10);
 
 }  // namespace
 
 Gate::Gate(const KeyFolder& keys, const std::string& version)
     : revoked_file_(keys.file(key_files::kRevoked)),
       authority_(keys.authority),
-      admission_(keys.identity, keys.authority, version) {
+      admission_(keys.identity, keys.authority, version),
+      reports_(kMaxReported, kReportPeriod) {
   admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
   std::error_code none;
   revoked_at_ = std::filesystem::last_write_time(revoked_file_, none);
@@ -42,8 +45,7 @@ bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> dat
       if (decision.refusal == Admission::Refusal::kNone) return true;
       if (decision.refusal == Admission::Refusal::kNotNeeded) return false;
       ++refused_;
-      if (reported_.size() < kMaxReported)
-        report("refuses " + Admission::describe(decision, fmt::format("{}", fmt::join(address, "."))));
+      report("refuses " + Admission::describe(decision, fmt::format("{}", fmt::join(address, "."))));
       return false;
     }
   }
@@ -110,8 +112,10 @@ void Gate::read_revoked() {
 }
 
 void Gate::report(const std::string& text) {
-  if (reported_.size() < kMaxReported && reported_.insert(text).second)
-    log(LogLevel::kWarning, "keys: " + text);
+  if (reported_.contains(text) || !reports_.admit(EventLoop::now())) return;
+  if (reported_.size() >= kMaxReported) reported_.clear();
+  reported_.insert(text);
+  log(LogLevel::kWarning, "keys: " + text);
 }
 
 }  // namespace sidestep

@@ -12,6 +12,7 @@
 
 #include "common/keys/key_folder.hpp"
 #include "common/messaging/dds/admission.hpp"
+#include "common/time/rate_limit.hpp"
 
 namespace sidestep {
 
@@ -55,6 +56,7 @@ class Gate {
   Admission admission_;
   std::filesystem::file_time_type revoked_at_{};
   std::set<std::string> reported_;
+  RateLimit reports_;
   std::atomic<std::uint64_t> unknown_{0}, refused_{0}, forged_{0};
 };
 

@@ -192,8 +192,8 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
   }
   const std::pair life(state.coordinator(), static_cast<Incarnation>(state.header().incarnation()));
   if (coordinators_.size() >= kMaxLives && !coordinators_.count(life)) {
-    ++dropped_messages_;
-    return;
+    const auto incarnation = [](const auto& known) { return known.first.second; };
+    coordinators_.erase(std::ranges::min_element(coordinators_, {}, incarnation));
   }
   std::uint64_t& last = coordinators_[life];
   if (state.header().message_number() <= last) {
@@ -223,17 +223,30 @@ bool RunMetrics::has_process(std::uint32_t process) {
          process == static_cast<std::uint32_t>(Sender::kRobots);
 }
 
+RunMetrics::CounterLife* RunMetrics::counter_life(ProcessCounters& counters, Incarnation incarnation) {
+  std::vector<CounterLife>& lives = counters.lives;
+  const auto place = [&] {
+    return std::ranges::lower_bound(lives, incarnation, {}, &CounterLife::incarnation);
+  };
+  if (const auto life = place(); life != lives.end() && life->incarnation == incarnation) return &*life;
+  if (lives.size() == kMaxCounterLives && incarnation > lives.front().incarnation) {
+    const CounterLife& oldest = lives.front();
+    for (std::size_t i = 0; i < kDropReasonCount; ++i) counters.earlier.counts[i] += oldest.counts[i];
+    counters.earlier.incarnation = oldest.incarnation;
+    lives.erase(lives.begin());
+  }
+  if (lives.size() == kMaxCounterLives || incarnation <= counters.earlier.incarnation) return nullptr;
+  return &*lives.insert(place(), {incarnation, 0, {}});
+}
+
 void RunMetrics::on_counters(const msg::Counters& message) {
   const auto counts = decode(message);
   if (!counts || !has_process(message.process())) {
     ++dropped_messages_;
     return;
   }
-  std::vector<CounterLife>& lives = counters_[message.process()];
-  auto life = std::ranges::find(lives, message.header().incarnation(), &CounterLife::incarnation);
-  if (life == lives.end() && lives.size() < kMaxCounterLives)
-    life = lives.insert(lives.end(), {message.header().incarnation(), 0, {}});
-  if (life == lives.end() || message.header().message_number() <= life->message_number) {
+  CounterLife* const life = counter_life(counters_[message.process()], message.header().incarnation());
+  if (!life || message.header().message_number() <= life->message_number) {
     ++dropped_messages_;
     return;
   }

@@ -144,8 +144,14 @@ class RunMetrics {
     std::uint64_t message_number = 0;
     std::array<std::uint64_t, kDropReasonCount> counts{};
   };
-  std::map<std::uint32_t, std::vector<CounterLife>> counters_;  ///< by process of the scenario
-  std::optional<msg::CoordinatorState> active_;                 ///< the latest state of the highest epoch
+  struct ProcessCounters {
+    std::vector<CounterLife> lives;  // the latest ones, in order
+    CounterLife earlier;             // the sum of all earlier ones, with the incarnation of the last
+  };
+  /// nullptr: the incarnation is one of the earlier ones.
+  static CounterLife* counter_life(ProcessCounters& counters, Incarnation incarnation);
+  std::map<std::uint32_t, ProcessCounters> counters_;  ///< by process of the scenario
+  std::optional<msg::CoordinatorState> active_;        ///< the latest state of the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
   std::set<RobotId> quarantined_, displaced_;  ///< named at any time
   std::optional<Time> granting_since_;

@@ -119,10 +119,12 @@ void RunMetrics::add_counters(Report& report) const {
   const auto add = [&](const std::string& process, std::size_t reason, std::uint64_t count) {
     if (count > 0) report.counters[process][static_cast<DropReason>(reason)] += count;
   };
-  for (const auto& [process, lives] : counters_) {
-    for (const CounterLife& life : lives) {
-      for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process_name(process), i, life.counts[i]);
-    }
+  const auto add_life = [&](const std::string& process, const CounterLife& life) {
+    for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process, i, life.counts[i]);
+  };
+  for (const auto& [process, counters] : counters_) {
+    add_life(process_name(process), counters.earlier);
+    for (const CounterLife& life : counters.lives) add_life(process_name(process), life);
   }
   DropCounters own;
   own.count(DropReason::kUnusedByMonitor, std::nullopt, dropped_messages_);

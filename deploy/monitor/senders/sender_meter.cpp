@@ -9,7 +9,14 @@
 namespace sidestep {
 
 void SenderMeter::add(const msg::Header& header, Time received) {
-  Stream& stream = streams_[{header.sender(), header.incarnation()}];
+  const std::pair key(header.sender(), header.incarnation());
+  if (streams_.size() >= kMaxStreams && !streams_.contains(key)) {
+    streams_.erase(
+        std::ranges::min_element(streams_, {}, [](const auto& entry) { return entry.second.last_received; }));
+    ++forgotten_;
+  }
+  Stream& stream = streams_[key];
+  stream.last_received = received;
   const Reception reception = stream.trace.record(0, header, received);
   if (!reception.is_newest) ++stream.not_newest;
   // Both are times that a 64-bit count of nanoseconds holds; their difference may not be.
@@ -35,6 +42,7 @@ std::string SenderMeter::table() const {
                         stream.not_newest - repeated, ms(stream.min_delay), ms(stream.delays.quantile(0.5)),
                         ms(stream.delays.quantile(0.99)), ms(stream.max_delay));
   }
+  if (forgotten_ > 0) text += fmt::format("and {} others, which were heard before these\n", forgotten_);
   return text;
 }
 

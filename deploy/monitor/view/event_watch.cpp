@@ -224,10 +224,12 @@ void EventWatch::on_violation(const Violation& violation) {
 }
 
 void EventWatch::on_refused(std::uint32_t sender, Time now) {
-  if (refused_.size() < kMaxSenders && refused_.insert(sender).second)
-    add(Severity::kError, "rules",
-        fmt::format("{} works by other rules: its messages are refused", process_name(sender)), now,
-        robots_of(sender));
+  if (refused_.contains(sender) || !outside_.admit(now)) return;
+  if (refused_.size() >= kMaxSenders) refused_.clear();
+  refused_.insert(sender);
+  add(Severity::kError, "rules",
+      fmt::format("{} works by other rules: its messages are refused", process_name(sender)), now,
+      robots_of(sender));
 }
 
 void EventWatch::watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot,

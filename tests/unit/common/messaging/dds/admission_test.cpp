@@ -191,6 +191,23 @@ TEST_CASE("checks of signatures are limited, and known certificates need none") 
   CHECK(f.announce(id_with(fresh), fresh) == Refusal::kNone);
 }
 
+TEST_CASE("certificates that nobody uses any more make room for later ones") {
+  Fixture f;
+  const Certificate first = f.issue("agent 3", 24h);
+  CHECK(f.announce(id_with(first), first) == Refusal::kNone);
+  for (int i = 0; i < 5000; ++i) {
+    f.now += 20ms;
+    const Certificate later = f.issue("agent 4", 24h);
+    const ParticipantId id = id_with(later);
+    CHECK(f.announce(id, later) == Refusal::kNone);
+    f.admission.on_authenticated(id);
+    CHECK(f.admission.admits(id_with(first), f.now));  // is heard, so it is not forgotten
+    if (i % 100 == 0) static_cast<void>(f.admission.newly_refused(f.now));
+  }
+  REQUIRE(f.admission.identity_of(id_with(first)));
+  CHECK(to_text(*f.admission.identity_of(id_with(first))) == "agent 3");
+}
+
 TEST_CASE("who announces a genuine certificate and does not prove it is reported once") {
   Fixture f;
   const Certificate genuine = f.issue("agent 3"), impostor = f.issue("agent 4"),

@@ -424,8 +424,20 @@ TEST_CASE("counters of ever new processes, incarnations and robots take a limite
   }
   const Report report = metrics.report();
   CHECK(report.counters.size() == 2);
-  CHECK(report.counters.at("vision").at(DropReason::kOtherRules) == 32);
-  CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 10'000 - 32);
+  CHECK(report.counters.at("vision").at(DropReason::kOtherRules) == 5000);
+  CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 5000);
+}
+
+TEST_CASE("a process that has been restarted very often is counted on, and nothing of it twice") {
+  RunMetrics metrics(kTwo);
+  DropCounters drops;
+  drops.count(DropReason::kOtherRules);
+  for (Incarnation life = 1; life <= 100; ++life) {
+    metrics.on_counters(counters(20000, life, 1, drops));
+    metrics.on_counters(counters(20000, life, 2, drops));
+    if (life > 50) metrics.on_counters(counters(20000, life - 50, 3, drops));  // late
+  }
+  CHECK(metrics.report().counters.at("vision").at(DropReason::kOtherRules) == 100);
 }
 
 msg::WorldState world(double at_s, double x_m, double vx_mps) {

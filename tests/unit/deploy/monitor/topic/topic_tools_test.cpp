@@ -257,6 +257,20 @@ TEST_CASE("what arrives of a topic is counted by sender: lost, repeated, out of 
   CHECK_THAT(table, Matches("[^]*\ncoordinator \\(2\\) +1 +0 +0 +0  0\\.000 [^]*"));
 }
 
+TEST_CASE("of very many senders of a topic those are shown that were heard last") {
+  SenderMeter meter;
+  for (std::uint32_t i = 0; i < SenderMeter::kMaxStreams + 5; ++i) {
+    msg::Header header;
+    header.sender(3);
+    header.incarnation(i + 1);
+    header.message_number(1);
+    meter.add(header, at_ms(1000 + static_cast<int>(i)));
+  }
+  const std::string table = meter.table();
+  CHECK_THAT(table, !ContainsSubstring("agent 3 (5) ") && ContainsSubstring("agent 3 (6) ") &&
+                        EndsWith("and 5 others, which were heard before these\n"));
+}
+
 TEST_CASE("topic delay measures the senders of a topic") {
   const Publisher publisher;
   const Outcome outcome = topic({"delay", "world", "--seconds", "1"});

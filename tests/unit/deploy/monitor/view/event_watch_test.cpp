@@ -143,6 +143,20 @@ TEST_CASE("a flood of orders of invented senders causes few events") {
   CHECK(w.log.count() == before + 1);
 }
 
+TEST_CASE("a flood of invented senders with other rules causes few events, and hides no later one") {
+  Watched w;
+  for (std::uint32_t i = 0; i < 100'000; ++i) {
+    w.watch.on_refused(1'000'000 + i, w.now);
+    w.now += 100us;
+  }
+  CHECK(w.log.count() <= 2'100);
+  w.now += 60s;
+  const std::uint64_t before = w.log.count();
+  for (int i = 0; i < 3; ++i) w.watch.on_refused(3, w.now);
+  CHECK(w.log.count() == before + 1);
+  CHECK(w.log.since(before)[0].text == "agent 3 works by other rules: its messages are refused");
+}
+
 TEST_CASE("a log forgets the oldest events, and numbers go on") {
   EventLog log;
   for (std::size_t i = 0; i < EventLog::kMaxEvents + 10; ++i) log.add({0, {}, Severity::kInfo, "x", "", {}});
