@@ -10,6 +10,7 @@
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::second_process_test {
 
@@ -123,6 +124,40 @@ TEST_CASE(
   system.run_for(8s);
   system.restart(second_process("simulator"));
   system.run_for(3s);
+  watch.require_safe();
+}
+
+TEST_CASE(
+    "a robot that was silent while a second simulator spoke for it is judged by its own facts afterwards") {
+  const auto seed = GENERATE(range(1u, 6u));
+  CAPTURE(seed);
+  Rng rng(seed);
+  SimSystem system(waiting_robots(4), seed);
+  Watch watch(system);
+  system.stay_with_others();
+  system.run_for(from_seconds(rng.uniform(1.5, 3)));
+  const auto disturb = [&](msg::DisturbanceKind kind) {
+    msg::Disturbance message;
+    message.robot(3);
+    message.disturbance_kind(kind);
+    system.disturb(message);
+  };
+  disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF);
+  system.run_for(3s);
+  system.restart(second_process("simulator"));
+  system.run_for(from_seconds(rng.uniform(0.5, 3)));
+  system.kill(second_process("simulator"));
+  system.run_for(8s);
+  disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_ON);
+  system.run_for(5s);
+  for (const RobotId robot : {0u, 1u, 2u, 3u}) {
+    Order order{msg::OrderKind::ORDER_GO, robot, kClient, static_cast<OrderNumber>(to_ns(system.now()))};
+    order.goals = {{{0.5 * robot - 1, 1}}};
+    system.send(order);
+  }
+  system.run_for(1s);
+  CHECK(watch.max_speed_mps() > 0.3);
+  system.run_for(5s);
   watch.require_safe();
 }
 

@@ -25,6 +25,9 @@ constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
 // A robot counts its incarnations on from that of its simulator, which is a clock reading in nanoseconds.
 // Another simulator starts later than that.
 constexpr std::uint64_t kMaxSetbacks = 100'000;
+// Of a robot that is silent for so long, facts of an earlier simulator may be the true ones (PROTOCOL.md,
+// "Processes that must be alone").
+constexpr Duration kGoneAfter = std::chrono::seconds(1);
 
 bool is_sane(const msg::Feedback& feedback) {
   return std::isfinite(feedback.x_m()) && std::isfinite(feedback.y_m()) && std::isfinite(feedback.vx_mps()) &&
@@ -66,15 +69,18 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
     ++totals_.invalid;
     return;
   }
+  if (!reception.is_newest) return;
   const std::uint64_t life = feedback.header().incarnation();
-  if (robot->fact && life > robot->fact->life) {
-    if (life - robot->fact->life <= kMaxSetbacks)
+  if (robot->fact && life != robot->fact->life) {
+    const bool is_setback = life - robot->fact->life <= kMaxSetbacks;
+    const bool is_late = robot->fact->life - life <= kMaxSetbacks || now - robot->heard_at < kGoneAfter;
+    if (life < robot->fact->life && is_late) return;
+    if (is_setback)
       robot->forget_times();
     else
       robot->reset();
     observations_[index_of(*robot)] = {};
   }
-  if (!reception.is_newest || (robot->fact && life < robot->fact->life)) return;
   const bool executes_nothing = feedback.is_lifted() && feedback.executing().version_number() == 0;
   if (!executes_nothing) {
     KnownVersion* executing = store(*robot, feedback.executing());

@@ -19,7 +19,7 @@ LinkQuality between_hosts() {
 }  // namespace
 
 FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const FaultPlan& plan)
-    : system_(system), scenario_(scenario), plan_(plan), operator_(system) {
+    : system_(system), scenario_(scenario), plan_(plan), operator_(system, scenario) {
   for (const TimedFault& timed : plan.faults) {
     const auto* const send = std::get_if<SendForgery>(&timed.fault);
     const auto is_of = [send](const auto& forger) { return forger->victim() == send->victim; };
@@ -29,7 +29,7 @@ FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const Faul
   const auto is_order = [](const TimedFault& timed) {
     return std::holds_alternative<GiveOrder>(timed.fault);
   };
-  if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system);
+  if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system, scenario.radius_m);
   for (const ProcessNames& from_host : plan.hosts) {
     for (const ProcessNames& to_host : plan.hosts) {
       for (const std::string& from : from_host) {

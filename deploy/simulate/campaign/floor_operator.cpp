@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/messaging/senders.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
@@ -15,13 +16,24 @@ constexpr Duration kResumePeriod = std::chrono::seconds(1);
 
 }  // namespace
 
-FloorOperator::FloorOperator(SimSystem& system)
-    : system_(system), bus_(system.network()), attestation_writer_(bus_.advertise(topics::kAttestation)) {
+FloorOperator::FloorOperator(SimSystem& system, const Scenario& scenario)
+    : system_(system),
+      scenario_(scenario),
+      bus_(system.network()),
+      attestation_writer_(bus_.advertise(topics::kAttestation)) {
   bus_.become_observer();
   bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const msg::GroundTruth& truth) {
     on_floor_.clear();
     for (const msg::TrueRobotState& robot : truth.robots())
       on_floor_[robot.robot()] = Vec2(robot.x_m(), robot.y_m());
+  });
+  bus_.subscribe<msg::OrderMemory>(topics::kOrderMemory, [this](const msg::OrderMemory& memory) {
+    const auto is_of_coordinator = [](const msg::RememberedOrder& order) {
+      return order.terms().order_kind() == msg::OrderKind::ORDER_HOLD && is_coordinator(order.client());
+    };
+    const auto count = std::min<std::size_t>(memory.order_count(), memory.orders().size());
+    are_orders_lost_ |=
+        std::any_of(memory.orders().begin(), memory.orders().begin() + count, is_of_coordinator);
   });
 }
 
@@ -73,14 +85,31 @@ void FloorOperator::resume_if_held() {
       !std::ranges::any_of(system_.metrics().progress(), is_held))
     return;
   resumed_at_ = system_.now();
-  const auto number = static_cast<OrderNumber>(to_ns(system_.now()));
-  system_.send({msg::OrderKind::ORDER_RESUME, kAllRobots, static_cast<ClientId>(Sender::kOperator), number});
+  give(msg::OrderKind::ORDER_RESUME, kAllRobots);
+}
+
+void FloorOperator::send_to_goals() {
+  if (!resumes_ || !are_orders_lost_ || system_.now() - sent_at_ < kResumePeriod) return;
+  sent_at_ = system_.now();
+  for (const RobotProgress& row : system_.metrics().progress()) {
+    const std::vector<Goal>& goals = find_robot(scenario_, row.robot)->goals;
+    if (row.agent_state == msg::AgentState::AGENT_WITHOUT_ORDER && !goals.empty())
+      give(msg::OrderKind::ORDER_GO, row.robot, goals);
+  }
+}
+
+void FloorOperator::give(msg::OrderKind kind, RobotId robot, std::vector<Goal> goals) {
+  Order order{kind, robot, static_cast<ClientId>(Sender::kOperator),
+              static_cast<OrderNumber>(to_ns(system_.now()))};
+  order.goals = std::move(goals);
+  system_.send(order);
 }
 
 void FloorOperator::update() {
   if (!due() || system_.now() < due_) return;
   due_ = system_.now() + kPeriod;
   resume_if_held();
+  send_to_goals();
   std::erase_if(placings_, [this](Placing& placing) {
     const Place& request = placing.request;
     if (position_of(request.robot)) return placing.is_off_floor;

@@ -14,15 +14,16 @@ namespace sidestep {
 /// down, carries them, and attests that a robot without power is absent.
 class FloorOperator {
  public:
-  /// The system must outlive the operator.
-  explicit FloorOperator(SimSystem& system);
+  /// System and scenario must outlive the operator.
+  FloorOperator(SimSystem& system, const Scenario& scenario);
 
   /// Carries a robot that is on the floor; it arrives no later than `limit`.
   void carry(const Carry& carry, Time limit);
   void place(const Place& place);
   void take_away(RobotId robot);
   /// From now on, resumes all robots while any is held: after a restart of everything, coordinators hold all
-  /// robots for an operator.
+  /// robots for an operator. If they ever did, nobody knows the orders, so the operator sends robots without
+  /// one to the scenario's goals again.
   void resume_held() { resumes_ = true; }
 
   /// When the operator acts next; nullopt: has nothing to do.
@@ -38,16 +39,20 @@ class FloorOperator {
   };
   const Vec2* position_of(RobotId robot) const;
   void resume_if_held();
+  void send_to_goals();
+  void give(msg::OrderKind kind, RobotId robot, std::vector<Goal> goals = {});
   void publish(const RobotDisturbance& disturbance);
 
   SimSystem& system_;
+  const Scenario& scenario_;
   SimBus bus_;
   Writer<msg::AbsenceAttestation> attestation_writer_;
   std::map<RobotId, Vec2> on_floor_;
   std::vector<Placing> placings_;
   std::set<RobotId> taken_away_;
   bool resumes_ = false;
-  Time resumed_at_{};
+  bool are_orders_lost_ = false;  ///< a coordinator has held all robots in its own name
+  Time resumed_at_{}, sent_at_{};
   Time due_{};
 };
 

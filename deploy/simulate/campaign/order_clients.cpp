@@ -2,6 +2,7 @@
 #include "deploy/simulate/campaign/order_clients.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace sidestep {
@@ -15,7 +16,8 @@ bool drives(const Order& order) {
 
 }  // namespace
 
-OrderClients::OrderClients(SimSystem& system) : system_(system), bus_(system.network()) {
+OrderClients::OrderClients(SimSystem& system, double radius_m)
+    : touching_distance_m_(2 * radius_m + kContactTolerance_m), system_(system), bus_(system.network()) {
   bus_.become_observer();
   bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) { on_truth(truth); });
   bus_.subscribe<msg::OrderMemory>(topics::kOrderMemory, [this](const auto& page) { on_memory(page); });
@@ -83,13 +85,24 @@ const OrderClients::Hold* OrderClients::hold_of(RobotId robot) const {
   return longest;
 }
 
+bool OrderClients::touches_another(const msg::TrueRobotState& body, const msg::GroundTruth& truth) const {
+  return std::ranges::any_of(truth.robots(), [&](const msg::TrueRobotState& other) {
+    return other.robot() != body.robot() &&
+           std::hypot(other.x_m() - body.x_m(), other.y_m() - body.y_m()) < touching_distance_m_;
+  });
+}
+
 void OrderClients::on_truth(const msg::GroundTruth& truth) {
   const Time now = time_from_ns(truth.valid_at_ns());
   std::map<RobotId, Vec2> rest_m;
   for (const msg::TrueRobotState& body : truth.robots()) {
     const Hold* const hold = hold_of(body.robot());
-    const Time disturbed_until = time_from_ns(body.disturbance_end_ns());
-    const bool is_disturbed = body.disturbance_end_ns() >= 0 && now <= disturbed_until + kTimeToRest;
+    Time& disturbed_until = disturbed_until_[body.robot()];
+    if (body.disturbance_end_ns() >= 0)
+      disturbed_until = std::max(disturbed_until, time_from_ns(body.disturbance_end_ns()));
+    // Somebody may carry another robot against it.
+    if (touches_another(body, truth)) disturbed_until = std::max(disturbed_until, now);
+    const bool is_disturbed = disturbed_until != Time{} && now <= disturbed_until + kTimeToRest;
     if (!hold || now < *hold->confirmed_at + kTimeToRest || is_disturbed) continue;
     const Vec2 position_m(body.x_m(), body.y_m());
     const auto known = rest_m_.find(body.robot());

@@ -25,8 +25,11 @@ class OrderClients {
   /// A resting robot may correct its place.
   static constexpr double kMaxMovement_m = 0.05;
 
-  /// The system must outlive the clients.
-  explicit OrderClients(SimSystem& system);
+  /// Ground truth is sampled, so robots that touch may appear this far apart.
+  static constexpr double kContactTolerance_m = 0.01;
+
+  /// `radius_m`: of robots. The system must outlive the clients.
+  OrderClients(SimSystem& system, double radius_m);
 
   void give(const Order& order);
   /// What was wrong, in words.
@@ -54,15 +57,18 @@ class OrderClients {
   void lift(const Order& resume);
   void on_change(ClientId client, const SentOrder& sent);
   void on_truth(const msg::GroundTruth& truth);
+  bool touches_another(const msg::TrueRobotState& body, const msg::GroundTruth& truth) const;
   void on_memory(const msg::OrderMemory& memory);
   /// The confirmed hold of the robot that has lasted longest; null: none.
   const Hold* hold_of(RobotId robot) const;
   void check_drives(const Client& client, std::vector<std::string>& failures) const;
 
+  const double touching_distance_m_;
   SimSystem& system_;
   SimBus bus_;  // observes
   std::map<ClientId, std::unique_ptr<Client>> clients_;
-  std::vector<Hold> holds_;                              // that nobody has tried to lift who may
+  std::vector<Hold> holds_;  // that nobody has tried to lift who may
+  std::map<RobotId, Time> disturbed_until_;
   std::map<RobotId, Vec2> rest_m_;                       // where robots that must rest are
   std::map<std::uint32_t, Memory> arriving_, memories_;  // by coordinator; the last whole ones
   std::vector<std::string> failures_;

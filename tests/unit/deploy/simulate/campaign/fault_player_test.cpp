@@ -126,6 +126,27 @@ TEST_CASE("the operator attests the absence of a robot that was taken away witho
   CHECK(system.metrics().report().audit->violations == 0);
 }
 
+TEST_CASE(
+    "after a restart of all that knew the orders the operator resumes robots and sends them to their goals") {
+  const Scenario scenario = pair_of_robots();
+  std::vector<TimedFault> faults;
+  for (const std::string& process : {agent_process(0), agent_process(1), coordinator_process(0)})
+    faults.push_back({1s, Kill{process}});
+  for (const std::string& process : {agent_process(0), agent_process(1), coordinator_process(0)})
+    faults.push_back({2s, Start{process}});
+  const FaultPlan plan = plan_of(scenario, faults, 10s);
+  SimSystem system(scenario, 1);
+  FaultPlayer player(system, scenario, plan);
+  const auto are_all = [&](msg::AgentState state) {
+    return std::ranges::all_of(system.metrics().progress(),
+                               [&](const RobotProgress& row) { return row.agent_state == state; });
+  };
+  player.run_until(9s);
+  CHECK(are_all(msg::AgentState::AGENT_HELD));
+  player.run_until(13s);
+  CHECK(are_all(msg::AgentState::AGENT_DRIVING));
+}
+
 TEST_CASE("at the end of all faults link qualities recover and partitions end") {
   const Scenario scenario = pair_of_robots();
   LinkQuality terrible;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/campaign/order_clients.hpp"
 
+#include "simulator/world/disturbance_codec.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/ordered_system.hpp"
 
@@ -12,7 +13,7 @@ constexpr ClientId kOther = kOtherClient;
 
 struct Trial {
   SimSystem system{waiting_robots(2), 1};
-  OrderClients clients{system};
+  OrderClients clients{system, waiting_robots(2).radius_m};
   Trial() { system.run_for(2s); }
   void give(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
     Order order{kind, robot, client};
@@ -43,6 +44,28 @@ TEST_CASE("a held robot that moves fails a trial, one that was resumed does not"
   CHECK(trial.clients.failures().empty() == is_resumed);
 }
 
+TEST_CASE("a held robot that is pushed by another one, which somebody carries, fails no trial") {
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_HOLD, kAllRobots, kClient);
+  trial.system.run_for(4s);
+  RobotDisturbance carry;
+  carry.robot = 1;
+  carry.kind = msg::DisturbanceKind::DISTURBANCE_CARRY;
+  carry.place_m = Vec2(-2.1, -1.5);  // through robot 0
+  carry.duration = 5s;
+  msg::Disturbance message = encode(carry);
+  Vec2 place_m{-2, -1.5};
+  trial.system.on_truth([&](const msg::GroundTruth& truth) {
+    for (const msg::TrueRobotState& body : truth.robots()) {
+      if (body.robot() == 0) place_m = {body.x_m(), body.y_m()};
+    }
+  });
+  trial.system.disturb(message);
+  trial.system.run_for(8s);
+  CHECK((place_m - Vec2(-2, -1.5)).norm() > 0.05);
+  CHECK(trial.clients.failures().empty());
+}
+
 TEST_CASE("an order that a coordinator does not remember fails a trial, until its client has repeated it") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
@@ -66,7 +89,7 @@ TEST_CASE("a coordinator that was started again and hears nobody fails no trial 
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
-  OrderClients clients{system};
+  OrderClients clients{system, scenario.radius_m};
   system.run_for(2s);
   for (const std::string& process : SimSystem::process_names(scenario)) {
     LinkQuality cut;
