@@ -219,6 +219,8 @@ class FaultSampler {
       add(at, Partition{rest, {second}, length});
     }
     add(plan_.healed_at - Duration{1}, Kill{second});
+    // If it was started again meanwhile, it was the later one, and has ended.
+    add(plan_.healed_at - Duration{1}, Start{first});
   }
 
   const Scenario& scenario_;
