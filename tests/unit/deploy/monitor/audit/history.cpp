@@ -56,6 +56,7 @@ void History::each_mention(RobotId robot, VersionNumber number,
 
 HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(system.network()) {
   bus_.become_observer();
+  bus_.follow_first_senders();
   bus_.use_rules(SharedRules(history.scenario).fingerprint(), [](const TopicInfo&, const msg::Header&) {});
   const auto collect = [this, &history]<typename Message>(const Topic<Message>& topic, RobotId robot) {
     bus_.subscribe<Message>(topic, robot, [this, &history](const Message& message) {
