@@ -21,6 +21,11 @@ constexpr double kRegularisation = 1e-8;
 /// Of numbers in single precision.
 constexpr double kRounding_m = 1e-6;
 
+/// A part takes at least so long, and changes the velocity by at most so much: nobody reads a version whose
+/// accelerations no robot has (version_codec.cpp).
+constexpr Duration kMinPart = std::chrono::milliseconds(2);
+constexpr double kMaxAcceleration_mps2 = 900;
+
 using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< of the parts, as points of the path
 using Weights = Eigen::Matrix<double, static_cast<int>(kMaxParts) + 1, 1>;
 
@@ -96,6 +101,35 @@ double max_error_m(std::span<const PathPoint> path, const Ends& ends, const Unde
   return largest_m + kRounding_m;
 }
 
+bool are_long_enough(std::span<const PathPoint> path, const Ends& ends, std::size_t parts) {
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (path[ends[part + 1]].after - path[ends[part]].after < kMinPart) return false;
+  }
+  return true;
+}
+
+/// False for a NaN.
+bool are_accelerations_small(const UnderWay& motion) {
+  Vec2 velocity_mps(motion.from_mps.x, motion.from_mps.y);
+  for (int part = 0; part < motion.part_count; ++part) {
+    const Vec2 end_mps(motion.parts[part].end_velocity_mps.x, motion.parts[part].end_velocity_mps.y);
+    const double length_s = to_seconds(Duration{motion.parts[part].duration_ns});
+    if (!((end_mps - velocity_mps).norm() <= kMaxAcceleration_mps2 * length_s)) return false;
+    velocity_mps = end_mps;
+  }
+  return true;
+}
+
+/// The last velocity all the time, for paths that take too short a time to fit anything.
+UnderWay constant(std::span<const PathPoint> path, const Vec2& velocity_mps) {
+  UnderWay motion;
+  motion.from_mps = {static_cast<float>(velocity_mps.x()), static_cast<float>(velocity_mps.y())};
+  motion.part_count = 1;
+  motion.parts[0] = {path.back().after.count(), motion.from_mps};
+  motion.error_m = static_cast<float>(max_error_m(path, {0, path.size() - 1}, motion));
+  return motion;
+}
+
 }  // namespace
 
 robot::MotionUnderWay<float> fit_motion_under_way(std::span<const PathPoint> path,
@@ -103,21 +137,20 @@ robot::MotionUnderWay<float> fit_motion_under_way(std::span<const PathPoint> pat
   UnderWay best;
   const std::size_t steps = path.empty() ? 0 : path.size() - 1;
   if (steps == 0) return best;
-  const std::size_t parts = std::min(steps, kMaxParts);
-  best.error_m = std::numeric_limits<float>::quiet_NaN();
-  const std::size_t stride = (steps + kMaxTried - 1) / kMaxTried;
-  const auto try_ends = [&](const Ends& ends) {
+  best = constant(path, last_velocity_mps);
+  const auto try_ends = [&](const Ends& ends, std::size_t parts) {
+    if (!are_long_enough(path, ends, parts)) return;
     UnderWay motion = fitted(path, last_velocity_mps, ends, parts);
     motion.error_m = static_cast<float>(max_error_m(path, ends, motion));
-    if (motion.error_m < best.error_m || best.part_count == 0) best = motion;
+    // A NaN is not better.
+    if (motion.error_m < best.error_m && are_accelerations_small(motion)) best = motion;
   };
-  if (parts < kMaxParts) {
-    try_ends(parts == 1 ? Ends{0, 1} : Ends{0, 1, 2});
-    return best;
-  }
-  for (std::size_t first = 1; first + 1 < steps; first += stride) {
+  const std::size_t stride = (steps + kMaxTried - 1) / kMaxTried;
+  try_ends({0, steps}, 1);
+  for (std::size_t first = 1; first < steps; first += stride) {
+    try_ends({0, first, steps}, 2);
     for (std::size_t second = first + 1; second < steps; second += stride)
-      try_ends({0, first, second, steps});
+      try_ends({0, first, second, steps}, 3);
   }
   return best;
 }
