@@ -70,10 +70,18 @@ int give_orders(const OrderOptions& options,
     fmt::print("{}\n", to_line(sent));
     if (options.waits ? all(is_over) : all(is_answered)) bus.stop();
   });
+  bool is_coordinator_heard = false;
+  bus.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+    is_coordinator_heard |= state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
+  });
   handles = send(client);
   bus.run_until(bus.now() + kAnswerTimeout);
   if (!all(is_answered)) {
-    fmt::print(stderr, "sidestep: no active coordinator answers on this domain and interface\n");
+    fmt::print(stderr, "sidestep: {}\n",
+               is_coordinator_heard
+                   ? "the coordinator has not confirmed the order, which may count nevertheless: a hold is "
+                     "confirmed when the agent of a held robot remembers it, and no such agent may be running"
+                   : "no active coordinator answers on this domain and interface");
     return kExitFailure;
   }
   if (options.waits && !all(is_over)) bus.run();
@@ -145,8 +153,11 @@ Options add_command(const CliCommand& command) {
 }
 
 void add_client_option(const CliCommand& command, const Options& options) {
-  command.add_option("--client", options->client,
-                     "send as this client instead of the operator, whose orders come first");
+  // A script's unset variable must not become the operator.
+  command
+      .add_option("--client", options->client,
+                  "send as this client instead of the operator, whose orders come first")
+      .check([](const std::string& name) { return std::string(name.empty() ? "expected a name" : ""); });
 }
 
 void add_go(const CliCommand& root, std::function<int()>& action) {

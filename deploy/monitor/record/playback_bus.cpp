@@ -65,14 +65,14 @@ void PlaybackBus::read_header(const std::string& path) {
     }
   }
   if (!is_ours || !has_scenario)
-    throw std::runtime_error(fmt::format("{}: {}", path,
-                                         reader_.damage().empty()
-                                             ? "is not a recording of Sidestep"
-                                             : "the beginning is damaged: " + reader_.damage()));
+    throw std::invalid_argument(fmt::format("{}: {}", path,
+                                            reader_.damage().empty()
+                                                ? "is not a recording of Sidestep"
+                                                : "the beginning is damaged: " + reader_.damage()));
   try {
     if (!map.yaml.empty()) header_.map = map_of(map);
   } catch (const std::exception& error) {
-    throw std::runtime_error(fmt::format("{}: the recorded map: {}", path, error.what()));
+    throw std::invalid_argument(fmt::format("{}: the recorded map: {}", path, error.what()));
   }
 }
 

@@ -24,9 +24,9 @@ McapReader::McapReader(const std::string& path) : file_(std::fopen(path.c_str(),
     file_.reset();
     errno = EISDIR;
   }
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  if (!file_) throw std::invalid_argument(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   if (!std::ranges::equal(read(kMcapMagic.size()), kMcapMagic))
-    throw std::runtime_error(path + ": is not an MCAP file");
+    throw std::invalid_argument(path + ": is not an MCAP file");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error) file_bytes_ = size;
 }
