@@ -10,8 +10,19 @@ namespace {
 // Slower wheels have less noise, in proportion to their speed.
 constexpr double kFullNoiseSpeed_mps = 0.1;
 
+/// Wheels and floor that can do what the robots' limits say, with a reserve to follow the reference.
+BodySettings body_settings(const MotionLimits& limits) {
+  BodySettings body;
+  const double needed_mps2 = 1.2 * std::max(limits.acceleration_mps2, limits.deceleration_mps2);
+  body.acceleration_mps2 = std::max(body.acceleration_mps2, needed_mps2);
+  body.friction_mps2 = std::max(body.friction_mps2, needed_mps2);
+  body.speed_mps = std::max(body.speed_mps, 1.25 * limits.speed_mps);
+  return body;
+}
+
 FirmwareSettings firmware_settings(const Scenario& scenario) {
   FirmwareSettings settings;
+  settings.body = body_settings(scenario.limits);
   settings.estimator.velocity_noise_mps = scenario.odometry.velocity_noise_mps;
   settings.estimator.scale_error = scenario.odometry.scale_error;
   settings.estimator.fix_noise_m = scenario.vision.position_noise_m;
@@ -40,8 +51,9 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
       clock_bound_(from_seconds(scenario.clock_bound_s)),
       tracking_bound_m_(scenario.tracking_bound_m),
       time_(begin),
-      contacts_(scenario.obstacles, scenario.map, scenario.radius_m, BodySettings{}.speed_mps),
-      opponents_(scenario.opponents, scenario.radius_m, BodySettings{}.speed_mps) {
+      contacts_(scenario.obstacles, scenario.map, scenario.radius_m,
+                body_settings(scenario.limits).speed_mps),
+      opponents_(scenario.opponents, scenario.radius_m, body_settings(scenario.limits).speed_mps) {
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
   bodies_.reserve(scenario.robots.size());

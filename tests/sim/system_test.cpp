@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -48,6 +49,28 @@ struct MonitoredSystem {
     REQUIRE(speed_mps(robot) >= 0.8);
   }
 };
+
+TEST_CASE("simulated robots keep to whatever limits of motion a scenario states") {
+  const auto seed = GENERATE(range(1u, 31u));
+  Rng rng(seed);
+  Scenario scenario = shipped("crossing");
+  const auto log_uniform = [&](double low, double high) { return low * std::pow(high / low, rng.uniform()); };
+  scenario.limits.acceleration_mps2 = log_uniform(0.5, 30);
+  scenario.limits.deceleration_mps2 = log_uniform(0.5, 30);
+  scenario.limits.speed_mps = log_uniform(0.3, 5);
+  scenario.margin_m =
+      2 * scenario.tracking_bound_m + 4 * scenario.clock_bound_s * scenario.limits.speed_mps + 1e-6;
+  CAPTURE(seed, scenario.limits.acceleration_mps2, scenario.limits.deceleration_mps2,
+          scenario.limits.speed_mps);
+  MonitoredSystem run(scenario, seed);
+  int own_stops = 0;
+  run.system.on_event(LogLevel::kWarning, [&](const std::string&, const LogEvent& event) {
+    own_stops += event.text.find("makes its own stop") != std::string::npos;
+  });
+  CHECK(run.system.run_until_arrived(run.system.begin() + std::chrono::seconds(60)));
+  run.require_safe();
+  CHECK(own_stops == 0);
+}
 
 TEST_CASE("in every shipped scenario all robots arrive without contact") {
   const std::string name =
