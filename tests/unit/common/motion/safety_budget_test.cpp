@@ -13,9 +13,14 @@ TEST_CASE("the budget line shows the composition of the margin and the spare par
   CHECK(budget_line({}, 0.014) ==
         "safety budget: margin 14.0 mm = 2 x 5.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
   CHECK(
-      budget_line({0.003, 0.0005, 2}, 0.025) ==
-      "safety budget: margin 25.0 mm = 2 x 3.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s + 15.0 "
+      budget_line({0.006, 0.0005, 2}, 0.025) ==
+      "safety budget: margin 25.0 mm = 2 x 6.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s + 9.0 "
       "mm to spare");
+  CHECK_THAT(
+      budget_line({0.005, 0.01, 2}, 0.1),
+      EndsWith(
+          "warning: cameras' clocks may shift robots by 40.0 mm, of which tracking covers 2.0 mm: expect "
+          "own stops, or set tracking_bound_m to 100.0 mm or more"));
 }
 
 TEST_CASE("tracking errors and clock offsets within the budget do not bring robots into contact") {
