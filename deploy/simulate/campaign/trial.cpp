@@ -67,6 +67,16 @@ bool is_detection_certain(const Trial& trial) {
   });
 }
 
+/// Whether a second simulator ran. A process that does not hear the first one for a second takes the other
+/// one for its successor (PROTOCOL.md, "Processes that must be alone"). The audit reports what that process
+/// does then; only contacts count as failures.
+bool has_second_floor(const FaultPlan& plan) {
+  return std::ranges::any_of(plan.faults, [](const TimedFault& timed) {
+    const auto* const start = std::get_if<Start>(&timed.fault);
+    return start && start->process == second_process("simulator");
+  });
+}
+
 void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult& result) {
   result.contacts = report.unexcused_contacts();
   result.excused_contacts = report.audit->excused_contacts;
@@ -92,7 +102,7 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
   const auto fail = [&](const std::string& failure) { result.failures.push_back(failure); };
   if (result.contacts > 0)
     fail(fmt::format("{} contacts, {:.6f} m s of penetration", result.contacts, report.penetration_m_s));
-  if (report.audit->violations > 0) {
+  if (report.audit->violations > 0 && !has_second_floor(trial.plan)) {
     fail(fmt::format("{} audit violations, the first: {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
