@@ -21,8 +21,7 @@ constexpr double kRegularisation = 1e-8;
 /// Of numbers in single precision.
 constexpr double kRounding_m = 1e-6;
 
-/// A part takes at least so long, and changes the velocity by at most so much: nobody reads a version whose
-/// accelerations no robot has (version_codec.cpp).
+/// Limits of a part. Receivers refuse a version with an acceleration above 1000 m/s² (version_codec.cpp).
 constexpr Duration kMinPart = std::chrono::milliseconds(2);
 constexpr double kMaxAcceleration_mps2 = 900;
 

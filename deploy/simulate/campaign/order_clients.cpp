@@ -121,9 +121,11 @@ void OrderClients::on_memory(const msg::OrderMemory& message) {
   if (message.page_count() == 0) return;
   const auto page = decode(message, bus_.now());
   if (!page) return;  // e.g. of a coordinator with other rules
-  // It was started again, and may know no order yet.
-  if (!page->is_complete) memories_.erase(page->process);
-  if (!page->is_complete) return;
+  if (!page->is_complete) {
+    // It was started again, and may know no order yet.
+    memories_.erase(page->process);
+    return;
+  }
   Memory& memory = arriving_[page->process];
   if (page->index == 0) memory = {};
   if (page->index != memory.pages) return;

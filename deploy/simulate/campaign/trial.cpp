@@ -69,8 +69,8 @@ bool is_detection_certain(const Trial& trial) {
 
 /// Whether a second simulator ran. A process that does not hear the first one for a second takes the other
 /// one for its successor (PROTOCOL.md, "Processes that must be alone"). The audit reports what that process
-/// does then; only contacts count as failures, and the audit may hear
-/// nothing of a robot of which it heard the other one last.
+/// does then, and may itself lose a robot of which it heard the other one last. So such trials fail by
+/// contacts, by stuck robots and by lost orders, not by the audit.
 bool has_second_floor(const FaultPlan& plan) {
   return std::ranges::any_of(plan.faults, [](const TimedFault& timed) {
     const auto* const start = std::get_if<Start>(&timed.fault);
