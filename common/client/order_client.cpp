@@ -217,7 +217,21 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
   if (++round.next_page == page->count) compare(round.book);
 }
 
+bool OrderClient::is_forgotten(const SentOrder& sent) {
+  if (++missing_[sent.handle] < kRoundsUntilForgotten) return false;
+  missing_.erase(sent.handle);
+  return true;
+}
+
 void OrderClient::compare(const OrderBook& remembered) {
+  for (const auto& [handle, sent] : sent_) {
+    const bool has_ended_others = sent.phase == OrderPhase::kArrived || sent.phase == OrderPhase::kAccepted;
+    if (!is_closed(sent) || !has_ended_others) continue;
+    if (!remembered.has_ended_by(sent.order))
+      missing_.erase(handle);
+    else if (is_forgotten(sent))
+      publish(sent.order);
+  }
   std::vector<OrderHandle> open;
   for (const auto& [handle, sent] : sent_) {
     if (lasts(sent.order) && !is_closed(sent)) open.push_back(handle);
@@ -241,8 +255,7 @@ void OrderClient::compare(SentOrder& sent, const OrderBook& remembered) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
   } else if (stops(sent.order) && remembered.is_lifted(sent.order)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
-  } else if (sent.phase != OrderPhase::kSent && ++missing_[sent.handle] >= kRoundsUntilForgotten) {
-    missing_.erase(sent.handle);
+  } else if (sent.phase != OrderPhase::kSent && is_forgotten(sent)) {
     update(sent, OrderPhase::kSent, 0);  // and is repeated
   }
 }

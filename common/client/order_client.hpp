@@ -43,7 +43,8 @@ struct SentOrder {
 };
 
 /// Sends orders, repeats them until a coordinator has answered and whenever all coordinators have forgotten
-/// them (orders to go, holds and zones, as long as they are in force), and follows what becomes of them. If
+/// them (orders to go, holds and zones as long as they are in force; others while coordinators remember what
+/// they have replaced, cancelled, lifted or removed), and follows what becomes of them. If
 /// this client's clock is behind those of others, an order is numbered again, above all that the coordinators
 /// know: otherwise an earlier order of another client would count as later. That never moves an order behind
 /// a later one of this client.
@@ -96,6 +97,8 @@ class OrderClient {
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
+  /// Whether enough whole memories in a row lack the order, this one included.
+  bool is_forgotten(const SentOrder& sent);
   void compare(const OrderBook& remembered);
   void compare(SentOrder& sent, const OrderBook& remembered);
   void forget(std::map<OrderHandle, SentOrder>::iterator sent);
@@ -108,7 +111,7 @@ class OrderClient {
   std::map<OrderHandle, SentOrder> sent_;
   std::map<OrderNumber, OrderHandle> by_number_;  // current numbers
   std::size_t closed_count_ = 0;
-  std::map<OrderHandle, int> missing_;  // whole memories in a row that lack the order
+  std::map<OrderHandle, int> missing_;  // whole memories in a row that lack an order that they should have
   std::map<RobotId, OrderReport> reports_;
   std::map<std::uint32_t, Round> rounds_;  // by coordinator
   std::function<void(const SentOrder&)> on_change_;

@@ -242,6 +242,12 @@ bool OrderBook::is_lifted(const Order& hold) const {
   return has_resumed(hold.client, hold.robot, hold.number) || has_resumed(kOperator, hold.robot, hold.number);
 }
 
+bool OrderBook::has_ended_by(const Order& order) const {
+  if (knows(order)) return false;
+  if (order.kind == msg::OrderKind::ORDER_RESUME) return lifts_any(order);
+  return orders_.contains(place_of(order));  // by an earlier one, since this one is not known
+}
+
 bool OrderBook::stands(const Order& order) const {
   const auto known = orders_.find(place_of(order));
   return known != orders_.end() && known->second.order.kind == order.kind &&

@@ -194,6 +194,47 @@ TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent agai
   CHECK_FALSE(is_sent_again(system, hold));
 }
 
+TEST_CASE("an order that has ended another is sent again when the other returns without it") {
+  System system;
+  const auto send = GENERATE(+[](OrderClient& client) { return client.cancel(0); },
+                             +[](OrderClient& client) { return client.resume(kAllRobots); },
+                             +[](OrderClient& client) { return client.resume(3); },
+                             +[](OrderClient& client) { return client.remove_zone(2); });
+  system.client.go(0, {{{1, 0}}});
+  system.client.hold(3);
+  system.client.zone(2, disc(1));
+  system.run_for(100ms);
+  const OrderBook before = system.book;
+  const OrderHandle ending = send(system.client);
+  system.run_for(100ms);
+  REQUIRE(system.client.find(ending)->phase == OrderPhase::kAccepted);
+  CHECK_FALSE(is_sent_again(system, ending));
+  system.book = {};
+  CHECK_FALSE(is_sent_again(system, ending));
+  system.book = before;
+  CHECK(is_sent_again(system, ending));
+  CHECK(system.book.stands(system.client.find(ending)->order));
+  CHECK(system.client.find(ending)->phase == OrderPhase::kAccepted);
+  CHECK_FALSE(is_sent_again(system, ending));
+}
+
+TEST_CASE("an order to go that the robot has finished is sent again when the one before it returns") {
+  System system;
+  system.client.go(0, {{{1, 0}}});
+  system.run_for(100ms);
+  const OrderBook before = system.book;
+  const OrderHandle second = system.client.go(0, {{{2, 0}}});
+  system.run_for(100ms);
+  system.book.report(0, kClient, system.client.find(second)->order.number,
+                     {msg::OrderState::ORDER_ARRIVED, 0});
+  system.tell_memory();
+  REQUIRE(system.client.find(second)->phase == OrderPhase::kArrived);
+  system.book = before;
+  CHECK(is_sent_again(system, second));
+  CHECK(system.book.stands(system.client.find(second)->order));
+  CHECK(system.client.find(second)->phase == OrderPhase::kArrived);
+}
+
 TEST_CASE("a hold of one robot is still in force after its client has resumed another") {
   System system;
   const OrderHandle hold = system.client.hold(3);
