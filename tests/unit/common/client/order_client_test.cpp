@@ -196,16 +196,17 @@ TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent agai
 
 TEST_CASE("an order that has ended another is sent again when the other returns without it") {
   System system;
-  const auto send = GENERATE(+[](OrderClient& client) { return client.cancel(0); },
-                             +[](OrderClient& client) { return client.resume(kAllRobots); },
-                             +[](OrderClient& client) { return client.resume(3); },
-                             +[](OrderClient& client) { return client.remove_zone(2); });
+  const auto kind =
+      GENERATE(msg::OrderKind::ORDER_CANCEL, msg::OrderKind::ORDER_RESUME, msg::OrderKind::ORDER_REMOVE_ZONE);
+  CAPTURE(static_cast<int>(kind));
   system.client.go(0, {{{1, 0}}});
   system.client.hold(3);
   system.client.zone(2, disc(1));
   system.run_for(100ms);
   const OrderBook before = system.book;
-  const OrderHandle ending = send(system.client);
+  const OrderHandle ending = kind == msg::OrderKind::ORDER_CANCEL   ? system.client.cancel(0)
+                             : kind == msg::OrderKind::ORDER_RESUME ? system.client.resume(kAllRobots)
+                                                                    : system.client.remove_zone(2);
   system.run_for(100ms);
   REQUIRE(system.client.find(ending)->phase == OrderPhase::kAccepted);
   CHECK_FALSE(is_sent_again(system, ending));
