@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/messaging/version_codec.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -21,9 +23,9 @@ constexpr double kRegularisation = 1e-8;
 /// Of numbers in single precision.
 constexpr double kRounding_m = 1e-6;
 
-/// Limits of a part. Receivers refuse a version with an acceleration above 1000 m/s² (version_codec.cpp).
 constexpr Duration kMinPart = std::chrono::milliseconds(2);
-constexpr double kMaxAcceleration_mps2 = 900;
+/// Of a part. Receivers would refuse more, and compute it from numbers in single precision.
+constexpr double kMaxPartAcceleration_mps2 = 0.9 * kMaxAcceleration_mps2;
 
 using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< of the parts, as points of the path
 using Weights = Eigen::Matrix<double, static_cast<int>(kMaxParts) + 1, 1>;
@@ -113,7 +115,7 @@ bool are_accelerations_small(const UnderWay& motion) {
   for (int part = 0; part < motion.part_count; ++part) {
     const Vec2 end_mps(motion.parts[part].end_velocity_mps.x, motion.parts[part].end_velocity_mps.y);
     const double length_s = to_seconds(Duration{motion.parts[part].duration_ns});
-    if (!((end_mps - velocity_mps).norm() <= kMaxAcceleration_mps2 * length_s)) return false;
+    if (!((end_mps - velocity_mps).norm() <= kMaxPartAcceleration_mps2 * length_s)) return false;
     velocity_mps = end_mps;
   }
   return true;

@@ -8,7 +8,6 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxInflation_m = 10;
-constexpr double kMaxAcceleration_mps2 = 1000;
 constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);
 
 // False for a NaN.

@@ -12,6 +12,8 @@ namespace sidestep {
 inline constexpr double kMaxCoordinate_m = 1e4;
 /// Codecs refuse larger speeds: no robot is as fast.
 inline constexpr double kMaxSpeed_mps = 100;
+/// Codecs refuse versions with larger accelerations along an axis.
+inline constexpr double kMaxAcceleration_mps2 = 1000;
 
 /// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
 /// times and durations within bounds, and phase count and robot id in range.

@@ -6,6 +6,7 @@
 
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 #include "tests/sim/shuttles.hpp"
 
 namespace sidestep::clock_jumps_test {
@@ -57,11 +58,10 @@ History sample(std::uint64_t seed) {
 
 void apply(const Jump& jump, SimSystem& system) {
   if (!jump.clock.starts_with("robot ")) return system.set_clock(jump.clock, jump.offset);
-  msg::Disturbance disturbance;
-  disturbance.robot(static_cast<RobotId>(std::stoul(jump.clock.substr(6))));
-  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_CLOCK);
-  disturbance.clock_offset_ns(jump.offset.count());
-  system.disturb(disturbance);
+  const auto robot = static_cast<RobotId>(std::stoul(jump.clock.substr(6)));
+  auto message = disturbance(robot, msg::DisturbanceKind::DISTURBANCE_CLOCK);
+  message.clock_offset_ns(jump.offset.count());
+  system.disturb(message);
 }
 
 /// The time after which all robots drive, in seconds after all clocks agree.

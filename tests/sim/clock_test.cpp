@@ -9,6 +9,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
 namespace sidestep::clock_test {
@@ -47,10 +48,8 @@ TEST_CASE("a new agent helps a robot to find its pose although its host's clock 
   error.offset = from_seconds(ahead_s);
   SimSystem system(scenario, 1, {{"agent 2", error}});
   system.run_for(std::chrono::milliseconds(1500));
-  msg::Disturbance disturbance;
-  disturbance.robot(2);
-  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE);
-  system.disturb(disturbance);
+  auto forget_pose = disturbance(2, msg::DisturbanceKind::DISTURBANCE_FORGET_POSE);
+  system.disturb(forget_pose);
   // The new agent cannot measure the robot's clock, because the robot reports nothing.
   system.run_for(std::chrono::milliseconds(5));
   system.kill("agent 2");
@@ -205,9 +204,7 @@ TEST_CASE(
     const Duration at = from_seconds(rng.uniform(0.5, 2.5));
     const Duration error = from_seconds(rng.chance(0.5) ? size_s : -size_s);
     CAPTURE(to_seconds(at), to_seconds(error));
-    msg::Disturbance clock;
-    clock.robot(3);
-    clock.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_CLOCK);
+    auto clock = disturbance(3, msg::DisturbanceKind::DISTURBANCE_CLOCK);
     clock.clock_offset_ns(error.count());
     system.run_for(at);
     system.disturb(clock);

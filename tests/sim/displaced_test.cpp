@@ -11,6 +11,7 @@
 #include "deploy/simulate/system/sim_system.hpp"
 #include "simulator/world/body.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 
 namespace sidestep::displaced_test {
 
@@ -109,13 +110,6 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
     if (!is_clear(last.position_m + driven * direction, t)) return false;
   }
   return true;
-}
-
-msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) {
-  msg::Disturbance message;
-  message.robot(robot);
-  message.disturbance_kind(kind);
-  return message;
 }
 
 struct Fault {

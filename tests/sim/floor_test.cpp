@@ -4,6 +4,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 
 namespace sidestep::floor_test {
 
@@ -55,9 +56,7 @@ TEST_CASE("a pushed robot reports it within the latency of cameras, vision and r
     system.run_for(std::chrono::milliseconds(2000));
     REQUIRE(watch.count == 0);
     const Time pushed = system.now();
-    msg::Disturbance push;
-    push.robot(scenario.robots[0].id);
-    push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
+    auto push = disturbance(scenario.robots[0].id, msg::DisturbanceKind::DISTURBANCE_PUSH);
     push.vy_mps(push_mps);
     disturbances.publish(push, pushed);
     system.run_for(std::chrono::milliseconds(300));
@@ -96,12 +95,6 @@ struct Disturbed {
         bus(system.network()),
         disturbances(bus.advertise(topics::kDisturbance)) {}
 
-  msg::Disturbance disturbance(RobotId robot, msg::DisturbanceKind kind) const {
-    msg::Disturbance message;
-    message.robot(robot);
-    message.disturbance_kind(kind);
-    return message;
-  }
   void send(msg::Disturbance message) { disturbances.publish(message, system.now()); }
   bool arrive_within(double seconds) {
     return system.run_until_arrived(system.now() + from_seconds(seconds));
@@ -123,7 +116,7 @@ TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
     for (int i = 0; i < 6; ++i) {
       const auto kind =
           rng.chance(0.5) ? msg::DisturbanceKind::DISTURBANCE_PUSH : msg::DisturbanceKind::DISTURBANCE_REBOOT;
-      msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      msg::Disturbance message = disturbance(static_cast<RobotId>(rng.below(8)), kind);
       // The slide is shorter than the margin.
       const Vec2 change = rotated(Vec2(0.3, 0), rng.uniform(-3.14, 3.14));
       message.vx_mps(change.x());
@@ -148,7 +141,7 @@ TEST_CASE("robots that slipped, or had a blocked wheel, continue to their goals"
     for (int i = 0; i < 4; ++i) {
       const auto kind =
           rng.chance(0.5) ? msg::DisturbanceKind::DISTURBANCE_SLIP : msg::DisturbanceKind::DISTURBANCE_BLOCK;
-      msg::Disturbance message = run.disturbance(static_cast<RobotId>(rng.below(8)), kind);
+      msg::Disturbance message = disturbance(static_cast<RobotId>(rng.below(8)), kind);
       message.grip(rng.uniform(0.2, 0.8));
       message.heading_rad(rng.uniform(-3, 3));
       message.duration_ns(static_cast<std::int64_t>(rng.below(300'000'000)));
@@ -171,10 +164,10 @@ TEST_CASE("a robot is taken off the floor and put down elsewhere while the other
   run.system.on_truth([&](const msg::GroundTruth& truth) { seen = truth.robots().size(); });
   run.system.run_for(std::chrono::milliseconds(1500));
   CHECK(seen == (begins_absent ? 7 : 8));
-  if (!begins_absent) run.send(run.disturbance(3, msg::DisturbanceKind::DISTURBANCE_LIFT));
+  if (!begins_absent) run.send(disturbance(3, msg::DisturbanceKind::DISTURBANCE_LIFT));
   run.system.run_for(std::chrono::milliseconds(1500));
   CHECK(seen == 7);
-  msg::Disturbance place = run.disturbance(3, msg::DisturbanceKind::DISTURBANCE_PLACE);
+  msg::Disturbance place = disturbance(3, msg::DisturbanceKind::DISTURBANCE_PLACE);
   place.x_m(-1.8);
   place.y_m(1.3);
   run.send(place);

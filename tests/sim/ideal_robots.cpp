@@ -7,6 +7,7 @@
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
+#include "tests/sim/disturbance.hpp"
 
 namespace sidestep {
 namespace {
@@ -78,12 +79,10 @@ void IdealRobots::lift(RobotId id) {
 }
 
 void IdealRobots::place(RobotId id, const Vec2& position) {
-  msg::Disturbance disturbance;
-  disturbance.robot(id);
-  disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
-  disturbance.x_m(position.x());
-  disturbance.y_m(position.y());
-  disturbance_writer_.publish(disturbance, bus_.now());
+  auto placed = disturbance(id, msg::DisturbanceKind::DISTURBANCE_PLACE);
+  placed.x_m(position.x());
+  placed.y_m(position.y());
+  disturbance_writer_.publish(placed, bus_.now());
 }
 
 void IdealRobots::publish_world() {

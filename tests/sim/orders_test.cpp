@@ -10,6 +10,7 @@
 #include "common/messaging/process_names.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 #include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::orders_test {
@@ -240,9 +241,7 @@ TEST_CASE("robots that stopped by themselves before anything was granted are not
   OrderedSystem run(shipped("crossing"), 1);
   run.system.kill("coordinator");
   run.system.run_for(milliseconds(100));
-  msg::Disturbance reboot;
-  reboot.robot(3);
-  reboot.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_REBOOT);
+  auto reboot = disturbance(3, msg::DisturbanceKind::DISTURBANCE_REBOOT);
   run.system.disturb(reboot);
   run.system.run_for(milliseconds(200));
   run.system.restart("coordinator");

@@ -10,6 +10,7 @@
 #include "deploy/monitor/metrics/report.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/sim/disturbance.hpp"
 #include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::second_process_test {
@@ -77,6 +78,7 @@ TEST_CASE(
   system.run_for(3s);
   CHECK_FALSE(system.is_alive(second_process("simulator")));
   CHECK(system.is_alive("simulator"));
+  CHECK_FALSE(system.was_second_simulator_believed());
   CHECK(watch.has_reported(second_process("simulator"), "another simulator works in this domain"));
   CHECK(system.run_until_arrived(system.now() + 60s));
   watch.require_safe();
@@ -116,14 +118,13 @@ TEST_CASE(
   system.run_for(from_seconds(rng.uniform(0.5, 3)));
   for (const auto kind :
        {msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, msg::DisturbanceKind::DISTURBANCE_LIFT}) {
-    msg::Disturbance taken_away;
-    taken_away.robot(3);
-    taken_away.disturbance_kind(kind);
+    auto taken_away = disturbance(3, kind);
     system.disturb(taken_away);
   }
   system.run_for(8s);
   system.restart(second_process("simulator"));
   system.run_for(3s);
+  CHECK(system.was_second_simulator_believed());
   watch.require_safe();
 }
 
@@ -136,19 +137,15 @@ TEST_CASE(
   Watch watch(system);
   system.stay_with_others();
   system.run_for(from_seconds(rng.uniform(1.5, 3)));
-  const auto disturb = [&](msg::DisturbanceKind kind) {
-    msg::Disturbance message;
-    message.robot(3);
-    message.disturbance_kind(kind);
-    system.disturb(message);
-  };
-  disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF);
+  auto off = disturbance(3, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF),
+       on = disturbance(3, msg::DisturbanceKind::DISTURBANCE_SWITCH_ON);
+  system.disturb(off);
   system.run_for(3s);
   system.restart(second_process("simulator"));
   system.run_for(from_seconds(rng.uniform(0.5, 3)));
   system.kill(second_process("simulator"));
   system.run_for(8s);
-  disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_ON);
+  system.disturb(on);
   system.run_for(5s);
   for (const RobotId robot : {0u, 1u, 2u, 3u}) {
     Order order{msg::OrderKind::ORDER_GO, robot, kClient, static_cast<OrderNumber>(to_ns(system.now()))};

@@ -74,6 +74,11 @@ std::map<std::string, std::uint64_t> CampaignSummary::trials_by_fault() const {
   return total;
 }
 
+std::size_t CampaignSummary::unaudited() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(results_, [](const auto& entry) { return !entry.second.is_audited; }));
+}
+
 double CampaignSummary::excused_time_share() const {
   double pair_s = 0, excused_pair_s = 0;
   for (const auto& [seed, result] : results_) {
@@ -110,6 +115,8 @@ std::string CampaignSummary::text() const {
       "violations\n",
       seeds(), failed(), hours, distance_m / 1000, contacts(), sum(&TrialResult::audit_violations),
       sum(&TrialResult::firmware_violations));
+  if (unaudited() > 0)
+    text += fmt::format("{} trials without the audit: a process believed a second simulator\n", unaudited());
   text += fmt::format("{} excused contacts", sum(&TrialResult::excused_contacts));
   for (const auto& [cause, excused] : excused_by_cause())
     text += fmt::format(", {} of cause {}", excused, cause);
@@ -151,6 +158,7 @@ std::string CampaignSummary::json() const {
   json["excused_by_cause"] = excused_by_cause();
   json["trials_by_fault"] = trials_by_fault();
   json["excused_time_share"] = excused_time_share();
+  json["unaudited"] = unaudited();
   json["audit_violations"] = sum(&TrialResult::audit_violations);
   json["firmware_violations"] = sum(&TrialResult::firmware_violations);
   json["contacts_per_robot_hour_95"] = upper_bound_95(contacts(), robot_hours());

@@ -22,6 +22,8 @@ class CampaignSummary {
   std::map<std::string, std::uint64_t> excused_by_cause() const;
   /// Number of trials with each kind of fault.
   std::map<std::string, std::uint64_t> trials_by_fault() const;
+  /// Number of trials that the audit does not judge.
+  std::size_t unaudited() const;
   /// Share of the time of all pairs of robots in which a contact would have been excused.
   double excused_time_share() const;
 

@@ -7,15 +7,19 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <stdexcept>
+#include <sys/file.h>
 
 namespace sidestep {
 
 ResultsFile::ResultsFile(const std::string& path, const std::string& campaign) : path_(path) {
-  const bool is_new = !std::filesystem::exists(path) || std::filesystem::file_size(path) == 0;
-  if (!is_new) read(campaign);
   file_.reset(std::fopen(path.c_str(), "a"));
   if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-  if (is_new) write(campaign);
+  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0)
+    throw std::runtime_error(fmt::format("{}: another campaign writes it now", path));
+  if (std::filesystem::file_size(path) == 0)
+    write(campaign);
+  else
+    read(campaign);
 }
 
 void ResultsFile::read(const std::string& campaign) {

@@ -15,7 +15,7 @@ namespace sidestep {
 class ResultsFile {
  public:
   /// Opens or creates the file. An incomplete last line is removed. Throws std::runtime_error when the file
-  /// belongs to another campaign, is malformed, or cannot be written.
+  /// belongs to another campaign, is malformed, cannot be written, or another process writes it.
   ResultsFile(const std::string& path, const std::string& campaign);
 
   /// The results in the file when it was opened.

@@ -67,17 +67,6 @@ bool is_detection_certain(const Trial& trial) {
   });
 }
 
-/// Whether a second simulator ran. A process that does not hear the first one for a second takes the other
-/// one for its successor (PROTOCOL.md, "Processes that must be alone"). The audit reports what that process
-/// does then, and may itself lose a robot of which it heard the other one last. So such trials fail by
-/// contacts, by stuck robots and by lost orders, not by the audit.
-bool has_second_floor(const FaultPlan& plan) {
-  return std::ranges::any_of(plan.faults, [](const TimedFault& timed) {
-    const auto* const start = std::get_if<Start>(&timed.fault);
-    return start && start->process == second_process("simulator");
-  });
-}
-
 void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult& result) {
   result.contacts = report.unexcused_contacts();
   result.excused_contacts = report.audit->excused_contacts;
@@ -103,11 +92,11 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
   const auto fail = [&](const std::string& failure) { result.failures.push_back(failure); };
   if (result.contacts > 0)
     fail(fmt::format("{} contacts, {:.6f} m s of penetration", result.contacts, report.penetration_m_s));
-  if (report.audit->violations > 0 && !has_second_floor(trial.plan)) {
+  if (report.audit->violations > 0 && result.is_audited) {
     fail(fmt::format("{} audit violations, the first: {}", report.audit->violations,
                      to_line(report.audit->first.front())));
   }
-  if (report.audit->verdict() == AuditVerdict::kNotJudged && !has_second_floor(trial.plan))
+  if (report.audit->verdict() == AuditVerdict::kNotJudged && result.is_audited)
     fail("the audit did not judge the run: " + shortfall(*report.audit));
   if (report.firmware_violations > 0) fail(fmt::format("{} firmware violations", report.firmware_violations));
   const std::vector<RobotId> out_of_bound = robots_with(trial.plan, RobotEnd::kClockOutOfBound);
@@ -186,6 +175,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
+  result.is_audited = !system.was_second_simulator_believed();
   add_failures(trial, system.metrics().progress(), system.metrics().all_arrived(), final_report, result);
   std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
   if (report) {

@@ -16,6 +16,7 @@ Json to_json(const TrialResult& r) {
           {"excused_by_cause", r.excused_by_cause},
           {"pair_s", r.pair_s},
           {"excused_pair_s", r.excused_pair_s},
+          {"is_audited", r.is_audited},
           {"audit_violations", r.audit_violations},
           {"firmware_violations", r.firmware_violations},
           {"proposals", r.proposals},
@@ -43,6 +44,7 @@ TrialResult parse_trial_result(const std::string& line) {
   json.at("excused_by_cause").get_to(r.excused_by_cause);
   json.at("pair_s").get_to(r.pair_s);
   json.at("excused_pair_s").get_to(r.excused_pair_s);
+  json.at("is_audited").get_to(r.is_audited);
   json.at("audit_violations").get_to(r.audit_violations);
   json.at("firmware_violations").get_to(r.firmware_violations);
   json.at("proposals").get_to(r.proposals);

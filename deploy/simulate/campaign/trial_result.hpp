@@ -20,6 +20,10 @@ struct TrialResult {
   std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same by cause
   double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
   double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused
+  /// Whether the audit judges it. Not if a process believed a second simulator, because it had not heard the
+  /// first one for a while: what that process does then breaks rules, which the audit reports (PROTOCOL.md,
+  /// "Processes that must be alone").
+  bool is_audited = true;
   std::uint64_t audit_violations = 0, firmware_violations = 0;
   std::uint64_t proposals = 0, grants = 0, denials = 0;
   double robot_s = 0;                    ///< number of robots times simulated time

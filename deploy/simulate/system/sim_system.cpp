@@ -10,6 +10,7 @@
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/role_watch.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/messaging/sole_sender.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "simulator/images/image_output.hpp"
 #include "vision/images/image_input.hpp"
@@ -112,6 +113,7 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
   for (auto& [process, clock] : clocks_) clock.since = begin_;
   observer_bus_.become_observer();
   observer_bus_.follow_first_senders();
+  watch_beliefs(observer_bus_);
   metrics_.set_auditor(auditor_);
   listen(observer_bus_, scenario_, auditor_);
   observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
@@ -154,11 +156,13 @@ void SimSystem::start(const std::string& name) {
   const Scenario& scenario = other != scenarios_.end() ? other->second : scenario_;
   auto process = std::make_unique<Process>(network_, spec_of(name), id, SharedRules(scenario));
   SimBus& bus = process->bus;
+  watch_beliefs(bus);
   if (now() > begin_) bus.listen_first();
   // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it
   // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];
   incarnation = std::max(incarnation + 1, static_cast<Incarnation>(to_ns(bus.now())) + rng_.below(1'000'000));
+  if (name == second_process("simulator")) second_simulators_.push_back(incarnation);
   process->role.emplace(bus, id, incarnation, [this, name, id, own = incarnation](Incarnation found) {
     on_other(name, id, own, found);
   });
@@ -175,6 +179,17 @@ void SimSystem::start(const std::string& name) {
   }
   processes_[name] = std::move(process);
   observe(name);
+}
+
+void SimSystem::watch_beliefs(SimBus& bus) {
+  bus.watch_headers([this](const TopicInfo& topic, const msg::Header& header) {
+    // Its robots raise its incarnation when their clocks are set back.
+    const auto is_of = [&](Incarnation second) {
+      return header.incarnation() >= second && header.incarnation() - second <= SoleSender::kMaxRaise;
+    };
+    if (topic.is_sole && std::ranges::any_of(second_simulators_, is_of))
+      was_second_simulator_believed_ = true;
+  });
 }
 
 void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {

@@ -59,6 +59,9 @@ class SimSystem {
   /// program might.
   void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
+  /// Whether some process, or the observer, has believed a second simulator or one of its robots: because it
+  /// had not heard the first one for SoleSender::kGoneAfter, or has never heard it.
+  bool was_second_simulator_believed() const { return was_second_simulator_believed_; }
   /// Pauses a process as by SIGSTOP and SIGCONT; see SimBus::pause. Does nothing if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
   /// Disturbs a robot as an operator would.
@@ -95,6 +98,8 @@ class SimSystem {
   SimProcessSpec spec_of(const std::string& process);
   void start(const std::string& process);
   void observe(const std::string& process);
+  /// Notices when the process of this bus believes a second simulator.
+  void watch_beliefs(SimBus& bus);
   void on_other(const std::string& process, std::uint32_t id, Incarnation own, Incarnation other);
 
   const Scenario scenario_;
@@ -121,6 +126,8 @@ class SimSystem {
   LogLevel min_level_ = LogLevel::kOff;
   OnProcessEvent on_event_;
   bool stays_with_others_ = false;
+  std::vector<Incarnation> second_simulators_;
+  bool was_second_simulator_believed_ = false;
 };
 
 }  // namespace sidestep

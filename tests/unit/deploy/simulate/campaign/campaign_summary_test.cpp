@@ -23,12 +23,14 @@ TEST_CASE("a trial result survives a round trip through a line of text") {
   result.robots = 17;
   result.excused_by_cause = {{"switch off", 2}};
   result.excused_pair_s = 0.25;
+  result.is_audited = false;
   const std::string line = to_line(result);
   CHECK(line.find('\n') == std::string::npos);
   const TrialResult back = parse_trial_result(line);
   CHECK(back.seed == result.seed);
   CHECK(back.failures == result.failures);
   CHECK(back.contacts == 3);
+  CHECK_FALSE(back.is_audited);
   CHECK(back.excused_by_cause == result.excused_by_cause);
   CHECK(back.excused_pair_s == 0.25);
   CHECK(back.robot_s == 1020.5);
@@ -55,6 +57,7 @@ TEST_CASE("a summary does not depend on the order of the results") {
   for (TrialResult& result : results) result.pair_s = 60;
   results[7].min_clearance_m = -0.002;
   results[4].failures = {"2 contacts"};
+  results[5].is_audited = false;
   for (const TrialResult& result : results) forwards.add(result);
   for (auto result = results.rbegin(); result != results.rend(); ++result) backwards.add(*result);
   CHECK(forwards.text() == backwards.text());
@@ -62,6 +65,8 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.robot_hours() == Approx(2));
   CHECK(forwards.contacts() == 2);
   CHECK(forwards.failed() == 1);
+  CHECK_THAT(forwards.text(),
+             ContainsSubstring("1 trials without the audit: a process believed a second simulator"));
   CHECK_THAT(forwards.text(), ContainsSubstring("20 seeds, 1 failed") &&
                                   ContainsSubstring("largest share of denied proposals: seed 19 (0.19)"));
   CHECK(forwards.excused_by_cause() == std::map<std::string, std::uint64_t>{{"push", 3}, {"slip", 1}});

@@ -62,4 +62,15 @@ TEST_CASE("a file of another campaign, or without results, is refused with the r
                     ContainsSubstring("cannot be written"));
 }
 
+TEST_CASE("two campaigns do not write one file at the same time") {
+  const Folder folder;
+  {
+    ResultsFile results(folder.file(), "campaign A");
+    CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign A"),
+                      ContainsSubstring("another campaign writes it now"));
+    results.add(result_of(1));
+  }
+  CHECK(ResultsFile(folder.file(), "campaign A").found().size() == 1);
+}
+
 }  // namespace sidestep::results_file_test

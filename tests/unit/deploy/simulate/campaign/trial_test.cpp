@@ -115,6 +115,17 @@ TEST_CASE("a trial fails for each of its reasons, and says which") {
   }
 }
 
+TEST_CASE("the audit judges every trial in which nobody believed a second simulator") {
+  Judged judged;
+  judged.report.audit->coverage.time = 0.5;
+  judged.report.audit->violations = 1;
+  judged.report.audit->first.push_back({});
+  judged.result.is_audited = false;
+  CHECK(judged.failures().empty());
+  judged.result.is_audited = true;
+  CHECK_FALSE(judged.failures().empty());
+}
+
 TEST_CASE("robots that need not move may rest, and all may rest at their goals") {
   Judged judged;
   judged.result.stationary = 3;
