@@ -18,10 +18,11 @@ bool is_malformed(const Registration& registration) {
 }  // namespace
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
-                         Duration max_clock_difference)
+                         Duration max_clock_difference, Duration fact_period)
     : ledger_(rules, std::move(roster), max_clock_difference),
       displaced_(rules.margin_m),
       max_clock_difference_(max_clock_difference),
+      max_silence_(std::max(kMaxSilence, kMissedFacts * fact_period)),
       epoch_(epoch),
       unregistered_count_(ledger_.roster().size()),
       records_(kMaxRobots),
@@ -159,11 +160,11 @@ void Coordinator::find_silent(Time now) {
       return version.trajectory.end() + max_clock_difference_ > now;
     };
     const auto is_later = [=, this](const Version& version) {
-      return version.trajectory.start() > now + kMaxSilence + max_clock_difference_;
+      return version.trajectory.start() > now + max_silence_ + max_clock_difference_;
     };
     const auto versions = ledger_.versions(robot);
     const bool has_fallen_silent = record.heard_at &&
-                                   now - *record.heard_at > std::max(kMaxSilence, 2 * record.longest_gap) &&
+                                   now - *record.heard_at > std::max(max_silence_, 2 * record.longest_gap) &&
                                    std::ranges::any_of(versions, moves);
     // The robot's clock has jumped ahead, and its own stop is dated by it. The ledger does not say where it
     // is until then.

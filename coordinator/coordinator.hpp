@@ -19,9 +19,10 @@ namespace sidestep {
 class Coordinator {
  public:
   /// In epoch 0 the coordinator stands by and answers no messages. `max_clock_difference`: of two of the
-  /// clocks of robots, cameras and this coordinator.
+  /// clocks of robots, cameras and this coordinator. `fact_period`: at which robots report facts.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
-              Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s));
+              Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s),
+              Duration fact_period = {});
 
   /// Clears all state and begins an epoch, or stands by if `epoch` is 0.
   void begin_epoch(Epoch epoch);
@@ -55,11 +56,12 @@ class Coordinator {
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
   const DisplacedRobots& displaced() const { return displaced_; }
-  /// A robot that should be in motion is silent if no fact has arrived for kMaxSilence, or for twice the
-  /// longest gap of late, so that a slow network does not silence robots. So is one of which all versions
-  /// begin later than that.
+  /// A robot that should be in motion is silent if no fact has arrived for kMaxSilence, for kMissedFacts
+  /// periods, or for twice the longest gap of late, so that a slow network does not silence robots. So is one
+  /// of which all versions begin later than that.
   bool is_silent(RobotId robot) const { return records_[robot].silent; }
   static constexpr Duration kMaxSilence{50'000'000};
+  static constexpr int kMissedFacts = 3;
   /// Whether any robot is displaced or silent.
   bool has_uncontrolled_robots() const { return displaced_.any() || silent_count_ > 0; }
 
@@ -97,7 +99,7 @@ class Coordinator {
 
   Ledger ledger_;
   DisplacedRobots displaced_;
-  Duration max_clock_difference_;
+  Duration max_clock_difference_, max_silence_;
   Time watched_until_{};  // time of the latest observation of a world state that was compared as a whole
   Epoch epoch_;
   std::size_t unregistered_count_, silent_count_ = 0;

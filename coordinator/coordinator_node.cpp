@@ -33,7 +33,8 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       cycle_(scenario.cycle),
       max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
       failover_(self, is_standby, bus.now(), {roster_of(scenario), scenario.cycle}),
-      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_),
+      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_,
+                   scenario.cycle),
       orders_(scenario, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number),
       counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
@@ -122,7 +123,7 @@ void CoordinatorNode::handle(const Registration& registration) {
     failover_.reception().on_registration(registration.robot, bus_.now());
   if (registration.epoch == 0) return;  // the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
-  if (!registration.versions) repeat_orders();  // the agent waits to be told the orders that it remembers
+  if (registration.asks_for_orders) return repeat_orders();
   const bool was_granting = coordinator_.is_granting();
   if (const auto verdict = coordinator_.on_registration(registration)) {
     answer(*verdict);

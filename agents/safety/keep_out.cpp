@@ -27,7 +27,7 @@ void KeepOut::find(std::span<const Shape> zones, const Vec2& start, const std::o
                    const Circle& reach, double radius) {
   nearby_.clear();
   way_out_m_ = way_out;
-  start_to_way_out_m_ = way_out ? (*way_out - start).norm() : 0;
+  if (way_out) start_to_way_out_m_ = (*way_out - start).norm();
   radius_m_ = radius;
   start_depth_m_ = 0;
   for (const Shape& zone : zones) {

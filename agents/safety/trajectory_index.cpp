@@ -76,7 +76,7 @@ void TrajectoryIndex::build() {
     order_[--cell_begin_[cell_of_[i] + 1]] = static_cast<std::uint32_t>(i);
   }
   // Shifts the first indices back by one entry.
-  for (std::size_t cell = 0; cell + 1 < cell_begin_.size(); ++cell) cell_begin_[cell] = cell_begin_[cell + 1];
+  std::shift_left(cell_begin_.begin(), cell_begin_.end(), 1);
   cell_begin_.back() = static_cast<std::uint32_t>(count);
 
   const std::size_t blocks = (count + batch::kLanes - 1) / batch::kLanes;

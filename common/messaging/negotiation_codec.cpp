@@ -65,7 +65,8 @@ std::optional<Registration> decode(const msg::Registration& message, Time now) {
                       time_from_ns(message.header().stamp_ns()),
                       decode_versions(message, now),
                       message.has_moved(),
-                      message.knows_orders()};
+                      message.knows_orders(),
+                      !message.is_absent() && message.version_count() == 0};
 }
 
 std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {

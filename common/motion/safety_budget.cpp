@@ -4,6 +4,12 @@
 #include <fmt/format.h>
 
 namespace sidestep {
+namespace {
+
+/// Half the time that a message and its answer take on a quick network: clocks cannot be compared better.
+constexpr double kMeasuredOffset_s = 0.0001;
+
+}  // namespace
 
 std::string budget_line(const SafetyBudget& budget, double margin_m) {
   const double clocks_m = budget.required_margin_m() - 2 * budget.tracking_bound_m;
@@ -23,6 +29,14 @@ std::string budget_line(const SafetyBudget& budget, double margin_m) {
         "expect own "
         "stops, or set tracking_bound_m to {:.1f} mm or more",
         shift_m * 1e3, sight_m * 1e3, shift_m / sight_error_bound_m(1) * 1e3);
+  }
+  const double measured_mps = budget.max_speed_mps(margin_m, kMeasuredOffset_s);
+  if (measured_mps < (1 - 1e-9) * budget.speed_mps) {
+    line += fmt::format(
+        "; warning: clocks are known to {:.1f} ms at best, for which the margin allows {:.2g} m/s: set "
+        "margin_m to {:.1f} mm or more",
+        kMeasuredOffset_s * 1e3, measured_mps,
+        2e3 * (budget.tracking_bound_m + kMeasuredOffset_s * budget.speed_mps));
   }
   return line;
 }

@@ -42,11 +42,12 @@ struct Registration {
   Epoch epoch = 0;
   Time sent_at{};  ///< by the agent's clock
   /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed, or
-  /// registers nobody and only asks for the orders.
+  /// asks_for_orders.
   std::optional<VersionSet> versions{};
   /// The robot has ever executed a granted version, or had obeyed another epoch before it obeyed this agent.
   bool has_moved = false;
-  bool knows_orders = false;  ///< the agent has learned all orders
+  bool knows_orders = false;     ///< the agent has learned all orders
+  bool asks_for_orders = false;  ///< it registers nobody, and asks to be told all orders
 };
 
 /// The part of a CoordinatorState that agents and other coordinators use.

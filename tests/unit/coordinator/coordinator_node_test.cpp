@@ -147,15 +147,38 @@ TEST_CASE("malformed candidates and registrations are answered and counted") {
     proposal.candidate_count(0);
     floor.send(topics::kProposal, proposal);
   }
-  SECTION("a registration without versions") {
+  SECTION("a registration of an absent robot with a version") {
     auto registration = registration_of(floor.a, floor.node.coordinator().epoch(), 2);
-    registration.version_count(0);
+    registration.is_absent(true);
     floor.send(topics::kRegistration, registration);
   }
   floor.run();
   REQUIRE(floor.verdicts.size() == 1);
   CHECK(floor.verdicts[0].reasons()[0] == msg::Reason::REASON_MALFORMED);
   CHECK(drops_of(floor.node).total() == 1);
+}
+
+TEST_CASE("an agent that registers nobody is told all orders, and nothing counts as malformed") {
+  Floor floor;
+  auto registration = registration_of(floor.a, floor.node.coordinator().epoch());
+  registration.knows_orders(true);
+  floor.send(topics::kRegistration, registration);
+  floor.send(topics::kRegistration, registration_of(floor.b, floor.node.coordinator().epoch()));
+  floor.run_for(std::chrono::milliseconds(300));
+  const std::size_t verdicts = floor.verdicts.size();
+  bool is_told = false;
+  floor.outside.subscribe(topics::kOrderMemory, [&](const msg::OrderMemory& page) {
+    is_told = is_told || (page.is_complete() && page.page_count() > 0);
+  });
+  floor.run_for(std::chrono::milliseconds(200));
+  is_told = false;
+  auto asking = registration_of(floor.a, floor.node.coordinator().epoch(), 2);
+  asking.version_count(0);
+  floor.send(topics::kRegistration, asking);
+  CHECK(is_told);
+  CHECK(floor.verdicts.size() == verdicts);
+  CHECK(drops_of(floor.node).total() == 0);
+  CHECK(floor.node.coordinator().is_granting());
 }
 
 TEST_CASE("an agent that obeys an implausible epoch is counted and does not change the coordinator's") {

@@ -27,6 +27,27 @@ TEST_CASE("a robot that should move is silent 50 ms after its last fact, until i
   CHECK_FALSE(silent_at(to_seconds(p.trajectory.end().time_since_epoch()) + 0.01));
 }
 
+TEST_CASE("a robot that reports facts rarely is silent once three are missing") {
+  const Version a = rest_version(1, {0, 0});
+  for (const double period_s : {1.0 / 60, 0.1, 0.2}) {
+    CAPTURE(period_s);
+    Coordinator coordinator(floor_for_tests(), {1}, kEpoch, Duration{1'000'000}, from_seconds(period_s));
+    const auto registration = decode(registration_of(a, kEpoch), kNow);
+    REQUIRE(coordinator.on_registration(*registration));
+    const Version p = continued(a, 10, 1, {0, 3}, 0.6);
+    REQUIRE(coordinator.on_proposal(*decode(proposal_of({p}, kEpoch), kNow))->granted_version == 10);
+    coordinator.on_feedback(*decode(fact(p, 1.01), 1, kNow), at_s(1.01));
+    const double limit_s = std::max(0.05, 3 * period_s);
+    const auto is_silent_at = [&](double at) {
+      coordinator.on_world({}, at_s(at));
+      return coordinator.is_silent(1);
+    };
+    REQUIRE(at_s(1.01 + 1.01 * limit_s) < p.trajectory.end());
+    CHECK_FALSE(is_silent_at(1.01 + 0.99 * limit_s));
+    CHECK(is_silent_at(1.01 + 1.01 * limit_s));
+  }
+}
+
 TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead counts as silent until then") {
   Floor floor;
   floor.register_both();

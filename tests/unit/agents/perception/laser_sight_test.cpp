@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/perception/laser_sight.hpp"
 
+#include <set>
+
 #include "tests/catch.hpp"
 
 namespace sidestep::laser_sight_test {
@@ -33,6 +35,65 @@ TEST_CASE("somebody who leans against a wall is not taken for the wall, however 
         CAPTURE(radius_m, range_error_m, pose_error_m);
         CHECK(nearest_frontier_m(radius_m, range_error_m, pose_error_m) < range_error_m + 0.1);
       }
+}
+
+/// A laser among discs of which the rules know nothing.
+struct Watched {
+  FloorRules rules;
+  LaserSpec laser;
+  std::vector<float> ranges = std::vector<float>(720);
+  LaserSightSettings settings;
+
+  Watched() { laser.settings = {720, 2 * std::numbers::pi, 0.05, 8}; }
+  bool scan(LaserSight& sight, const Vec2& at_m, Time at, std::span<const Circle> discs) {
+    const ObstacleWorld world(rules.obstacles);
+    LaserScanner(laser.settings).scan({nullptr, nullptr, &world, discs}, at_m, 0, ranges);
+    return sight.update({at_m, 0, at, ranges}, {});
+  }
+};
+
+constexpr Time kBegin = time_from_ns(1'000'000'000);
+constexpr Duration kPeriod = std::chrono::milliseconds(100);
+
+TEST_CASE("a scan that is not newer than the last one changes nothing") {
+  Watched watched;
+  LaserSight sight(watched.laser, watched.rules);
+  const Circle near{{1, 0}, 0.2}, far{{3, 0}, 0.2};
+  REQUIRE(watched.scan(sight, {0, 0}, kBegin, {&near, 1}));
+  for (const Duration earlier : {Duration{0}, kPeriod}) {
+    CHECK_FALSE(watched.scan(sight, {0, 0}, kBegin - earlier, {&far, 1}));
+    CHECK(sight.captured_at() == kBegin);
+    CHECK(std::ranges::min(sight.beams().all(), {}, &Beam::free_m).free_m == Approx(0.8));
+  }
+}
+
+TEST_CASE("what stands for a while and is not known is reported by squares, the nearest ones first") {
+  Watched watched;
+  watched.settings.max_unknown = 3;
+  const Vec2 at_m(10, -7);  // away from the origin, so that distances from there count for nothing
+  watched.rules.obstacles = {Circle{at_m + Vec2(0, 1.5), 0.3}};
+  LaserSight sight(watched.laser, watched.rules, watched.settings);
+  // The second one is nearer to the origin, and the last one out of range.
+  const std::vector<Circle> standing{
+      {at_m + Vec2(1, 0), 0.1}, {at_m + Vec2(-2, 0), 0.1}, {at_m + Vec2(0, -3), 0.1}};
+  Time at = kBegin;
+  for (; at < kBegin + watched.settings.unknown_after; at += kPeriod) {
+    REQUIRE(watched.scan(sight, at_m, at, standing));
+    CHECK(sight.unknown().empty());
+  }
+  for (int i = 0; i < 3; ++i, at += kPeriod) REQUIRE(watched.scan(sight, at_m, at, standing));
+  REQUIRE(sight.unknown().size() == 3);
+  double last_m = 0;
+  std::set<std::size_t> found;
+  for (const Circle& square : sight.unknown()) {
+    const double distance_m = (square.centre_m - at_m).norm();
+    CHECK(distance_m >= last_m);
+    last_m = distance_m;
+    CHECK(square.radius_m == Approx(watched.settings.unknown_cell_m / std::sqrt(2.0)));
+    for (std::size_t i = 0; i < standing.size(); ++i)
+      if (touch(square, standing[i])) found.insert(i);
+  }
+  CHECK(found == std::set<std::size_t>{0, 1});
 }
 
 }  // namespace sidestep::laser_sight_test

@@ -21,6 +21,10 @@ TEST_CASE("the budget line shows the composition of the margin and the spare par
       EndsWith(
           "warning: cameras' clocks may shift robots by 40.0 mm, of which tracking covers 2.0 mm: expect "
           "own stops, or set tracking_bound_m to 100.0 mm or more"));
+  CHECK_THAT(budget_line({0.005, 0, 2}, 0.01),
+             EndsWith("warning: clocks are known to 0.1 ms at best, for which the margin allows 0 m/s: set "
+                      "margin_m to 10.4 mm or more"));
+  CHECK_THAT(budget_line({0.005, 0, 2}, 0.0104), EndsWith("+ 0.4 mm to spare"));
 }
 
 TEST_CASE("tracking errors and clock offsets within the budget do not bring robots into contact") {
