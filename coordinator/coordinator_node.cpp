@@ -172,7 +172,7 @@ void CoordinatorNode::handle(const Feedback& feedback) {
     failover_.reception().on_fact(feedback.robot, feedback.executing.number, is_granted, bus_.now());
   if (feedback.obeyed_epoch == coordinator_.epoch() && confirmations_.is_waiting()) {
     confirmations_.on_obeyed(feedback.robot);
-    confirm_holds();
+    confirm_orders();
   }
   const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
   if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
@@ -238,11 +238,12 @@ void CoordinatorNode::handle(const OrderReport& report) {
   confirmations_.on_report(report);
 }
 
-void CoordinatorNode::confirm_holds() {
-  for (const Order& hold : confirmations_.take_confirmed(orders_.book())) {
-    const bool stands = orders_.book().stands(hold);
-    answer(hold.client, hold.number,
-           stands ? msg::OrderResult::RESULT_REMEMBERED : msg::OrderResult::RESULT_REPLACED);
+void CoordinatorNode::confirm_orders() {
+  for (const Order& order : confirmations_.take_confirmed(orders_.book())) {
+    // What a resume lifts is lifted, also if another one makes it meaningless.
+    const bool is_remembered = orders_.book().stands(order) || order.kind == msg::OrderKind::ORDER_RESUME;
+    answer(order.client, order.number,
+           is_remembered ? msg::OrderResult::RESULT_REMEMBERED : msg::OrderResult::RESULT_REPLACED);
   }
 }
 
@@ -253,14 +254,16 @@ void CoordinatorNode::on_order(const msg::Order& message) {
     drops_.count(DropReason::kMalformedOrder);
   else if (result != msg::OrderResult::RESULT_REMEMBERED)
     drops_.count(DropReason::kRefusedOrder);
-  apply_orders();
+  const bool is_announced = apply_orders();
   if (!coordinator_.is_active()) return;
-  const bool is_new_hold =
-      order && order->kind == msg::OrderKind::ORDER_HOLD && result == msg::OrderResult::RESULT_REMEMBERED;
-  if (is_new_hold)
-    confirmations_.add(*order);
-  else
-    answer(message.header().sender(), message.terms().order_number(), result);
+  // One that changes nothing, such as a resume of what nobody holds, has nothing to be remembered.
+  const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
+  if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
+  confirmations_.add(*order);
+  if (is_announced) return;
+  // It is repeated, because nobody has confirmed it: what was announced may have been lost.
+  const RememberedOrder& again = *orders_.book().in_place_of(*order);
+  publish_orders({&again, 1}, true);
 }
 
 void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResult result) {
@@ -275,6 +278,8 @@ void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResu
 void CoordinatorNode::handle(const OrderPage& page) {
   if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
   if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
+  confirmations_.on_page(page);
+  confirm_orders();
   const bool was_complete = orders_.is_complete();
   if (orders_.on_page(page)) {
     has_learned_orders_ = true;
@@ -302,14 +307,15 @@ void CoordinatorNode::apply_holds() {
     coordinator_.set_held(robot, orders_.is_held(robot));
 }
 
-void CoordinatorNode::apply_orders() {
+bool CoordinatorNode::apply_orders() {
   const auto changes = orders_.take_changes();
-  if (changes.empty()) return;
+  if (changes.empty()) return false;
   const auto is_hold = [](const RememberedOrder& order) {
     return order.order.kind == msg::OrderKind::ORDER_HOLD || order.order.kind == msg::OrderKind::ORDER_RESUME;
   };
   if (std::ranges::any_of(changes, is_hold)) apply_holds();
   if (coordinator_.is_active()) publish_orders(changes, true);
+  return coordinator_.is_active();
 }
 
 void CoordinatorNode::publish_orders(std::span<const RememberedOrder> orders, bool have_changed) {
@@ -392,7 +398,7 @@ void CoordinatorNode::publish_state() {
 void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
   update_orders();
-  confirm_holds();
+  confirm_orders();
   tell_registering_agents();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }

@@ -11,7 +11,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"
-#include "coordinator/hold_confirmations.hpp"
+#include "coordinator/order_confirmations.hpp"
 #include "coordinator/order_keeper.hpp"
 #include "coordinator/state_changes.hpp"
 
@@ -50,8 +50,8 @@ class CoordinatorNode {
   void handle(const OrderPage& page);
   void handle(const OrderReport& report);
   void answer(ClientId client, OrderNumber number, msg::OrderResult result);
-  /// Answers the clients whose holds an agent remembers too.
-  void confirm_holds();
+  /// Answers the clients whose orders another process remembers too.
+  void confirm_orders();
   /// Tells the orders again while agents have to register: they do so once they have been told all that they
   /// remember.
   void tell_registering_agents();
@@ -60,8 +60,8 @@ class CoordinatorNode {
   /// Completes the memory of orders if that is possible.
   void update_orders();
   void apply_holds();
-  /// Applies and announces changes of the orders.
-  void apply_orders();
+  /// Applies changes of the orders, and announces them if it is active. Whether it has announced any.
+  bool apply_orders();
   void publish_orders(std::span<const RememberedOrder> orders, bool have_changed);
   void publish_orders_periodically();
   /// Tells all orders again for a process that has just started.
@@ -88,7 +88,7 @@ class CoordinatorNode {
   Failover failover_;
   Coordinator coordinator_;
   OrderKeeper orders_;
-  HoldConfirmations confirmations_;
+  OrderConfirmations confirmations_;
   bool has_history_ = false;  // in this epoch, a robot has registered that may have been given orders before
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;

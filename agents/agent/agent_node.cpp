@@ -20,6 +20,8 @@ constexpr int kCyclesBetweenRegistrations = 3;
 // An agent that asks for another coordinator may do so for long.
 constexpr int kCyclesBetweenRequests = 6;
 constexpr Duration kOrderStatusPeriod{1'000'000'000};
+// Announced orders are repeated to the coordinator at once, but not more often than this.
+constexpr Duration kConfirmationPeriod{100'000'000};
 
 /// Offset of the robot's cycles from multiples of the cycle time.
 Duration cycle_offset(const Scenario& scenario, RobotId robot) {
@@ -173,6 +175,10 @@ void AgentNode::on_orders(const msg::OrderMemory& message) {
   agent_.on_orders(page);
   if (agent_.is_superseded()) return;
   if (const auto missing = agent_.take_missing_orders(); !missing.empty()) publish_orders(missing);
+  if (page->count == 0) {
+    for (const RememberedOrder& order : page->orders) announced_.merge(order);
+    confirm_orders();
+  }
   const auto holds = [&](const RememberedOrder& order) {
     const bool concerns = order.order.robot == robot_ || order.order.robot == kAllRobots;
     return concerns && order.order.kind == msg::OrderKind::ORDER_HOLD;
@@ -194,6 +200,7 @@ void AgentNode::begin_cycle() {
   report_changes();
   if (agent_.is_superseded()) return;
   agent_.choose_order();
+  confirm_orders();
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
@@ -312,6 +319,13 @@ void AgentNode::publish_orders(std::span<const RememberedOrder> orders) {
     page.header().incarnation(agent_.incarnation());
     order_writer_.publish(page, bus_.now());
   }
+}
+
+void AgentNode::confirm_orders() {
+  if (announced_.empty() || !has_elapsed(kConfirmationPeriod, orders_confirmed_at_)) return;
+  orders_confirmed_at_ = bus_.now();
+  publish_orders(announced_.all());
+  announced_ = {};
 }
 
 void AgentNode::publish_order_status() {

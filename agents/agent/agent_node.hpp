@@ -81,6 +81,9 @@ class AgentNode {
   void publish_status();
   /// Tells coordinators of orders that one lacks.
   void publish_orders(std::span<const RememberedOrder> orders);
+  /// Repeats the orders that coordinators have announced: they answer a client once another process remembers
+  /// its order.
+  void confirm_orders();
   /// Publishes the order's status if it has changed, and once a second.
   void publish_order_status();
 
@@ -108,7 +111,8 @@ class AgentNode {
   Writer<msg::OrderMemory> order_writer_;
   Writer<msg::OrderStatus> order_status_writer_;
   OrderReport order_report_;  // published last
-  Time order_status_at_{};
+  Time order_status_at_{}, orders_confirmed_at_{};
+  OrderBook announced_;  // by coordinators, and not repeated yet
   CounterPublisher counters_;
 };
 

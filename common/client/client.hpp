@@ -53,7 +53,7 @@ struct Zone {
 /// What has become of an order.
 enum class OrderPhase {
   kSent,      ///< no coordinator has answered yet; the order is repeated until one does
-  kAccepted,  ///< coordinators remember it; all orders but those to go are complete
+  kAccepted,  ///< a coordinator and another process remember it; all orders but those to go are complete
   kDriving,
   kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can, and on when it can
   kArrived,   ///< at the last goal

@@ -16,7 +16,7 @@ namespace sidestep {
 /// What has become of an order.
 enum class OrderPhase : std::uint8_t {
   kSent,      ///< no coordinator has answered yet
-  kAccepted,  ///< coordinators remember it, and an agent too if it holds; all but go are complete then
+  kAccepted,  ///< a coordinator and another process remember it; all but go are complete then
   kDriving,
   kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can
   kArrived,   ///< at the last goal

@@ -77,11 +77,12 @@ int give_orders(const OrderOptions& options,
   handles = send(client);
   bus.run_until(bus.now() + kAnswerTimeout);
   if (!all(is_answered)) {
-    fmt::print(stderr, "sidestep: {}\n",
-               is_coordinator_heard
-                   ? "the coordinator has not confirmed the order, which may count nevertheless: a hold is "
-                     "confirmed when the agent of a held robot remembers it, and no such agent may be running"
-                   : "no active coordinator answers on this domain and interface");
+    fmt::print(
+        stderr, "sidestep: {}\n",
+        is_coordinator_heard
+            ? "the coordinator has not confirmed the order, which may count nevertheless: it does so "
+              "when an agent remembers the order, of a hold that of a held robot, and none may be running"
+            : "no active coordinator answers on this domain and interface");
     return kExitFailure;
   }
   if (options.waits && !all(is_over)) bus.run();

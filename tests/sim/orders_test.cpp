@@ -266,6 +266,55 @@ TEST_CASE("another robot's agent restores an order that coordinator and agent ha
   }
 }
 
+TEST_CASE("a client without a second chance is told only of orders that outlive the coordinator") {
+  int answered = 0, lost = 0, unanswered = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const int coordinators = 1 + static_cast<int>(rng.below(2));
+    OrderedSystem run(waiting_robots(3, coordinators), seed);
+    run.system.run_for(seconds(2));
+    // From some moment on nobody hears the active coordinator, which dies later.
+    const std::string victim = "coordinator";
+    const Duration until_cut = milliseconds(rng.below(40)), until_death = milliseconds(rng.below(300));
+    const OrderNumber zone = run.draw(7, {{{2.5, 2}}, 0.1});
+    const OrderNumber go = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1.5}}});
+    run.system.run_for(until_cut);
+    for (const std::string& other : SimSystem::process_names(run.scenario))
+      if (other != victim) run.cut_one_way(victim, other);
+    const OrderNumber cancel = run.send(msg::OrderKind::ORDER_CANCEL, 0, kClient);
+    run.system.run_for(until_death);
+    const auto is_accepted = [&](OrderNumber order) {
+      const auto found = run.answers.find(order);
+      return found != run.answers.end() && found->second == msg::OrderResult::RESULT_REMEMBERED;
+    };
+    const bool has_zone = is_accepted(zone), has_go = is_accepted(go), has_cancel = is_accepted(cancel);
+    run.system.kill(victim);
+    for (const std::string& other : SimSystem::process_names(run.scenario))
+      if (other != victim) run.cut_one_way(victim, other, false);
+    run.system.restart(victim);
+    std::set<OrderNumber> remembered;
+    SimBus listener(run.system.network());
+    listener.become_observer();
+    run.system.run_for(seconds(3));
+    listener.subscribe(topics::kOrderMemory, [&](const msg::OrderMemory& message) {
+      const auto page = decode(message, listener.now());
+      REQUIRE(page);
+      for (const RememberedOrder& order : page->orders) remembered.insert(order.order.number);
+    });
+    run.system.run_for(seconds(2));
+    answered += has_zone + has_go + has_cancel;
+    unanswered += 3 - has_zone - has_go - has_cancel;
+    lost += has_zone && !remembered.contains(zone);
+    lost += has_go && !remembered.contains(go) && !remembered.contains(cancel);
+    lost += has_cancel && !remembered.contains(cancel);
+    run.require_safe();
+  }
+  CHECK(lost == 0);
+  CHECK(answered > 100);
+  CHECK(unanswered > 100);
+}
+
 TEST_CASE("ten thousand orders a second neither stop a run nor fill the memory") {
   OrderedSystem run(waiting_robots(4), 1);
   run.system.run_for(seconds(1));

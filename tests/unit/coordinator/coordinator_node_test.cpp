@@ -470,4 +470,55 @@ TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's age
   CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);
 }
 
+TEST_CASE(
+    "an order to go is answered when an agent or another coordinator remembers it, and announced till then") {
+  Floor floor;
+  floor.register_both();
+  std::vector<msg::OrderAnswer> answers;
+  std::vector<msg::OrderMemory> announced;
+  floor.outside.subscribe(topics::kOrderAnswer,
+                          [&](const msg::OrderAnswer& answer) { answers.push_back(answer); });
+  floor.outside.subscribe(topics::kOrderMemory, [&](const msg::OrderMemory& page) {
+    if (page.page_count() == 0) announced.push_back(page);
+  });
+  Order go{msg::OrderKind::ORDER_GO, 1, 1'000'001, 1000};
+  go.goals = {{{1, 1}}};
+  for (std::size_t times = 1; times <= 3; ++times) {
+    floor.send(topics::kOrder, encode(go));
+    CHECK(announced.size() == times);
+  }
+  CHECK(answers.empty());
+  REQUIRE(decode(announced.back(), floor.network.now()));
+  const auto page = *decode(announced.back(), floor.network.now());
+  REQUIRE(page.orders.size() == 1);
+  CHECK(page.orders[0].order.number == 1000);
+  const bool by_agent = GENERATE(true, false);
+  CAPTURE(by_agent);
+  msg::OrderMemory memory = encode(page.orders, true, by_agent).front();
+  memory.process(by_agent ? 2 : static_cast<std::uint32_t>(Sender::kCoordinator) + 1);
+  memory.header().sender(memory.process());
+  floor.send(by_agent ? topics::kAgentOrders : topics::kOrderMemory, memory);
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0].order_number() == 1000);
+  CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);
+}
+
+TEST_CASE("an order that changes nothing, or is refused, is answered at once") {
+  Floor floor;
+  floor.register_both();
+  std::vector<msg::OrderAnswer> answers;
+  floor.outside.subscribe(topics::kOrderAnswer,
+                          [&](const msg::OrderAnswer& answer) { answers.push_back(answer); });
+  floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_CANCEL, 99, 1'000'001, 1000}));
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0].result() == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
+  // The operator's later resume lifts all that this one would.
+  floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_RESUME, kAllRobots,
+                                          static_cast<ClientId>(Sender::kOperator), 2000}));
+  answers.clear();
+  floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_RESUME, 1, 1'000'001, 1500}));
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);
+}
+
 }  // namespace sidestep::coordinator_node_test

@@ -234,6 +234,44 @@ TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counte
   CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);
 }
 
+TEST_CASE(
+    "an agent repeats the orders that a coordinator announces, at once but at most ten times a second") {
+  NodeFixture f;
+  std::vector<std::pair<Time, OrderNumber>> repeated;
+  f.other_bus.subscribe(topics::kAgentOrders, [&](const msg::OrderMemory& message) {
+    const auto page = decode(message, f.network.now());
+    REQUIRE(page);
+    CHECK(page->process == kRobot);
+    for (const RememberedOrder& order : page->orders)
+      repeated.emplace_back(f.network.now(), order.order.number);
+  });
+  f.run();
+  const auto announce = [&](OrderNumber number) {
+    const RememberedOrder order{{msg::OrderKind::ORDER_CANCEL, kRobot + 1, 1'000'001, number}};
+    msg::OrderMemory memory = encode({&order, 1}, true, true).front();
+    memory.process(kCoordinator);
+    memory.header().sender(kCoordinator);
+    f.memory_writer.publish(memory, f.other_bus.now());
+  };
+  const Time begin = f.network.now();
+  OrderNumber number = 10;
+  for (; f.network.now() < begin + Duration{2'000'000'000};
+       f.network.run_until(f.network.now() + Duration{5'000'000}))
+    announce(++number);
+  f.run();
+  REQUIRE(!repeated.empty());
+  CHECK(repeated.front().second == 11);
+  CHECK(repeated.front().first - begin < Duration{5'000'000});
+  CHECK(repeated.back().second == number);
+  CHECK(repeated.size() <= 22);
+  CHECK(repeated.size() >= 15);
+  // The same announced again is repeated again: the coordinator has not heard it.
+  const std::size_t before = repeated.size();
+  announce(number);
+  f.run();
+  CHECK(repeated.size() == before + 1);
+}
+
 TEST_CASE("only an invalid placement of the agent's own robot is counted") {
   NodeFixture f;
   CHECK(f.send(topics::kDisturbance, placement(kRobot, kNan)) == 1);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coordinator/hold_confirmations.hpp"
+#include "coordinator/order_confirmations.hpp"
 
 #include "tests/catch.hpp"
 
-namespace sidestep::hold_confirmations_test {
+namespace sidestep::order_confirmations_test {
 
 constexpr ClientId kClient = 1'000'001;
 
 struct Floor {
   OrderBook book;
-  HoldConfirmations confirmations;
+  OrderConfirmations confirmations;
   OrderNumber number = 0;
 
   Order hold(RobotId robot) {
@@ -82,12 +82,44 @@ TEST_CASE("a hold that was lifted or replaced before it was confirmed is waited 
   floor.hold(3);
   floor.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient, ++floor.number}});
   CHECK(floor.confirmed() == 1);  // with the answer that it is replaced
-  floor.hold(3);
-  const Order last = floor.hold(3);
+  const Order first = floor.hold(3), last = floor.hold(3);
+  const auto replaced = floor.confirmations.take_confirmed(floor.book);
+  REQUIRE(replaced.size() == 1);
+  CHECK(replaced[0].number == first.number);
   floor.report(3, true);
   const auto confirmed = floor.confirmations.take_confirmed(floor.book);
   REQUIRE(confirmed.size() == 1);
   CHECK(confirmed[0].number == last.number);
 }
 
-}  // namespace sidestep::hold_confirmations_test
+TEST_CASE("an order that is no hold is confirmed once another process's memory lists it") {
+  const auto kind =
+      GENERATE(msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL, msg::OrderKind::ORDER_RESUME,
+               msg::OrderKind::ORDER_ZONE, msg::OrderKind::ORDER_REMOVE_ZONE);
+  CAPTURE(static_cast<int>(kind));
+  Floor floor;
+  const RobotId robot = kind >= msg::OrderKind::ORDER_ZONE ? kAllRobots : 3;
+  const Order order{kind, robot, kClient, 7};
+  Order earlier = order, of_other = order;
+  earlier.number = 6;
+  of_other.client = kClient + 1;
+  floor.book.merge({order});
+  floor.confirmations.add(order);
+  floor.report(3, true);
+  CHECK(floor.confirmed() == 0);
+  floor.confirmations.on_page({.process = 4, .orders = {{earlier}, {of_other}}});
+  CHECK(floor.confirmed() == 0);
+  floor.confirmations.on_page({.process = 4, .orders = {{earlier}, {order}}});
+  CHECK(floor.confirmed() == 1);
+  CHECK(floor.confirmed() == 0);
+  CHECK_FALSE(floor.confirmations.is_waiting());
+}
+
+TEST_CASE("a memory that lists a hold does not confirm it: the robot may obey another coordinator by then") {
+  Floor floor;
+  const Order hold = floor.hold(3);
+  floor.confirmations.on_page({.process = 3, .orders = {{hold}}});
+  CHECK(floor.confirmed() == 0);
+}
+
+}  // namespace sidestep::order_confirmations_test
