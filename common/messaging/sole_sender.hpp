@@ -34,6 +34,7 @@ class SoleSender {
 
   /// Processes a message of the process with this incarnation.
   [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now) {
+    forget_future(now);
     if (has_sender_ && incarnation > sender_ && incarnation - sender_ <= kMaxRaise) sender_ = incarnation;
     if (!has_sender_ || (incarnation != sender_ && now - heard_at_ >= gone_after_)) {
       *this = SoleSender(listening_);
@@ -66,6 +67,12 @@ class SoleSender {
   bool is_first(std::uint64_t incarnation) const { return has_sender_ && incarnation == sender_; }
 
  private:
+  /// Times after now were read before this process's clock was set back: they count as now.
+  void forget_future(Time now) {
+    heard_at_ = std::min(heard_at_, now);
+    other_heard_at_ = std::min(other_heard_at_, now);
+    believes_from_ = std::min(believes_from_, now + listening_);
+  }
   /// Each process that is heard beside the first one proves a contest.
   Outcome listen(std::uint64_t incarnation, Time now) {
     (incarnation == sender_ ? heard_at_ : other_heard_at_) = now;

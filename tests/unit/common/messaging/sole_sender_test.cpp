@@ -104,6 +104,31 @@ TEST_CASE("a process that starts while two speak believes neither, whomever it h
   CHECK(reported == 1);
 }
 
+TEST_CASE(
+    "after the receiver's clock was set back, senders are believed and followed as if nothing had been") {
+  const Duration listening = GENERATE(Duration{0}, SoleSender::kListening);
+  CAPTURE(to_seconds(listening));
+  const Duration ahead = 436s;
+  {
+    SoleSender sender(listening);
+    (void)sender.receive(kOne, kBegin + ahead);
+    Time now = kBegin;
+    for (; now < kBegin + listening; now += kCycle) (void)sender.receive(kOne, now);
+    CHECK(sender.receive(kOne, now + kCycle) == Outcome::kCounts);
+    // The process ends, and another one follows it.
+    now += SoleSender::kGoneAfter + kCycle;
+    (void)sender.receive(kTwo, now);
+    CHECK(sender.receive(kTwo, now + listening + kCycle) == Outcome::kCounts);
+  }
+  {
+    SoleSender sender;
+    for (int i = 0; i < 10; ++i)
+      for (const std::uint64_t process : {kOne, kTwo}) (void)sender.receive(process, kBegin + ahead);
+    CHECK(sender.receive(kOne, kBegin) != Outcome::kCounts);
+    CHECK(sender.receive(kOne, kBegin + SoleSender::kGoneAfter + kCycle) == Outcome::kCounts);
+  }
+}
+
 TEST_CASE("of three or more processes nothing counts either") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
