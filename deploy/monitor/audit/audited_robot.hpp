@@ -162,6 +162,7 @@ class AuditedRobot {
   std::int64_t clock_ahead_ns = 0;
   /// An operator has attested its absence: epochs up to this one may have begun without its registration.
   Epoch attested_until = 0;
+  Epoch attested_in = 0;  ///< the newest epoch that had begun when its absence was attested last
 
   /// Executed versions, and those of them that are traced. Only versions that an agent made and that were
   /// granted during the audit count.

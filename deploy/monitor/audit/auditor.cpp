@@ -216,13 +216,15 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     known->registered_in.add(epoch);
   }
   robot->registered_in.add(epoch);
-  robot->attested_until = std::min(robot->attested_until, epoch);
+  // The attestation stays valid in the epochs that had begun.
+  robot->attested_until = std::min(robot->attested_until, std::max(epoch, robot->attested_in));
   if (!robot->registered || epoch >= robot->registered->epoch) robot->registered = std::move(registered);
 }
 
 void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   now_ = now;
   const Reception reception = trace(kCoordinatorKind, 0, state.header());
+  newest_epoch_ = std::max(newest_epoch_, state.epoch());
   if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
     begin_run();
     named_displaced_ = displaced_robots(state);

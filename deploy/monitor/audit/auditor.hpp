@@ -287,6 +287,7 @@ class Auditor {
   std::map<std::tuple<std::string_view, RobotId, std::optional<RobotId>>, std::uint64_t> excused_;
   std::vector<std::size_t> index_;  ///< by id; robots_.size(): not on the roster
   std::map<Epoch, EpochRecord> epochs_;
+  Epoch newest_epoch_ = 0;  ///< that a coordinator has announced
   struct AgentStream {
     Incarnation incarnation = 0;
     Epoch epoch = 0;

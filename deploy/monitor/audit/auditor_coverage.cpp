@@ -43,6 +43,7 @@ void Auditor::on_attestation(const msg::AbsenceAttestation& attestation, Time no
   }
   facts_time_.expect_silence(*index);
   robots_[*index].attested_until = std::numeric_limits<Epoch>::max();
+  robots_[*index].attested_in = newest_epoch_;
 }
 
 bool Auditor::has_ground_truth() const {

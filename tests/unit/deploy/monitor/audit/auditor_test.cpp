@@ -343,6 +343,36 @@ TEST_CASE("an operator's attestation of absence stands for a robot's registratio
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
+TEST_CASE("an attested absence stays valid in its epoch, however the agent registers in an older one") {
+  const bool is_in_time = GENERATE(true, false);
+  CAPTURE(is_in_time);
+  const AuditTotals totals = audit_of_tampered([&](History& h) {
+    std::optional<msg::Registration> late;
+    h.each<msg::Registration>([&](const msg::Registration& r, Time) {
+      if (r.robot() == 3) late = r;
+    });
+    REQUIRE(late);
+    const Epoch epoch = late->epoch();
+    late->epoch(epoch - 1);
+    h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
+    h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
+    // When the epoch has begun, or before.
+    auto at = h.messages.begin();
+    if (is_in_time) {
+      at = std::ranges::find_if(h.messages, [&](const ReceivedMessage& received) {
+        const auto* state = std::get_if<msg::CoordinatorState>(&received.message);
+        return state && state->epoch() == epoch;
+      });
+      REQUIRE(at++ != h.messages.end());
+    }
+    const Time sent_at = is_in_time ? std::prev(at)->at : at->at;
+    at = h.messages.insert(at, {sent_at, attestation_of(3)});
+    h.messages.insert(at + 1, {sent_at, *late});
+  });
+  INFO(lines(totals));
+  CHECK(count(totals, AuditRule::kAllRegistered) == (is_in_time ? 0 : 1));
+}
+
 TEST_CASE("a coordinator that resumes after many epochs keeps what was registered with it") {
   const AuditTotals totals = audit_of_tampered([](History& h) {
     // As if forty coordinators had succeeded each other: every agent registered with all of them.
