@@ -256,14 +256,17 @@ void CoordinatorNode::on_order(const msg::Order& message) {
     drops_.count(DropReason::kRefusedOrder);
   const bool is_announced = apply_orders();
   if (!coordinator_.is_active()) return;
-  // One that changes nothing, such as a resume of what nobody holds, has nothing to be remembered.
+  // Nobody needs to remember an order that changes nothing, such as a resume while nobody is held.
   const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
   if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
   confirmations_.add(*order);
-  if (is_announced) return;
-  // It is repeated, because nobody has confirmed it: what was announced may have been lost.
-  const RememberedOrder& again = *orders_.book().in_place_of(*order);
-  publish_orders({&again, 1}, true);
+  if (!is_announced) unheard_.merge(*orders_.book().in_place_of(*order));
+}
+
+void CoordinatorNode::announce_again() {
+  if (unheard_.empty()) return;
+  publish_orders(unheard_.all(), true);
+  unheard_ = {};
 }
 
 void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResult result) {
@@ -277,8 +280,10 @@ void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResu
 
 void CoordinatorNode::handle(const OrderPage& page) {
   if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
-  if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
-  confirmations_.on_page(page);
+  const bool is_of_roster = coordinator_.ledger().has_robot(page.process);
+  if (is_of_roster) failover_.reception().on_agent(page.process, bus_.now());
+  // Later coordinators need not hear other robots' agents.
+  if (is_of_roster || is_coordinator(page.process)) confirmations_.on_page(page);
   confirm_orders();
   const bool was_complete = orders_.is_complete();
   if (orders_.on_page(page)) {
@@ -365,6 +370,7 @@ void CoordinatorNode::apply_epoch() {
   coordinator_.begin_epoch(failover_.epoch());
   has_history_ = false;
   confirmations_.clear();
+  unheard_ = {};
   changes_.reset();
   report_role();
   publish_state();
@@ -399,6 +405,7 @@ void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
   update_orders();
   confirm_orders();
+  announce_again();
   tell_registering_agents();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }

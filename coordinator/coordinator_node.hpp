@@ -63,6 +63,8 @@ class CoordinatorNode {
   /// Applies changes of the orders, and announces them if it is active. Whether it has announced any.
   bool apply_orders();
   void publish_orders(std::span<const RememberedOrder> orders, bool have_changed);
+  /// Announces the orders again that clients have repeated, because nobody has confirmed them.
+  void announce_again();
   void publish_orders_periodically();
   /// Tells all orders again for a process that has just started.
   void repeat_orders();
@@ -89,6 +91,7 @@ class CoordinatorNode {
   Coordinator coordinator_;
   OrderKeeper orders_;
   OrderConfirmations confirmations_;
+  OrderBook unheard_;         // orders to be announced again
   bool has_history_ = false;  // in this epoch, a robot has registered that may have been given orders before
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;

@@ -227,7 +227,7 @@ void OrderClient::compare(const OrderBook& remembered) {
   for (const auto& [handle, sent] : sent_) {
     const bool has_ended_others = sent.phase == OrderPhase::kArrived || sent.phase == OrderPhase::kAccepted;
     if (!is_closed(sent) || !has_ended_others) continue;
-    if (!remembered.has_ended_by(sent.order))
+    if (!remembered.contradicts(sent.order))
       missing_.erase(handle);
     else if (is_forgotten(sent))
       publish(sent.order);

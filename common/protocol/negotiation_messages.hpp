@@ -47,7 +47,7 @@ struct Registration {
   /// The robot has ever executed a granted version, or had obeyed another epoch before it obeyed this agent.
   bool has_moved = false;
   bool knows_orders = false;     ///< the agent has learned all orders
-  bool asks_for_orders = false;  ///< it registers nobody, and asks to be told all orders
+  bool asks_for_orders = false;  ///< it registers no robot, and asks for all orders
 };
 
 /// The part of a CoordinatorState that agents and other coordinators use.

@@ -242,7 +242,7 @@ bool OrderBook::is_lifted(const Order& hold) const {
   return has_resumed(hold.client, hold.robot, hold.number) || has_resumed(kOperator, hold.robot, hold.number);
 }
 
-bool OrderBook::has_ended_by(const Order& order) const {
+bool OrderBook::contradicts(const Order& order) const {
   if (knows(order)) return false;
   if (order.kind == msg::OrderKind::ORDER_RESUME) return lifts_any(order);
   return orders_.contains(place_of(order));  // by an earlier one, since this one is not known

@@ -44,9 +44,8 @@ class OrderBook {
   bool is_held(RobotId robot) const;
   /// Whether the book knows that this hold was lifted, for the robot or all robots that it holds.
   bool is_lifted(const Order& hold) const;
-  /// Whether the book lacks this order, and holds one that it ends: that it replaces, cancels, lifts or
-  /// removes.
-  bool has_ended_by(const Order& order) const;
+  /// Whether the book lacks this order, and lists one that the order replaces, cancels, lifts or removes.
+  bool contradicts(const Order& order) const;
   /// Whether this order has its place.
   bool stands(const Order& order) const;
   /// Whether the order, apart from its progress, would change nothing in this book.

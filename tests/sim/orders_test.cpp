@@ -274,7 +274,7 @@ TEST_CASE("a client without a second chance is told only of orders that outlive 
     const int coordinators = 1 + static_cast<int>(rng.below(2));
     OrderedSystem run(waiting_robots(3, coordinators), seed);
     run.system.run_for(seconds(2));
-    // From some moment on nobody hears the active coordinator, which dies later.
+    // The active coordinator is cut off, so that nobody hears it, and dies later.
     const std::string victim = "coordinator";
     const Duration until_cut = milliseconds(rng.below(40)), until_death = milliseconds(rng.below(300));
     const OrderNumber zone = run.draw(7, {{{2.5, 2}}, 0.1});

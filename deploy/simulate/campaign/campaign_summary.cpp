@@ -74,9 +74,15 @@ std::map<std::string, std::uint64_t> CampaignSummary::trials_by_fault() const {
   return total;
 }
 
-std::size_t CampaignSummary::unaudited() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(results_, [](const auto& entry) { return !entry.second.is_audited; }));
+CampaignSummary::Audited CampaignSummary::audited() const {
+  Audited total;
+  for (const auto& [seed, result] : results_) {
+    if (result.is_audited)
+      total.violations += result.audit_violations;
+    else
+      ++total.trials_without, total.violations_without += result.audit_violations;
+  }
+  return total;
 }
 
 double CampaignSummary::excused_time_share() const {
@@ -109,14 +115,19 @@ std::string CampaignSummary::text() const {
     wall_s += result.wall_s;
   }
   const double hours = robot_hours();
+  const Audited audit = audited();
   std::string text = fmt::format(
       "{} seeds, {} failed; {:.2f} robot-hours, {:.1f} km driven; {} contacts, {} audit violations, {} "
       "firmware "
       "violations\n",
-      seeds(), failed(), hours, distance_m / 1000, contacts(), sum(&TrialResult::audit_violations),
+      seeds(), failed(), hours, distance_m / 1000, contacts(), audit.violations,
       sum(&TrialResult::firmware_violations));
-  if (unaudited() > 0)
-    text += fmt::format("{} trials without the audit: a process believed a second simulator\n", unaudited());
+  if (audit.trials_without > 0) {
+    text += fmt::format(
+        "{} trials are not judged by the audit, since a process believed a second simulator; it reported {} "
+        "violations there\n",
+        audit.trials_without, audit.violations_without);
+  }
   text += fmt::format("{} excused contacts", sum(&TrialResult::excused_contacts));
   for (const auto& [cause, excused] : excused_by_cause())
     text += fmt::format(", {} of cause {}", excused, cause);
@@ -158,8 +169,9 @@ std::string CampaignSummary::json() const {
   json["excused_by_cause"] = excused_by_cause();
   json["trials_by_fault"] = trials_by_fault();
   json["excused_time_share"] = excused_time_share();
-  json["unaudited"] = unaudited();
-  json["audit_violations"] = sum(&TrialResult::audit_violations);
+  json["audit_violations"] = audited().violations;
+  json["unaudited_trials"] = audited().trials_without;
+  json["unaudited_violations"] = audited().violations_without;
   json["firmware_violations"] = sum(&TrialResult::firmware_violations);
   json["contacts_per_robot_hour_95"] = upper_bound_95(contacts(), robot_hours());
   json["trials"] = Json::array();

@@ -22,8 +22,12 @@ class CampaignSummary {
   std::map<std::string, std::uint64_t> excused_by_cause() const;
   /// Number of trials with each kind of fault.
   std::map<std::string, std::uint64_t> trials_by_fault() const;
-  /// Number of trials that the audit does not judge.
-  std::size_t unaudited() const;
+  struct Audited {
+    std::uint64_t violations = 0;          ///< in trials that the audit judges
+    std::uint64_t trials_without = 0;      ///< that it does not judge
+    std::uint64_t violations_without = 0;  ///< in those
+  };
+  Audited audited() const;
   /// Share of the time of all pairs of robots in which a contact would have been excused.
   double excused_time_share() const;
 

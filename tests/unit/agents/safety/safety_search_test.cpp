@@ -2,6 +2,8 @@
 #include "agents/safety/safety_search.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numbers>
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/robot_model.hpp"
@@ -160,6 +162,34 @@ TEST_CASE("the search finds the same candidates as a slow reference, on every in
     CHECK(found > 1000);
     CHECK(refused_desired > 1000);
   }
+}
+
+TEST_CASE("near each border of the field, the search finds the same candidates as a slow reference") {
+  const std::uint64_t seed = GENERATE(1u, 2u);
+  CAPTURE(seed);
+  FloorRules rules;
+  rules.field = {6, 4};
+  SafetySearch search(rules, {});
+  TrajectoryIndex empty_index;
+  Rng scenes(seed), rng(seed), slow_rng(seed);
+  std::array<int, 4> refused{};
+  for (int i = 0; i < 4000; ++i) {
+    CAPTURE(i);
+    // So far from a border, towards which it drives, that it can just stop.
+    const std::size_t border = scenes.below(4);
+    const Vec2 outwards = rotated({1, 0}, std::numbers::pi / 2 * static_cast<double>(border));
+    const double half_m = (border % 2 == 0 ? rules.field.length_m : rules.field.width_m) / 2 - rules.radius_m;
+    const double speed_mps = scenes.uniform(0, rules.limits.speed_mps);
+    const double stop_m = speed_mps * speed_mps / (2 * rules.limits.deceleration_mps2);
+    const Vec2 at_m = (half_m - stop_m - scenes.uniform(0, 0.1)) * outwards;
+    const SearchQuery query{kStart, {at_m, speed_mps * outwards}, 3 * outwards, kCycle};
+    const auto result = search.search(query, empty_index, rng);
+    const auto expected = reference_search(rules, {}, query, {}, slow_rng);
+    REQUIRE(result.count == expected.count);
+    REQUIRE(result.desired_is_clear == expected.desired_is_clear);
+    refused[border] += !result.desired_is_clear;
+  }
+  for (const int count : refused) CHECK(count > 100);
 }
 
 TEST_CASE("among the blocked cells of a map, the search finds the same candidates as a slow reference") {

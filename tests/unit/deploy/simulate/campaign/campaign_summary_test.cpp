@@ -58,6 +58,8 @@ TEST_CASE("a summary does not depend on the order of the results") {
   results[7].min_clearance_m = -0.002;
   results[4].failures = {"2 contacts"};
   results[5].is_audited = false;
+  results[5].audit_violations = 7;
+  results[6].audit_violations = 2;
   for (const TrialResult& result : results) forwards.add(result);
   for (auto result = results.rbegin(); result != results.rend(); ++result) backwards.add(*result);
   CHECK(forwards.text() == backwards.text());
@@ -66,7 +68,9 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.contacts() == 2);
   CHECK(forwards.failed() == 1);
   CHECK_THAT(forwards.text(),
-             ContainsSubstring("1 trials without the audit: a process believed a second simulator"));
+             ContainsSubstring("2 contacts, 2 audit violations") &&
+                 ContainsSubstring("1 trials are not judged by the audit, since a process believed a second "
+                                   "simulator; it reported 7 violations there"));
   CHECK_THAT(forwards.text(), ContainsSubstring("20 seeds, 1 failed") &&
                                   ContainsSubstring("largest share of denied proposals: seed 19 (0.19)"));
   CHECK(forwards.excused_by_cause() == std::map<std::string, std::uint64_t>{{"push", 3}, {"slip", 1}});
