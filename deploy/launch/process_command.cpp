@@ -23,8 +23,8 @@ using Arguments = std::vector<std::string>;
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
-scenario=$1 program=$2 files=$3
-shift 3
+scenario=$1 program=$2 niceness=$3 files=$4
+shift 4
 case $program in */*) program=$(realpath -- "$program") ;; esac
 folder=$(mktemp -d) && cd "$folder" || exit 1
 receive() { read -r size name <&3 && head -c "$size" <&3 >./part && mv ./part "./$name"; }
@@ -32,7 +32,7 @@ while [ "$files" -gt 0 ]; do
   receive || exit 1
   files=$((files - 1))
 done
-"$program" --scenario "$folder/$scenario" "$@" </dev/null 3<&- &
+nice -n "$niceness" "$program" --scenario "$folder/$scenario" "$@" </dev/null 3<&- &
 child=$!
 { while receive; do :; done; kill "$child"; sleep 3; kill -9 "$child"; } >/dev/null 2>&1 &
 watchdog=$!
@@ -69,10 +69,16 @@ std::vector<SentFile> sent_files(const ProcessSpec& process) {
   return files;
 }
 
-Arguments ssh_arguments(const HostSpec& host, const std::string& program, const std::vector<SentFile>& files,
-                        const Arguments& options) {
-  Arguments remote{
-      "sh", "-c", kRemoteScript, "sidestep", files.front().name, program, std::to_string(files.size())};
+Arguments ssh_arguments(const HostSpec& host, const std::string& program, int niceness,
+                        const std::vector<SentFile>& files, const Arguments& options) {
+  Arguments remote{"sh",
+                   "-c",
+                   kRemoteScript,
+                   "sidestep",
+                   files.front().name,
+                   program,
+                   std::to_string(niceness),
+                   std::to_string(files.size())};
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
   // A hanging connection ends within seconds here, and on the remote host if its server is configured
@@ -84,6 +90,20 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, const 
           "-oConnectTimeout=5",
           host.target,
           fmt::format("{}", fmt::join(remote, " "))};
+}
+
+/// How far agents give way to processes that all robots need, where they share a machine. Of a machine with
+/// too little time for all, each process gets the same part. The simulator, vision and the coordinator need
+/// more than an agent does, so that all robots would wait for them.
+constexpr int kAgentNiceness = 10;
+
+int niceness(const ProcessSpec& process, const HostSpec& host) {
+  if (process.program != "sidestep-agent") return 0;
+  // The processes of namespaces share the launcher's machine.
+  const bool is_shared = host.transport != HostTransport::kSsh || host.simulator || host.robots ||
+                         host.vision || host.coordinator || host.standbys.rest ||
+                         !host.standbys.ranges.empty();
+  return is_shared ? kAgentNiceness : 0;
 }
 
 }  // namespace
@@ -111,9 +131,10 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
   if (is_remote) {
     const std::vector<SentFile> files = sent_files(process);
     for (const SentFile& file : files) child.input += file_input(file.name, file.content);
-    child.argv = ssh_arguments(host, program, files, options);
+    child.argv = ssh_arguments(host, program, niceness(process, host), files, options);
     return child;
   }
+  child.niceness = niceness(process, host);
   if (host.transport == HostTransport::kNamespace)
     child.argv = {find_program("ip"), "netns", "exec", namespace_name};
   append(child.argv, {program, "--scenario", process.scenario_file});

@@ -41,10 +41,11 @@ std::string reason_of(int status) {
 }
 
 /// Executes the program in a forked child. Uses system calls only, because the parent may have threads.
-[[noreturn]] void execute(char* const argv[], int input, int output, pid_t parent) {
+[[noreturn]] void execute(char* const argv[], int input, int output, int niceness, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(126);  // the parent died before the line above
   setpgid(0, 0);                        // Ctrl-C reaches only the parent, which stops its children in order
+  setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + niceness);
   for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -192,7 +193,7 @@ void ProcessGroup::spawn(Child& child) {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
-  if (pid == 0) execute(argv.data(), input.read_end, output.write_end, parent);
+  if (pid == 0) execute(argv.data(), input.read_end, output.write_end, child.spec.niceness, parent);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close_fd(output.write_end);
   close_fd(input.read_end);

@@ -21,6 +21,7 @@ struct ChildSpec {
   bool restart = false;           ///< restart it when it ends
   /// Content of its stdin, which then stays open; closing it asks the child to end. Empty: no stdin.
   std::string input = {};
+  int niceness = 0;  ///< how far it gives way to other processes, 0 .. 19, see nice(2)
 };
 
 /// A child was restarted or died.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_command.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "common/messaging/dds/event_loop.hpp"
@@ -93,6 +95,31 @@ TEST_CASE("a local process is started directly, one in a namespace by ip netns e
   expected.insert(expected.begin(), {find_program("ip"), "netns", "exec", "sidestep-5-east"});
   CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "sidestep-5-east").argv ==
         expected);
+}
+
+TEST_CASE("agents give way where other processes run, and not on computers of robots") {
+  const Fixture fixture;
+  ProcessSpec vision = agent_spec(fixture);
+  vision.program = "sidestep-vision";
+  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kLocal, ""), "").niceness == 10);
+  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "e").niceness == 10);
+  CHECK(child_spec(vision, host_of(HostTransport::kLocal, ""), "").niceness == 0);
+  // Over ssh the remote program gives way, not the connection.
+  for (const bool is_shared : {false, true}) {
+    HostSpec host = host_of(HostTransport::kSsh, "robot@far");
+    host.programs = fixture.folder.string();
+    host.coordinator = is_shared;
+    fs::remove(fixture.path("arguments"));
+    fixture.write("sidestep-agent", "#!/bin/sh\nnice >" + fixture.path("nice") + "\nmv " +
+                                        fixture.path("nice") + " " + fixture.path("arguments") + "\n");
+    ProcessGroup group(fixture.path("log"));
+    const ChildSpec spec = child_spec(agent_spec(fixture), host, "");
+    CHECK(spec.niceness == 0);
+    group.start(spec);
+    REQUIRE(fixture.wait_for(group, fixture.path("arguments")));
+    const int before = getpriority(PRIO_PROCESS, 0);
+    CHECK(std::stoi(fixture.read("arguments")) == std::min(before + (is_shared ? 10 : 0), 19));
+  }
 }
 
 TEST_CASE("over ssh the scenario is copied, and the process ends when the launcher asks it to") {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_group.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
 #include <sstream>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -103,6 +105,14 @@ TEST_CASE("the processor time and memory of children add up over their restarts"
   CHECK(next_event(group).kind == Kind::kStarted);
   CHECK(next_event(group).kind == Kind::kDied);
   CHECK(group.resource_use().at("busy").cpu_s > 1.2 * once.cpu_s);
+}
+
+TEST_CASE("a child gives way to others as far as it should") {
+  ProcessGroup group(log_path());
+  ChildSpec spec = shell("polite", "nice; exec sleep 60");
+  spec.niceness = 3;
+  group.start(spec);
+  wait_for_line(group, "polite", std::to_string(std::min(getpriority(PRIO_PROCESS, 0) + 3, 19)));
 }
 
 TEST_CASE("a program that does not exist is refused at once") {
