@@ -10,6 +10,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/protocol/reason_text.hpp"
 #include "coordinator/ledger_pages.hpp"
+#include "coordinator/publish.hpp"
 
 namespace sidestep {
 namespace {
@@ -18,11 +19,6 @@ namespace {
 constexpr int kStandbyAnnouncePeriod = 10;
 // A robot that has been heard of within this time is not absent.
 constexpr Duration kSilence{1'000'000'000};
-constexpr Duration kOrderPeriod{1'000'000'000};
-// A new agent is told the orders at once, but not more often than this.
-constexpr Duration kMinOrderPeriod{50'000'000};
-// While agents wait to be told what they remember, before they register.
-constexpr Duration kRegisteringOrderPeriod{200'000'000};
 
 }  // namespace
 
@@ -35,13 +31,11 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       failover_(self, is_standby, bus.now(), {roster_of(scenario), scenario.cycle}),
       coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_,
                    scenario.cycle),
-      orders_(scenario, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number),
-      counters_(bus, static_cast<std::uint32_t>(Sender::kCoordinator) + self.number, self.incarnation,
+      order_desk_(bus, scenario, self, coordinator_, events_, [this] { publish_state(); }),
+      counters_(bus, process_of(self), self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
-  answer_writer_ = bus_.advertise(topics::kOrderAnswer);
-  memory_writer_ = bus_.advertise(topics::kOrderMemory);
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
@@ -60,7 +54,7 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world(message); });
   bus_.subscribe(topics::kAttestation,
                  [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
-  bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { on_order(message); });
+  bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { order_desk_.on_order(message); });
   for (const auto& memory : {topics::kOrderMemory, topics::kAgentOrders}) {
     bus_.subscribe(memory, [this](const msg::OrderMemory& message) {
       take(decode(message, bus_.now()), DropReason::kMalformedOrder);
@@ -69,11 +63,10 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& message) {
     take(decode(message), DropReason::kMalformedOrder);
   });
-  apply_holds();
   update_failover();
   publish_state_periodically();
   publish_ledger();
-  publish_orders_periodically();
+  order_desk_.announce_periodically();
 }
 
 void CoordinatorNode::on_event(LogLevel min_level, OnLogEvent callback) {
@@ -89,13 +82,6 @@ void CoordinatorNode::report_role() {
     events_.report(LogLevel::kInfo, {}, "stands by: {}", describe(failover_.cause()));
 }
 
-template <typename Message>
-void CoordinatorNode::publish(Writer<Message>& writer, Message& message) {
-  message.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
-  message.header().incarnation(self_.incarnation);
-  writer.publish(message, bus_.now());
-}
-
 template <typename Decoded>
 void CoordinatorNode::take(const std::optional<Decoded>& decoded, DropReason reason,
                            std::optional<RobotId> robot) {
@@ -108,6 +94,7 @@ void CoordinatorNode::take(const std::optional<Decoded>& decoded, DropReason rea
 void CoordinatorNode::count_drops(DropCounters& drops) const {
   drops.add(drops_);
   drops.add(coordinator_.drops());
+  drops.add(order_desk_.drops());
   drops.count(DropReason::kImplausibleEpoch, std::nullopt, failover_.invalid());
   drops.count(DropReason::kFrequentEpoch, std::nullopt, failover_.too_frequent());
 }
@@ -115,7 +102,7 @@ void CoordinatorNode::count_drops(DropCounters& drops) const {
 void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
   failover_.on_heartbeat(heartbeat, bus_.now());
   apply_epoch();
-  if (!heartbeat.remembers_orders) repeat_orders();
+  if (!heartbeat.remembers_orders) order_desk_.repeat();
 }
 
 void CoordinatorNode::handle(const Registration& registration) {
@@ -123,34 +110,17 @@ void CoordinatorNode::handle(const Registration& registration) {
     failover_.reception().on_registration(registration.robot, bus_.now());
   if (registration.epoch == 0) return;  // the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
-  if (registration.asks_for_orders) return repeat_orders();
+  if (registration.asks_for_orders) return order_desk_.repeat();
   const bool was_granting = coordinator_.is_granting();
   if (const auto verdict = coordinator_.on_registration(registration)) {
     answer(*verdict);
     report_registration(registration, *verdict);
-    if (verdict->reasons.front() == msg::Reason::REASON_GRANTED) learn_of_orders(registration);
+    if (verdict->reasons.front() == msg::Reason::REASON_GRANTED) order_desk_.on_registered(registration);
   }
   if (coordinator_.is_granting() != was_granting) {
-    update_orders();
+    order_desk_.update_memory();
     publish_state();
   }
-}
-
-void CoordinatorNode::learn_of_orders(const Registration& registration) {
-  has_history_ |= registration.has_moved;
-  const bool was_complete = orders_.is_complete();
-  orders_.on_registration(registration.knows_orders);
-  if (orders_.is_complete() != was_complete) {
-    apply_holds();
-    publish_orders(orders_.book().all(), false);  // agents that know nothing wait for a complete memory
-    publish_state();
-  }
-  if (!registration.knows_orders) repeat_orders();
-}
-
-void CoordinatorNode::repeat_orders() {
-  const bool is_due = !orders_published_at_ || bus_.now() - *orders_published_at_ > kMinOrderPeriod;
-  if (orders_.is_complete() && is_due) publish_orders(orders_.book().all(), false);
 }
 
 void CoordinatorNode::report_registration(const Registration& registration, const Verdict& verdict) const {
@@ -170,10 +140,7 @@ void CoordinatorNode::handle(const Feedback& feedback) {
   const bool is_granted = !feedback.is_off_reference && !feedback.is_absent();
   if (coordinator_.ledger().has_robot(feedback.robot))
     failover_.reception().on_fact(feedback.robot, feedback.executing.number, is_granted, bus_.now());
-  if (feedback.obeyed_epoch == coordinator_.epoch() && confirmations_.is_waiting()) {
-    confirmations_.on_obeyed(feedback.robot);
-    confirm_orders();
-  }
+  if (feedback.obeyed_epoch == coordinator_.epoch()) order_desk_.on_obeyed(feedback.robot);
   const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
   if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
   events_.report(LogLevel::kWarning, feedback.robot,
@@ -231,120 +198,14 @@ void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
   }
 }
 
-void CoordinatorNode::handle(const OrderReport& report) {
-  (void)orders_.on_report(report);
-  if (!coordinator_.ledger().has_robot(report.robot)) return;
-  failover_.reception().on_agent(report.robot, bus_.now());
-  confirmations_.on_report(report);
-}
-
-void CoordinatorNode::confirm_orders() {
-  for (const Order& order : confirmations_.take_confirmed(orders_.book())) {
-    // What a resume lifts is lifted, also if another one makes it meaningless.
-    const bool is_remembered = orders_.book().stands(order) || order.kind == msg::OrderKind::ORDER_RESUME;
-    answer(order.client, order.number,
-           is_remembered ? msg::OrderResult::RESULT_REMEMBERED : msg::OrderResult::RESULT_REPLACED);
-  }
-}
-
-void CoordinatorNode::on_order(const msg::Order& message) {
-  const auto order = decode(message, bus_.now());
-  const auto result = order ? orders_.on_order(*order) : msg::OrderResult::RESULT_MALFORMED;
-  if (!order)
-    drops_.count(DropReason::kMalformedOrder);
-  else if (result != msg::OrderResult::RESULT_REMEMBERED)
-    drops_.count(DropReason::kRefusedOrder);
-  const bool is_announced = apply_orders();
-  if (!coordinator_.is_active()) return;
-  // Nobody needs to remember an order that changes nothing, such as a resume while nobody is held.
-  const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
-  if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
-  confirmations_.add(*order);
-  if (!is_announced) unheard_.merge(*orders_.book().in_place_of(*order));
-}
-
-void CoordinatorNode::announce_again() {
-  if (unheard_.empty()) return;
-  publish_orders(unheard_.all(), true);
-  unheard_ = {};
-}
-
-void CoordinatorNode::answer(ClientId client, OrderNumber number, msg::OrderResult result) {
-  msg::OrderAnswer answer;
-  answer.client(client);
-  answer.order_number(number);
-  answer.result(result);
-  answer.newest_number(orders_.book().newest_number());
-  publish(answer_writer_, answer);
-}
-
 void CoordinatorNode::handle(const OrderPage& page) {
-  if (page.process == static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number) return;
-  const bool is_of_roster = coordinator_.ledger().has_robot(page.process);
-  if (is_of_roster) failover_.reception().on_agent(page.process, bus_.now());
-  // Later coordinators need not hear other robots' agents.
-  if (is_of_roster || is_coordinator(page.process)) confirmations_.on_page(page);
-  confirm_orders();
-  const bool was_complete = orders_.is_complete();
-  if (orders_.on_page(page)) {
-    has_learned_orders_ = true;
-    apply_orders();
-    tell_registering_agents();
-  }
-  if (orders_.is_complete() == was_complete) return;
-  apply_holds();
-  publish_state();
+  if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
+  order_desk_.on_page(page);
 }
 
-void CoordinatorNode::update_orders() {
-  if (!orders_.update(coordinator_.is_granting(), has_history_, bus_.now())) return;
-  if (has_history_)
-    events_.report(LogLevel::kWarning, {},
-                   "no process remembers what was ordered: holds all robots until an operator resumes");
-  apply_orders();
-  apply_holds();
-  publish_orders(orders_.book().all(), false);
-  publish_state();
-}
-
-void CoordinatorNode::apply_holds() {
-  for (const RobotId robot : coordinator_.ledger().roster())
-    coordinator_.set_held(robot, orders_.is_held(robot));
-}
-
-bool CoordinatorNode::apply_orders() {
-  const auto changes = orders_.take_changes();
-  if (changes.empty()) return false;
-  const auto is_hold = [](const RememberedOrder& order) {
-    return order.order.kind == msg::OrderKind::ORDER_HOLD || order.order.kind == msg::OrderKind::ORDER_RESUME;
-  };
-  if (std::ranges::any_of(changes, is_hold)) apply_holds();
-  if (coordinator_.is_active()) publish_orders(changes, true);
-  return coordinator_.is_active();
-}
-
-void CoordinatorNode::publish_orders(std::span<const RememberedOrder> orders, bool have_changed) {
-  if (!have_changed) {
-    orders_published_at_ = bus_.now();
-    has_learned_orders_ = false;
-  }
-  for (msg::OrderMemory& page : encode(orders, orders_.is_complete(), have_changed)) {
-    page.process(static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number);
-    publish(memory_writer_, page);
-  }
-}
-
-void CoordinatorNode::tell_registering_agents() {
-  if (!coordinator_.is_active() || coordinator_.is_granting()) return;
-  const bool is_due =
-      !orders_published_at_ ||
-      bus_.now() - *orders_published_at_ > (has_learned_orders_ ? kMinOrderPeriod : kRegisteringOrderPeriod);
-  if (is_due) publish_orders(orders_.book().all(), false);
-}
-
-void CoordinatorNode::publish_orders_periodically() {
-  bus_.at(bus_.now() + kOrderPeriod, [this] { publish_orders_periodically(); });
-  publish_orders(orders_.book().all(), false);
+void CoordinatorNode::handle(const OrderReport& report) {
+  if (coordinator_.ledger().has_robot(report.robot)) failover_.reception().on_agent(report.robot, bus_.now());
+  order_desk_.on_report(report);
 }
 
 void CoordinatorNode::handle(const Proposal& proposal) {
@@ -362,20 +223,18 @@ void CoordinatorNode::observe_epoch(RobotId robot, Epoch epoch, EpochHolder hold
 
 void CoordinatorNode::answer(const Verdict& verdict) {
   msg::Verdict message = encode(verdict);
-  publish(verdict_writers_.at(verdict.robot), message);
+  publish(self_, verdict_writers_.at(verdict.robot), message, bus_.now());
 }
 
 void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
-  has_history_ = false;
-  confirmations_.clear();
-  unheard_ = {};
+  order_desk_.begin_epoch();
   changes_.reset();
   report_role();
   publish_state();
   // Orders that arrived while it stood by were announced by another, if at all.
-  if (coordinator_.is_active()) publish_orders(orders_.book().all(), false);
+  if (coordinator_.is_active()) order_desk_.announce_all();
 }
 
 void CoordinatorNode::update_failover() {
@@ -388,25 +247,22 @@ void CoordinatorNode::update_failover() {
 
 void CoordinatorNode::forget_times() {
   heard_at_.clear();
-  orders_published_at_.reset();
+  order_desk_.forget_times();
   coordinator_.forget_times();
 }
 
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
-  state.remembers_orders(orders_.is_complete());
+  state.remembers_orders(order_desk_.orders().is_complete());
   encode(failover_.cause(), state);
-  publish(state_writer_, state);
+  publish(self_, state_writer_, state, bus_.now());
   changes_.update(state, coordinator_.ledger().conflicts(), bus_.now());
 }
 
 void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
-  update_orders();
-  confirm_orders();
-  announce_again();
-  tell_registering_agents();
+  order_desk_.update();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }
 
@@ -414,7 +270,7 @@ void CoordinatorNode::publish_ledger() {
   bus_.at(bus_.now() + cycle_, [this] { publish_ledger(); });
   if (!coordinator_.is_granting()) return;
   for (msg::LedgerPage& page : ledger_pages(coordinator_.ledger(), coordinator_.epoch()))
-    publish(ledger_writer_, page);
+    publish(self_, ledger_writer_, page, bus_.now());
 }
 
 }  // namespace sidestep

@@ -11,8 +11,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/failover.hpp"
-#include "coordinator/order_confirmations.hpp"
-#include "coordinator/order_keeper.hpp"
+#include "coordinator/order_desk.hpp"
 #include "coordinator/state_changes.hpp"
 
 namespace sidestep {
@@ -31,12 +30,10 @@ class CoordinatorNode {
   void on_event(LogLevel min_level, OnLogEvent callback);
 
   const Coordinator& coordinator() const { return coordinator_; }
-  const OrderKeeper& orders() const { return orders_; }
+  const OrderKeeper& orders() const { return order_desk_.orders(); }
   void count_drops(DropCounters& drops) const;
 
  private:
-  template <typename Message>
-  void publish(Writer<Message>& writer, Message& message);
   /// Handles a decoded message; counts it if decoding failed.
   template <typename Decoded>
   void take(const std::optional<Decoded>& decoded, DropReason reason, std::optional<RobotId> robot = {});
@@ -46,28 +43,8 @@ class CoordinatorNode {
   void handle(const Proposal& proposal);
   void on_world(const msg::WorldState& message);
   void on_attestation(const msg::AbsenceAttestation& message);
-  void on_order(const msg::Order& message);
   void handle(const OrderPage& page);
   void handle(const OrderReport& report);
-  void answer(ClientId client, OrderNumber number, msg::OrderResult result);
-  /// Answers the clients whose orders another process remembers too.
-  void confirm_orders();
-  /// Tells the orders again while agents have to register: they do so once they have been told all that they
-  /// remember.
-  void tell_registering_agents();
-  /// Learns from a registration whether there may be orders, and tells the agent those that it lacks.
-  void learn_of_orders(const Registration& registration);
-  /// Completes the memory of orders if that is possible.
-  void update_orders();
-  void apply_holds();
-  /// Applies changes of the orders, and announces them if it is active. Whether it has announced any.
-  bool apply_orders();
-  void publish_orders(std::span<const RememberedOrder> orders, bool have_changed);
-  /// Announces the orders again that clients have repeated, because nobody has confirmed them.
-  void announce_again();
-  void publish_orders_periodically();
-  /// Tells all orders again for a process that has just started.
-  void repeat_orders();
   /// Reports in which epoch this coordinator is active, or that it stands by, and why.
   void report_role();
   void report_registration(const Registration& registration, const Verdict& verdict) const;
@@ -89,22 +66,15 @@ class CoordinatorNode {
   Duration max_clock_difference_;
   Failover failover_;
   Coordinator coordinator_;
-  OrderKeeper orders_;
-  OrderConfirmations confirmations_;
-  OrderBook unheard_;         // orders to be announced again
-  bool has_history_ = false;  // in this epoch, a robot has registered that may have been given orders before
   Writer<msg::CoordinatorState> state_writer_;
   Writer<msg::LedgerPage> ledger_writer_;
-  Writer<msg::OrderAnswer> answer_writer_;
-  Writer<msg::OrderMemory> memory_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
   EventReporter events_;
+  OrderDesk order_desk_;
   StateChanges changes_{events_};
   std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
   Time updated_at_{};                           // by update_failover()
   std::vector<RobotObservation> observations_;  // of the last world state
-  std::optional<Time> orders_published_at_;     // all of them
-  bool has_learned_orders_ = false;             // since then, from another process
   int standby_periods_ = 0;                     // heartbeat periods while standing by
   DropCounters drops_;                          // messages that this node has not used
   CounterPublisher counters_;
