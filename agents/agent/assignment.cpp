@@ -144,6 +144,10 @@ OrderReport Assignment::report() const {
   return report;
 }
 
+bool Assignment::yields_to(const Passer& other, Time t, Duration period) const {
+  return may_pass_first(other, {robot_, number_}, t, period);
+}
+
 OtherAssignment Assignment::other(RobotId robot) const {
   OrderBook book;
   for_each([&](const RememberedOrder& order) {

@@ -60,9 +60,7 @@ class Assignment {
   /// What is remembered of another robot.
   OtherAssignment other(RobotId robot) const;
   /// Whether the other robot comes first where the two cannot pass each other; see may_pass_first().
-  bool yields_to(const Passer& other, Time t, Duration period) const {
-    return may_pass_first(other, {robot_, number_}, t, period);
-  }
+  bool yields_to(const Passer& other, Time t, Duration period) const;
 
   /// All orders, also of other robots, whose agents may have restarted together with all coordinators. What
   /// a coordinator's memory lacks is not forgotten: that coordinator may have been cut off.

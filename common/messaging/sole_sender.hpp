@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <utility>
 
 #include "common/time/time.hpp"
 
@@ -33,54 +31,16 @@ class SoleSender {
   static constexpr std::uint64_t kMaxRaise = 1024;
 
   /// Processes a message of the process with this incarnation.
-  [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now) {
-    forget_future(now);
-    if (has_sender_ && incarnation > sender_ && incarnation - sender_ <= kMaxRaise) sender_ = incarnation;
-    if (!has_sender_ || (incarnation != sender_ && now - heard_at_ >= gone_after_)) {
-      *this = SoleSender(listening_);
-      has_sender_ = true;
-      sender_ = incarnation;
-      believes_from_ = now + listening_;
-    }
-    if (now < believes_from_) return listen(incarnation, now);
-    if (incarnation == sender_) {
-      heard_at_ = now;
-      if (others_ == 0 || now - other_heard_at_ >= kGoneAfter) {
-        others_ = interleaved_ = 0;
-        is_reported_ = false;
-        return Outcome::kCounts;
-      }
-      ++interleaved_;
-    } else {
-      other_heard_at_ = now;
-      ++others_;
-    }
-    // A message that was overtaken by the first one of a restarted process is no contest, and neither is a
-    // single false one.
-    if (std::min(others_, interleaved_) < kEvidence)
-      return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
-    gone_after_ = kGoneAfterContest;
-    return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewlyContested;
-  }
+  [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now);
 
   /// Whether this is the process that was heard first of those that contradict each other.
   bool is_first(std::uint64_t incarnation) const { return has_sender_ && incarnation == sender_; }
 
  private:
   /// Times after now were read before this process's clock was set back: they count as now.
-  void forget_future(Time now) {
-    heard_at_ = std::min(heard_at_, now);
-    other_heard_at_ = std::min(other_heard_at_, now);
-    believes_from_ = std::min(believes_from_, now + listening_);
-  }
+  void forget_future(Time now);
   /// Each process that is heard beside the first one proves a contest.
-  Outcome listen(std::uint64_t incarnation, Time now) {
-    (incarnation == sender_ ? heard_at_ : other_heard_at_) = now;
-    if (incarnation == sender_) return Outcome::kRefused;
-    others_ = interleaved_ = kEvidence;
-    gone_after_ = kGoneAfterContest;
-    return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewlyContested;
-  }
+  Outcome listen(std::uint64_t incarnation, Time now);
 
   static constexpr std::uint32_t kEvidence = 2;  // messages of each, in turn
 
