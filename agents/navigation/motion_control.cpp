@@ -12,7 +12,11 @@ AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2&
   const TrapezoidalProfile2d profile(displacement_m, velocity_mps, limits);
   const Duration hold = std::clamp(from_seconds(profile.along().first_phase_s()), min_hold, max_hold);
   const double seconds = to_seconds(hold);
-  return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
+  if (profile.along().duration_s() > seconds)
+    return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
+  // No single acceleration follows a motion that has ended by then. Two that are held as long do.
+  const Vec2 velocity_between = displacement_m / seconds - 0.5 * velocity_mps;
+  return {(velocity_between - velocity_mps) / seconds, hold};
 }
 
 }  // namespace sidestep

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -70,6 +71,26 @@ TEST_CASE("simulated robots keep to whatever limits of motion a scenario states"
   CHECK(run.system.run_until_arrived(run.system.begin() + std::chrono::seconds(60)));
   run.require_safe();
   CHECK(own_stops == 0);
+}
+
+TEST_CASE("a robot arrives however long its control cycle and strong its motors are") {
+  const auto seed = GENERATE(range(1u, 31u));
+  Rng rng(seed);
+  const double rate_hz = 5 * std::pow(24, rng.uniform()),
+               acceleration_mps2 = 1.5 * std::pow(13, rng.uniform()),
+               speed_mps = 0.2 * std::pow(9, rng.uniform());
+  CAPTURE(seed, rate_hz, acceleration_mps2, speed_mps);
+  Scenario scenario = parse_scenario(
+      fmt::format("{{name: slow, field: {{length_m: 6, width_m: 4}}, control_rate_hz: {:.3f}, "
+                  "limits: {{acceleration_mps2: {:.3f}, deceleration_mps2: {:.3f}, speed_mps: {:.3f}}}, "
+                  "robots: [{{id: 0, start_m: [-1, 0], goals_m: [[1, 0.3]]}}]}}",
+                  rate_hz, acceleration_mps2, acceleration_mps2 * rng.uniform(1, 1.7), speed_mps),
+      "slow.yaml");
+  MonitoredSystem run(scenario, seed);
+  CHECK(run.system.run_until_arrived(run.system.begin() + std::chrono::seconds(60)));
+  const Report report = run.system.metrics().report();
+  CHECK(report.firmware_violations == 0);
+  CHECK(report.audit->violations == 0);
 }
 
 TEST_CASE("in every shipped scenario all robots arrive without contact") {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/navigation/motion_control.hpp"
+
+#include <cmath>
+
+#include "common/motion/robot_model.hpp"
+#include "common/random/rng.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::motion_control_test {
+
+TEST_CASE("a robot comes to rest at its goal, however long its control cycle and strong its motors are") {
+  Rng rng(1);
+  for (int i = 0; i < 2000; ++i) {
+    MotionLimits limits;
+    limits.speed_mps = rng.uniform(0.1, 4);
+    limits.acceleration_mps2 = rng.uniform(0.3, 20);
+    limits.deceleration_mps2 = rng.uniform(0.3, 20);
+    const Duration cycle = from_seconds(1 / rng.uniform(4, 120));
+    const Duration max_hold = cycle * (1 + static_cast<int>(rng.uniform(0, 3)));
+    const Vec2 goal_m(rng.uniform(-2, 2), rng.uniform(-2, 2));
+    State state;
+    // More than the way takes at the speed limit, with as much again to speed up and to slow down.
+    const double limit_s = 20 + 2 * goal_m.norm() / limits.speed_mps;
+    double elapsed_s = 0;
+    for (; elapsed_s < limit_s; elapsed_s += to_seconds(cycle)) {
+      const auto desired =
+          desired_acceleration(goal_m - state.position_m, state.velocity_mps, limits, cycle, max_hold);
+      REQUIRE(desired.hold >= cycle);
+      REQUIRE(desired.hold <= max_hold);
+      const Vec2 held =
+          limit_acceleration(desired.acceleration_mps2, state.velocity_mps, limits, desired.hold);
+      state = state_after(state, held, to_seconds(cycle));
+    }
+    CAPTURE(i, limits.speed_mps, limits.acceleration_mps2, limits.deceleration_mps2, to_seconds(cycle),
+            to_seconds(max_hold), (goal_m - state.position_m).norm());
+    CHECK((goal_m - state.position_m).norm() < 1e-3);
+    CHECK(state.velocity_mps.norm() < 0.01);
+  }
+}
+
+TEST_CASE("a stop after each hold passes no goal, and halves the way to one that is nearer than a hold") {
+  Rng rng(2);
+  for (int i = 0; i < 1000; ++i) {
+    MotionLimits limits;
+    limits.speed_mps = 10;
+    limits.acceleration_mps2 = rng.uniform(0.3, 20);
+    limits.deceleration_mps2 = rng.uniform(0.3, 20);
+    const Duration hold = from_seconds(rng.uniform(0.01, 0.5));
+    const Vec2 to_goal_m(rng.uniform(0, 0.1), rng.uniform(0, 0.1));
+    const auto desired = desired_acceleration(to_goal_m, {0, 0}, limits, hold, hold);
+    const Vec2 velocity = to_seconds(hold) * desired.acceleration_mps2;
+    const Vec2 end_m =
+        0.5 * to_seconds(hold) * velocity + velocity * (velocity.norm() / (2 * limits.deceleration_mps2));
+    CAPTURE(to_seconds(hold), limits.acceleration_mps2, limits.deceleration_mps2, to_goal_m.norm());
+    CHECK(end_m.norm() <= to_goal_m.norm() + 1e-9);
+    // The time-optimal motion from rest to rest takes so long.
+    const double optimal_s =
+        std::sqrt(2 * to_goal_m.norm() * (1 / limits.acceleration_mps2 + 1 / limits.deceleration_mps2));
+    if (optimal_s < to_seconds(hold)) CHECK((to_goal_m - end_m).norm() <= 0.5 * to_goal_m.norm() + 1e-9);
+  }
+}
+
+}  // namespace sidestep::motion_control_test
