@@ -45,11 +45,30 @@ TEST_CASE("the closest approach of two paths is found to micrometres below the c
   CHECK(near > 20);
 }
 
+TEST_CASE("a fast approach after a long rest is found, whichever path starts first and whichever is fast") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const double off_m = rng.uniform(0.001, 0.009), way_m = rng.uniform(0.05, 0.4), fast_mps2 = 10;
+    const auto after = [&](double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); };
+    const Trajectory resting = Trajectory::resting(after(rng.uniform(0, 3)), {0, off_m});
+    Trajectory passing(after(rng.uniform(0, 3)), State{{-way_m, 0}, {0, 0}});
+    passing.append(from_seconds(rng.uniform(3, 4)), {0, 0});
+    const Duration half = from_seconds(std::sqrt(2 * way_m / fast_mps2));
+    passing.append(half, {fast_mps2, 0});
+    passing.append(half, {-fast_mps2, 0});
+    const AuditPath a(encode({0, 1, 2, 0, resting, 0})), b(encode({1, 1, 2, 0, passing, 0}));
+    constexpr double kCutoff_m = 0.01;
+    CHECK(closest_approach(a, b, kCutoff_m).distance_m == Approx(off_m).margin(3e-6));
+    CHECK(closest_approach(b, a, kCutoff_m).distance_m == Approx(off_m).margin(3e-6));
+  }
+}
+
 TEST_CASE("implausible versions are rejected") {
   msg::Version version = encode({0, 1, 2, 0, Trajectory::resting(time_from_ns(5), {1, 1}), 0});
   CHECK(is_sane(version));
   SECTION("not a number") { version.x_m(std::nan("")); }
-  SECTION("too many phases") { version.phase_count(200); }
+  SECTION("too many phases") { version.phase_count(GENERATE(std::uint8_t{msg::MAX_PHASES + 1}, 200)); }
   SECTION("a start at a negative time") { version.start_ns(-1); }
   SECTION("a phase of negative duration") {
     version.phase_count(1);

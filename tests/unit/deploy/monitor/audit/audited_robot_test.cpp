@@ -47,6 +47,29 @@ TEST_CASE("a robot's recent versions stay recent when older ones are evicted or 
   CHECK(first_recent(robot) == 7);
 }
 
+TEST_CASE("a version that arrives late is recent, also if later ones were excluded long ago") {
+  AuditedRobot robot;
+  for (const VersionNumber number : {2u, 4u, 6u}) {
+    KnownVersion& known = robot.find_or_insert(number);
+    if (number == 6) continue;
+    known.exclusion = Exclusion::kOlder;
+    known.excluded_ns = 10;
+  }
+  robot.advance_recent(11);
+  REQUIRE(first_recent(robot) == 6);
+  robot.find_or_insert(3);
+  CHECK(first_recent(robot) == 3);
+}
+
+TEST_CASE("a version that nobody granted or registered is in no epoch") {
+  KnownVersion known;
+  CHECK_FALSE(known.is_in(0));
+  CHECK_FALSE(known.is_in(1));
+  known.granted_in = 1;
+  CHECK(known.is_in(1));
+  CHECK_FALSE(known.is_in(0));
+}
+
 /// Gives a version content: it continues `base` and starts at `start_ns`.
 void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, std::int64_t start_ns) {
   KnownVersion& known = robot.find_or_insert(number);
@@ -55,6 +78,24 @@ void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, 
   known.version.base(base);
   known.version.start_ns(start_ns);
   known.path = AuditPath(known.version);
+}
+
+TEST_CASE("of a lifted robot only what it was granted to do later remains possible") {
+  AuditedRobot robot;
+  AuditedRobot::Fact lifted;
+  lifted.at_ns = 100;
+  lifted.is_lifted = true;
+  lifted.last_executed = 7;
+  add_content(robot, 0, 0, 101);  // the rest in which it was switched on
+  add_content(robot, 8, 0, 101);
+  add_content(robot, 9, 8, 101);
+  add_content(robot, 10, 0, 100);
+  add_content(robot, 11, 7, 101);
+  CHECK(exclusion_by(lifted, *robot.find(0)) == Exclusion::kLifted);
+  CHECK(exclusion_by(lifted, *robot.find(8)) == Exclusion::kNone);
+  CHECK(exclusion_by(lifted, *robot.find(9)) == Exclusion::kNone);
+  CHECK(exclusion_by(lifted, *robot.find(10)) == Exclusion::kLifted);
+  CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
 }
 
 TEST_CASE("what a robot executed between two versions is known if every base is") {

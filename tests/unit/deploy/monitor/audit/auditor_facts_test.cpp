@@ -160,6 +160,35 @@ TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule
   CHECK(count(totals, AuditRule::kTracking) == 0);
 }
 
+TEST_CASE("a late fact of a robot's former life changes nothing") {
+  const auto totals_with = [](bool is_delivered_late) {
+    History history = crossing();
+    const Time set_back = history.messages.front().at + 1500ms;
+    std::optional<msg::Feedback> last;
+    history.each<msg::Feedback>([&](msg::Feedback& fact, Time at) {
+      if (fact.robot() != 2) return;
+      if (at < set_back) last = fact;
+      if (at >= set_back) fact.header().incarnation(fact.header().incarnation() + 1);
+    });
+    const auto is_last = [&](const msg::Feedback& fact) {
+      return fact.robot() == 2 && fact.header().incarnation() == last->header().incarnation() &&
+             fact.header().message_number() == last->header().message_number();
+    };
+    history.remove_if<msg::Feedback>(is_last);
+    const auto place = std::ranges::find_if(
+        history.messages, [&](const ReceivedMessage& received) { return received.at > set_back + 40ms; });
+    if (is_delivered_late) history.messages.insert(place, {set_back + 40ms, *last});
+    return audit_of(history, {});
+  };
+  const AuditTotals without = totals_with(false), with = totals_with(true);
+  INFO(lines(with));
+  CHECK(without.violations == 0);
+  CHECK(with.violations == 0);
+  CHECK(with.received == without.received + 1);
+  CHECK(with.compared_pairs == without.compared_pairs);
+  CHECK(with.coverage.versions == without.coverage.versions);
+}
+
 TEST_CASE("ground truth that contradicts the promise is reported under its rule") {
   SECTION("a displaced robot") {
     const double shift_m = GENERATE(0.007, 0.02);

@@ -97,12 +97,13 @@ TEST_CASE("a displacement that vision shows is reported if it lasts, once") {
 
 TEST_CASE("robots that vision shows in contact are reported") {
   const double distance_m = GENERATE(0.178, 0.186);
-  CAPTURE(distance_m);
+  const bool is_complete = GENERATE(true, false);
+  CAPTURE(distance_m, is_complete);
   History history = seen_crossing();
   change_sight(history, 2, 2s, 2100ms, [&](msg::TrackedRobot& robot, const msg::WorldState& world) {
     put_beside(robot, world, 3, distance_m);
   });
-  const AuditTotals totals = audit_of(history, kComplete);
+  const AuditTotals totals = audit_of(history, is_complete ? kComplete : AuditInput{});
   INFO(lines(totals));
   CHECK(count(totals, AuditRule::kContact) == (distance_m < 0.18 ? 1 : 0));
 }
