@@ -164,7 +164,14 @@ void AuditedRobot::reset() {
 void AuditedRobot::forget_times() {
   if (fact) fact->at_ns = kAlways;
   drifted_since_ns = beyond_bound_since_ns = kNever;
-  for (KnownVersion& version : versions) version.executed_until_ns = kAlways;
+  for (KnownVersion& version : versions) {
+    version.executed_until_ns = kAlways;
+    // By the clock that was ahead: a message may arrive before the first fact by the clock that was set.
+    if (version.exclusion != Exclusion::kLate) continue;
+    version.exclusion = Exclusion::kNone;
+    version.excluded_ns = kNever;
+  }
+  first_recent = 0;
 }
 
 Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {

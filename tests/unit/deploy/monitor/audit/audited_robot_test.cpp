@@ -98,6 +98,20 @@ TEST_CASE("of a lifted robot only what it was granted to do later remains possib
   CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
 }
 
+TEST_CASE("what was too late by a clock that has been set back is possible again") {
+  AuditedRobot robot = robot_with(5, 3);
+  robot.fact.emplace().at_ns = 1000;
+  robot.find(4)->exclusion = Exclusion::kLate;
+  robot.find(4)->excluded_ns = 10;
+  robot.advance_recent(11);
+  REQUIRE(first_recent(robot) == 5);
+  robot.forget_times();
+  CHECK(robot.find(4)->exclusion == Exclusion::kNone);
+  CHECK(robot.find(4)->excluded_ns == kNever);
+  CHECK(robot.find(3)->exclusion == Exclusion::kOlder);
+  CHECK(first_recent(robot) <= 4);
+}
+
 TEST_CASE("what a robot executed between two versions is known if every base is") {
   AuditedRobot robot;
   for (const VersionNumber number : {3u, 5u, 6u, 9u})
