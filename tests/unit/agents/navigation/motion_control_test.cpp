@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/motion_control.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/motion/robot_model.hpp"
@@ -36,6 +37,32 @@ TEST_CASE("a robot comes to rest at its goal, however long its control cycle and
             to_seconds(max_hold), (goal_m - state.position_m).norm());
     CHECK((goal_m - state.position_m).norm() < 1e-3);
     CHECK(state.velocity_mps.norm() < 0.01);
+  }
+}
+
+TEST_CASE(
+    "a robot that brakes much better than it speeds up hardly passes its goal, however long its cycle") {
+  Rng rng(3);
+  for (int i = 0; i < 1000; ++i) {
+    MotionLimits limits;
+    limits.speed_mps = rng.uniform(1, 5);
+    limits.acceleration_mps2 = rng.uniform(0.3, 3);
+    limits.deceleration_mps2 = limits.acceleration_mps2 * rng.uniform(3, 30);
+    const Duration cycle = from_seconds(1 / rng.uniform(5, 60));
+    const Vec2 goal_m = rng.uniform(1, 10) * Vec2(0.6, 0.8);
+    State state;
+    double farthest_m = 0;
+    for (double t_s = 0; t_s < 20; t_s += to_seconds(cycle)) {
+      const auto desired =
+          desired_acceleration(goal_m - state.position_m, state.velocity_mps, limits, cycle, cycle);
+      const Vec2 held =
+          limit_acceleration(desired.acceleration_mps2, state.velocity_mps, limits, desired.hold);
+      state = state_after(state, held, to_seconds(cycle));
+      farthest_m = std::max(farthest_m, state.position_m.norm());
+    }
+    CAPTURE(i, limits.speed_mps, limits.acceleration_mps2, limits.deceleration_mps2, to_seconds(cycle));
+    // It brakes over a whole cycle, even where less would do.
+    CHECK(farthest_m - goal_m.norm() < 0.5 * limits.speed_mps * to_seconds(cycle));
   }
 }
 
